@@ -23,7 +23,7 @@ FORCES = SPACE.forces[:6]
 LINK = "link2"
 
 
-def graph(wanted: tuple[str, ...]) -> Program:
+def program(wanted: tuple[str, ...]) -> Program:
     """The arm, every joint driven."""
     m = SpatialMechanism("arm")
     links = [
@@ -39,7 +39,7 @@ def graph(wanted: tuple[str, ...]) -> Program:
 
 def arm_efforts(t: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
     """Efforts of the six joints, (6, t)."""
-    return columns_of(graph(("effort",)), np.zeros(0), t, backend, threads)
+    return columns_of(program(("effort",)), np.zeros(0), t, backend, threads)
 
 
 def arm_sections(t: Array, xi: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
@@ -74,7 +74,7 @@ def _fills(law: SectionLaw, forces: tuple[str, ...], t: Array, xi: Array, thread
 
 
 def _law(t: Array, backend: Backend, threads: int) -> tuple[Work, SectionLaw]:
-    found = graph((f"section:{LINK}",))
+    found = program((f"section:{LINK}",))
     work = columns_of(found, np.zeros(0), t, backend, threads)
     description = found.data.at(found.data.defaults)
     outputs = in_order(dict(zip(found.outputs, work(), strict=True)), description)

@@ -11,13 +11,13 @@ import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, codegen, compile_scene, load_case
 from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.base.room import cores
+from lagrange_casadi.base.space import cores
 from lagrange_casadi.base.vocabulary import Backend
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.program import Program
 from lagrange_casadi.instants.backends import rows, run
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.instants.ordering import in_order
-from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution
 
@@ -103,18 +103,18 @@ def columns() -> tuple[str, ...]:
     return tuple(map(str, compile_scene(SCENE, ["all"]).outputs))
 
 
-def columns_of(graph: Program, p: Array, t: Array, backend: Backend, threads: int) -> Work:
+def columns_of(program: Program, p: Array, t: Array, backend: Backend, threads: int) -> Work:
     """The outputs, the same array at every call, (columns, t)."""
     compiler = codegen.find_compiler("c++" if backend == "lanes" else "c")
     if compiler is None:
         raise RuntimeError(f"no compiler for the backend {backend}")
-    out, status = rows(len(graph.columns), t.size), np.zeros(t.size, dtype=np.int32)
-    library, z = codegen.load(codegen.emit(graph), compiler), np.empty((0, t.size))
-    first = len(graph.columns) - len(graph.outputs)
+    out, status = rows(len(program.columns), t.size), np.zeros(t.size, dtype=np.int32)
+    library, z = codegen.load(codegen.emit(program), compiler), np.empty((0, t.size))
+    first = len(program.columns) - len(program.outputs)
 
     def call() -> Array:
         if backend == "vm":
-            out[:] = run(graph, t, p, Rung("vm"))[0].out
+            out[:] = run(program, t, p, EvaluationMethod("vm"))[0].out
         else:
             library.evaluate(t, p, z, out, status, threads or cores())
         return out[first:]
@@ -124,10 +124,10 @@ def columns_of(graph: Program, p: Array, t: Array, backend: Backend, threads: in
 
 def _law(case: SliderCrank, t: Array, backend: Backend, threads: int) -> tuple[Work, SectionLaw]:
     """What works out the rod's law, and the law, whose arrays that fills."""
-    graph = compile_scene(SCENE, ["section:rod"])
-    work = columns_of(graph, np.array(case.parameters), t, backend, threads)
-    description = graph.data.at(case.parameters)
-    outputs = in_order(dict(zip(graph.outputs, work(), strict=True)), description)
+    program = compile_scene(SCENE, ["section:rod"])
+    work = columns_of(program, np.array(case.parameters), t, backend, threads)
+    description = program.data.at(case.parameters)
+    outputs = in_order(dict(zip(program.outputs, work(), strict=True)), description)
     return work, Solution(
         "slider_crank", t, t, outputs, description, Provenance("", "", "", "", "", {})
     ).section("rod").law

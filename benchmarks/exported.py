@@ -25,12 +25,12 @@ _ROUNDS = 300
 def report(case: str) -> str:
     """Nanoseconds an instant of both, all outputs, the best of many rounds that take turns."""
     scene = load_case(Path(__file__).parent.parent / "cases" / case).scene
-    graph, compiler = compile_scene(scene), codegen.find_compiler("c")
-    if compiler is None or graph.newton is not None:
+    program, compiler = compile_scene(scene), codegen.find_compiler("c")
+    if compiler is None or program.newton is not None:
         raise RuntimeError("needs a C compiler, and a case without iterated loops")
     t, p = np.linspace(*scene.t[:2], N), np.array(list(scene.mechanism.values().values()))
-    out, z, status = rows(len(graph.columns), N), np.empty((0, N)), np.zeros(N, dtype=np.int32)
-    library = codegen.load(codegen.emit(graph), compiler)
+    out, z, status = rows(len(program.columns), N), np.empty((0, N)), np.zeros(N, dtype=np.int32)
+    library = codegen.load(codegen.emit(program), compiler)
     with tempfile.TemporaryDirectory() as folder:
         batch = _batch(scene, compiler, Path(folder), t)
         both: list[Callable[[], Any]] = [lambda: library.evaluate(t, p, z, out, status), batch]

@@ -23,11 +23,11 @@ LEVELS: tuple[tuple[Language, str], ...] = (
 def report(links: int) -> str:
     """Of an open chain, everything: stages in seconds, and the time of an instant by each level."""
     start = time.perf_counter()
-    graph = chain(links, ("all",))
+    program = chain(links, ("all",))
     derived = time.perf_counter()
-    source = codegen.emit(graph)
+    source = codegen.emit(program)
     said = (
-        f"{graph.instructions['instant']} instructions, derive {derived - start:.2f} s, emit"
+        f"{program.instructions['instant']} instructions, derive {derived - start:.2f} s, emit"
         f" {time.perf_counter() - derived:.2f} s"
     )
     for language, level in LEVELS:
@@ -39,7 +39,7 @@ def report(links: int) -> str:
         compiled = time.perf_counter() - start
         said += (
             f"; {language} {level} {compiled:.2f} s,"
-            f" {_instant(library, len(graph.columns)) * 1e6:.2f} us/instant"
+            f" {_instant(library, len(program.columns)) * 1e6:.2f} us/instant"
         )
     return said
 

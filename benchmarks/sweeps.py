@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from lagrange_casadi import load_case, sweep
-from lagrange_casadi.base.room import cores
+from lagrange_casadi.base.space import cores
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 WANTED = (

@@ -53,7 +53,7 @@ UNLISTED = [
     *(
         "Range",
         "RigidMass",
-        "Spread",
+        "LoadDensity",
         "Starts",
         "StiffSafety",
         "Times",

@@ -18,7 +18,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, TypeVar
 import casadi as ca
 import numpy as np
 
-from .base.room import MOST_THREADS
+from .base.space import MOST_THREADS
 from .base.units import Within, double, is_whole, typed
 from .errors import DeclarationError, shown
 
@@ -119,7 +119,7 @@ def _looking(function: Callable[..., Any], kinds: bool = True) -> Callable[..., 
             bound = signature.bind(*given, **named)
         except TypeError as wrong:
             raise DeclarationError(_not_taken(function, signature, given, str(wrong))) from None
-        told = bound.arguments
+        bound_arguments = bound.arguments
 
         def read(kind: _Kind, name: str, value: Any) -> Any:
             found = kind.read(value)
@@ -129,14 +129,17 @@ def _looking(function: Callable[..., Any], kinds: bool = True) -> Callable[..., 
             return found
 
         for name, kind in known.items():
-            if name not in told or (value := told[name]) is signature.parameters[name].default:
+            if (
+                name not in bound_arguments
+                or (value := bound_arguments[name]) is signature.parameters[name].default
+            ):
                 continue
             if signature.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL:
-                told[name] = tuple(read(kind, name, each) for each in value)
+                bound_arguments[name] = tuple(read(kind, name, each) for each in value)
             elif signature.parameters[name].kind is inspect.Parameter.VAR_KEYWORD:
-                told[name] = {key: read(kind, key, each) for key, each in value.items()}
+                bound_arguments[name] = {key: read(kind, key, each) for key, each in value.items()}
             else:
-                told[name] = read(kind, name, value)
+                bound_arguments[name] = read(kind, name, value)
         return function(*bound.args, **bound.kwargs)
 
     return called

@@ -19,7 +19,7 @@ from typing import Any
 
 from . import case_modules
 from .arguments import public
-from .declare.expressions import told
+from .declare.expressions import error_text
 from .declare.scene import Scene
 from .errors import CaseError, LagrangeCasadiError, shown
 from .shapes.kept import dump_specs
@@ -85,7 +85,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         except (TypeError, ValueError, RecursionError) as error:
             raise CaseError(
                 f"case {given}: figures(): figure {shown(spec.name)} cannot be kept in a file:"
-                f" {told(error)}"
+                f" {error_text(error)}"
             ) from None
     return Case(file, scene, tuple(figures))
 
@@ -137,4 +137,4 @@ def _guard(given: Path, file: Path, action: Any) -> Any:
         if isinstance(error, SyntaxError):
             lines = [error.lineno]
         where = f", line {lines[-1]}" if lines and lines[-1] else ""
-        raise CaseError(f"case {given}{where}: {told(error)}") from error
+        raise CaseError(f"case {given}{where}: {error_text(error)}") from error

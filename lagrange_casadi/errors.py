@@ -128,10 +128,10 @@ class UnknownNameError(DeclarationError):
             listed = f"valid: {', '.join(names[:most])} and {len(names) - most} more"
             if listed_by:
                 listed = f"{listed_by} lists the {len(names)} there are"
-        told = ", ".join(f"'{other}'{_hint(other, names, many)}" for other in unknown)
+        unknown_names = ", ".join(f"'{other}'{_hint(other, names, many)}" for other in unknown)
         super().__init__(
             f"{f'{place}: ' if place else ''}unknown {kind}{'s' if len(unknown) > 1 else ''}"
-            f" {told}; {listed}"
+            f" {unknown_names}; {listed}"
         )
 
 

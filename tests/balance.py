@@ -30,8 +30,8 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
     """
     m = scene.mechanism
     values = m.values(parameters)
-    graph = derive(scene)
-    found, drives = columns_at(graph, t, values)
+    program = derive(scene)
+    found, drives = columns_at(program, t, values)
     drives, guides = apart(m, drives, values)
     beside = {"pushed": scene.drives and list(scene.drives)} | beside
     beside["extras"] = [*beside.get("extras", ()), *guides]
@@ -60,7 +60,7 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
         gaps[f"{body.name} x"] = found[f"pose:{body.name}:x"] - q[0].v
         gaps[f"{body.name} y"] = found[f"pose:{body.name}:y"] - q[1].v
     # Iterated loops are followed to the instant from the start of the motion.
-    grid = (t, t, 1) if graph.newton is None or t == scene.t[0] else (scene.t[0], t, 20)
+    grid = (t, t, 1) if program.newton is None or t == scene.t[0] else (scene.t[0], t, 20)
     solution = evaluate(scene, t=grid, parameters=parameters, backend="vm")
     for link in solution.links_with_sections:
         law = solution.section(link).law
@@ -75,15 +75,17 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
     return worst, abs(gaps[worst])
 
 
-def columns_at(graph, t, values):
+def columns_at(program, t, values):
     """A graph's columns at an instant, by name, and its drives
     as (coordinate, rate, acceleration).
     """
     p = list(values.values())
-    driven = np.array([x.full().ravel() for x in graph.motion(t, p)])
-    found = graph.instant(t, *driven, settle(graph, t, p, graph.data.span[0]), p).full().ravel()
-    return dict(zip(graph.names, found, strict=True)), {
-        joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)
+    driven = np.array([x.full().ravel() for x in program.motion(t, p)])
+    found = (
+        program.instant(t, *driven, settle(program, t, p, program.data.span[0]), p).full().ravel()
+    )
+    return dict(zip(program.names, found, strict=True)), {
+        joint: tuple(driven[:, i]) for i, joint in enumerate(program.driven)
     }
 
 
@@ -133,17 +135,17 @@ def postures(m, found, drives, nudge, rough=()):
     return {body: (x, y, turned.get(body, angle)) for body, (x, y, angle) in at.items()}
 
 
-def instant_at(graph, t, p=()):
+def instant_at(program, t, p=()):
     """Every column of a graph without iteration at an instant."""
-    return graph.instant(t, *graph.motion(t, p), [], p)
+    return program.instant(t, *program.motion(t, p), [], p)
 
 
-def settle(graph, t, p, start):
+def settle(program, t, p, start):
     """The iterated coordinates at an instant, followed from the start of the motion."""
-    z = ca.DM(graph.newton.guess if graph.newton else [])
-    for moment in np.linspace(start, t, 40) if graph.newton else []:
+    z = ca.DM(program.newton.guess if program.newton else [])
+    for moment in np.linspace(start, t, 40) if program.newton else []:
         for _ in range(20):
-            z += graph.newton.step(z, moment, graph.motion(moment, p)[0], p)[0]
+            z += program.newton.step(z, moment, program.motion(moment, p)[0], p)[0]
     return z
 
 

@@ -25,22 +25,22 @@ SCENES = {
 PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
 
 
-def columns(graph, t, language, threads=1, extra=(), precision="double"):
+def columns(program, t, language, threads=1, extra=(), precision="double"):
     """Every column by the compiled code, into arrays that held NaN."""
-    return filled(built(graph, language, extra, precision), graph, t, threads, precision)
+    return filled(built(program, language, extra, precision), program, t, threads, precision)
 
 
-def built(graph, language, extra=(), precision="double"):
-    stages = plain(graph) if precision == "double" else compensated(graph, precision)
-    return codegen.load(codegen.emit(graph, stages), codegen.find_compiler(language), extra)
+def built(program, language, extra=(), precision="double"):
+    stages = plain(program) if precision == "double" else compensated(program, precision)
+    return codegen.load(codegen.emit(program, stages), codegen.find_compiler(language), extra)
 
 
-def filled(library, graph, t, threads=1, precision="double"):
+def filled(library, program, t, threads=1, precision="double"):
     """The columns by a library that is built."""
-    p, dtype = graph.data.defaults, DTYPES[precision]
-    guess = np.array(graph.newton.guess if graph.newton else (), dtype)
+    p, dtype = program.data.defaults, DTYPES[precision]
+    guess = np.array(program.newton.guess if program.newton else (), dtype)
     z, status = np.full((guess.size, t.size), np.nan, dtype), np.full(t.size, -1, dtype=np.int32)
-    out = np.full((len(graph.columns), t.size), np.nan, dtype)
+    out = np.full((len(program.columns), t.size), np.nan, dtype)
     if precision == "single":
         t, p = (np.array([dtype.type(x), x - dtype.type(x)], dtype) for x in (t, p))
     library.follow(t, p, guess, z, status)

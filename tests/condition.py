@@ -23,7 +23,7 @@ from precise import precise
 from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
 from lagrange_casadi.arithmetic.interpret import interpret
 from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.judge.reference import arithmetic
+from lagrange_casadi.verification.reference import arithmetic
 
 DIGITS = 50
 LEAST = 1e-30
@@ -74,36 +74,36 @@ class Instant:
     changes: dict
 
 
-def meaning(scene, graph, i, t, values):
+def meaning(scene, program, i, t, values):
     """What the outputs of a graph mean at an instant.
 
     ``values`` are the parameters by name, doubles that are taken as exact.
     """
     with mp.workdps(DIGITS):
         time, p = mp.mpf(t), [mp.mpf(value) for value in values.values()]
-        driven = interpret(graph.motion, [[time], p], arithmetic())
+        driven = interpret(program.motion, [[time], p], arithmetic())
         rough = [
             mp.mpf(float(x))
-            for x in settle(graph, t, list(values.values()), graph.data.span[0]).full().ravel()
+            for x in settle(program, t, list(values.values()), program.data.span[0]).full().ravel()
         ]
-        z = _closed(graph, rough, time, driven, p)
-        places, own = _outputs(scene, graph, time, driven, z, p, None)
+        z = _closed(program, rough, time, driven, p)
+        places, own = _outputs(scene, program, time, driven, z, p, None)
         total = [mp.mpf(0)] * len(own)
         step = mp.mpf(10) ** -CHANGE
-        for changed, others in _changed(scene, graph, driven, p, step):
+        for changed, others in _changed(scene, program, driven, p, step):
             _, other = _outputs(
                 scene,
-                graph,
+                program,
                 time,
                 changed,
-                _closed(graph, z, time, changed, others),
+                _closed(program, z, time, changed, others),
                 others,
                 places,
             )
             total = [
                 change + abs(a - b) / step for change, a, b in zip(total, other, own, strict=True)
             ]
-        drives = dict(zip(graph.driven, zip(*driven, strict=True), strict=True))
+        drives = dict(zip(program.driven, zip(*driven, strict=True), strict=True))
         free = precise(scene, t, drives, values, least=LEAST)
         for joint in scene.mechanism.joints.values():
             if joint.kind == "revolute" and joint.coordinate:
@@ -130,14 +130,14 @@ def _found(value, place, zero):
     return found if abs(found) > zero or not callable(value) else mp.mpf(0)
 
 
-def _changed(scene, graph, driven, p, step):
+def _changed(scene, program, driven, p, step):
     """The inputs with one of them changed, one after the other: driven coordinates, rates and
     accelerations, and parameters.
     """
     joints = scene.mechanism.joints
     for order, row in enumerate(driven):
         for j, value in enumerate(row):
-            if order == 0 and joints[graph.driven[j]].coordinate == "angle":
+            if order == 0 and joints[program.driven[j]].coordinate == "angle":
                 value -= 2 * mp.pi * mp.nint(value / (2 * mp.pi))
             yield (
                 [
@@ -147,19 +147,19 @@ def _changed(scene, graph, driven, p, step):
                 p,
             )
     for k, value in enumerate(p):
-        if value and _read(scene, graph)[k]:
+        if value and _read(scene, program)[k]:
             yield driven, [x + step * value if i == k else x for i, x in enumerate(p)]
 
 
 @functools.lru_cache(maxsize=32)
-def _made(scene, graph):
+def _made(scene, program):
     """Length and density's coefficients of every link that has sections, one below the other, as a
     function of the parameters.
     """
     m = scene.mechanism
     made = [
         ca.SX(x)
-        for name in graph.wanted.sections
+        for name in program.wanted.sections
         for x in (m.links[name].length, *_coefficients(m.links[name]))
     ]
     return ca.Function("made", [m.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *made))])
@@ -169,45 +169,47 @@ def _coefficients(link):
     return itertools.chain(*link.mass.cells)
 
 
-def _matter(scene, graph, p):
+def _matter(scene, program, p):
     """Length and cells of the density, by link."""
     m, found = scene.mechanism, {}
-    (numbers,) = interpret(_made(scene, graph), [p], arithmetic())
+    (numbers,) = interpret(_made(scene, program), [p], arithmetic())
     numbers = iter(numbers)
-    for name in graph.wanted.sections:
+    for name in program.wanted.sections:
         length = next(numbers)
         found[name] = length, [[next(numbers) for _ in cell] for cell in m.links[name].mass.cells]
     return found
 
 
 @functools.lru_cache(maxsize=32)
-def _read(scene, graph):
+def _read(scene, program):
     """Which parameters an instant reads, or a link's length or density: the law of motion's own are
     none of these.
     """
     slopes = (
-        graph.instant.jac_sparsity(0, graph.instant.index_in("p")),
-        _made(scene, graph).jac_sparsity(0, 0),
+        program.instant.jac_sparsity(0, program.instant.index_in("p")),
+        _made(scene, program).jac_sparsity(0, 0),
     )
     read = {k for slope in slopes for k in slope.get_col()}
-    return [k in read for k in range(graph.instant.size1_in("p"))]
+    return [k in read for k in range(program.instant.size1_in("p"))]
 
 
-def _closed(graph, z, time, driven, p):
+def _closed(program, z, time, driven, p):
     """The iterated coordinates to all digits."""
-    size = mp.mpf(graph.newton is not None)
+    size = mp.mpf(program.newton is not None)
     while size > mp.mpf(10) ** (4 - DIGITS):
-        correction, (size,) = interpret(graph.newton.step, [z, [time], driven[0], p], arithmetic())
+        correction, (size,) = interpret(
+            program.newton.step, [z, [time], driven[0], p], arithmetic()
+        )
         z = [a + b for a, b in zip(z, correction, strict=True)]
     return z
 
 
-def _outputs(scene, graph, time, driven, z, p, places):
+def _outputs(scene, program, time, driven, z, p, places):
     """Values at places, by default those that the outputs themselves suggest."""
-    (found,) = interpret(graph.instant, [[time], *driven, z, p], arithmetic())
+    (found,) = interpret(program.instant, [[time], *driven, z, p], arithmetic())
     named = {
         name: value
-        for name, value in zip(graph.names, found, strict=True)
+        for name, value in zip(program.names, found, strict=True)
         if not name.startswith("_")
     }
     laws = {name.split(":")[1]: {} for name in named if name.startswith("section:")}
@@ -221,7 +223,7 @@ def _outputs(scene, graph, time, driven, z, p, places):
             for where in _ratios(law)
             for force in FORCES
         ]
-    values, matter = [], _matter(scene, graph, p)
+    values, matter = [], _matter(scene, program, p)
     for place in places:
         if place.ratio is None:
             values.append(named[place.name])
@@ -280,7 +282,7 @@ def _moments(density, length, cells, ratio):
 
 
 @dataclass(frozen=True)
-class Judged:
+class EvaluatedDesign:
     """An output's largest error over its peak, its largest condition, and its largest error in
     roundings times its condition.
     """
@@ -291,7 +293,7 @@ class Judged:
     units: float
 
 
-def judged(solution, graph, meant, peaks):
+def judged(solution, program, meant, peaks):
     """How far the outputs of a solution are from what they mean at some instants, worst first;
     ``peaks``: see :func:`peaks_of`.
 
@@ -299,7 +301,7 @@ def judged(solution, graph, meant, peaks):
     """
     precision, found = solution.provenance.precision, {}
     with mp.workdps(DIGITS):
-        for place, gap, change in _gaps(solution, graph, meant):
+        for place, gap, change in _gaps(solution, program, meant):
             peak = peaks[place.peak]
             gap = max(gap - float(np.finfo(DTYPES[precision]).tiny), 0)
             # What is zero throughout must be zero.
@@ -311,14 +313,16 @@ def judged(solution, graph, meant, peaks):
             found.setdefault(place.name, []).append(
                 (error, condition, error / condition / ROUNDING[precision])
             )
-    judges = [Judged(name, *map(max, zip(*rows, strict=True))) for name, rows in found.items()]
+    judges = [
+        EvaluatedDesign(name, *map(max, zip(*rows, strict=True))) for name, rows in found.items()
+    ]
     return sorted(judges, key=lambda judge: -judge.units)
 
 
-def understated(solution, graph, meant):
+def understated(solution, program, meant):
     """The outputs whose estimated error is less than a tenth of their true one, with both."""
     worst = {}
-    for place, gap, _ in _gaps(solution, graph, meant):
+    for place, gap, _ in _gaps(solution, program, meant):
         worst[place.name] = max(worst.get(place.name, 0), gap)
     return {
         name: (solution.errors[name], float(gap))
@@ -348,7 +352,7 @@ def peaks_of(solution):
     }
 
 
-def _gaps(solution, graph, meant):
+def _gaps(solution, program, meant):
     for instant in meant:
         law = functools.lru_cache(maxsize=None)(
             lambda link, i=instant.i: solution.section(link).law.during(slice(i, i + 1))
@@ -363,6 +367,6 @@ def _gaps(solution, graph, meant):
                 mine = law(link).at(force, np.array([[float(place.ratio)]]))[0, 0]
             with mp.workdps(DIGITS):
                 gap = mp.mpf(float(mine)) - value
-                if place.name in map(str, graph.loop_angles):
+                if place.name in map(str, program.loop_angles):
                     gap -= 2 * mp.pi * mp.nint(gap / (2 * mp.pi))
             yield place, abs(gap), instant.changes[place]

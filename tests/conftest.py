@@ -111,9 +111,11 @@ def interpreted():
     """
     compiled = backends.compiled
 
-    def asked(rung, build):
+    def asked(method, build):
         return (
-            None if rung.backend == "auto" and rung.precision == "double" else compiled(rung, build)
+            None
+            if method.backend == "auto" and method.precision == "double"
+            else compiled(method, build)
         )
 
     with pytest.MonkeyPatch.context() as patch:

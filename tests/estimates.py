@@ -21,7 +21,7 @@ from lagrange_casadi.errors import AssemblyError
 
 FACTOR = 10.0
 MOST = 0.8
-RUNGS = {
+METHODS = {
     "lanes": {"backend": "lanes"},
     "c": {"backend": "c"},
     "single": {"backend": "c", "precision": "single"},
@@ -85,20 +85,22 @@ def assert_near(found):
     assert np.mean([value < FACTOR for value in found.values()]) >= MOST
 
 
-def rungs(scene):
+def methods(scene):
     """The rungs of a scene, steps of Newton's method where its loops are iterated."""
     closed = derive(scene).newton is None
-    return {rung: words for rung, words in RUNGS.items() if not (closed and "newton" in words)}
+    return {
+        method: words for method, words in METHODS.items() if not (closed and "newton" in words)
+    }
 
 
-def looked_at(scene, rung):
+def looked_at(scene, method):
     """Estimates over true errors of a scene on a rung; none where it is refused: steps may be too
     few for any solution.
     """
-    if rung not in rungs(scene):
+    if method not in methods(scene):
         return []
     try:
-        solution = evaluate(scene, **RUNGS[rung])
+        solution = evaluate(scene, **METHODS[method])
     except AssemblyError:
         return []
     return list(ratios(solution, truth(scene, points(scene.t))).values())
@@ -119,7 +121,7 @@ def main():
     parser.add_argument(
         "scenes", nargs="?", type=int, help="random scenes of every kind, in place of the cases"
     )
-    parser.add_argument("--rung", choices=RUNGS, action="append", help="only these; default: all")
+    parser.add_argument("--rung", choices=METHODS, action="append", help="only these; default: all")
     parser.add_argument("--kind", action="append", help="only these; default: all")
     told = parser.parse_args()
     print(
@@ -127,18 +129,18 @@ def main():
         " % | within a factor of ten |"
     )
     print("| --- | --- | --- | --- | --- | --- | --- |")
-    for rung in told.rung or RUNGS:
-        option, every = f"`{OPTIONS.get(rung, f'--{rung}')}`", []
+    for method in told.method or METHODS:
+        option, every = f"`{OPTIONS.get(method, f'--{method}')}`", []
         if told.scenes:
             for one in kinds.KINDS:
                 if told.kind is None or one.__name__ in told.kind:
                     drawn = [kinds.closing(one, [seed]) for seed in range(told.scenes)]
-                    found = [value for scene in drawn for value in looked_at(scene, rung)]
+                    found = [value for scene in drawn for value in looked_at(scene, method)]
                     print(row(f"{one.__name__.replace('_', ' ')}, {option}", found), flush=True)
                     every += found
         else:
             for name in PLANAR:
-                every += looked_at(load_case(CASES / name).scene, rung)
+                every += looked_at(load_case(CASES / name).scene, method)
         print(row(option if not told.scenes else f"all, {option}", every), flush=True)
 
 

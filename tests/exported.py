@@ -113,8 +113,8 @@ def values(scene, precision):
     return {name: float(kind(value)) for name, value in scene.mechanism.values().items()}
 
 
-def solve(scene, precision, **rung):
+def solve(scene, precision, **method):
     """The API's numbers."""
     return evaluate(
-        scene, parameters=values(scene, precision), precision=precision, backend="c", **rung
+        scene, parameters=values(scene, precision), precision=precision, backend="c", **method
     )

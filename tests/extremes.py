@@ -42,7 +42,7 @@ class Extreme:
         return self.scene().mechanism.values(self.values)
 
     @functools.cached_property
-    def graph(self):
+    def program(self):
         """The graph of all outputs."""
         return derive(self.scene(), ["all"])
 
@@ -62,12 +62,13 @@ class Extreme:
         n, condition = solution.t.size, solution.certificate.get("condition", solution.t)
         chosen = sorted({n // 3, int(np.argmax(condition))})
         return [
-            meaning(self.scene(), self.graph, i, float(solution.t[i]), self.numbers) for i in chosen
+            meaning(self.scene(), self.program, i, float(solution.t[i]), self.numbers)
+            for i in chosen
         ]
 
     def judged(self, solution):
         """How far a solution is from it, worst first."""
-        return judged(solution, self.graph, self.meant, self.peaks)
+        return judged(solution, self.program, self.meant, self.peaks)
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,8 +25,8 @@ def precise(scene, t, drives=None, parameters=None, digits=50, beside=None, leas
     """
     m, arithmetic = scene.mechanism, Digits(digits, least)
     values = m.values(parameters)
-    graph = derive(scene, ["all"])
-    found, motion = columns_at(graph, t, values)
+    program = derive(scene, ["all"])
+    found, motion = columns_at(program, t, values)
     acting = (beside or functools.partial(of_case, m.name))(arithmetic, values)
     for given, declared in (("loads", [*m.loads]), ("extras", [*m.constraints, *m.rows])):
         assert bool(acting.get(given)) == bool(declared), (
@@ -43,11 +43,11 @@ def precise(scene, t, drives=None, parameters=None, digits=50, beside=None, leas
         postures(m, found, motion, 0.0),
     )
     named = _named(m, solved)
-    if not graph.doubtful:
+    if not program.doubtful:
         return named
     span = (
         (float(t), float(t), 1)
-        if graph.newton is None or t == scene.t[0]
+        if program.newton is None or t == scene.t[0]
         else (scene.t[0], float(t), 20)
     )
     told = evaluate(

@@ -43,7 +43,11 @@ class Verdict:
 
 
 def judge(
-    drawn: Drawn, seconds: float = 120.0, tolerance: float = TOLERANCE, claims: float = 0.0, **rung
+    drawn: Drawn,
+    seconds: float = 120.0,
+    tolerance: float = TOLERANCE,
+    claims: float = 0.0,
+    **method,
 ) -> Verdict:
     """Evaluate a random mechanism, and compare with the oracle.
 
@@ -55,7 +59,7 @@ def judge(
             warnings.simplefilter(
                 "ignore", CertificateWarning
             )  # what the certificate says is among the notes
-            solution = evaluate(drawn.scene(), **drawn.keywords, **rung)
+            solution = evaluate(drawn.scene(), **drawn.keywords, **method)
     except LagrangeCasadiError as error:
         return Verdict(kind="refused", why=f"{type(error).__name__}: {error}", **said)
     except TooLongError:

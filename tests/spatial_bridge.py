@@ -74,7 +74,7 @@ def declared(
     told = {
         body for joint in one.joints if drawn.is_hard(joint) for body in (joint.parent, joint.child)
     }
-    told |= bars_of(drawn) & {*beams}
+    told |= find_two_force_links(drawn) & {*beams}
     parts = {GROUND: m.ground}
     for b in one.bodies:
         parts[b.name] = _body(
@@ -144,7 +144,7 @@ def declared(
     )
 
 
-def bars_of(drawn: Drawn) -> set[str]:
+def find_two_force_links(drawn: Drawn) -> set[str]:
     """The rods that may spin about their line."""
     if not drawn.idle:
         return set()
@@ -180,19 +180,19 @@ def instants(scene: Scene, times, wanted=None):
     """The columns of a scene's graph at times, by name: loops are
     followed from the scene's start.
     """
-    graph = derive(scene, wanted)
+    program = derive(scene, wanted)
     p = [parameter.default for parameter in scene.mechanism.parameters.values()]
-    z = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
+    z = np.array(program.newton.guess) if program.newton else np.zeros(0)
     rows = []
     for t in times:
-        d, rate, acceleration = graph.motion(t, p)
-        for _ in range(60 if graph.newton else 0):
-            correction, size = graph.newton.step(z, t, d, p)
+        d, rate, acceleration = program.motion(t, p)
+        for _ in range(60 if program.newton else 0):
+            correction, size = program.newton.step(z, t, d, p)
             z = z + correction.full().ravel()
             if float(size) < 1e-13:
                 break
-        rows.append(graph.instant(t, d, rate, acceleration, z, p).full().ravel())
-    return dict(zip(graph.names, np.array(rows).T, strict=True))
+        rows.append(program.instant(t, d, rate, acceleration, z, p).full().ravel())
+    return dict(zip(program.names, np.array(rows).T, strict=True))
 
 
 def _body(m, body, pose=None, beam=None):

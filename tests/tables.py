@@ -26,8 +26,8 @@ def made(scene, table=1e-9, wanted=None, rates=RATES):
 
 def graph_of(scene, wanted=None):
     """The graph of a scene, of what equilibrium determines."""
-    graph = derive(scene, wanted)
-    return determinate(graph, np.linspace(*scene.span, scene.t[2]), values(scene))[0]
+    program = derive(scene, wanted)
+    return determinate(program, np.linspace(*scene.span, scene.t[2]), values(scene))[0]
 
 
 def values(scene):
@@ -44,22 +44,22 @@ def some_motion(n=500, turns=3.0, seed=1):
 
 def directly(scene, angle, rate, acceleration, wanted=None):
     """Every column by CasADi's virtual machine; iterated loops are followed from angle to angle."""
-    graph, p = graph_of(scene, wanted), values(scene)
-    places = np.zeros((len(graph.newton.guess) if graph.newton else 0, angle.size))
-    for side in (1, -1) if graph.newton else ():
-        z, at = np.array(graph.newton.guess), float(graph.motion(scene.t[0], p)[0])
+    program, p = graph_of(scene, wanted), values(scene)
+    places = np.zeros((len(program.newton.guess) if program.newton else 0, angle.size))
+    for side in (1, -1) if program.newton else ():
+        z, at = np.array(program.newton.guess), float(program.motion(scene.t[0], p)[0])
         away = side * (angle - at)
         for i in (i for i in np.argsort(away) if away[i] >= 0.0):
             for moment in np.linspace(at, angle[i], 20):
                 for _ in range(6):
-                    z = z + graph.newton.step(z, 0.0, moment, p)[0].full().ravel()
+                    z = z + program.newton.step(z, 0.0, moment, p)[0].full().ravel()
             places[:, i], at = z, angle[i]
-    return graph.instant(0.0, angle[None], rate[None], acceleration[None], places, p).full()
+    return program.instant(0.0, angle[None], rate[None], acceleration[None], places, p).full()
 
 
-def whole_turns_apart(graph):
+def whole_turns_apart(program):
     """The rows that are known up to whole turns."""
-    return [name in graph.loop_angles for name in graph.columns]
+    return [name in program.loop_angles for name in program.columns]
 
 
 def worst_gap(scene, table, angle, rate, acceleration, wanted=None):

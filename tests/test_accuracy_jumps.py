@@ -6,7 +6,7 @@ import math
 
 import casadi as ca
 import pytest
-from estimates import COUNT, RUNGS, assert_near, exactly, ratios
+from estimates import COUNT, METHODS, assert_near, exactly, ratios
 
 from lagrange_casadi import Mechanism, Scene, evaluate, table
 from lagrange_casadi.arithmetic.compensated import ROUNDING
@@ -35,12 +35,12 @@ STATIONS = {
 
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("station", STATIONS)
-@pytest.mark.parametrize("rung", ["lanes", "single"])
-def test_a_station_on_a_ratio_that_is_looked_at(station, rung):
+@pytest.mark.parametrize("method", ["lanes", "single"])
+def test_a_station_on_a_ratio_that_is_looked_at(station, method):
     """A force jumps there; where rounding puts the station is no error of it."""
     place, ratio = STATIONS[station]
     scene = cantilever(place)
-    solution = evaluate(scene, **RUNGS[rung])
+    solution = evaluate(scene, **METHODS[method])
     assert_near(ratios(solution, exactly(scene)))
     (load,) = solution.section("link").law.loads
     assert load.station == pytest.approx(ratio, abs=1e-6)
@@ -89,13 +89,13 @@ JUMPS = {
 
 @pytest.mark.sampled(13)
 @pytest.mark.parametrize("jump", JUMPS)
-@pytest.mark.parametrize("rung", ["lanes", "c", "single"])
-def test_a_load_that_jumps(jump, rung):
+@pytest.mark.parametrize("method", ["lanes", "c", "single"])
+def test_a_load_that_jumps(jump, method):
     """Either side of a jump by itself, the one that the result took."""
-    if (jump, rung) == ("a table with a step", "single"):
+    if (jump, method) == ("a table with a step", "single"):
         pytest.skip("a step narrower than singles are apart is steep, but no jump")
     scene = friction(JUMPS[jump])
-    solution = evaluate(scene, **RUNGS[rung])
+    solution = evaluate(scene, **METHODS[method])
     assert_near(ratios(solution, exactly(scene)))
     unit = ROUNDING[solution.provenance.precision]
     assert solution.errors["load:force:fx"] < 1e3 * unit * 1e6
@@ -118,8 +118,8 @@ def test_a_load_that_jumps_where_rounding_decides():
     m.force("friction", slider, x=-1e6 * ca.sign(m.rate(guide)))
     scene = Scene(m, {"O": polynomial(0.0, 2 * math.pi)}, posture={"rod": 0.0}, t=(0.0, 4.0, COUNT))
     exact = exactly(scene)
-    for rung in ("lanes", "c", "single"):
-        assert_near(ratios(evaluate(scene, **RUNGS[rung]), exact))
+    for method in ("lanes", "c", "single"):
+        assert_near(ratios(evaluate(scene, **METHODS[method]), exact))
 
 
 @pytest.mark.sampled(7)
@@ -132,4 +132,4 @@ def test_a_stiff_spring_between_points_that_nearly_coincide(gap, length):
     at = m.ground.at(math.cos(0.3) - gap, math.sin(0.3) + gap)
     m.spring("spring", at, link.tip, stiffness=1e10, length=length)
     scene = Scene(m, {"O": harmonic(0.3, 1e-6, 1.0, 0.1)}, t=(0.0, 1.0, COUNT))
-    assert_near(ratios(evaluate(scene, **RUNGS["lanes"]), exactly(scene)))
+    assert_near(ratios(evaluate(scene, **METHODS["lanes"]), exactly(scene)))

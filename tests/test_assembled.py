@@ -64,9 +64,9 @@ def test_one_after_another_each_is_assembled_with_its_own_values():
 def test_where_defaults_serve_they_choose():
     """Nothing is derived anew for other parameters: it is the same graph."""
     scene = four_bar(LONG)
-    graph = derive(scene)
+    program = derive(scene)
     evaluate(scene, parameters={"q": 0.4})
-    assert derive(scene) is graph
+    assert derive(scene) is program
 
 
 def test_a_scene_is_compiled_with_values_where_its_own_do_not_serve():

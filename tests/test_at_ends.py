@@ -8,7 +8,7 @@ from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Mechanism, Scene, evaluate, refine, sweep
 from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
@@ -51,8 +51,8 @@ def rail(end):
 def test_sections_see_it_at_the_tip_and_never_at_the_base(way, end):
     """The section at either end bears what the pin does to the bar: nothing else is between."""
     scene, at = rail(end)
-    rung = {"precision": "single"} if way == "single" else {"backend": way}
-    solution = evaluate(scene, **rung)
+    method = {"precision": "single"} if way == "single" else {"backend": way}
+    solution = evaluate(scene, **method)
     off = solution.series["section:bar:S:station"] - at
     assert 0.0 < np.abs(off).max() < (1e-6 if way == "single" else 1e-14)
     assert solution.certified
@@ -81,7 +81,7 @@ def test_sweeps_have_the_refined_peaks(end):
     names = [f"section:bar:{force}" for force in FORCES]
     refined = {peak.name: peak.value for peak in refine(scene, solution, names)}
     for way in ("c", "lanes"):
-        designs = DesignEngine.of(scene, rung=Rung(way))
+        designs = DesignEngine.of(scene, method=EvaluationMethod(way))
         outcome = designs.evaluate(np.array([[LENGTH]]))
         found = dict(zip(map(str, designs.quantities), outcome.value[0], strict=True))
         for name, value in refined.items():

@@ -15,7 +15,7 @@ from spatial_oracle import REACTION, SECTION
 
 from lagrange_casadi import evaluate
 from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.equations.balls import axes_of, quaternion_of
+from lagrange_casadi.equations.spherical import axes_of, quaternion_of
 
 LOCK = 0.2
 MADE = {

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, motion
-from lagrange_casadi.beams.beam import beam_told, told_beam
+from lagrange_casadi.beams.beam import beam_from_numbers, beam_to_numbers
 from lagrange_casadi.declare.scene import Wanted
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
 
@@ -238,9 +238,9 @@ def test_a_beam_is_told_in_numbers_and_back():
         [beams.Notch(0.4, 1.5, 1.7)],
         (1, 0.7),
     )
-    told = told_beam(rod, float)
-    again = beam_told(told)
-    assert told_beam(again, float) == told
+    told = beam_to_numbers(rod, float)
+    again = beam_from_numbers(told)
+    assert beam_to_numbers(again, float) == told
     for key, value in (
         ("breaks", [0, 1]),
         ("shapes", [{"kind": "exec", "dimensions": {}}] * 2),
@@ -248,7 +248,7 @@ def test_a_beam_is_told_in_numbers_and_back():
         ("cells", [[0, 7]] * 2),
     ):
         with pytest.raises((ValueError, LookupError, DeclarationError)):
-            beam_told(told | {key: value})
+            beam_from_numbers(told | {key: value})
 
 
 REFUSED = {

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi.declare.held import ENDS
+from lagrange_casadi.declare.end_conditions import ENDS
 from lagrange_casadi.elastic.bending_modes import closed, first_mode
 
 

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi.summits.between import highest, passed, passed_or_touched, unresolved
-from lagrange_casadi.summits.fits import SEVEN, bounds, stretch, summit, where, window
-from lagrange_casadi.summits.sharpness import Kind, Watch
+from lagrange_casadi.peak_search.between import highest, passed, passed_or_touched, unresolved
+from lagrange_casadi.peak_search.fits import SEVEN, bounds, stretch, vertices, where, window
+from lagrange_casadi.peak_search.sharpness import Kind, Watch
 
 pytestmark = pytest.mark.quick
 
@@ -94,7 +94,7 @@ def test_a_polynomial_of_degree_six_is_found_exactly():
     """Its summit, its curve there, and that it misses nothing."""
     law = np.polynomial.Polynomial([0.3, 0.2, -1.0, 0.04, -0.05, 0.01, -0.002])
     x = next(float(r.real) for r in law.deriv().roots() if abs(r.imag) < 1e-12 and abs(r.real) < 1)
-    fit = summit(law(np.arange(-3.0, 4.0))[:, None], np.zeros(1), -np.ones(1), np.ones(1))
+    fit = vertices(law(np.arange(-3.0, 4.0))[:, None], np.zeros(1), -np.ones(1), np.ones(1))
     assert fit.x[0] == pytest.approx(x, abs=1e-9)
     assert fit.size[0] == pytest.approx(law(x), rel=1e-14)
     assert fit.curve[0] == pytest.approx(law.deriv(2)(x), rel=1e-9)

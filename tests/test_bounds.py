@@ -12,7 +12,7 @@ from mechanisms import slider_crank
 from stepped import iterated
 
 from lagrange_casadi import evaluate, sweep
-from lagrange_casadi.base import room
+from lagrange_casadi.base import space
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.errors import DeclarationError, SizeError
@@ -145,7 +145,7 @@ def test_more_rows_than_there_are_are_all(here, capsys, command):
 
 
 def test_points_are_refused_before_they_are_made(monkeypatch):
-    monkeypatch.setattr(room, "memory", lambda: 2e7)
+    monkeypatch.setattr(space, "memory", lambda: 2e7)
     assert points((0.0, 1.0, 100)).size == 100
     with pytest.raises(
         SizeError, match=r"no room for the points from 0 to 1: 3 x 1 000 000 values are 0\.024 GB"
@@ -179,7 +179,7 @@ def test_so_is_a_sweep_that_takes_long_or_much(monkeypatch, tmp_path):
 
 def test_fewer_threads_share_what_memory_holds_but_once(monkeypatch):
     engine = sweeps.use(monkeypatch)
-    engine.room = 10**9
+    engine.capacity = 10**9
     monkeypatch.setattr(workers, "memory", lambda: 2.5e9)
     sweep(sweeps.scene(), {"l": (0.2, 0.3, 500), "r": [0.05, 0.1]}, workers=8)
     assert len({thread for _, thread in engine.calls}) <= 2

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
 from lagrange_casadi.declare.description import describe
-from lagrange_casadi.declare.held import effective_lengths
+from lagrange_casadi.declare.end_conditions import effective_lengths
 from lagrange_casadi.equations.buckling import Column, critical_stress, used
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial

@@ -16,8 +16,8 @@ from lagrange_casadi.codegen.emit import INSTANTS
 from lagrange_casadi.codegen.search import CALL as SEARCH
 from lagrange_casadi.codegen.search import CURVES, interface
 from lagrange_casadi.instants.cycle_table import INTERPOLATE
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.instants.grids import GRID, LARGEST
-from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 CALLS = (INSTANTS, CURVES, SEARCH, DESIGNS, GRID, LARGEST, INTERPOLATE)
@@ -56,10 +56,10 @@ def test_structs_lie_alike_in_c_and_python(language, real, tmp_path):
 
 def test_the_emitted_c_has_the_structs():
     """What the layout was asked of is what is compiled."""
-    graph = derive(slider_crank())
-    assert INSTANTS.text() in codegen.emit(graph)
-    engine = DesignEngine.of(slider_crank(), rung=Rung("vm"))
-    source = codegen.emit_designs(engine.graph, engine.stages, None, engine.kept.reduction)
+    program = derive(slider_crank())
+    assert INSTANTS.text() in codegen.emit(program)
+    engine = DesignEngine.of(slider_crank(), method=EvaluationMethod("vm"))
+    source = codegen.emit_designs(engine.program, engine.stages, None, engine.kept.reduction)
     assert INSTANTS.text() in source
     assert interface("double") + DESIGNS.text() in source
 
@@ -75,7 +75,7 @@ def test_members_are_set_by_name_and_none_is_forgotten():
 
 @pytest.mark.parametrize("backend", ["lanes", "c"])
 def test_the_order_of_results_does_not_matter(backend):
-    engine = DesignEngine.of(slider_crank(), rung=Rung(backend))
+    engine = DesignEngine.of(slider_crank(), method=EvaluationMethod(backend))
     p = np.array([list(slider_crank().mechanism.values().values())])
     expected = engine.evaluate(p)
     q, e = len(engine.quantities), len(engine.efforts)

@@ -19,11 +19,11 @@ from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.equations import loops
 from lagrange_casadi.errors import AssemblyError, CertificateError, CertificateWarning
 from lagrange_casadi.instants import refusal
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.instants.solution import Solution
-from lagrange_casadi.judge.certificate import LOOSE, certify
 from lagrange_casadi.store.runs import check, load
 from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.verification.certificate import COARSE, certify
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -219,7 +219,7 @@ def test_the_tolerance_has_a_ceiling():
     m = Mechanism("wheel")
     m.revolute("A", m.ground, m.link("a", length=1.0, mass=1.0))
     solution = evaluate(Scene(m, {"A": polynomial(0, 1e5)}, t=(-1e9, 1e9, 11)))
-    assert solution.tolerance == LOOSE
+    assert solution.tolerance == COARSE
 
 
 def mistaken(monkeypatch):
@@ -242,19 +242,25 @@ def mistaken(monkeypatch):
 
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize(
-    "rung", [Rung("vm"), Rung("c"), Rung("lanes"), Rung("lanes", precision="single")]
+    "method",
+    [
+        EvaluationMethod("vm"),
+        EvaluationMethod("c"),
+        EvaluationMethod("lanes"),
+        EvaluationMethod("lanes", precision="single"),
+    ],
 )
-def test_what_does_not_close_a_loop_is_refused(rung, monkeypatch, fresh_cache):
+def test_what_does_not_close_a_loop_is_refused(method, monkeypatch, fresh_cache):
     """By every backend, also where only the effort is wanted, and in sweeps."""
     scene = mistaken(monkeypatch)
-    told = {"backend": rung.backend, "precision": rung.precision}
+    told = {"backend": method.backend, "precision": method.precision}
     for wanted in (["all"], ["effort"]):
         with pytest.raises(
             AssemblyError,
             match=r"found for the loop closed by constraint 'middle' does not close it at t = 0 s",
         ):
             evaluate(scene, wanted=wanted, **told)
-    outcome = DesignEngine.of(scene, ["effort"], rung=rung).evaluate(np.ones((2, 1)))
+    outcome = DesignEngine.of(scene, ["effort"], method=method).evaluate(np.ones((2, 1)))
     assert outcome.status.tolist() == [Status.NOT_CLOSED] * 2
     assert np.isnan(outcome.value).all()
 

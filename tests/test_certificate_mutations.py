@@ -13,7 +13,7 @@ from random_mechanisms import draw
 
 from lagrange_casadi import Mechanism, Scene, compile_scene, evaluate, motion
 from lagrange_casadi.elements import gears
-from lagrange_casadi.judge.certificate import certify
+from lagrange_casadi.verification.certificate import certify
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -15,7 +15,7 @@ from mechanisms import far
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.judge.certificate import certify
+from lagrange_casadi.verification.certificate import certify
 
 MILLIONTH = 1.0 + 1e-6
 

@@ -110,7 +110,7 @@ def test_the_reader_answers_in_few_words_and_within_limits():
     program = f"""
 import importlib, os, resource, sys, numpy as np
 import lagrange_casadi.cli
-from lagrange_casadi.base.room import memory
+from lagrange_casadi.base.space import memory
 module, FREE = importlib.import_module("lagrange_casadi.cli.check"), int(0.9 * memory())
 for read in {list(READS)}:
     if os.fork() == 0:

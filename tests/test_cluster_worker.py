@@ -50,8 +50,8 @@ def test_a_worker_needs_no_file_of_the_case(tmp_path):
         "histories",
     )
     shutil.rmtree(tmp_path / "here")
-    told, p = signature(plan.graph, plan.task, plan.harvest.engine.provenance), plan.block(0, 2)
-    sent = pickle.dumps((plan.graph, plan.harvest.whole))
+    told, p = signature(plan.program, plan.task, plan.harvest.engine.provenance), plan.block(0, 2)
+    sent = pickle.dumps((plan.program, plan.harvest.whole))
     away = {
         "cwd": tmp_path,
         "input": pickle.dumps((sent, plan.task, told, p)),
@@ -67,8 +67,8 @@ def asked(scene):
     """A plan of the paper's mechanism, what is sent of it, and what it is told by."""
     request = Request(t=(0.0, 0.08, 9), wanted=["effort"])
     plan = Plan.of(scene, designs_of({"l": [0.2, 0.3]}), request)
-    told = signature(plan.graph, plan.task, plan.harvest.engine.provenance)
-    return plan, pickle.dumps((plan.graph, plan.harvest.whole)), told
+    told = signature(plan.program, plan.task, plan.harvest.engine.provenance)
+    return plan, pickle.dumps((plan.program, plan.harvest.whole)), told
 
 
 def test_a_worker_that_would_give_other_numbers_is_refused(slider_crank):

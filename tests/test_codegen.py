@@ -18,7 +18,7 @@ from lagrange_casadi.base.vocabulary import PRECISIONS
 from lagrange_casadi.codegen import compiler
 from lagrange_casadi.errors import CompilerError
 from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 
 pytestmark = pytest.mark.usefixtures("released")
 
@@ -59,10 +59,10 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
 @pytest.mark.parametrize("name", SCENES)
 def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     scene = SCENES[name]()
-    graph = derive(scene)
+    program = derive(scene)
     t, p = np.linspace(*scene.span, scene.t[2]), np.array(list(scene.mechanism.values().values()))
-    out = columns(graph, t, "c")
-    machine, _ = run(graph, t, p, Rung("vm"))
+    out = columns(program, t, "c")
+    machine, _ = run(program, t, p, EvaluationMethod("vm"))
     scale = np.max(np.abs(machine.out), axis=1, keepdims=True) + 1e-300
     assert np.max(np.abs(out - machine.out) / scale) <= (
         0.0 if name in ("slider_crank", "four_bar") else 1e-13
@@ -75,9 +75,9 @@ def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
 @pytest.mark.parametrize("name", SCENES)
 def test_the_level_of_optimization_changes_no_bit(name, language, precision):
     scene = SCENES[name]()
-    graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 37)
+    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 37)
     found = {
-        columns(graph, t, language, extra=extra, precision=precision).tobytes()
+        columns(program, t, language, extra=extra, precision=precision).tobytes()
         for extra in ((), ("-O1",), ("-O0",))
     }
     assert len(found) == 1

@@ -67,7 +67,7 @@ def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize(
-    ("name", "rung"),
+    ("name", "method"),
     [
         ("iterated", {"newton": 2}),
         ("rrr3", {"newton": 3}),
@@ -75,16 +75,16 @@ def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
         ("beam_pump", {"newton": 2}),
     ],
 )
-def test_on_other_rungs_too(name, rung, precision, tmp_path):
+def test_on_other_rungs_too(name, method, precision, tmp_path):
     scene = SCENES[name]()
     made, told = exported(
-        scene, tmp_path, precision=precision, parameters=values(scene, precision), **rung
+        scene, tmp_path, precision=precision, parameters=values(scene, precision), **method
     )
-    solution = solve(scene, precision, **rung)
+    solution = solve(scene, precision, **method)
     found = by_c99(tmp_path, told, instants(solution.t, precision))
     # Before counted steps the API closes the loops in doubles, the program in its own precision:
     # other roundings from there on.
-    apart = {"exact": False, "few": 4 * FEW} if "newton" in rung else {}
+    apart = {"exact": False, "few": 4 * FEW} if "newton" in method else {}
     compare(found, expected(scene, told, solution), told, made, solution, **apart)
 
 

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from cortex_m4f.target import RUNGS, exported, missing
+from cortex_m4f.target import METHODS, exported, missing
 
 CASES = sorted(path.parent.name for path in (Path(__file__).parents[1] / "cases").glob("*/case.py"))
 TABLED = ("slider_crank", "four_bar", "six_bar", "andrews_squeezer")
@@ -21,11 +21,11 @@ pytestmark = pytest.mark.skipif(missing() != "", reason=missing())
 
 
 @pytest.mark.sampled(97)
-@pytest.mark.parametrize(("name", "rung"), PAIRS)
-def test_the_selftest_passes_on_the_machine(name, rung, tmp_path):
+@pytest.mark.parametrize(("name", "method"), PAIRS)
+def test_the_selftest_passes_on_the_machine(name, method, tmp_path):
     assert re.search(
         r": \d+ numbers at 9 instants, .*; 0 wrong$",
-        exported(name, rung, tmp_path / name).selftest(),
+        exported(name, method, tmp_path / name).selftest(),
     )
 
 
@@ -44,9 +44,9 @@ def test_what_fails_on_the_machine_fails_here(tmp_path):
 
 
 @pytest.mark.sampled(29)
-@pytest.mark.parametrize(("name", "rung"), [pair for pair in PAIRS if pair[1] != "double"])
-def test_single_precision_asks_for_no_arithmetic_of_doubles(name, rung, tmp_path):
-    target = exported(name, rung, tmp_path / name)
+@pytest.mark.parametrize(("name", "method"), [pair for pair in PAIRS if pair[1] != "double"])
+def test_single_precision_asks_for_no_arithmetic_of_doubles(name, method, tmp_path):
+    target = exported(name, method, tmp_path / name)
     assert target.doubles(target.object) == set()
     assert target.doubles(target.whole) == set()
     assert all(
@@ -68,12 +68,12 @@ def test_a_table_needs_no_sine(name, tmp_path):
 
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("optimized", ["-O2", "-Os"])
-@pytest.mark.parametrize("rung", RUNGS)
-def test_the_marks_of_a_small_machine(rung, optimized, tmp_path):
+@pytest.mark.parametrize("method", METHODS)
+def test_the_marks_of_a_small_machine(method, optimized, tmp_path):
     """Code and constants, with those of the libraries, under 64 kB, and the stack under 16 kB: here
     far below.
     """
-    target = exported("slider_crank", rung, tmp_path / "slider_crank", optimized)
+    target = exported("slider_crank", method, tmp_path / "slider_crank", optimized)
     used = max(value for key, value in target.measured.items() if key.startswith("stack"))
     assert 100 < used <= target.stated < 4_000
     assert 1_000 < sum(target.sections(target.whole).values()) < 20_000

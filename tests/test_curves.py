@@ -29,9 +29,9 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, SizeError
-from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.judge.reference import reference
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.verification.reference import reference
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -283,11 +283,11 @@ def test_every_way_of_evaluating_agrees():
 def test_errors_are_estimated_beside_50_digits():
     """Also after a million turns, where the phase is followed in pairs."""
     for scene in (sampled_cam(), sampled_cam(motion=motion.polynomial(0.3 + 2e6 * math.pi, 40.0))):
-        graph = derive(scene)
+        program = derive(scene)
         found = evaluate(scene)
         some = range(0, found.t.size, 16)
         rows = reference(
-            graph, [float(found.t[i]) for i in some], list(scene.mechanism.values().values())
+            program, [float(found.t[i]) for i in some], list(scene.mechanism.values().values())
         )
         for name in (
             "effort:main",
@@ -295,7 +295,7 @@ def test_errors_are_estimated_beside_50_digits():
             "motion:guide_acceleration",
             "motion:guide",
         ):
-            exact = np.array([float(row[graph.names.index(name)]) for row in rows])
+            exact = np.array([float(row[program.names.index(name)]) for row in rows])
             gap = np.abs(found.array(name)[list(some)] - exact).max()
             assert gap <= 1e-12 * np.abs(exact).max()
             assert gap <= 10.0 * found.errors[name]
@@ -341,7 +341,7 @@ def test_an_argument_beyond_the_ends_is_refused_by_name():
             match=r"load 'stop': .* outside the curve's range at t = 0\.15 s, where J =",
         ):
             evaluate(scene, parameters={"swing": 0.75}, backend=backend)
-        designs = DesignEngine.of(scene, rung=Rung(backend))
+        designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
         p = np.array([[0.5, 0.5], [0.5, 0.75], [0.5, 0.6]])
         assert designs.evaluate(p).status.tolist() == [Status.OK, Status.BEYOND_ENDS, Status.OK]
     # What does not need the load does not ask for it.
@@ -363,7 +363,9 @@ def test_a_part_beyond_the_ends_is_refused_by_name():
     ):
         evaluate(scene, parameters={"size": 4.1})
     for backend in ("vm", "lanes"):
-        found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(np.array([[3.0], [0.9], [4.0]]))
+        found = DesignEngine.of(scene, method=EvaluationMethod(backend)).evaluate(
+            np.array([[3.0], [0.9], [4.0]])
+        )
         assert found.status.tolist() == [Status.OK, Status.IMPOSSIBLE, Status.OK]
 
 
@@ -385,7 +387,7 @@ def test_an_open_loop_is_told_before_its_curve():
     with pytest.raises(AssemblyError, match="cannot be closed"):
         evaluate(scene, parameters={"r": 0.25}, t=(0.2, 1, 81))
     for backend in ("vm", "lanes"):
-        found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(
+        found = DesignEngine.of(scene, method=EvaluationMethod(backend)).evaluate(
             np.array([[0.1], [0.12], [0.25]])
         )
         assert found.status.tolist()[:2] == [Status.OK, Status.BEYOND_ENDS]
@@ -403,7 +405,7 @@ def test_a_motion_beyond_the_ends_is_refused_by_name():
     ):
         evaluate(scene, parameters={"swing": 0.6})
     for backend in ("vm", "lanes"):
-        found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(
+        found = DesignEngine.of(scene, method=EvaluationMethod(backend)).evaluate(
             np.array([[0.5, 0.5], [0.5, 0.6]]), histories=True
         )
         assert found.status.tolist() == [Status.OK, Status.BEYOND_ENDS]

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 from spatial_anyhow import anyhow
-from spatial_bridge import BESIDE, bars_of, declared, plain
+from spatial_bridge import BESIDE, declared, find_two_force_links, plain
 from spatial_mechanisms import FAMILIES
 from spatial_oracle import SECTION
 
@@ -83,7 +83,7 @@ def declared_axes(drawn, rod, pose):
     the ground carries.
     """
     R = np.asarray(pose.R, float)
-    if rod not in bars_of(drawn):
+    if rod not in find_two_force_links(drawn):
         return R
     x, beside = R[:, 0], np.asarray(drawn.guess[rod][1], float) @ BESIDE
     y = beside - x * (x @ beside)
@@ -99,7 +99,7 @@ def compare(name, seed, instants):
     )
     solution = evaluate(scene, xi=(0, 1, 5))
     assert solution.certified
-    assert {*solution.description["bars"]} == bars_of(drawn)
+    assert {*solution.description["bars"]} == find_two_force_links(drawn)
     compared = set()
     for k in instants:
         true = drawn.solve(float(solution.t[k]))
@@ -129,7 +129,7 @@ def compare(name, seed, instants):
                     middle = [forces[0] / section.area, *(1.5 * forces[1:3] / section.area)]
                     assert np.abs(values["centre"] - middle).max() < 1e-12 * size, (rod, xi)
             compared.add(rod)
-    return compared, bars_of(drawn)
+    return compared, find_two_force_links(drawn)
 
 
 @pytest.mark.parametrize("case", QUICK, ids=lambda case: "-".join(map(str, case)))

@@ -33,17 +33,17 @@ def name_of(scene):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_a_graph_comes_back_from_its_text_as_it_was(name):
-    graph = derive(SCENES[name]())
-    again = pickle.loads(pickle.dumps(graph))
-    assert codegen.emit(again) == codegen.emit(graph)
-    assert again.dumps() == graph.dumps()
+    program = derive(SCENES[name]())
+    again = pickle.loads(pickle.dumps(program))
+    assert codegen.emit(again) == codegen.emit(program)
+    assert again.dumps() == program.dumps()
     for field in ("driven", "columns", "loop_angles", "instructions"):
-        assert getattr(again, field) == getattr(graph, field)
-    if graph.newton:
+        assert getattr(again, field) == getattr(program, field)
+    if program.newton:
         assert (again.newton.guess, again.newton.names, again.newton.joints) == (
-            graph.newton.guess,
-            graph.newton.names,
-            graph.newton.joints,
+            program.newton.guess,
+            program.newton.names,
+            program.newton.joints,
         )
 
 

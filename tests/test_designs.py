@@ -17,7 +17,7 @@ from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.codegen import library
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of
 from lagrange_casadi.studies.peaks import refine
@@ -31,7 +31,7 @@ FIELDS = ("status", "value", "t", "xi", "mean", "rms")
 def test_designs_are_their_own_evaluations(name):
     """Every number of a case a parameter."""
     scene = declared(CASES / name)
-    designs = DesignEngine.of(scene, t=(*scene.t[:2], INSTANTS), rung=Rung("c"))
+    designs = DesignEngine.of(scene, t=(*scene.t[:2], INSTANTS), method=EvaluationMethod("c"))
     p = around(scene, 3)
     outcome = designs.evaluate(p)
     assert outcome.status.tolist() == [Status.OK] * 3
@@ -60,15 +60,20 @@ def test_all_rungs_agree(name):
     scene = declared(CASES / name)
     p, grid = around(scene, 9), (*scene.t[:2], INSTANTS)
     p[1, 0] = math.nan
-    exact = DesignEngine.of(scene, t=grid, rung=Rung("c"))
+    exact = DesignEngine.of(scene, t=grid, method=EvaluationMethod("c"))
     expected = exact.evaluate(p)
-    rungs = [(Rung("lanes"), 1e-12), (Rung("vm"), 1e-12)]
-    rungs += [(Rung("lanes", newton=4), 1e-12)] if exact.graph.newton is not None else []
-    rungs += [(Rung(backend, "single"), 2e-5) for backend in ("lanes", "c")]
-    for rung, tolerance in rungs:
-        some = 2 if rung.backend == "vm" else 9
-        designs = DesignEngine.of(scene, t=grid, rung=rung)
-        assert (designs.quantities, designs.provenance.backend) == (exact.quantities, rung.backend)
+    methods = [(EvaluationMethod("lanes"), 1e-12), (EvaluationMethod("vm"), 1e-12)]
+    methods += (
+        [(EvaluationMethod("lanes", newton=4), 1e-12)] if exact.program.newton is not None else []
+    )
+    methods += [(EvaluationMethod(backend, "single"), 2e-5) for backend in ("lanes", "c")]
+    for method, tolerance in methods:
+        some = 2 if method.backend == "vm" else 9
+        designs = DesignEngine.of(scene, t=grid, method=method)
+        assert (designs.quantities, designs.provenance.backend) == (
+            exact.quantities,
+            method.backend,
+        )
         outcome = designs.evaluate(p[:some])
         assert np.array_equal(outcome.status, expected.status[:some])
         assert outcome.status[1] == Status.INVALID
@@ -77,7 +82,7 @@ def test_all_rungs_agree(name):
             for k, quantity in enumerate(exact.quantities):
                 one, other = abs(outcome.value[row, k]), abs(expected.value[row, k])
                 assert one == other or abs(one - other) <= tolerance * (other + scale[quantity]), (
-                    rung,
+                    method,
                     quantity,
                 )
             np.testing.assert_allclose(outcome.rms[row], expected.rms[row], rtol=50 * tolerance)
@@ -85,16 +90,18 @@ def test_all_rungs_agree(name):
 
 @pytest.mark.sampled(11)
 @pytest.mark.parametrize(
-    "rung", [Rung("lanes"), Rung("c"), Rung("lanes", "single")], ids=lambda rung: rung.options
+    "method",
+    [EvaluationMethod("lanes"), EvaluationMethod("c"), EvaluationMethod("lanes", "single")],
+    ids=lambda method: method.options,
 )
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "rrr3"])
-def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, rung, monkeypatch):
+def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, method, monkeypatch):
     scene = declared(CASES / name)
-    designs = DesignEngine.of(scene, t=(*scene.t[:2], 61), rung=rung)
+    designs = DesignEngine.of(scene, t=(*scene.t[:2], 61), method=method)
     p = around(scene, 40, spread=0.7 if name == "slider_crank" else 0.3)
     whole = designs.evaluate(p, threads=1, histories=True)
     assert len(set(whole.status.tolist())) > 1
-    for fresh in (designs, DesignEngine.of(scene, t=(*scene.t[:2], 61), rung=rung)):
+    for fresh in (designs, DesignEngine.of(scene, t=(*scene.t[:2], 61), method=method)):
         order = np.random.default_rng(1).permutation(40)
         other = fresh.evaluate(p[order], histories=True)
         assert all(
@@ -103,7 +110,7 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, rung, monkeypa
         )
     monkeypatch.setattr(library, "_WORTH_A_THREAD", 0)
     monkeypatch.setattr(library, "_LONGEST", 3)
-    cut = DesignEngine.of(scene, t=(*scene.t[:2], 61), rung=rung)
+    cut = DesignEngine.of(scene, t=(*scene.t[:2], 61), method=method)
     assert cut.library.share == 1
     for threads in (1, 2, 3, 7):
         other = cut.evaluate(p, threads=threads)
@@ -117,7 +124,7 @@ def bare(designs, p):
     results = {"status": np.full(n, -1, np.int8)} | {
         name: np.full((n, many), np.nan) for name, many in shapes.items()
     }
-    history = np.full((n, len(designs.graph.columns), designs.t.size), np.nan)
+    history = np.full((n, len(designs.program.columns), designs.t.size), np.nan)
     designs.library.evaluate(
         designs.t[None], np.zeros((1, 0), bool), p, {**results, "history": history}
     )
@@ -128,7 +135,7 @@ def bare(designs, p):
 @pytest.mark.parametrize("backend", ["lanes", "c"])
 def test_every_value_is_written_or_is_nan(backend):
     scene = slider_crank()
-    designs = DesignEngine.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
     p = around(scene, 5)
     p[2, 1] = 0.05
     found = bare(designs, p)
@@ -152,7 +159,7 @@ def test_every_value_is_written_or_is_nan(backend):
 @pytest.mark.parametrize("name", ["slider_crank", "four_bar", "rrr3", "quick_return"])
 def test_histories_are_the_series_of_an_evaluation(name):
     scene = declared(CASES / name)
-    designs = DesignEngine.of(scene, t=(*scene.t[:2], 41), rung=Rung("c"))
+    designs = DesignEngine.of(scene, t=(*scene.t[:2], 41), method=EvaluationMethod("c"))
     p = around(scene, 2)
     outcome = designs.evaluate(p, histories=True)
     assert outcome.series.shape == (2, len(designs.columns), 41)
@@ -180,7 +187,7 @@ def test_a_speed_that_is_a_parameter_keeps_its_phase():
     speed = m.parameter("speed", 1.0, "rad/s")
     m.revolute("pin", m.ground, m.link("arm", length=0.5, mass=1.2))
     scene = Scene(m, {"pin": motion.expression(lambda t: speed * t)}, t=(1.0, 1.0 + 1e-7, 41))
-    designs = DesignEngine.of(scene, rung=Rung("c"))
+    designs = DesignEngine.of(scene, method=EvaluationMethod("c"))
     p = np.array([[1.0], [1e8]])
     outcome = designs.evaluate(p, histories=True)
     k = designs.columns.index("effort:pin")
@@ -193,7 +200,7 @@ def test_a_speed_that_is_a_parameter_keeps_its_phase():
 
 def test_what_is_not_determined_has_no_number():
     scene = parallelogram(pendulum=True)
-    designs = DesignEngine.of(scene, rung=Rung("c"))
+    designs = DesignEngine.of(scene, method=EvaluationMethod("c"))
     outcome = designs.evaluate(np.zeros((1, 0)))
     told = {
         name
@@ -225,17 +232,17 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     }
     scene = {**SCENES, **made}[name]()
     compiler, source = codegen.find_compiler(), tmp_path / "designs.c"
-    graph = derive(scene)
-    for rung in (
-        Rung(),
-        Rung(precision="single"),
-        *([Rung(newton=2)] if graph.newton is not None else []),
+    program = derive(scene)
+    for method in (
+        EvaluationMethod(),
+        EvaluationMethod(precision="single"),
+        *([EvaluationMethod(newton=2)] if program.newton is not None else []),
     ):
         stages, kept = (
-            stages_of(graph, rung, np.linspace(*scene.span, scene.t[2])),
-            KeptOutputs.of(graph, rung),
+            stages_of(program, method, np.linspace(*scene.span, scene.t[2])),
+            KeptOutputs.of(program, method),
         )
-        source.write_text(codegen.emit_designs(graph, stages, rung.newton, kept.reduction))
+        source.write_text(codegen.emit_designs(program, stages, method.newton, kept.reduction))
         command = [*compiler.command, *PEDANTIC, "-fsyntax-only", source]
         result = subprocess.run(command, capture_output=True, text=True, check=False)
         assert result.returncode == 0, result.stderr
@@ -254,7 +261,7 @@ def test_names_and_units_go_together():
 def test_misuse_is_named():
     scene = four_bar()
     with pytest.raises(DeclarationError, match="not read from a table"):
-        DesignEngine.of(scene, rung=Rung(table=64))
+        DesignEngine.of(scene, method=EvaluationMethod(table=64))
     with pytest.raises(DeclarationError, match=r"expected an array of shape \(n, 0\), got \(3,\)"):
         DesignEngine.of(scene).evaluate(np.zeros(3))
     with pytest.raises(DeclarationError, match="samples of the motion"):

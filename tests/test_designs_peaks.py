@@ -12,10 +12,10 @@ from mechanisms import crank_and_rod, lobes, pendulum
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, load_case, motion
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.peak_search.intervals import Curves, Samples
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import ContinuousSolution, forces, refine
-from lagrange_casadi.summits.panels import Curves, Samples
 
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 
@@ -30,7 +30,8 @@ def test_any_density_and_any_station(matter):
     grid, wanted = (0.3, 2.3, 61), ["section:b", "reaction:A"]
     p = np.array([[0.2], [0.1], [0.35], [0.0], [0.31], [0.36]])
     designs, packs = (
-        DesignEngine.of(scene, wanted, t=grid, rung=Rung(backend)) for backend in ("c", "lanes")
+        DesignEngine.of(scene, wanted, t=grid, method=EvaluationMethod(backend))
+        for backend in ("c", "lanes")
     )
     outcome, other = designs.evaluate(p), packs.evaluate(p)
     assert outcome.status.tolist() == other.status.tolist() == [Status.OK] * 5 + [Status.IMPOSSIBLE]
@@ -58,7 +59,7 @@ def test_peaks_of_a_turning_pendulum_are_exact(backend):
     """
     speed, start, turn = 3.0, 0.1, 2 * math.pi / 3.0
     scene = pendulum(polynomial(start, speed), t=(0, turn, 41))
-    designs = DesignEngine.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
     outcome = designs.evaluate(np.zeros((1, 0)))
     value, t, _ = peaks_of(designs, outcome, 0)["effort:pin"]
     peak = 1.2 * 9.81 * 0.5 / 2
@@ -74,7 +75,8 @@ def test_peaks_of_a_turning_pendulum_are_exact(backend):
 def test_of_peaks_as_large_the_first_is_told(backend):
     """Else rounding would choose between tops and troughs of many turns, and the sign with them."""
     designs = DesignEngine.of(
-        pendulum(polynomial(0.1, 3.0), t=(0, 6.0, 91), wanted=["effort"]), rung=Rung(backend)
+        pendulum(polynomial(0.1, 3.0), t=(0, 6.0, 91), wanted=["effort"]),
+        method=EvaluationMethod(backend),
     )
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["effort:pin"]
     assert value == pytest.approx(-1.2 * 9.81 * 0.25, rel=1e-12)
@@ -90,7 +92,7 @@ def test_any_number_of_instants(count, backend):
     """
     scene = pendulum(polynomial(0.1, 1.0))
     grid = (0.2, 0.2, 1) if count == 1 else (0.0, 4.0, count)
-    designs = DesignEngine.of(scene, t=grid, rung=Rung(backend))
+    designs = DesignEngine.of(scene, t=grid, method=EvaluationMethod(backend))
     outcome = designs.evaluate(np.zeros((1, 0)))
     assert outcome.status.tolist() == [Status.OK]
     found = peaks_of(designs, outcome, 0)
@@ -104,7 +106,7 @@ def test_any_number_of_instants(count, backend):
 @both
 def test_the_higher_of_two_peaks_is_found_where_the_instants_tell_otherwise(backend):
     scene = pendulum(motion.expression(lobes), t=(0, 3.0, 31), wanted=["motion"])
-    designs = DesignEngine.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin"]
     assert t == pytest.approx(2.05, abs=1e-7)
     assert value == pytest.approx(1 + 1e-5, rel=1e-11)
@@ -119,12 +121,12 @@ def test_a_kink_and_a_jump(backend):
     scene = pendulum(motion.samples(times, np.sin(2.3 * times)), gravity=0.0, t=(0.3, 1.9, 24))
     bends = np.array([float(derive(scene).motion(t, [])[2]) for t in times])
     k = 1 + int(np.argmax(np.abs(bends[1:-1])))
-    designs = DesignEngine.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["effort:pin"]
     assert value == pytest.approx(1.2 * 0.25 / 3 * bends[k], rel=1e-12)
     assert t == pytest.approx(times[k], abs=1e-11)
     scene = pendulum(polynomial(0.0, 2.0), load=lambda angle: 7 * angle * (angle < 1), t=(0, 1, 12))
-    designs = DesignEngine.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["load:push:fx"]
     assert 7 * (1 - 1e-11) < value < 7
     assert 0.5 * (1 - 1e-11) < t < 0.5
@@ -143,7 +145,7 @@ def test_two_summits_between_the_same_instants(backend):
     fine = evaluate(scene, t=(0.9, 1.1, 200_001), backend="vm", certificate=False).peak(
         "motion:pin"
     )
-    designs = DesignEngine.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin"]
     assert value == pytest.approx(fine.value, rel=1e-9)
     assert t == pytest.approx(fine.t, abs=1e-4)
@@ -153,8 +155,8 @@ def test_two_summits_between_the_same_instants(backend):
 @pytest.mark.parametrize("backend", ["lanes", "c"])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
-    """The search in C against the one in ``summits/search.py``, which designs without a compiler
-    take.
+    """The search in C against the one in ``peak_search/search.py``, which designs without a
+    compiler take.
     """
     generator, many = np.random.default_rng(seed), 16
     m = Mechanism("wave")
@@ -175,7 +177,9 @@ def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
     low = [-1, 0.5, 0, -0.5, 4, 0, -1, 0.0, 0.05]
     high = [1, 4.0, 6, 0.5, 12, 6, 1, 2.0, 0.5]
     p = generator.uniform(low, high, (many, len(names)))
-    designs, reference = (DesignEngine.of(scene, rung=Rung(name)) for name in (backend, "vm"))
+    designs, reference = (
+        DesignEngine.of(scene, method=EvaluationMethod(name)) for name in (backend, "vm")
+    )
     found, expected = designs.evaluate(p), reference.evaluate(p)
     assert designs.quantities == reference.quantities
     assert found.status.tolist() == expected.status.tolist()
@@ -202,7 +206,8 @@ def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
 def test_what_is_zero_throughout_peaks_at_the_first_instant(backend):
     """A place that does not move, an acceleration of an even motion: no time is infinite."""
     designs = DesignEngine.of(
-        pendulum(polynomial(0.1, 1.0), t=(0.5, 2.0, 41), wanted=["motion"]), rung=Rung(backend)
+        pendulum(polynomial(0.1, 1.0), t=(0.5, 2.0, 41), wanted=["motion"]),
+        method=EvaluationMethod(backend),
     )
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)[
         "motion:pin_acceleration"
@@ -218,7 +223,7 @@ def test_a_bar_held_at_rest_has_told_peaks():
     scene = replace(load_case("five_link_suspension").scene, wanted=["section:toe"])
     p = np.array([list(scene.mechanism.values().values())])
     engines = [
-        DesignEngine.of(scene, t=(0.0, 1.0, 201), rung=Rung(backend))
+        DesignEngine.of(scene, t=(0.0, 1.0, 201), method=EvaluationMethod(backend))
         for backend in ("vm", "c", "lanes")
     ]
     true, *others = [engine.evaluate(p) for engine in engines]

@@ -14,14 +14,14 @@ from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import ParameterError
 from lagrange_casadi.instants.backends import run
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.instants.refusal import refusal
-from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 
-def statuses(scene, p, rung, instants=None):
+def statuses(scene, p, method, instants=None):
     """The statuses of designs, as they are found and as their own evaluations are refused."""
-    designs = DesignEngine.of(scene, t=instants, rung=rung)
+    designs = DesignEngine.of(scene, t=instants, method=method)
     found, expected = designs.evaluate(p).status, []
     for row in p:
         try:
@@ -29,8 +29,8 @@ def statuses(scene, p, rung, instants=None):
         except ParameterError:
             expected.append(Status.IMPOSSIBLE if np.isfinite(row).all() else Status.INVALID)
             continue
-        table, _ = run(designs.graph, designs.t, row, rung)
-        why = refusal(designs.graph, table, designs.t, row, rung)
+        table, _ = run(designs.program, designs.t, row, method)
+        why = refusal(designs.program, table, designs.t, row, method)
         expected.append(why.status if why else Status.OK)
     return found.tolist(), expected
 
@@ -51,7 +51,7 @@ def test_lengths_about_a_dead_centre(backend):
     for count in (81, 802):
         # Without a compiler one effort is looked at, for peaks along links take long.
         scene = slider_crank(["effort"] if backend == "vm" else ["all"])
-        found, expected = statuses(scene, p, Rung(backend), (0, 0.08, count))
+        found, expected = statuses(scene, p, EvaluationMethod(backend), (0, 0.08, count))
         # Between two instants all but dead centres are passed: what is worth looking at is left to
         # rounding, or has no end.
         for k, ratio in enumerate(ratios):
@@ -81,7 +81,7 @@ def test_a_dead_centre_on_an_instant(backend):
     m.revolute("B", b.tip, p)
     m.prismatic("guide", m.ground, p, axis=(1, 0))
     scene = Scene(m, {"O": polynomial(0.0, math.pi / 2)}, t=(0, 1, 3), posture={"b": 0.0})
-    found, expected = statuses(scene, np.array([[1.0], [1.1], [0.9]]), Rung(backend))
+    found, expected = statuses(scene, np.array([[1.0], [1.1], [0.9]]), EvaluationMethod(backend))
     assert found == expected == [Status.DEAD_CENTRE, Status.OK, Status.OUT_OF_REACH]
 
 
@@ -91,7 +91,7 @@ def test_four_bars_of_every_kind(backend):
     scene = load_case(CASES / "four_bar").scene
     some = 6 if backend == "vm" else 60
     p = around(scene, some, spread=0.6, seed=4)
-    found, expected = statuses(scene, p, Rung(backend), (*scene.t[:2], 101))
+    found, expected = statuses(scene, p, EvaluationMethod(backend), (*scene.t[:2], 101))
     assert found == expected
     assert len(set(found)) > 1
 
@@ -100,7 +100,7 @@ def test_four_bars_of_every_kind(backend):
 @both
 def test_a_change_point_is_passed_between_instants(backend):
     scene = flat_parallelogram()
-    found, expected = statuses(scene, np.zeros((1, 0)), Rung(backend))
+    found, expected = statuses(scene, np.zeros((1, 0)), EvaluationMethod(backend))
     assert found == expected == [Status.PASSES_DEAD_CENTRE]
 
 
@@ -109,10 +109,10 @@ def test_a_change_point_is_passed_between_instants(backend):
 def test_iterated_loops_begin_from_the_guess_and_say_what_fails(backend):
     scene = truss_platform()
     p = np.array([[0.05], [0.06], [5.0], [0.04]])
-    found, expected = statuses(scene, p, Rung(backend))
+    found, expected = statuses(scene, p, EvaluationMethod(backend))
     assert found == expected == [Status.OK, Status.OK, Status.NOT_CONVERGED, Status.OK]
     for step, status in ((1.0, Status.OK), (2.3, Status.JUMPED)):
-        found, expected = statuses(double_crank(step), np.zeros((1, 0)), Rung(backend))
+        found, expected = statuses(double_crank(step), np.zeros((1, 0)), EvaluationMethod(backend))
         assert found == expected == [status]
 
 
@@ -124,11 +124,13 @@ def test_what_does_not_fit_and_what_a_row_forbids(backend):
     m.weld("W2", m.ground.at(1, 0), b)
     m.weld("W3", a.tip, b, angle=m.parameter("angle", 0.0, "rad"))
     found, expected = statuses(
-        Scene(m, {}, ("motion",), t=(0, 1, 3)), np.array([[0.0], [math.pi], [0.1]]), Rung(backend)
+        Scene(m, {}, ("motion",), t=(0, 1, 3)),
+        np.array([[0.0], [math.pi], [0.1]]),
+        EvaluationMethod(backend),
     )
     assert found == expected == [Status.OK, Status.MISFIT, Status.MISFIT]
     scene = declared(CASES / "sleigh")
     found, expected = statuses(
-        scene, around(scene, 3, spread=0.3), Rung(backend), (*scene.t[:2], 41)
+        scene, around(scene, 3, spread=0.3), EvaluationMethod(backend), (*scene.t[:2], 41)
     )
     assert found == expected

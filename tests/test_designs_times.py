@@ -12,7 +12,7 @@ from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
 from lagrange_casadi.base.status import Status
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 TURN = math.tau
@@ -34,7 +34,7 @@ def test_designs_are_their_own_evaluations(asked, law, backend):
     that were asked for.
     """
     scene = press(law, wanted=["effort", "section:rod", "motion"], **ASKED[asked])
-    designs = DesignEngine.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
     outcome = designs.evaluate(P, histories=True)
     assert outcome.status.tolist() == [FAILS.get(k, Status.OK) for k in range(len(P))]
     for row in np.flatnonzero(outcome.status == Status.OK):
@@ -86,12 +86,14 @@ def test_means_are_over_the_time_of_a_whole_turn(law):
 
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
-    "rung", [Rung("lanes"), Rung("c", "single")], ids=lambda rung: rung.options
+    "method",
+    [EvaluationMethod("lanes"), EvaluationMethod("c", "single")],
+    ids=lambda method: method.options,
 )
-def test_a_row_has_the_same_bytes_whatever_stands_beside_it(rung, monkeypatch):
+def test_a_row_has_the_same_bytes_whatever_stands_beside_it(method, monkeypatch):
     scene = press(uneven, wanted=["effort", "section:rod"], over=("O", 0, TURN, 41))
     p = np.array([[rpm, 0.3 + 0.01 * k] for k, rpm in enumerate(np.linspace(50, 3000, 23))])
-    designs = DesignEngine.of(scene, rung=rung)
+    designs = DesignEngine.of(scene, method=method)
     whole = designs.evaluate(p, threads=1, histories=True)
     monkeypatch.setattr("lagrange_casadi.studies.designs.engine._PIECE", 5 * 41)
     for threads in (1, 3):
@@ -133,9 +135,9 @@ def test_loops_that_are_iterated_begin_where_the_drive_starts():
     scene, closed = (
         press(wanted=["effort", "motion"], pin=pin) for pin in (pinned, Mechanism.revolute)
     )
-    rung = Rung("c", newton=6)
+    method = EvaluationMethod("c", newton=6)
     timing = scene.timing(over=("O", math.pi, 3 * math.pi, 61))
-    designs = DesignEngine.of(scene, rung=rung, timing=timing)
+    designs = DesignEngine.of(scene, method=method, timing=timing)
     outcome = designs.evaluate(np.array([[600.0, 0.5], [60.0, 0.3]]), histories=True)
     assert outcome.status.tolist() == [0, 0]
     for row, values in enumerate(({"rpm": 600.0, "l": 0.5}, {"rpm": 60.0, "l": 0.3})):

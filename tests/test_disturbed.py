@@ -12,15 +12,15 @@ from lagrange_casadi.codegen.stages import compensated, plain
 from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.judge.disturbed import TRIALS, Instants, effects, openness
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.verification.disturbed import TRIALS, Instants, effects, openness
 
 pytestmark = pytest.mark.quick
 
 STAGES = {
     "double": plain,
-    "pairs": lambda graph: compensated(graph, "double"),
-    "single": lambda graph: compensated(graph, "single"),
+    "pairs": lambda program: compensated(program, "double"),
+    "single": lambda program: compensated(program, "single"),
 }
 
 
@@ -35,19 +35,24 @@ def arm(load, motion=None, t=(0.0, 1.0, 41)):
 
 def instants_of(scene, stages):
     """A scene's instants in an arithmetic, and the columns that the virtual machine has there."""
-    graph = derive(scene)
+    program = derive(scene)
     t, p = points(scene.t), np.array(list(scene.mechanism.values().values()))
-    found, _ = run(graph, t, p, Rung("vm"))
-    angles = np.array([name in graph.loop_angles for name in graph.columns])
-    return graph, Instants(STAGES[stages](graph), t, p, found.iterated), np.array(found.out), angles
+    found, _ = run(program, t, p, EvaluationMethod("vm"))
+    angles = np.array([name in program.loop_angles for name in program.columns])
+    return (
+        program,
+        Instants(STAGES[stages](program), t, p, found.iterated),
+        np.array(found.out),
+        angles,
+    )
 
 
 def of_load(scene, stages="double", change=lambda out, row: None):
     """What errors do to the load, (trials and the result, n), and the load; ``change`` has its will
     on the result's load.
     """
-    graph, instants, out, angles = instants_of(scene, stages)
-    row = graph.names.index("load:t:mz")
+    program, instants, out, angles = instants_of(scene, stages)
+    row = program.names.index("load:t:mz")
     change(out, row)
     changes, columns = effects(instants, out, angles)
     return changes[row], columns[row]
@@ -165,13 +170,13 @@ def test_what_a_drive_hands_on_may_jump(later):
 def test_loops_that_are_open():
     """One step an instant leaves them open; so many that there is but rounding left."""
     scene = truss_platform()
-    graph = derive(scene)
+    program = derive(scene)
     t, p = points(scene.t), np.array(list(scene.mechanism.values().values()))
-    angles = np.array([name in graph.loop_angles for name in graph.columns])
-    closed, _ = run(graph, t, p, Rung("vm"))
-    found, _ = run(graph, t, p, Rung("vm", newton=1))
-    instants = Instants(plain(graph), t, p, found.iterated)
-    assert np.max(openness(Instants(plain(graph), t, p, closed.iterated))) < 100.0
+    angles = np.array([name in program.loop_angles for name in program.columns])
+    closed, _ = run(program, t, p, EvaluationMethod("vm"))
+    found, _ = run(program, t, p, EvaluationMethod("vm", newton=1))
+    instants = Instants(plain(program), t, p, found.iterated)
+    assert np.max(openness(Instants(plain(program), t, p, closed.iterated))) < 100.0
     assert np.argmax(openness(instants)) > 0
     assert openness(instants)[0] < 100.0 < 1e6 < np.max(openness(instants))
     changes, columns = effects(instants, np.array(found.out), angles)
@@ -187,7 +192,7 @@ def test_many_instants_are_followed_in_blocks(monkeypatch):
     chosen = np.arange(41)
     (whole,) = instants.blocks(chosen)
     np.testing.assert_array_equal(whole, chosen)
-    monkeypatch.setattr("lagrange_casadi.judge.disturbed._AT_ONCE", 1)
+    monkeypatch.setattr("lagrange_casadi.verification.disturbed._AT_ONCE", 1)
     assert [block.tolist() for block in instants.blocks(chosen)] == [
         [*range(16)],
         [*range(16, 32)],

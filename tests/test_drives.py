@@ -18,7 +18,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate, motion
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.equations.derive import derive
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.store.runs import check, load, save
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
@@ -282,7 +282,7 @@ def test_a_four_bar_driven_by_its_coupler():
 )
 def test_sweeps_have_the_peaks_of_the_api(drives):
     scene = five_bar(drives, t=(0, 1, 64))
-    designs, p = DesignEngine.of(scene, rung=Rung("c")), around(scene, 2)
+    designs, p = DesignEngine.of(scene, method=EvaluationMethod("c")), around(scene, 2)
     outcome = designs.evaluate(p)
     assert outcome.status.tolist() == [Status.OK] * 2
     for row in range(2):
@@ -295,7 +295,7 @@ def test_sweeps_refuse_what_the_api_refuses():
         made.mechanism, made.motion, posture=made.posture, t=(0.01, 0.08, 71), drives=["guide"]
     )
     for backend in ("c", "vm"):
-        outcome = DesignEngine.of(scene, rung=Rung(backend)).evaluate(
+        outcome = DesignEngine.of(scene, method=EvaluationMethod(backend)).evaluate(
             np.array([list(scene.mechanism.values().values())])
         )
         assert outcome.status.tolist() in ([Status.DEAD_CENTRE], [Status.PASSES_DEAD_CENTRE])

@@ -10,7 +10,7 @@ from packer import CASE, scene
 from lagrange_casadi import Scene, evaluate, optimise, prepare, sweep, tolerances
 from lagrange_casadi.animation import Film
 from lagrange_casadi.cli import program
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.store.runs import check, load
 from lagrange_casadi.studies.sweep.checking import check_sweep
 from lagrange_casadi.studies.sweep.notes import resting_note
@@ -97,7 +97,9 @@ def test_pages_and_films_are_drawn(tmp_path):
 
 def test_ways_of_evaluation_are_traded():
     found = trade(
-        scene(), wanted=["effort", "motion", "friction"], rungs=(Rung(), Rung("vm"), Rung("c"))
+        scene(),
+        wanted=["effort", "motion", "friction"],
+        methods=(EvaluationMethod(), EvaluationMethod("vm"), EvaluationMethod("c")),
     )
     assert not found.refused
     assert all(0.0 <= one.largest < 1e-9 for one in found.measurements)

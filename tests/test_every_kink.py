@@ -26,12 +26,12 @@ def judged(seed):
     where that is not clear.
     """
     r = np.random.default_rng(seed)
-    graph, k = drawn(r), float(r.choice(VALUES))
-    if not ca.depends_on(graph, T):
+    program, k = drawn(r), float(r.choice(VALUES))
+    if not ca.depends_on(program, T):
         return None
-    found = verdict(graph, k)
+    found = verdict(program, k)
     return (
-        (graph, k, found.what == "broken", found.values)
+        (program, k, found.what == "broken", found.values)
         if found.what in ("smooth", "broken")
         else None
     )
@@ -44,12 +44,12 @@ def kinks(seeds):
         case = judged(seed)
         if case is None:
             continue
-        graph, k, broken, _ = case
-        smooth = Smooth.of(graph, T, K)
+        program, k, broken, _ = case
+        smooth = Smooth.of(program, T, K)
         kink = None if smooth is None else smooth.kink(TIMES, (k,))
         told = kink is not None
-        assert told == broken or (told and shown(graph, k, kink.at["t"])), (
-            f"seed {seed}: {kink}, of {graph} with k = {k}"
+        assert told == broken or (told and shown(program, k, kink.at["t"])), (
+            f"seed {seed}: {kink}, of {program} with k = {k}"
         )
         many[broken] += 1
     return many
@@ -105,16 +105,16 @@ def refused(scene, seeds):
         case = judged(seed)
         if case is None:
             continue
-        graph, k, broken, values = case
+        program, k, broken, values = case
         # Small beside the mechanism, and not so small that it is nothing.
-        scaled = graph * (0.01 / max(np.abs(values[0]).max(), 1e-3))
+        scaled = program * (0.01 / max(np.abs(values[0]).max(), 1e-3))
         law = ca.Function("law", [T, K], [scaled])
         try:
             made = scene(law)
         except DeclarationError:
             # A profile that is undercut for the default.
             continue
-        said = f"seed {seed}: {graph} with k = {k}"
+        said = f"seed {seed}: {program} with k = {k}"
         status = DesignEngine.of(made, ["effort"]).evaluate(np.array([[0.7], [k]])).status[1]
         try:
             evaluate(made, parameters={"k": k}, backend="vm", certificate=False)
@@ -128,7 +128,7 @@ def refused(scene, seeds):
         lone = (
             None
             if told or status != Status.CORNER
-            else Smooth.of(graph, T, K).isolated(TIMES, (k,), between=True)
+            else Smooth.of(program, T, K).isolated(TIMES, (k,), between=True)
         )
         assert (
             told or status != Status.CORNER or told_by_limits(scaled, k, lone.at["t"]) == "isolated"
@@ -136,9 +136,9 @@ def refused(scene, seeds):
         # A design may be refused for something else before its corners are looked for.
         assert not told or status != Status.OK, said
         if status in (Status.OK, Status.CORNER) and (told or broken):
-            place = Smooth.of(graph, T, K).kink(TIMES, (k,))
+            place = Smooth.of(program, T, K).kink(TIMES, (k,))
             assert told == broken or (
-                told and place is not None and shown(graph, k, place.at["t"])
+                told and place is not None and shown(program, k, place.at["t"])
             ), said
         many[broken] += 1
     return many
@@ -153,8 +153,8 @@ def loads(seeds):
         case = judged(seed)
         if case is None:
             continue
-        graph, k, broken, values = case
-        law = ca.Function("law", [T, K], [graph])
+        program, k, broken, values = case
+        law = ca.Function("law", [T, K], [program])
         m = Mechanism("loaded")
         body, p = m.point_mass("body", 2.0), m.parameter("k", 0.0)
         m.prismatic("way", m.ground, body, axis=(1, 0))
@@ -164,7 +164,7 @@ def loads(seeds):
         largest = np.abs(values[0]).max()
         if found.status[0] == Status.OK:
             assert abs(found.value[0, 0]) >= largest * (1 - 1e-5) - 1e-9, (
-                f"seed {seed}: {graph} with k = {k}"
+                f"seed {seed}: {program} with k = {k}"
             )
         many[broken] += 1
     return many

@@ -16,7 +16,7 @@ from stepped import pinned, two_rods
 from lagrange_casadi import derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, CertificateWarning
-from lagrange_casadi.judge.reference import reference
+from lagrange_casadi.verification.reference import reference
 
 ROUNDINGS = 100
 ORDINARY = {"double": 1e-13, "single": 1e-5}
@@ -33,7 +33,7 @@ def assert_exact(extreme, **options):
     if extreme.ordinary:
         largest = max(judges, key=lambda judge: judge.error)
         assert largest.error <= ORDINARY[solution.provenance.precision], largest
-    assert not understated(solution, extreme.graph, extreme.meant)
+    assert not understated(solution, extreme.program, extreme.meant)
 
 
 @pytest.mark.sampled(97)
@@ -177,12 +177,12 @@ def test_half_iterated_loops_are_in_the_estimate(name, scene):
 
 def test_a_reference_means_whole_turns():
     """The double nearest to a turn would be off by 3e-9 rad after 1.25e7 of them."""
-    graph, values = (
+    program, values = (
         derive(slider_crank(), ["motion"]),
         slider_crank().mechanism.values({"change": 0.0}),
     )
-    (row,) = reference(graph, [1e6], list(values.values()))
-    found = dict(zip(graph.names, row, strict=True))
+    (row,) = reference(program, [1e6], list(values.values()))
+    found = dict(zip(program.names, row, strict=True))
     with mp.workdps(50):
         turns = (found["pose:rod:angle"] - found["motion:O"] - found["motion:A"]) / (2 * mp.pi)
         assert abs(turns - mp.nint(turns)) < 1e-30

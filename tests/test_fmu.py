@@ -108,11 +108,11 @@ def test_co_simulation_gives_the_numbers_of_the_api(unit, name):
 def test_the_motion_of_what_is_guided_is_an_input(unit):
     """The pose of an excavator's bucket: place, direction, and their rates and accelerations."""
     scene, path = unit("excavator")
-    graph, solution = derive(scene), evaluate(scene)
-    orders = [graph.motion(t, list(scene.mechanism.values().values())) for t in solution.t]
+    program, solution = derive(scene), evaluate(scene)
+    orders = [program.motion(t, list(scene.mechanism.values().values())) for t in solution.t]
     poses = {
         f"motion/{name}{end}": np.array([float(order[k][i]) for order in orders])
-        for i, name in enumerate(graph.driven)
+        for i, name in enumerate(program.driven)
         for k, end in enumerate(("", "_rate", "_acceleration"))
     }
     assert "motion/bucket.angle_rate" in poses

@@ -24,8 +24,8 @@ from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, LagrangeCasadiError
 from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.judge.reference import arithmetic, reference
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.verification.reference import arithmetic, reference
 
 MP = mpmath.mp
 EXACT = replace(arithmetic(), constant=meant(MP.mpf))
@@ -44,22 +44,22 @@ EXACTLY = [
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", EXACTLY)
 def test_formulas_to_forty_digits(name, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.judge.reference.arithmetic", lambda: EXACT)
+    monkeypatch.setattr("lagrange_casadi.verification.reference.arithmetic", lambda: EXACT)
     scene = declared(CASES / name)
-    graph, p = derive(scene, ["all"]), list(scene.mechanism.values().values())
+    program, p = derive(scene, ["all"]), list(scene.mechanism.values().values())
     t = scene.t[0] + np.array(PARTS.get(name, (0.0, 0.4, 0.77))) * (scene.t[1] - scene.t[0])
     grid = np.unique([*np.linspace(scene.t[0], t[-1], 100), *t])
-    table, _ = run(graph, grid, np.array(p), Rung("vm"))
-    rows = reference(graph, t, p, z=table.iterated[:, np.searchsorted(grid, t)])
+    table, _ = run(program, grid, np.array(p), EvaluationMethod("vm"))
+    rows = reference(program, t, p, z=table.iterated[:, np.searchsorted(grid, t)])
     with MP.workdps(60):
         for moment, row in zip(t, rows, strict=True):
-            driven = interpret(graph.motion, [[MP.mpf(moment)], [MP.mpf(x) for x in p]], EXACT)
+            driven = interpret(program.motion, [[MP.mpf(moment)], [MP.mpf(x) for x in p]], EXACT)
             drives = {
-                joint: tuple(order[k] for order in driven) for k, joint in enumerate(graph.driven)
+                joint: tuple(order[k] for order in driven) for k, joint in enumerate(program.driven)
             }
             expected, found = (
                 precise(scene, float(moment), drives),
-                dict(zip(graph.names, row, strict=True)),
+                dict(zip(program.names, row, strict=True)),
             )
             assert_equal(expected, found, scene.mechanism)
 
@@ -115,12 +115,12 @@ def test_what_constants_mean(x, value):
 
 def test_a_reference_has_the_digits_that_are_asked_for():
     scene = load_case(CASES / "rrr3").scene
-    graph = derive(scene, ["effort"])
-    z = np.array(graph.newton.guess)[:, None]
+    program = derive(scene, ["effort"])
+    z = np.array(program.newton.guess)[:, None]
     rows = {
-        digits: reference(graph, [scene.t[0]], [], z=z, digits=digits)[0] for digits in (25, 60)
+        digits: reference(program, [scene.t[0]], [], z=z, digits=digits)[0] for digits in (25, 60)
     }
-    for name, few, many in zip(graph.names, rows[25], rows[60], strict=True):
+    for name, few, many in zip(program.names, rows[25], rows[60], strict=True):
         if name.startswith("_gap:"):  # which is nothing but what the digits leave
             continue
         with MP.workdps(60):
@@ -129,14 +129,14 @@ def test_a_reference_has_the_digits_that_are_asked_for():
 
 def test_what_a_reference_refuses(monkeypatch):
     scene = truss_platform()
-    graph = derive(scene)
-    far = np.full((len(graph.newton.guess), 1), 1.0)
-    monkeypatch.setattr("lagrange_casadi.judge.reference._STEPS", 3)
+    program = derive(scene)
+    far = np.full((len(program.newton.guess), 1), 1.0)
+    monkeypatch.setattr("lagrange_casadi.verification.reference._STEPS", 3)
     with pytest.raises(
         AssemblyError,
         match=r"the loops closed by joint .* do not close to all digits at t = 0\.5 s",
     ):
-        reference(graph, [0.5], [0.05], z=far)
+        reference(program, [0.5], [0.05], z=far)
     m = Mechanism("arm")
     arm = m.link("arm", length=1, mass=1)
     m.torque("t", arm, doubled(m.coordinate(m.revolute("J", m.ground, arm))))
@@ -149,4 +149,4 @@ def test_what_a_reference_refuses(monkeypatch):
         LagrangeCasadiError,
         match=r"a reference of many digits needs mpmath; install it with: pip install",
     ):
-        reference(graph, [0.5], [0.05], z=far)
+        reference(program, [0.5], [0.05], z=far)

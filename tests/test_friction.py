@@ -365,8 +365,8 @@ def test_what_no_friction_moves_costs_what_it_did():
     scene = SLIDER_CRANK_SCENE
     assert derive(scene, ["motion", "load:gas"]).checks("rest") == {}
     assert len(derive(scene, ["effort"]).checks("rest")) == 3  # the smoothed one is never at rest
-    graph = derive(scene, ["load:rub_O"])
-    assert {str(output) for output in graph.outputs} >= {
+    program = derive(scene, ["load:rub_O"])
+    assert {str(output) for output in program.outputs} >= {
         "load:rub_O:mz",
         "friction:rub_O:along",
         "friction:rub_O:loss",

@@ -13,7 +13,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate, export, prepare, refine,
 from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.motion import expression, harmonic, polynomial
 from lagrange_casadi.store.runs import check, load, save
 from lagrange_casadi.studies.designs.engine import DesignEngine
@@ -64,7 +64,7 @@ def test_a_drawer_pushed_beside_its_guide(backend):
 
 @every
 def test_designs_that_jam_have_their_status(backend):
-    designs = DesignEngine.of(pushed_beside(), rung=Rung(backend))
+    designs = DesignEngine.of(pushed_beside(), method=EvaluationMethod(backend))
     p = np.array([[0.2, 0.1], [0.2, 0.08], [0.2, 0.05], [0.1, 0.05]])
     found = designs.evaluate(p)
     assert found.status.tolist() == [Status.OK, Status.JAMS, Status.JAMS, Status.OK]
@@ -196,7 +196,7 @@ def test_peaks_and_means_of_a_design_are_those_of_the_instants_that_move(backend
     scene = reciprocating(
         expression(start_and_stop), t=(0, 1, 41), wanted=["effort", "motion", "section:rod"]
     )
-    designs = DesignEngine.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
     found = designs.evaluate(np.array([[0.1]]))
     assert found.status.tolist() == [Status.OK]
     alone = evaluate(scene, parameters={"mu": 0.1}, backend="vm")
@@ -213,9 +213,9 @@ def test_peaks_and_means_of_a_design_are_those_of_the_instants_that_move(backend
     assert effort.mean == pytest.approx(np.trapezoid(moving) / (moving.size - 1), rel=1e-12)
     assert found.mean[0, 0] == pytest.approx(effort.mean, rel=1e-9)
     assert found.rms[0, 0] == pytest.approx(effort.rms, rel=1e-9)
-    designs_at_rest = DesignEngine.of(scene, t=(0.6, 0.9, 21), rung=Rung(backend)).evaluate(
-        np.array([[0.1]])
-    )
+    designs_at_rest = DesignEngine.of(
+        scene, t=(0.6, 0.9, 21), method=EvaluationMethod(backend)
+    ).evaluate(np.array([[0.1]]))
     assert designs_at_rest.status.tolist() == [Status.OK]
     assert np.isnan(designs_at_rest.value[0, designs.quantities.index("effort:O")])
     assert np.isfinite(designs_at_rest.value[0, designs.quantities.index("motion:O")])
@@ -276,7 +276,7 @@ def test_a_jam_is_told_before_rest(backend):
         {"O": expression(lambda t: 0.1 * ca.fmax(t - 0.05, 0.0) ** 3)},
         t=(0, 0.1, 9),
     )
-    designs = DesignEngine.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
     found = designs.evaluate(np.array([[0.2, 0.1], [0.2, 0.05]]), histories=True)
     assert found.status.tolist() == [Status.OK, Status.JAMS]
     assert np.isfinite(found.series[0]).any()
@@ -359,7 +359,7 @@ def test_peaks_beside_a_reversal_are_found():
         "reaction:bore:resultant",
     ]
     found = refine(scene, solution, names)
-    designs = DesignEngine.of(scene, rung=Rung("c"))
+    designs = DesignEngine.of(scene, method=EvaluationMethod("c"))
     row = designs.evaluate(np.array([[0.15]])).value[0]
     swept = dict(zip(map(str, designs.kept.quantities), row, strict=True))
     for peak in found:

@@ -27,7 +27,7 @@ def gaps(exact, read):
 
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize(
-    "rung",
+    "method",
     [
         {"table": 1e-9},
         {"table": 64},
@@ -36,9 +36,9 @@ def gaps(exact, read):
     ],
 )
 @pytest.mark.parametrize("name", ["slider_crank", "four_bar", "andrews_squeezer"])
-def test_a_table_is_right_within_what_it_claims(name, rung):
+def test_a_table_is_right_within_what_it_claims(name, method):
     scene = load_case(CASES / name).scene
-    exact, read = evaluate(scene), evaluate(scene, **rung)
+    exact, read = evaluate(scene), evaluate(scene, **method)
     for quantity, gap, _ in gaps(exact, read):
         assert gap <= CLAIM * read.errors[quantity] + exact.errors[quantity], quantity
     assert (
@@ -65,10 +65,10 @@ def test_an_accuracy_is_kept():
 LATE = ((1e6, {"table": 1e-9}, 1e-9), (3600.0, {"table": 1e-6, "precision": "single"}, 2e-6))
 
 
-@pytest.mark.parametrize(("start", "rung", "least"), LATE)
-def test_phases_outlast_many_turns(start, rung, least):
+@pytest.mark.parametrize(("start", "method", "least"), LATE)
+def test_phases_outlast_many_turns(start, method, least):
     scene = slider_crank(["effort", "reaction:guide"])
-    exact, read = (evaluate(scene, t=(start, start + 0.01, 50), **words) for words in ({}, rung))
+    exact, read = (evaluate(scene, t=(start, start + 0.01, 50), **words) for words in ({}, method))
     assert max(gap / peak for _, gap, peak in gaps(exact, read) if peak) < least
 
 

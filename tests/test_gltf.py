@@ -12,7 +12,7 @@ from reports import hostile, press, solved
 
 from lagrange_casadi import save
 from lagrange_casadi.animation import Film, write_animation
-from lagrange_casadi.animation.solids import ball, block, cone, cylinder, prism
+from lagrange_casadi.animation.solids import block, cone, cylinder, prism, sphere
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.shapes.places import placed
@@ -198,7 +198,7 @@ def test_arrows_are_forces_at_their_places_to_the_scale_that_is_told(tmp_path, n
             cone(np.array([1.0, 2.0, 3.0]), np.array([1.0, 5.0, 7.0]), 0.5),
             12 * np.sin(np.pi / 12) * 0.25 * 5.0 / 3,
         ),
-        (ball(np.array([1.0, 0.0, 2.0]), 2.0), None),
+        (sphere(np.array([1.0, 0.0, 2.0]), 2.0), None),
         (block(np.array([1.0, 0.0, 2.0]), np.eye(3)[[1, 2, 0]], [1.0, 2.0, 3.0]), 6.0),
         (block(np.array([1.0, 0.0, 2.0]), np.diag([1.0, 1.0, -1.0]), [1.0, 2.0, 3.0]), 6.0),
         (

@@ -11,7 +11,7 @@ from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import DeclarationError, SizeError
 from lagrange_casadi.instants import grids
-from lagrange_casadi.instants.section_law import SectionLaw, StationLoad
+from lagrange_casadi.instants.section_law import PointLoad, SectionLaw
 
 pytestmark = pytest.mark.quick
 
@@ -27,7 +27,7 @@ def loaded_law(n):
     }
     stations = (np.ones(n), np.full(n, 0.4), np.linspace(-0.1, 1.1, n))
     loads = tuple(
-        StationLoad(f"load{i}", station, *random.normal(size=(3, n)))
+        PointLoad(f"load{i}", station, *random.normal(size=(3, n)))
         for i, station in enumerate(stations)
     )
     return SectionLaw(
@@ -110,7 +110,7 @@ def test_what_is_largest_over_the_instants_is_that_of_each_design_s_grid(
     laws, xi = [loaded_law(n) for _ in range(designs)], np.linspace(0, 1, k)
     scale = np.linspace(0.5, 2.0, designs)[:, None]
     stations = [
-        StationLoad(
+        PointLoad(
             "",
             *(
                 np.stack([getattr(law.loads[i], name) for law in laws])

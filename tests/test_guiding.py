@@ -13,7 +13,7 @@ from lagrange_casadi import Mechanism, Scene, check, derive, evaluate, load, mot
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
 from lagrange_casadi.figures import figures
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -153,7 +153,7 @@ def test_a_point_mass_may_be_guided():
 
 def test_sweeps_and_exported_c_have_it(tmp_path):
     scene = guided(t=(0, 1, 64), wanted=("effort", "motion", "section:b", "output:tool_vx"))
-    designs, p = DesignEngine.of(scene, rung=Rung("c")), around(scene, 2)
+    designs, p = DesignEngine.of(scene, method=EvaluationMethod("c")), around(scene, 2)
     outcome = designs.evaluate(p)
     assert outcome.status.tolist() == [Status.OK] * 2
     for row in range(2):
@@ -170,15 +170,17 @@ def test_sweeps_and_exported_c_have_it(tmp_path):
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c", "single")], ids=["lanes", "single"])
-def test_a_quantity_that_is_zero_where_it_is_looked_at_condemns_no_design(rung):
+@pytest.mark.parametrize(
+    "method", [EvaluationMethod("lanes"), EvaluationMethod("c", "single")], ids=["lanes", "single"]
+)
+def test_a_quantity_that_is_zero_where_it_is_looked_at_condemns_no_design(method):
     """The power of a tool that goes to and fro is rounding at each of
     the instants of the witness.
     """
     made = five_bar(path=True, power=True).mechanism
     line = {"tool": (motion.harmonic(0.05, 0.1, 1.0), motion.polynomial(0.6))}
     scene = Scene(made, line, ["output:still"], t=(0, 1, 101), posture=ROUGH, drives=["O", "C"])
-    designs = DesignEngine.of(scene, rung=rung)
+    designs = DesignEngine.of(scene, method=method)
     assert not designs.failures(np.array(list(made.values().values())), derive(scene, ["all"]))
 
 

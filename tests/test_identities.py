@@ -8,7 +8,7 @@ from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.judge.certificate import certify
+from lagrange_casadi.verification.certificate import certify
 
 pytestmark = pytest.mark.quick
 
@@ -120,15 +120,16 @@ def test_forces_scale_with_masses(slider_crank):
 
 def test_forces_scale_with_speed():
     """Less what gravity does, twice the speed at the same posture is four times every force."""
-    graph = derive(slider_crank())
+    program = derive(slider_crank())
     p = [0.1, 0.2, 0.1, 0.1, 0.1]
     for angle in np.linspace(0.0, 6.0, 13):
         still, slow, fast = (
-            graph.instant(0.0, angle, rate, 0.0, [], p).full().ravel() for rate in (0.0, 5.0, 10.0)
+            program.instant(0.0, angle, rate, 0.0, [], p).full().ravel()
+            for rate in (0.0, 5.0, 10.0)
         )
         forces = [
             k
-            for k, name in enumerate(graph.names)
+            for k, name in enumerate(program.names)
             if name.startswith(("effort", "reaction", "section"))
         ]
         gap = (fast - still - 4 * (slow - still))[forces]
@@ -144,6 +145,6 @@ def test_a_link_that_bears_nothing_at_its_base_is_certified_by_what_acts_on_it()
 
 def test_blocks_change_no_certificate(solution, monkeypatch):
     whole = certify(solution)
-    monkeypatch.setattr("lagrange_casadi.judge.certificate._BLOCK", 77)
+    monkeypatch.setattr("lagrange_casadi.verification.certificate._BLOCK", 77)
     for name, values in certify(solution).items():
         assert np.array_equal(values, whole[name])

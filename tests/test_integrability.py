@@ -110,9 +110,9 @@ def test_graphs_may_rely_on_a_cosine_and_a_sine_being_those_of_an_angle():
     c, s, x = ca.vertsplit(p)
     tangent = ca.blockcat([[-s, 0], [c, 0], [0, 1]])
     size = ca.sqrt(1 - c**2)  # x |s|, by its rates
-    graph = size * qd[1] + x * c * s / size * qd[0]
-    assert wrong(graph, p, qd, qdd, tangent=tangent) == []
-    assert wrong(graph + 1e-3 * c * qd[1], p, qd, qdd, tangent=tangent) == [0]
+    program = size * qd[1] + x * c * s / size * qd[0]
+    assert wrong(program, p, qd, qdd, tangent=tangent) == []
+    assert wrong(program + 1e-3 * c * qd[1], p, qd, qdd, tangent=tangent) == [0]
 
 
 def test_graphs_that_have_values_rarely_are_checked_there():

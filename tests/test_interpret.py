@@ -41,14 +41,14 @@ def same_bits(found, expected):
 @pytest.mark.parametrize("name", NAMES)
 def test_doubles_are_the_virtual_machines(name):
     scene = load_case(CASES / name).scene
-    graph, p = derive(scene, ["all"]), list(scene.mechanism.values().values())
+    program, p = derive(scene, ["all"]), list(scene.mechanism.values().values())
     for t in np.linspace(*scene.span, 7):
-        driven = interpret(graph.motion, [[t], p], MACHINE)
-        expected = graph.motion(t, p)
+        driven = interpret(program.motion, [[t], p], MACHINE)
+        expected = program.motion(t, p)
         assert all(same_bits(row, expected[k].full().ravel()) for k, row in enumerate(driven))
-        z = settle(graph, t, p, scene.span[0]).full().ravel()
-        (out,) = interpret(graph.instant, [[t], *driven, z, p], MACHINE)
-        assert same_bits(out, graph.instant(t, *expected, z, p).full().ravel())
+        z = settle(program, t, p, scene.span[0]).full().ravel()
+        (out,) = interpret(program.instant, [[t], *driven, z, p], MACHINE)
+        assert same_bits(out, program.instant(t, *expected, z, p).full().ravel())
 
 
 ALL = ca.Function("all", [X, Y], [ca.vertcat(*EACH.values())])

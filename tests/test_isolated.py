@@ -45,11 +45,11 @@ HIT, BESIDE = np.linspace(-0.2, 0.2, 21)[None], np.linspace(-0.2, 0.2, 20)[None]
 def compare(some):
     """What is said of zero, where an instant hits it and where none does, with what limits say."""
     many = {}
-    for name, graph in some:
-        told = told_by_limits(graph, 0.0) if ca.depends_on(graph, T) else None
+    for name, program in some:
+        told = told_by_limits(program, 0.0) if ca.depends_on(program, T) else None
         if told in (None, "kink"):
             continue
-        smooth = Smooth.of(graph, T, ca.SX(0, 1))
+        smooth = Smooth.of(program, T, ca.SX(0, 1))
         found = [None] * 3
         if smooth is not None:
             found = [
@@ -60,11 +60,11 @@ def compare(some):
             kink = smooth.kink(HIT, ())
             # What limits say of zero, they say of zero alone.
             assert kink is None or (
-                abs(kink.at["t"]) > 0.1 and shown(graph, 0.0, kink.at["t"], -1.0)
-            ), f"{name}: {graph}: {kink}"
+                abs(kink.at["t"]) > 0.1 and shown(program, 0.0, kink.at["t"], -1.0)
+            ), f"{name}: {program}: {kink}"
         alone = told == "isolated"
         assert [one is not None for one in found] == [alone, alone, False], (
-            f"{name}: {graph}: {told}, {found}"
+            f"{name}: {program}: {told}, {found}"
         )
         assert not alone or abs(found[0].at["t"]) < 1e-6
         many.setdefault(told, set()).add(name)
@@ -72,14 +72,14 @@ def compare(some):
 
 
 @pytest.mark.parametrize(
-    "graph",
+    "program",
     [ca.fmin(ca.sin(T), T), ca.fmax(1 + ca.sin(T), 1 + T), ca.if_else(ca.tan(T) > T, ca.sin(T), T)],
 )
-def test_curves_that_touch_in_a_third_power_are_no_place_alone(graph):
+def test_curves_that_touch_in_a_third_power_are_no_place_alone(program):
     """They are the same number for some 1e-5 around, at whose ends no curvature is that of either
     side to the last bit.
     """
-    smooth = Smooth.of(graph, T, ca.SX(0, 1))
+    smooth = Smooth.of(program, T, ca.SX(0, 1))
     for path in (HIT, BESIDE, 1e-3 * HIT, 30 * BESIDE):
         assert smooth.isolated(path, (), between=True) is None
 

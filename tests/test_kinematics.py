@@ -42,9 +42,9 @@ def test_every_dyad_has_a_closed_form(name):
 def test_rates_are_the_derivatives_of_positions(scene):
     """Against differences in time that use positions alone."""
     h = 1e-4
-    graph = derive(scene, ["motion"])
-    rows = [instant_at(graph, INSTANT + k * h).full().ravel() for k in range(-3, 4)]
-    columns = dict(zip(graph.names, np.unwrap(np.array(rows), axis=0).T, strict=True))
+    program = derive(scene, ["motion"])
+    rows = [instant_at(program, INSTANT + k * h).full().ravel() for k in range(-3, 4)]
+    columns = dict(zip(program.names, np.unwrap(np.array(rows), axis=0).T, strict=True))
     for name, values in columns.items():
         if name.startswith("motion:") and f"{name}_rate" in columns:
             first = (

@@ -19,9 +19,9 @@ X, Y, T = (ca.SX.sym(name) for name in "xyt")
 TURN = np.linspace(0.0, math.tau, 37)
 
 
-def found(graph, span=(-20.0, 20.0)):
+def found(program, span=(-20.0, 20.0)):
     """The worst kink along a line by each symbol, while the others stand still."""
-    smooth = Smooth.of(graph, ca.vertcat(X, Y, T), ca.SX(0, 1))
+    smooth = Smooth.of(program, ca.vertcat(X, Y, T), ca.SX(0, 1))
     if smooth is None:
         return None
     along, count = np.linspace(*span, 4001), len(smooth.symbols)
@@ -97,8 +97,8 @@ def test_smooth(name):
 
 @pytest.mark.parametrize("name", BROKEN)
 def test_broken(name):
-    graph, what = BROKEN[name]
-    kinked = found(graph)
+    program, what = BROKEN[name]
+    kinked = found(program)
     assert kinked.what == what
     assert kinked.jump > 0.0
 
@@ -220,8 +220,8 @@ def test_tables_stay_in_loads_and_rows():
         m.rate(second) - table(q, [0.0, 1.0, 2.0], [1.0, 1.0, 1.0]) * m.rate(turn),
         replaces=second,
     )
-    graph = derive(Scene(m, {"J": polynomial(0, 1), "K": polynomial(0, 1)}))
-    assert {"load:T:mz", "_row:row"} <= set(graph.names)
+    program = derive(Scene(m, {"J": polynomial(0, 1), "K": polynomial(0, 1)}))
+    assert {"load:T:mz", "_row:row"} <= set(program.names)
 
 
 def test_a_table_has_the_slope_of_the_side_beyond_at_its_points():

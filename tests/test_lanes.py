@@ -15,7 +15,7 @@ from lagrange_casadi.arithmetic.compensated import ROUNDING
 from lagrange_casadi.base.vocabulary import PRECISIONS
 from lagrange_casadi.codegen import library
 from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 
 pytestmark = pytest.mark.usefixtures("released")
 
@@ -27,17 +27,19 @@ both = pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("name", SCENES)
 def test_packs_agree_with_scalar_c(name, precision):
     scene, ulp = SCENES[name](), 2 * ROUNDING[precision]
-    graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 157)
+    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 157)
     p = np.array(list(scene.mechanism.values().values()))
-    packs, scalar = (columns(graph, t, language, precision=precision) for language in ("c++", "c"))
+    packs, scalar = (
+        columns(program, t, language, precision=precision) for language in ("c++", "c")
+    )
     kinds = [
         (column.split(":")[0], column.split(":")[-1] if column.count(":") > 1 else "")
-        for column in graph.names
+        for column in program.names
     ]
     for kind in set(kinds):
         rows = [i for i, other in enumerate(kinds) if other == kind]
         # A gap is rounding, of lengths.
-        size = graph.extent(p) if kind[0] == "_gap" else np.max(np.abs(scalar[rows]))
+        size = program.extent(p) if kind[0] == "_gap" else np.max(np.abs(scalar[rows]))
         assert np.max(np.abs(packs[rows] - scalar[rows])) <= 64 * ulp * size
 
 
@@ -46,11 +48,11 @@ def test_packs_agree_with_scalar_c(name, precision):
 @pytest.mark.parametrize("name", SCENES)
 def test_a_tail_of_any_length_has_the_same_bits(name, precision):
     scene = SCENES[name]()
-    graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 80)
-    library = built(graph, "c++", precision=precision)
-    whole = filled(library, graph, t, precision=precision)
+    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 80)
+    library = built(program, "c++", precision=precision)
+    whole = filled(library, program, t, precision=precision)
     for n in (*range(1, 19), 63, 64, 65, 72, 79):
-        assert np.array_equal(filled(library, graph, t[:n], precision=precision), whole[:, :n])
+        assert np.array_equal(filled(library, program, t[:n], precision=precision), whole[:, :n])
 
 
 @pytest.mark.sampled(7)
@@ -59,11 +61,13 @@ def test_a_tail_of_any_length_has_the_same_bits(name, precision):
 @pytest.mark.parametrize("name", ["effort_alone", "iterated"])
 def test_the_bytes_do_not_depend_on_the_threads(name, language, precision, monkeypatch):
     scene = SCENES[name]()
-    graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 40_001)
-    one = columns(graph, t, language, precision=precision)
+    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 40_001)
+    one = columns(program, t, language, precision=precision)
     monkeypatch.setattr(library, "_WORTH_A_THREAD", 0)
     for threads in (2, 3, 5):
-        assert columns(graph, t, language, threads, precision=precision).tobytes() == one.tobytes()
+        assert (
+            columns(program, t, language, threads, precision=precision).tobytes() == one.tobytes()
+        )
 
 
 @both
@@ -71,11 +75,11 @@ def test_a_tail_that_cannot_be_closed_is_found_in_its_pack(precision):
     """Instants beyond the reach of the links have a status; their neighbours in the pack have their
     numbers.
     """
-    graph, t = derive(slider_crank()), np.linspace(0, 0.08, 21)
+    program, t = derive(slider_crank()), np.linspace(0, 0.08, 21)
     p = np.array([0.1, 0.1 * np.sin(1.2), 0.1, 0.1, 0.1])
-    table, _ = run(graph, t, p, Rung("lanes", precision))
+    table, _ = run(program, t, p, EvaluationMethod("lanes", precision))
     out, status = table.out, table.status
-    reach = np.abs(np.sin(out[graph.names.index("motion:O")])) < np.sin(1.2)
+    reach = np.abs(np.sin(out[program.names.index("motion:O")])) < np.sin(1.2)
     assert 0 < reach.sum() < t.size
     assert np.array_equal(status == 0, reach)
     assert np.isfinite(out[:, reach]).all()

@@ -26,7 +26,7 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import DeclarationError, ParameterError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -140,9 +140,9 @@ def gaps(scene, shape, t, wind, lift):
     """The largest difference from the oracle, over the largest force: its loads are at Gauss's
     points on either side of a cut.
     """
-    m, graph = scene.mechanism, derive(scene)
+    m, program = scene.mechanism, derive(scene)
     values = m.values()
-    found, drives = columns_at(graph, t, values)
+    found, drives = columns_at(program, t, values)
     rough, nodes = postures(m, found, drives, 0.02), np.polynomial.legendre.leggauss(4)
     solution = evaluate(scene, t=(t, t, 1), backend="vm")
     worst = 0.0
@@ -244,7 +244,7 @@ def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
 def test_sweeps_find_the_peaks_along_the_links():
     scene, _ = linkage(t=(0.1, 0.9, 81))
     for backend in ("vm", "lanes"):
-        engine = DesignEngine.of(scene, rung=Rung(backend))
+        engine = DesignEngine.of(scene, method=EvaluationMethod(backend))
         found = engine.evaluate(np.array([[1.0], [2.5]]))
         assert found.status.tolist() == [Status.OK] * 2
         names = [str(quantity) for quantity in engine.quantities]
@@ -348,7 +348,7 @@ def test_what_bears_no_line_load_is_refused_by_name():
         r" start",
     ):
         evaluate(scene, parameters={"low": 0.7})
-    engine = DesignEngine.of(scene, rung=Rung("vm"))
+    engine = DesignEngine.of(scene, method=EvaluationMethod("vm"))
     assert engine.evaluate(np.array([[0.2], [-0.1], [0.6], [0.7]])).status.tolist() == [
         Status.OK,
         *[Status.IMPOSSIBLE] * 3,

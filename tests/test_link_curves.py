@@ -11,9 +11,9 @@ import pytest
 from compiled import cc
 
 from lagrange_casadi.base.tables import PLANE, SPACE
-from lagrange_casadi.codegen.link_curves import Along, along, matter_of, turning
+from lagrange_casadi.codegen.link_curves import Along, along, mass_properties_of, turning
 from lagrange_casadi.declare.density import NumericDensity
-from lagrange_casadi.instants.loads import SpatialStationLoad, SpreadLoad, StationLoad
+from lagrange_casadi.instants.loads import DistributedLoad, PointLoad, SpatialPointLoad
 from lagrange_casadi.instants.section_law import SectionLaw
 
 HEAD = """#include <math.h>
@@ -51,9 +51,10 @@ def drawn(generator, table, loaded):
     )
     places = [0.0, 1e-15, 0.25, 1 / 3, 0.1 / 0.3, 0.8, 0.95, 1.0 - 1e-15]
     stations = generator.choice(places, int(generator.integers(0, 4)), replace=False)
-    of = StationLoad if table is PLANE else SpatialStationLoad
+    of = PointLoad if table is PLANE else SpatialPointLoad
     loads = tuple(
-        of("", np.array([x]), *generator.normal(size=(len(table.station) - 1, 1))) for x in stations
+        of("", np.array([x]), *generator.normal(size=(len(table.load_point) - 1, 1)))
+        for x in stations
     )
     coefficients = {
         name: generator.normal(size=1) * (5.0 if name[-1] == "2" else 1.0) for name in table.law
@@ -67,13 +68,13 @@ def drawn(generator, table, loaded):
         )
         terms = {
             name: tuple(generator.normal(size=(int(generator.integers(1, 6)), 1)) * 4.0)
-            for name in table.spread[:1]
+            for name in table.distributed[:1]
         }
         terms |= {
             name: tuple(generator.normal(size=(len(terms["qn"]), 1)) * 4.0)
-            for name in table.spread[1:]
+            for name in table.distributed[1:]
         }
-        spreads.append(SpreadLoad("", np.array([end - start]), np.array([end]), terms))
+        spreads.append(DistributedLoad("", np.array([end - start]), np.array([end]), terms))
     return SectionLaw(
         float(generator.uniform(0.1, 3.0)),
         NumericDensity(breaks, cells),
@@ -97,7 +98,7 @@ def along_of(law):
     )
     spreads = tuple(
         columns([one.width, one.end, *(c for row in one.terms.values() for c in row)])
-        for one in law.spreads
+        for one in law.distributed_loads
     )
     marks = [
         mark
@@ -122,7 +123,7 @@ def program(laws):
         values = sum(map(len, link.places))
         body += f"""  {{
     static const double designs_breaks{k}[] = {{{numbers(law.density.breaks)}}};
-    static const double matter[] = {{{numbers(matter_of(link, law.length, law.density.cells))}}}, y[] = {{{numbers(y)}}};
+    static const double matter[] = {{{numbers(mass_properties_of(link, law.length, law.density.cells))}}}, y[] = {{{numbers(y)}}};
     double value[{values}], place[{link.rows}];
     (void) designs_breaks{k};
 {along(k, link, "value, place", 0)}

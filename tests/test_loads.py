@@ -84,6 +84,6 @@ def test_a_load_outside_its_link_is_named():
 
 def test_instants_are_functions_of_time_where_loads_are():
     scene = crank_and_rod({"mass": 0.5}, loads=loads_on)
-    graph = derive(scene, ["load:wind"])
-    k = graph.names.index("load:wind:fx")
-    assert float(instant_at(graph, 0.5)[k]) == pytest.approx(4.0 * math.sin(3.5))
+    program = derive(scene, ["load:wind"])
+    k = program.names.index("load:wind:fx")
+    assert float(instant_at(program, 0.5)[k]) == pytest.approx(4.0 * math.sin(3.5))

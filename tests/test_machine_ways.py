@@ -12,7 +12,7 @@ from machines import SCENES
 
 from lagrange_casadi import derive, evaluate
 from lagrange_casadi.base.status import Status
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 
@@ -47,7 +47,7 @@ def test_designs_have_the_peaks_of_the_api(name):
         scene = replace(scene, wanted=["effort", "output:contact_force"])
     for backend in ("c", "lanes"):
         designs, p = (
-            DesignEngine.of(scene, t=(*scene.span, 97), rung=Rung(backend)),
+            DesignEngine.of(scene, t=(*scene.span, 97), method=EvaluationMethod(backend)),
             around(scene, 2),
         )
         outcome = designs.evaluate(p)

@@ -20,7 +20,7 @@ ABSENT = [tool for tool in ("octave-cli", "mkoctfile", "gcc") if shutil.which(to
 pytestmark = pytest.mark.skipif(bool(ABSENT), reason=f"there is no {', '.join(ABSENT)}")
 
 XI = (0.0, 0.3, 1.0)
-RUNGS = {
+METHODS = {
     ("slider_crank", "double"): {},
     ("slider_crank", "single"): {"precision": "single"},
     ("slider_crank", "table"): {"precision": "single", "table": 1e-6, "wanted": ["effort"]},
@@ -53,10 +53,10 @@ def built(tmp_path_factory):
     """
 
     @cache
-    def build(name, rung):
+    def build(name, method):
         folder = tmp_path_factory.mktemp("mex") / name
         loaded = load_case(Path(__file__).parents[1] / "cases" / name)
-        agreed = export(loaded.scene, folder, name=loaded.name, **RUNGS[name, rung])
+        agreed = export(loaded.scene, folder, name=loaded.name, **METHODS[name, method])
         before = {path.name for path in folder.iterdir()}
         octave("build_mex();", folder)
         assert {path.name for path in folder.iterdir()} - before == {
@@ -88,12 +88,12 @@ def shown(text):
 
 
 @pytest.mark.sampled(10)
-@pytest.mark.parametrize(("name", "rung"), RUNGS)
-def test_every_output_over_a_cycle(name, rung, built):
-    folder, agreed, scene = built(name, rung)
-    exact = evaluate(scene, wanted=RUNGS[name, rung].get("wanted"), backend="vm")
+@pytest.mark.parametrize(("name", "method"), METHODS)
+def test_every_output_over_a_cycle(name, method, built):
+    folder, agreed, scene = built(name, method)
+    exact = evaluate(scene, wanted=METHODS[name, method].get("wanted"), backend="vm")
     limit = ALLOWED * ROUNDING[agreed.precision]
-    if rung == "table":
+    if method == "table":
         limit = 1e-6
     script = (
         f"{SHOW}inputs = {agreed.prefix}_mex('motion', {written(exact.t)});\noutputs ="
@@ -130,9 +130,9 @@ def test_every_output_over_a_cycle(name, rung, built):
 
 
 @pytest.mark.sampled(9)
-@pytest.mark.parametrize(("name", "rung"), RUNGS)
-def test_the_example_runs(name, rung, built):
-    folder, agreed, _ = built(name, rung)
+@pytest.mark.parametrize(("name", "method"), METHODS)
+def test_the_example_runs(name, method, built):
+    folder, agreed, _ = built(name, method)
     lines = octave("mex_example", folder).splitlines()
     assert lines[0].split()[:2] == ["time", "[s]"]
     assert len(lines) == 14 + bool(agreed.links) + bool(agreed.settings)
@@ -296,13 +296,13 @@ def test_a_mechanism_without_links_or_parameters_says_so(built):
 @pytest.mark.sampled(6)
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize(
-    ("name", "rung"),
+    ("name", "method"),
     [("slider_crank", "single"), ("slider_crank", "double"), ("andrews_squeezer", "single")],
 )
-def test_compilers_have_nothing_to_say(name, rung, compiler, built):
+def test_compilers_have_nothing_to_say(name, method, compiler, built):
     if shutil.which(compiler) is None:
         pytest.skip(f"there is no {compiler}")
-    folder, agreed, _ = built(name, rung)
+    folder, agreed, _ = built(name, method)
     headers = subprocess.run(
         ["mkoctfile", "-p", "OCTINCLUDEDIR"], capture_output=True, text=True, check=True
     ).stdout.strip()

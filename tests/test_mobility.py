@@ -27,8 +27,8 @@ def test_every_force_against_newton_euler(name):
 
 def test_loops_without_closed_form_against_newton_euler():
     scene = truss_platform()
-    graph = derive(scene)
-    assert graph.newton is not None
+    program = derive(scene)
+    assert program.newton is not None
     worst, gap = compare(scene, t=0.0, nudge=0.003)
     assert gap < TOLERANCE, worst
 
@@ -155,8 +155,8 @@ def _transmission(scene):
     """How far a scene's loop is from a dead centre: the closure of
     loops.py, at its first instant.
     """
-    graph = derive(scene)
-    return float(instant_at(graph, scene.t[0])[graph.names.index("_closure:B")])
+    program = derive(scene)
+    return float(instant_at(program, scene.t[0])[program.names.index("_closure:B")])
 
 
 @settings(max_examples=8, deadline=None)
@@ -194,12 +194,12 @@ def test_random_six_bars(x, y, mass, arm, turned):
         m, {"O": MOTION}, posture={"rocker": 1.5, "arm": 0.3, "swing": 1.8}, t=(INSTANT, 1, 2)
     )
     try:
-        graph = derive(scene)
+        program = derive(scene)
     except AssemblyError:
         return
     closures = [
-        float(instant_at(graph, INSTANT)[k])
-        for k, name in enumerate(graph.names)
+        float(instant_at(program, INSTANT)[k])
+        for k, name in enumerate(program.names)
         if name.startswith("_closure")
     ]
     worst, gap = compare(scene, nudge=1e-3)

@@ -138,8 +138,8 @@ def test_jumps_are_where_the_motion_has_them_and_nowhere_else(law, cyclic):
     jumps, off = scene.timetable("J").jumps, 1e-9
     assert jumps
     spots = np.array([[jump.t - off, jump.t + off] for jump in jumps])
-    graph = derivatives(motion)
-    sharp, bend = (graph(spots.ravel())[k].reshape(spots.shape) for k in (3, 2))
+    program = derivatives(motion)
+    sharp, bend = (program(spots.ravel())[k].reshape(spots.shape) for k in (3, 2))
     for jump, (before, after), (bent, unbent) in zip(jumps, sharp, bend, strict=True):
         change = unbent - bent if jump.what == "acceleration" else after - before
         assert jump.by == pytest.approx(change, rel=1e-5, abs=1e-5 * abs(jump.by))
@@ -147,7 +147,7 @@ def test_jumps_are_where_the_motion_has_them_and_nowhere_else(law, cyclic):
     for a, b in itertools.pairwise(places):
         if b - a > 1e-6:
             t = np.linspace(a + 1e-9, b - 1e-9, 2000)
-            _, _, bend, sharp = graph(t)
+            _, _, bend, sharp = program(t)
             assert np.abs(np.diff(bend)).max() < 3.0 * max(1.0, np.abs(sharp).max()) * (t[1] - t[0])
             if law != "simple_harmonic":
                 assert np.abs(np.diff(sharp)).max() < 0.1 * max(1.0, np.abs(sharp).max())

@@ -11,7 +11,7 @@ from mechanisms import bracket
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
 from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -111,7 +111,7 @@ def test_nothing_vanishes_before_the_base_or_beyond_the_tip():
 def test_designs_have_the_peaks_of_the_api(scene, backend):
     given = scene()
     solution = evaluate(given, t=(0.0, 1.0, 2001))
-    engine = DesignEngine.of(given, None, None, Rung(backend))
+    engine = DesignEngine.of(given, None, None, EvaluationMethod(backend))
     found = engine.evaluate(np.array([list(given.mechanism.values().values())]))
     peaks = dict(zip(engine.quantities, np.abs(found.value[0]), strict=True))
     sections = [name for name in peaks if name.startswith("section:")]

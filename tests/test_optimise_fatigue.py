@@ -10,8 +10,8 @@ from strong import STEEL, press, robot, slider
 from lagrange_casadi import Mechanism, Scene, beams, evaluate, optimise, sweep
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.studies.optimise.finder import Finder
 from lagrange_casadi.studies.optimise.problem import Question
+from lagrange_casadi.studies.optimise.solver import Solver
 
 
 def used(scene, link, values):
@@ -106,8 +106,8 @@ def test_it_is_that_of_the_instants_that_are_asked_for():
     question = Question.of(
         scene, "peak:utilisation:crank:fatigue", {"h": (0.01, 0.03)}, (), **words
     )
-    judged = Finder.of(question, question.engine(scene)).judge.look(np.array([0.015]))
-    (value,) = judged.values.values()
+    evaluated = Solver.of(question, question.engine(scene)).evaluator.evaluate(np.array([0.015]))
+    (value,) = evaluated.values.values()
     assert value == pytest.approx(used(scene, "crank", {"h": 0.015}), rel=1e-9)
 
 

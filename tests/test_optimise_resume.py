@@ -169,12 +169,12 @@ def test_an_interrupt_between_ways_loses_nothing(here, objectives, monkeypatch):
     """
     calls = iter(range(100))
 
-    def look(self, p, own=Search.look):
+    def evaluate(self, p, own=Search.evaluate):
         if next(calls) == 0:
             signal.raise_signal(signal.SIGINT)
         return own(self, p)
 
-    monkeypatch.setattr(Search, "look", look)
+    monkeypatch.setattr(Search, "evaluate", evaluate)
     found = asked(minimise=objectives, out="x.h5", subject_to=["c <= 0.5"])
     assert found.converged
     verify("x.h5")

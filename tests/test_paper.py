@@ -48,15 +48,15 @@ STATES = [
 
 
 @pytest.fixture(scope="module")
-def graph():
+def program():
     return derive(slider_crank())
 
 
-def engine(graph, x):
-    out = graph.instant(
+def engine(program, x):
+    out = program.instant(
         0.0, [x.angle], [x.rate], [x.acceleration], [], [x.r, x.l, x.m1, x.m2, x.m3]
     )
-    return dict(zip(graph.names, out.full().ravel(), strict=True))
+    return dict(zip(program.names, out.full().ravel(), strict=True))
 
 
 def torque_14(x, corrected):
@@ -89,18 +89,18 @@ def missing_in_14(x):
 
 
 @pytest.mark.parametrize("x", STATES)
-def test_eq_14_active_torque(graph, x):
+def test_eq_14_active_torque(program, x):
     """One term is missing from the bracket of theta'^2: + (m2/4 + m3) r^4 s^3 c^3/D^2."""
-    found = engine(graph, x)["effort:O"]
+    found = engine(program, x)["effort:O"]
     scale = abs(found) + x.r**2 * x.m1 * (x.rate**2 + abs(x.acceleration))
     assert found == pytest.approx(torque_14(x, corrected=True), abs=1e-14 * scale)
     miss = x.r**2 * missing_in_14(x) * x.rate**2
     assert found - torque_14(x, corrected=False) == pytest.approx(miss, abs=1e-13 * scale)
 
 
-def test_eq_14_as_printed_misses_visibly(graph):
+def test_eq_14_as_printed_misses_visibly(program):
     gaps = [
-        abs(engine(graph, x)["effort:O"] / torque_14(x, corrected=False) - 1)
+        abs(engine(program, x)["effort:O"] / torque_14(x, corrected=False) - 1)
         for x in STATES
         if x.rate
     ]
@@ -179,11 +179,11 @@ def guide_19(x, corrected):
 
 
 @pytest.mark.parametrize("x", STATES)
-def test_eq_19_guide_force(graph, x):
+def test_eq_19_guide_force(program, x):
     """Corrected: 6 D^2 q and - 6 D^2 below; a factor c with r^5 s^4; 4 and 6 for 2 and 4 with m2
     r^3 l^2. N_B = -(reaction, y).
     """
-    found = -engine(graph, x)["reaction:guide:fy"]
+    found = -engine(program, x)["reaction:guide:fy"]
     scale = abs(found) + (x.m2 + x.m3) * x.r * (x.rate**2 + abs(x.acceleration))
     assert found == pytest.approx(guide_19(x, corrected=True), abs=1e-13 * scale)
     assert abs(found - guide_19(x, corrected=False)) > 1e-3 * scale
@@ -225,12 +225,12 @@ def axial_21(x, xi, corrected):
 
 @pytest.mark.parametrize("ratio", [0.0, 0.1, 0.25, 0.5, 0.9, 1.0])
 @pytest.mark.parametrize("x", STATES)
-def test_eq_21_axial_force(graph, x, ratio):
+def test_eq_21_axial_force(program, x, ratio):
     """The last term of gravity needs a factor xi, by its dimension; all else is right.
 
     N = -(axial): compression positive.
     """
-    found = engine(graph, x)
+    found = engine(program, x)
     law = {k: found[f"section:rod:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
     axial = -section_forces(law, x.m2, x.l, ratio)[0]
     scale = (x.m2 + x.m3) * x.r * (x.rate**2 + abs(x.acceleration)) * x.l / x.q + x.m2 * G

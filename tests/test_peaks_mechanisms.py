@@ -10,7 +10,7 @@ import pytest
 from lagrange_casadi import Mechanism, Scene, evaluate, refine
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import forces
 
@@ -88,7 +88,7 @@ def _assert_none_is_short(scene, dense):
     found = {peak.name: abs(peak.value) for peak in refine(scene, solution, names)}
     assert not [name for name in names if not found[name] >= least[name]]
     for backend in ("lanes", "vm"):
-        designs = DesignEngine.of(scene, rung=Rung(backend))
+        designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
         outcome = designs.evaluate(np.array([list(scene.mechanism.values().values())]))
         assert outcome.status.tolist() == [Status.OK]
         peaks = dict(zip(designs.quantities, np.abs(outcome.value[0]), strict=True))

@@ -134,11 +134,11 @@ def test_every_section_force_is_made_of_members_that_there_are(table):
         assert set(table.parts("section", force)) <= set(table.sections)
     used = {name for terms in table.sections.values() for name in terms.coefficients}
     assert used == set(table.law)
-    assert {terms.acting for terms in table.sections.values()} == {*table.station} - {"station"}
+    assert {terms.acting for terms in table.sections.values()} == {*table.load_point} - {"station"}
     for terms in table.sections.values():
         if terms.arm:
             assert table.sections[terms.shear].coefficients == terms.coefficients[1:]
-    assert set(table.place_first) == set(table.station)
+    assert set(table.place_first) == set(table.load_point)
 
 
 @pytest.mark.parametrize(

@@ -15,10 +15,10 @@ from random_verdict import is_regular
 from lagrange_casadi import evaluate, refine
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.peak_search import search
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import forces
-from lagrange_casadi.summits import search
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -178,11 +178,11 @@ def keeps_peaks(made, monkeypatch):
         if "jams" not in str(error):
             raise
         return
-    one = search._Search.panel
-    monkeypatch.setattr(search._Search, "panel", lambda *given: panels.append(1) or one(*given))
+    one = search._Search.interval
+    monkeypatch.setattr(search._Search, "interval", lambda *given: panels.append(1) or one(*given))
     names = [*forces(solution), *(name for name in solution.names() if name.endswith(":loss"))]
     peaks = refine(scene, solution, names)
-    assert len(panels) < search.PANELS / 8
+    assert len(panels) < search.INTERVALS / 8
     largest = {
         unit: max(abs(dense.peak(name).value) for name in names if dense.unit(name) == unit)
         for unit in map(dense.unit, names)
@@ -204,7 +204,7 @@ def test_designs_tell_peaks_where_an_acceleration_is_rounding():
     shape of the mechanism.
     """
     scene = rubbed(46).scene()
-    found = DesignEngine.of(scene, ["effort"], rung=Rung("vm")).evaluate(
+    found = DesignEngine.of(scene, ["effort"], method=EvaluationMethod("vm")).evaluate(
         [list(scene.mechanism.values().values())]
     )
     assert found.status.tolist() == [Status.OK]

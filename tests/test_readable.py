@@ -48,7 +48,7 @@ def test_pages_take_the_same_steps():
 
 
 def test_numbers_are_told_without_what_rounding_leaves():
-    assert Scale(1e3, "mm").tell(0.15000000000000002) == "150"
-    assert Scale(1e3, "mm").tell(-0.05) == "\N{MINUS SIGN}50"
-    assert Scale(1e-3, "kN").tell(-0.0) == "0"
+    assert Scale(1e3, "mm").label(0.15000000000000002) == "150"
+    assert Scale(1e3, "mm").label(-0.05) == "\N{MINUS SIGN}50"
+    assert Scale(1e-3, "kN").label(-0.0) == "0"
     assert Scale(1e-3, "kN").said(-1234.56) == "-1.235 kN"

@@ -48,9 +48,9 @@ def test_infinities_keep_their_sign():
 
 
 def test_the_slider_crank_divides_by_what_moves_once():
-    graph = derive(slider_crank())
-    inputs = graph.instant.sx_in()
-    rest = ca.extract_parametric(graph.instant(*inputs), inputs[-1], {"extract_trivial": True})
+    program = derive(slider_crank())
+    inputs = program.instant.sx_in()
+    rest = ca.extract_parametric(program.instant(*inputs), inputs[-1], {"extract_trivial": True})
     assert divisions(ca.Function("rest", [*inputs[:-1], ca.vertcat(*rest[1])], [rest[0]])) == 1
 
 

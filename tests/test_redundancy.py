@@ -10,7 +10,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, swee
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, MobilityError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.sweep.checking import check_sweep
 
@@ -62,7 +62,7 @@ def test_steps_that_are_counted_leave_equations_that_are_too_many_as_little_clos
         assert np.abs(found.array(effort) - exact.array(effort)).max() <= min(
             near * size, 2 * found.errors[effort]
         )
-        designs = DesignEngine.of(scene, ["effort"], t, rung=Rung("c", newton=steps))
+        designs = DesignEngine.of(scene, ["effort"], t, method=EvaluationMethod("c", newton=steps))
         assert designs.evaluate(
             np.array([list(scene.mechanism.values().values())])
         ).status.tolist() == [Status.OK]
@@ -253,16 +253,21 @@ def test_a_sweep_decides_for_each_design():
     file says that this may be.
     """
     scene = three_cranks()
-    for rung in (Rung("vm"), Rung("c"), Rung("lanes"), Rung("c", precision="single")):
-        designs = DesignEngine.of(scene, rung=rung)
+    for method in (
+        EvaluationMethod("vm"),
+        EvaluationMethod("c"),
+        EvaluationMethod("lanes"),
+        EvaluationMethod("c", precision="single"),
+    ):
+        designs = DesignEngine.of(scene, method=method)
         outcome = designs.evaluate(np.array([[math.pi / 2], [1.0]]))
         assert np.all(outcome.status == 0)
         found = dict(zip(designs.quantities, outcome.value.T, strict=True))
         both, one = (evaluate(scene, parameters={"angle": angle}) for angle in (1.0, math.pi / 2))
         for name, (upright, leaning) in found.items():
             if name.count(":") > 1 or name.startswith("effort"):
-                assert np.isfinite(upright) == one.determined(name), (rung, name)
-                assert np.isfinite(leaning) == both.determined(name), (rung, name)
+                assert np.isfinite(upright) == one.determined(name), (method, name)
+                assert np.isfinite(leaning) == both.determined(name), (method, name)
         assert any(
             np.isfinite(upright) and np.isnan(leaning) for upright, leaning in found.values()
         )

@@ -16,10 +16,10 @@ pytestmark = pytest.mark.quick
 @pytest.fixture(scope="module")
 def instants(slider_crank):
     """Every column at the reference's own instants."""
-    graph = derive(slider_crank.scene)
+    program = derive(slider_crank.scene)
     p = list(slider_crank.scene.mechanism.values().values())
-    rows = [instant_at(graph, float(row["t"]), p).full().ravel() for row in SIXTY_DIGITS["rows"]]
-    return dict(zip(graph.names, np.array(rows).T, strict=True))
+    rows = [instant_at(program, float(row["t"]), p).full().ravel() for row in SIXTY_DIGITS["rows"]]
+    return dict(zip(program.names, np.array(rows).T, strict=True))
 
 
 def reference(key, index=None):

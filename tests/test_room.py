@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lagrange_casadi.base import room
+from lagrange_casadi.base import space
 from lagrange_casadi.errors import SizeError
 
 pytestmark = pytest.mark.quick
@@ -36,15 +36,15 @@ def system(monkeypatch):
 
 def test_memory_is_what_the_system_has_free(system):
     system["/proc/meminfo"] = MEMINFO
-    assert room.memory() == 1024 * 33_000_000
+    assert space.memory() == 1024 * 33_000_000
 
 
 def test_where_the_system_does_not_tell_it_is_all(system, monkeypatch):
-    assert room.memory() == 4096 * 10_000_000
+    assert space.memory() == 4096 * 10_000_000
     system["/proc/meminfo"] = "MemTotal: 5 kB\n"
-    assert room.memory() == 4096 * 10_000_000
+    assert space.memory() == 4096 * 10_000_000
     monkeypatch.delattr("os.sysconf")
-    assert room.memory() == math.inf
+    assert space.memory() == math.inf
 
 
 def test_a_container_has_what_its_group_has_left(system):
@@ -56,7 +56,7 @@ def test_a_container_has_what_its_group_has_left(system):
         "/sys/fs/cgroup/a.slice/memory.stat": STAT,
         "/sys/fs/cgroup/a.slice/b.scope/memory.max": "max\n",
     }
-    assert room.memory() == 8e9 - 5e9 + 4e6
+    assert space.memory() == 8e9 - 5e9 + 4e6
 
 
 def test_so_has_one_whose_group_has_another_path_outside(system):
@@ -68,7 +68,7 @@ def test_so_has_one_whose_group_has_another_path_outside(system):
         "/sys/fs/cgroup/memory/memory.usage_in_bytes": "1500000000\n",
         "/sys/fs/cgroup/memory/memory.stat": STAT,
     }
-    assert room.memory() == 5e8 + 6e6
+    assert space.memory() == 5e8 + 6e6
 
 
 @pytest.mark.parametrize(
@@ -82,15 +82,15 @@ def test_so_has_one_whose_group_has_another_path_outside(system):
     ],
 )
 def test_what_does_not_fit_is_refused_with_its_size(monkeypatch, shape, says):
-    monkeypatch.setattr(room, "memory", lambda: 1e10)
-    room.require("it", (10**9,))
+    monkeypatch.setattr(space, "memory", lambda: 1e10)
+    space.require("it", (10**9,))
     with pytest.raises(SizeError, match=says):
-        room.require("it", shape)
+        space.require("it", shape)
 
 
 def test_nobody_is_asked_for_what_is_little(monkeypatch):
-    monkeypatch.setattr(room, "memory", lambda: pytest.fail("somebody was asked"))
-    room.require("it", (1000, 1000))
+    monkeypatch.setattr(space, "memory", lambda: pytest.fail("somebody was asked"))
+    space.require("it", (1000, 1000))
 
 
 @pytest.mark.parametrize(
@@ -107,4 +107,4 @@ def test_nobody_is_asked_for_what_is_little(monkeypatch):
     ],
 )
 def test_a_time_is_said_as_people_say_it(seconds, words):
-    assert room.in_words(seconds) == words
+    assert space.in_words(seconds) == words

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagrange_casadi.judge.roundings import left
+from lagrange_casadi.verification.roundings import rounding_error
 
 pytestmark = pytest.mark.quick
 
@@ -21,7 +21,7 @@ kinds = st.sampled_from([np.float64, np.float32])
 
 def of(code, kind, result, *operands):
     """What is left, of one operation."""
-    return float(left(code, *(np.array([x], kind) for x in (result, *operands)))[0])
+    return float(rounding_error(code, *(np.array([x], kind) for x in (result, *operands)))[0])
 
 
 @given(numbers, numbers, kinds)

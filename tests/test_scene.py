@@ -20,8 +20,8 @@ def test_outputs():
     ]  # fmt: skip
 
 
-def groups(graph):
-    return {name.split(":")[0] for name in graph.names if not name.startswith("_")}
+def groups(program):
+    return {name.split(":")[0] for name in program.names if not name.startswith("_")}
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_what_is_not_wanted_costs_nothing():
     scene = four_bar()
     effort, everything = derive(scene, ["effort"]), derive(scene, ["all"])
     section = derive(scene, ["effort", "section:b"])
-    count = [sum(graph.instructions.values()) for graph in (effort, section, everything)]
+    count = [sum(program.instructions.values()) for program in (effort, section, everything)]
     assert count == sorted(count)
     assert count[0] < 0.7 * count[2]
     motion = derive(scene, ["motion"])
@@ -142,9 +142,9 @@ def test_loops_are_closed_alike_whatever_is_wanted():
     m.prismatic("P", b.tip, p, axis=(1, 0))
     scene = Scene(m, {"O": polynomial(0.3, 1.0)}, posture={"b": 1.5}, t=(0, 1, 3))
     for wanted in (["effort"], ["section:b"], ["all"]):
-        graph = derive(scene, wanted)
-        assert graph.newton is None
-        assert "_closure:P" in graph.names
+        program = derive(scene, wanted)
+        assert program.newton is None
+        assert "_closure:P" in program.names
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.density import NumericDensity
-from lagrange_casadi.instants.section_law import SectionLaw, StationLoad
+from lagrange_casadi.instants.section_law import PointLoad, SectionLaw
 
 pytestmark = pytest.mark.quick
 
@@ -55,7 +55,7 @@ def moving(t, order):
     values[7] = np.polynomial.Polynomial([0.35, 0.2, -0.04])
     found = [np.array([value.deriv(order)(t) if order else value(t)]) for value in values]
     return SectionLaw(
-        0.7, CELLS, dict(zip(NAMES, found[:7], strict=True)), (StationLoad("pin", *found[7:]),)
+        0.7, CELLS, dict(zip(NAMES, found[:7], strict=True)), (PointLoad("pin", *found[7:]),)
     )
 
 

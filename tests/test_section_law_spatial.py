@@ -13,7 +13,7 @@ from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.instants import grids
 from lagrange_casadi.instants.laws import made_of
-from lagrange_casadi.instants.loads import SpatialStationLoad
+from lagrange_casadi.instants.loads import SpatialPointLoad
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.views import Section
 
@@ -93,7 +93,7 @@ class Link:
 
     def loads(self):
         return tuple(
-            SpatialStationLoad(f"load{i}", *(np.array([x]) for x in (u, *pull, *couple)))
+            SpatialPointLoad(f"load{i}", *(np.array([x]) for x in (u, *pull, *couple)))
             for i, (u, pull, couple) in enumerate(self.stations)
         )
 
@@ -108,7 +108,7 @@ def together(links):
         name: np.concatenate([law.coefficients[name] for law in laws]) for name in SPACE.law
     }
     loads = tuple(
-        SpatialStationLoad(
+        SpatialPointLoad(
             "",
             *(
                 np.concatenate([getattr(law.loads[i], name) for law in laws])
@@ -176,7 +176,7 @@ def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
     random = np.random.default_rng(5)
     coefficients = {name: random.normal(size=n) for name in SPACE.law}
     loads = tuple(
-        SpatialStationLoad("", random.uniform(-0.1, 1.1, n), *random.normal(size=(6, n)))
+        SpatialPointLoad("", random.uniform(-0.1, 1.1, n), *random.normal(size=(6, n)))
         for _ in range(2)
     )
     law, xi = SectionLaw(LENGTH, DENSITIES["in cells"], coefficients, loads), np.linspace(0, 1, k)
@@ -203,7 +203,7 @@ def test_what_is_largest_over_the_instants_is_that_of_the_grid(worth, monkeypatc
         ),
         {name: np.stack([law.coefficients[name] for law in laws]) for name in SPACE.law},
         tuple(
-            SpatialStationLoad(
+            SpatialPointLoad(
                 "",
                 *(
                     np.stack([getattr(law.loads[i], name) for law in laws])
@@ -324,7 +324,7 @@ def test_where_a_resultant_turns_goes_on_from_instant_to_instant(force, density)
     acting = {
         name: np.cos(2 * s + k) * getattr(load, name) for k, name in enumerate(SPACE.place_first)
     }
-    loads = (SpatialStationLoad("", **acting | {"station": np.full(n, 0.45)}),)
+    loads = (SpatialPointLoad("", **acting | {"station": np.full(n, 0.45)}),)
     places, values = SectionLaw(LENGTH, law.density, wave, loads).curves(force)
     assert places.shape == (n, 8)
     largest, size = np.abs(values).max(axis=1), np.abs(values).max()
@@ -354,7 +354,7 @@ def test_what_turns_at_an_end_but_for_rounding_stays_there(second, stations, den
     (link,) = drawn(5, density, 1, stations=0)
     nothing = {name: np.zeros(400) for name in SPACE.place_first}
     loads = tuple(
-        SpatialStationLoad(f"load{k}", **nothing | {"station": np.full(400, 0.7)})
+        SpatialPointLoad(f"load{k}", **nothing | {"station": np.full(400, 0.7)})
         for k in range(stations)
     )
     law = SectionLaw(LENGTH, link.density, coefficients, loads)
@@ -379,7 +379,7 @@ def test_rates_are_those_of_differences(force, side):
         def at(curve):
             return np.array([curve.deriv(order)(t) if order else curve(t)])
 
-        load = SpatialStationLoad("pin", at(station), *(at(curve) for curve in curves[12:]))
+        load = SpatialPointLoad("pin", at(station), *(at(curve) for curve in curves[12:]))
         coefficients = {name: at(curve) for name, curve in zip(SPACE.law, curves[:12], strict=True)}
         return SectionLaw(LENGTH, DENSITIES["in cells"], coefficients, (load,))
 
@@ -402,7 +402,7 @@ def test_changes_are_those_of_a_changed_law(seed, little):
     law, other = (together(drawn(seed + k, "tapered", 3, stations=1)) for k in range(2))
     gaps = {name: little * values[None] for name, values in other.coefficients.items()}
     shifts = [
-        SpatialStationLoad(
+        SpatialPointLoad(
             "",
             *(
                 np.zeros((1, 3)) if m == "station" else little * getattr(load, m)[None]
@@ -419,7 +419,7 @@ def test_changes_are_those_of_a_changed_law(seed, little):
         law.density,
         {name: values + gaps[name][0] for name, values in law.coefficients.items()},
         tuple(
-            SpatialStationLoad(
+            SpatialPointLoad(
                 "", *(getattr(load, m) + getattr(shift, m)[0] for m in SPACE.place_first)
             )
             for load, shift in zip(law.loads, shifts, strict=True)

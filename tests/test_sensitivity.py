@@ -13,10 +13,10 @@ from truth import truth
 
 from lagrange_casadi import derive, load_case
 from lagrange_casadi.base.quantities import FORCES, Output
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.peak_search.sharpness import Sharpness
 from lagrange_casadi.sensitivity.series import at_instants
 from lagrange_casadi.sensitivity.slopes import Slopes, unit_ways
-from lagrange_casadi.summits.sharpness import Sharpness
 
 RATIOS = (0.1234567, 0.9034567)
 STEP = 2.0**-20
@@ -32,10 +32,10 @@ theirs that change no drive.
 
 def made(scene, backend="vm"):
     """The slopes of all that a scene has, sections at the end."""
-    graph = derive(scene, ["all"])
-    quantities = [output for output in graph.outputs if not output.along]
-    quantities += [Output("section", link, force) for link in graph.links for force in FORCES]
-    return Slopes.of(graph, quantities, Sharpness.of(graph, []), Rung(backend))
+    program = derive(scene, ["all"])
+    quantities = [output for output in program.outputs if not output.along]
+    quantities += [Output("section", link, force) for link in program.links for force in FORCES]
+    return Slopes.of(program, quantities, Sharpness.of(program, []), EvaluationMethod(backend))
 
 
 def slopes_at(slopes, t, p):
@@ -50,7 +50,7 @@ def slopes_at(slopes, t, p):
     chosen = np.array([slopes.numbers[q] for q, _ in names], np.intc)
     times = np.full(len(names), t)
     # Loops are followed to the time from the start.
-    z = slopes.iterated(np.linspace(slopes.graph.data.span[0], t, 20), p, times)
+    z = slopes.iterated(np.linspace(slopes.program.data.span[0], t, 20), p, times)
     found = slopes.at(times, z, p, chosen, np.array([xi for _, xi in names]))
     return {(str(q), xi): (found.value[k], found.slopes[k]) for k, (q, xi) in enumerate(names)}
 
@@ -192,13 +192,13 @@ def test_in_space_too(name):
     scene = load_case(CASES / name).scene
     start, stop = scene.span
     t = start + 0.37 * (stop - start)
-    graph, parameters = derive(scene, ["all"]), list(scene.mechanism.parameters)
+    program, parameters = derive(scene, ["all"]), list(scene.mechanism.parameters)
     values = scene.mechanism.values()
     p = np.array(list(values.values()))
-    rows = list(graph.outputs)
-    kinds = [f"{row.group} {row.unit(graph.data.kinds)}" for row in rows]
+    rows = list(program.outputs)
+    kinds = [f"{row.group} {row.unit(program.data.kinds)}" for row in rows]
     instants = np.linspace(start, t, 40)
-    found = at_instants(graph, rows, instants, p, list(range(p.size)), Rung("vm"))[-1]
+    found = at_instants(program, rows, instants, p, list(range(p.size)), EvaluationMethod("vm"))[-1]
     sizes: dict[str, float] = {}
     for kind, own in zip(kinds, found, strict=True):
         sizes[kind] = max(sizes.get(kind, 0.0), float(np.abs(own[1:] * p).max()))

@@ -37,9 +37,9 @@ STRICT = [*PEDANTIC, "-Wdouble-promotion", "-Wfloat-conversion"]
 
 def built(name, precision, language, folder):
     """The object code of a scene, by the package's own flags, pedantically clean."""
-    graph = derive(WHOLE[name]())
+    program = derive(WHOLE[name]())
     source = codegen.emit(
-        graph, plain(graph) if precision == "double" else compensated(graph, precision)
+        program, plain(program) if precision == "double" else compensated(program, precision)
     )
     path = folder / ("scene.c" if language == "c" else "scene.cpp")
     path.write_text(
@@ -67,9 +67,9 @@ def test_emitted_c_is_pedantically_clean(name, newton, tmp_path):
     """No double is meant, and none comes in by a promotion; not even CasADi's own text needs an
     exception.
     """
-    graph = derive(WHOLE[name]())
+    program = derive(WHOLE[name]())
     source = tmp_path / "scene.c"
-    source.write_text(codegen.emit(graph, compensated(graph, "single"), newton))
+    source.write_text(codegen.emit(program, compensated(program, "single"), newton))
     command = [*codegen.find_compiler().command, *STRICT, "-c", source, "-o", tmp_path / "scene.o"]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stderr

@@ -14,7 +14,7 @@ from spatial_reference import Entry
 
 from lagrange_casadi import derive, evaluate, load_case
 from lagrange_casadi.figures import figures
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
@@ -332,7 +332,7 @@ def test_bricards_loop_moves_and_one_force_is_open():
 def test_a_design_whose_small_quantities_are_rounding_is_judged():
     """Its loop is iterated over all instants, and looked at in a few."""
     scene = scene_of("cardan_shaft")
-    designs = DesignEngine.of(scene, t=(0.0, 0.1, 33), rung=Rung("c"))
+    designs = DesignEngine.of(scene, t=(0.0, 0.1, 33), method=EvaluationMethod("c"))
     assert (
         designs.failures(
             np.array(list(scene.mechanism.values({"aside": 0.05}).values())), derive(scene, ["all"])

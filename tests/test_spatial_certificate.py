@@ -11,8 +11,8 @@ from spatial_solutions import evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
 from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.judge.certificate import certify
-from lagrange_casadi.judge.vectors import GROUND, NIL, Axes, Vector
+from lagrange_casadi.verification.certificate import certify
+from lagrange_casadi.verification.vectors import GROUND, NIL, Axes, Vector
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

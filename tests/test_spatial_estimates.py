@@ -16,7 +16,7 @@ from lagrange_casadi.arithmetic.compensated import ROUNDING
 
 RATIOS = (0.0, 0.31, 0.64, 0.97)
 LOOKED_AT = (1, 4, 8)
-RUNGS = {
+METHODS = {
     "double": {"backend": "c"},
     "single": {"precision": "single"},
     "newton 1": {"newton": 1},
@@ -34,7 +34,10 @@ CASES = [
     ("planar_four_bar", 0),
 ]
 LOOKED_ON = [
-    (case, rung) for case in CASES for rung in RUNGS if case[0] == "loop" or "newton" not in rung
+    (case, method)
+    for case in CASES
+    for method in METHODS
+    if case[0] == "loop" or "newton" not in method
 ]
 """Loops of that family are iterated."""
 
@@ -87,18 +90,18 @@ def true_errors(drawn, solution, exact):
     "ignore:the certificate fails"
 )  # of a loop that one Newton step leaves open: how far is told
 @pytest.mark.parametrize(
-    ("case", "rung"),
+    ("case", "method"),
     LOOKED_ON,
     ids=lambda one: one if isinstance(one, str) else "-".join(map(str, one)),
 )
-def test_estimates_are_near_the_errors(case, rung):
+def test_estimates_are_near_the_errors(case, method):
     """None claims less than a tenth of what is more than a rounding of the largest force of its
     unit, and few frighten.
     """
     drawn, scene, exact = made(*case)
-    solution = evaluate(scene, wanted=["section"], **RUNGS[rung])
+    solution = evaluate(scene, wanted=["section"], **METHODS[method])
     errors, sizes = true_errors(drawn, solution, exact)
-    unit = ROUNDING["single" if rung == "single" else "double"]
+    unit = ROUNDING["single" if method == "single" else "double"]
     told = {
         key: solution.errors[key] / error
         for key, error in errors.items()

@@ -13,7 +13,7 @@ from prepared import prepared
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError, ParameterError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -57,7 +57,7 @@ def test_gimbal_lock_of_a_driven_joint_is_named(start, speed, count, says):
     for backend in ("c", "vm"):
         with pytest.raises(AssemblyError, match=says):
             evaluate(scene, backend=backend)
-    designs = DesignEngine.of(ball(0.0, speed, t=(0, 1, count)), rung=Rung("c"))
+    designs = DesignEngine.of(ball(0.0, speed, t=(0, 1, count)), method=EvaluationMethod("c"))
     passes = "passes" in says
     assert designs.evaluate(np.array([[start], [3.0]])).status.tolist() == [
         Status.PASSES_DEAD_CENTRE if passes else Status.DEAD_CENTRE,
@@ -212,7 +212,7 @@ def test_axes_that_parameters_set_are_at_right_angles(second, what, tmp_path):
     rows = np.array([list(({"lean": 0.0, "size": 1.0} | values).values()) for values, _ in told])
     fine = [says is None for _, says in told]
     assert (
-        DesignEngine.of(scene, rung=Rung("c")).evaluate(rows).status == Status.OK
+        DesignEngine.of(scene, method=EvaluationMethod("c")).evaluate(rows).status == Status.OK
     ).tolist() == fine
     assert prepared(scene, rows, tmp_path) == fine
 

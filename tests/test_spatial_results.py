@@ -18,7 +18,7 @@ from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.exports import export
 from lagrange_casadi.figures.figures import MechanismDrawing, SectionMaps, default_figures
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.store.runs import SCHEMA, check
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.sweep.columns import Harvest
@@ -45,7 +45,7 @@ def dense(scene):
 @pytest.fixture(scope="module")
 def fine(scene, solution):
     """The peaks between instants by their names."""
-    quantities = DesignEngine.of(scene, rung=Rung("vm")).quantities
+    quantities = DesignEngine.of(scene, method=EvaluationMethod("vm")).quantities
     return {
         peak.name: peak
         for peak in refine(scene, solution, [name for name in quantities if "load" not in name])
@@ -148,16 +148,16 @@ def test_peaks_between_instants_are_those_of_dense_ones(scene, solution, dense):
 
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize(
-    ("rung", "tolerance"),
+    ("method", "tolerance"),
     [
-        (Rung("lanes"), 1e-11),
-        (Rung("c"), 1e-11),
-        (Rung("vm"), 1e-11),
-        (Rung("lanes", "single"), 1e-5),
+        (EvaluationMethod("lanes"), 1e-11),
+        (EvaluationMethod("c"), 1e-11),
+        (EvaluationMethod("vm"), 1e-11),
+        (EvaluationMethod("lanes", "single"), 1e-5),
     ],
 )
-def test_designs_have_the_same_peaks(scene, fine, half, rung, tolerance):
-    designs = DesignEngine.of(scene, rung=rung)
+def test_designs_have_the_same_peaks(scene, fine, half, method, tolerance):
+    designs = DesignEngine.of(scene, method=method)
     outcome = designs.evaluate(np.array([[6.0], [3.0]]))
     assert (outcome.status == 0).all()
     largest = {
@@ -183,8 +183,8 @@ def test_designs_have_the_same_peaks(scene, fine, half, rung, tolerance):
 
 def test_a_sweep_keeps_peaks_along_links(scene, solution):
     engine, timing, xi = DesignEngine.of(scene), scene.timing(None), np.linspace(0, 1, 7)
-    data = engine.graph.data
-    harvest = Harvest(engine, data, engine.graph, "histories", InstantAxis.of(data, timing), xi)
+    data = engine.program.data
+    harvest = Harvest(engine, data, engine.program, "histories", InstantAxis.of(data, timing), xi)
     found = dict(
         zip(
             (column.name for column in harvest.columns),
@@ -278,7 +278,7 @@ def test_slides_that_stand_still_are_rounding_beside_what_turns():
     found = {
         peak.name: abs(peak.value) for peak in refine(scene, evaluate(scene, wanted=["motion"]))
     }
-    designs = DesignEngine.of(scene, ["motion"], rung=Rung("vm"))
+    designs = DesignEngine.of(scene, ["motion"], method=EvaluationMethod("vm"))
     outcome = designs.evaluate(np.zeros((1, 0)))
     assert outcome.status.tolist() == [Status.OK]
     for name, value in zip(designs.quantities, outcome.value[0], strict=True):

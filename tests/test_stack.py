@@ -23,7 +23,7 @@ COMPILERS = {
     "arm -O2": ("arm-none-eabi-gcc", *CORTEX, "-O2"),
     "arm -Os": ("arm-none-eabi-gcc", *CORTEX, "-Os"),
 }
-RUNGS = {
+METHODS = {
     "double": {},
     "single": {"precision": "single"},
     "newton": {"newton": 2},
@@ -37,9 +37,9 @@ def stated(header):
 
 
 @functools.cache
-def exported(name, rung, folder):
+def exported(name, method, folder):
     loaded = load_case(Path(__file__).parents[1] / "cases" / name)
-    agreed = export(loaded.scene, folder, name=loaded.name, **RUNGS[rung])
+    agreed = export(loaded.scene, folder, name=loaded.name, **METHODS[method])
     return folder / f"{agreed.prefix}.c"
 
 
@@ -51,7 +51,7 @@ def sources(tmp_path_factory):
 
 # A bound is nearest where functions are inlined in one another, and iterated loops are one more.
 BUILT = [
-    (case, rung, name) for case in CASES for rung in ("double", "single") for name in COMPILERS
+    (case, method, name) for case in CASES for method in ("double", "single") for name in COMPILERS
 ]
 BUILT += [(case, "newton", name) for case in ITERATED for name in COMPILERS if name.endswith("-O2")]
 BUILT += [
@@ -61,14 +61,14 @@ BUILT += [(case, "table", name) for case in ("slider_crank", "six_bar") for name
 
 
 @pytest.mark.sampled(197)
-@pytest.mark.parametrize(("case", "rung", "compiler"), BUILT)
+@pytest.mark.parametrize(("case", "method", "compiler"), BUILT)
 def test_the_stack_that_the_header_states_is_never_exceeded(
-    case, rung, compiler, sources, tmp_path
+    case, method, compiler, sources, tmp_path
 ):
     command = (*COMPILERS[compiler], *FLAGS)
     if shutil.which(command[0]) is None:
         pytest.skip(f"there is no {command[0]}")
-    source = exported(case, rung, sources / f"{rung}-{case}")
+    source = exported(case, method, sources / f"{method}-{case}")
     assert 64 < deepest(command, source, tmp_path) <= stated(source.with_suffix(".h"))
 
 

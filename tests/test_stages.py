@@ -22,11 +22,11 @@ from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, p
 from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.judge.certificate import certify
-from lagrange_casadi.judge.reference import reference
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.verification.certificate import certify
+from lagrange_casadi.verification.reference import reference
 
-DOUBLE = [Rung("vm"), Rung("c"), Rung("lanes")]
+DOUBLE = [EvaluationMethod("vm"), EvaluationMethod("c"), EvaluationMethod("lanes")]
 BOUNDS = {"jansen_leg": 1e-5, "excavator": 3e-5, "cardan_shaft": 5e-6, "five_link_suspension": 1e-5}
 """The loops of the leg come near a dead centre; thrusts of 240 kN leave the excavator's cylinders
 moments of 580 N m.
@@ -35,24 +35,24 @@ The cardan shaft's torque of 80 N m and lever of 0.5 m leave forces that are nil
 condition number is 10.
 """
 _NIL = 1e-30
-SINGLE = [Rung("c", "single"), Rung("lanes", "single")]
+SINGLE = [EvaluationMethod("c", "single"), EvaluationMethod("lanes", "single")]
 
 
-def gap(graph, t, rung, truth=None):
+def gap(program, t, method, truth=None):
     """The largest error of any column on a rung, relative to the peak of its kind; angles up to
     whole turns.
     """
-    p, kind = values(graph), unit_in(graph.data.kinds) if graph.data.space else kind_of
-    table, _ = run(graph, t, p, rung)
+    p, kind = values(program), unit_in(program.data.kinds) if program.data.space else kind_of
+    table, _ = run(program, t, p, method)
     assert not table.status.any()
-    truth = exact(graph, t, z=table.iterated) if truth is None else truth
+    truth = exact(program, t, z=table.iterated) if truth is None else truth
     size = {}
-    for name, row in zip(graph.names, truth, strict=True):
+    for name, row in zip(program.names, truth, strict=True):
         size[kind(name)] = max(size.get(kind(name), 0.0), np.max(np.abs(row)))
     worst = 0.0
-    for name, row, expected in zip(graph.names, np.asarray(table.out, float), truth, strict=True):
+    for name, row, expected in zip(program.names, np.asarray(table.out, float), truth, strict=True):
         off = row - expected
-        if name in map(str, graph.loop_angles):
+        if name in map(str, program.loop_angles):
             off = off - math.tau * np.rint(off / math.tau)
         if not name.startswith("_"):
             worst = max(
@@ -70,13 +70,13 @@ def unit_in(kinds):
     )
 
 
-def values(graph):
-    return graph.data.defaults
+def values(program):
+    return program.data.defaults
 
 
-def exact(graph, t, **beside):
+def exact(program, t, **beside):
     return np.array(
-        [[float(x) for x in row] for row in reference(graph, t, values(graph), **beside)]
+        [[float(x) for x in row] for row in reference(program, t, values(program), **beside)]
     ).T
 
 
@@ -84,52 +84,58 @@ def exact(graph, t, **beside):
 def case(name, later):
     """A case's graph, three instants of its cycle so much later, and every column there."""
     scene = load_case(CASES / name).scene
-    graph, t = (
+    program, t = (
         derive(scene, ["all"]),
         np.array([0.13, 0.4, 0.77]) * np.ptp(scene.span) + scene.span[0] + later,
     )
-    z = None if graph.newton is None else run(graph, t, values(graph), Rung("vm"))[0].iterated
-    return graph, t, exact(graph, t, z=z)
+    z = (
+        None
+        if program.newton is None
+        else run(program, t, values(program), EvaluationMethod("vm"))[0].iterated
+    )
+    return program, t, exact(program, t, z=z)
 
 
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", NAMES)
 def test_plain_stages_are_the_graphs_bits(name):
-    graph = derive(load_case(CASES / name).scene, ["all"])
-    p, stages = values(graph), plain(graph)
+    program = derive(load_case(CASES / name).scene, ["all"])
+    p, stages = values(program), plain(program)
     assert not stages.compensated
-    for t in np.linspace(*graph.data.span, 5):
-        z = settle(graph, t, p, graph.data.span[0])
+    for t in np.linspace(*program.data.span, 5):
+        z = settle(program, t, p, program.data.span[0])
         out = stages.instant(*stages.drive(t, p), z, p)
-        assert out.full().tobytes() == graph.instant(t, *graph.motion(t, p), z, p).full().tobytes()
+        assert (
+            out.full().tobytes() == program.instant(t, *program.motion(t, p), z, p).full().tobytes()
+        )
 
 
 @pytest.mark.sampled(97)
 @pytest.mark.parametrize("later", [1e3, 1e6])
-@pytest.mark.parametrize("rung", DOUBLE, ids=lambda rung: rung.backend)
+@pytest.mark.parametrize("method", DOUBLE, ids=lambda method: method.backend)
 @pytest.mark.parametrize("name", NAMES)
-def test_doubles_after_days(name, rung, later):
-    graph, t, truth = case(name, later)
-    assert gap(graph, t, rung, truth) < 1e-13
+def test_doubles_after_days(name, method, later):
+    program, t, truth = case(name, later)
+    assert gap(program, t, method, truth) < 1e-13
 
 
 @pytest.mark.sampled(41)
-@pytest.mark.parametrize("rung", SINGLE, ids=lambda rung: rung.backend)
+@pytest.mark.parametrize("method", SINGLE, ids=lambda method: method.backend)
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "andrews_squeezer"])
-def test_singles_after_hours(name, rung):
+def test_singles_after_hours(name, method):
     """Andrews' squeezer is left out: at its acceleration three hours are 10^12 rad, which no pair
     of singles knows a phase of.
     """
-    graph, t, truth = case(name, 1e4)
-    assert gap(graph, t, rung, truth) < max(1e-5, BOUNDS.get(name, 0.0))
+    program, t, truth = case(name, 1e4)
+    assert gap(program, t, method, truth) < max(1e-5, BOUNDS.get(name, 0.0))
 
 
 @pytest.mark.sampled(31)
 @pytest.mark.parametrize("name", NAMES)
 def test_singles_at_the_start(name):
-    graph, t, truth = case(name, 0.0)
-    for rung in SINGLE:
-        assert gap(graph, t, rung, truth) < BOUNDS.get(name, 3e-6)
+    program, t, truth = case(name, 0.0)
+    for method in SINGLE:
+        assert gap(program, t, method, truth) < BOUNDS.get(name, 3e-6)
 
 
 RAMP = polynomial(0.3, 40.0)
@@ -158,12 +164,12 @@ def test_loads_that_count(name):
     :func:`test_singles_after_hours`.
     """
     scene = counting(RAMP, LOADS[name], **({"k": 3.0} if name == "parameters" else {}))
-    graph = derive(scene, ["load:load", "effort"])
-    for later, rungs, allowed in ((2.5e4, DOUBLE, 1e-13), (4e3, SINGLE, 2e-5)):
+    program = derive(scene, ["load:load", "effort"])
+    for later, methods, allowed in ((2.5e4, DOUBLE, 1e-13), (4e3, SINGLE, 2e-5)):
         t = later + np.array([0.0123, 0.0391, 0.0777])
-        truth = exact(graph, t)
-        for rung in rungs:
-            assert gap(graph, t, rung, truth) < allowed, rung
+        truth = exact(program, t)
+        for method in methods:
+            assert gap(program, t, method, truth) < allowed, method
 
 
 LAWS = {
@@ -181,12 +187,12 @@ LAWS = {
 def test_laws_of_motion_that_count(name):
     """Roots, quotients, pieces and clamps of a law keep their phase in single precision too."""
     t = 4e3 + np.array([0.0123, 0.0391, 0.0777])
-    graph = derive(counting(LAWS[name], LOADS["harmonics"]), ["load:load", "effort"])
-    truth = exact(graph, t)
-    for rung in SINGLE:
-        assert gap(graph, t, rung, truth) < 1e-5, rung
-    for rung in DOUBLE:
-        assert gap(graph, t, rung, truth) < 1e-13, rung
+    program = derive(counting(LAWS[name], LOADS["harmonics"]), ["load:load", "effort"])
+    truth = exact(program, t)
+    for method in SINGLE:
+        assert gap(program, t, method, truth) < 1e-5, method
+    for method in DOUBLE:
+        assert gap(program, t, method, truth) < 1e-13, method
 
 
 def geared(ratio):
@@ -209,15 +215,15 @@ def geared(ratio):
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("ratio", [-0.5, 7.0 / 3.0])
 def test_gears(ratio):
-    graph = derive(geared(ratio), ["all"])
+    program = derive(geared(ratio), ["all"])
     t = 2.5e4 + np.array([0.0123, 0.0391, 0.0777])
-    truth = exact(graph, t)
-    for rung in DOUBLE:
-        assert gap(graph, t, rung, truth) < 1e-13
+    truth = exact(program, t)
+    for method in DOUBLE:
+        assert gap(program, t, method, truth) < 1e-13
     t = t - 2.1e4
-    truth = exact(graph, t)
-    for rung in SINGLE:
-        assert gap(graph, t, rung, truth) < 1e-5
+    truth = exact(program, t)
+    for method in SINGLE:
+        assert gap(program, t, method, truth) < 1e-5
 
 
 def sprung():
@@ -238,27 +244,27 @@ def sprung():
 
 
 def test_springs_on_joints_without_a_drive():
-    graph = derive(sprung(), ["all"])
+    program = derive(sprung(), ["all"])
     t = 2.5e4 + np.linspace(0.0, 0.157, 8)
-    truth = exact(graph, t)
-    for rung in DOUBLE:
-        assert gap(graph, t, rung, truth) < 1e-13
+    truth = exact(program, t)
+    for method in DOUBLE:
+        assert gap(program, t, method, truth) < 1e-13
     t = t - 2.1e4
-    truth = exact(graph, t)
-    for rung in SINGLE:
-        assert gap(graph, t, rung, truth) < 1e-5
+    truth = exact(program, t)
+    for method in SINGLE:
+        assert gap(program, t, method, truth) < 1e-5
 
 
 def test_motion_by_samples():
-    graph = derive(sampled(10.0), ["load:load", "effort"])
+    program = derive(sampled(10.0), ["load:load", "effort"])
     t = 90.0 + np.linspace(0.0, 3.0, 7)
-    assert turns_many(graph, t, values(graph))
-    truth = exact(graph, t)
-    for rung in DOUBLE:
-        assert gap(graph, t, rung, truth) < 1e-13
+    assert turns_many(program, t, values(program))
+    truth = exact(program, t)
+    for method in DOUBLE:
+        assert gap(program, t, method, truth) < 1e-13
     # In single a spline is read in singles: its phase is as good as the angle's own rounding.
-    for rung in SINGLE:
-        assert gap(graph, t, rung, truth) < 5000.0 * 1e-6
+    for method in SINGLE:
+        assert gap(program, t, method, truth) < 5000.0 * 1e-6
 
 
 def two_drives():
@@ -276,16 +282,16 @@ def two_drives():
 def test_steady_drives_beside_samples():
     """What the samples lose in single, the steady drive does not."""
     scene = two_drives()
-    graph = derive(scene, ["all"])
+    program = derive(scene, ["all"])
     t = np.linspace(3600.1, 3601.9, 7)
-    assert turns_many(graph, t, values(graph))
-    truth = exact(graph, t)
-    for rung in DOUBLE:
-        assert gap(graph, t, rung, truth) < 1e-13
-    table, _ = run(graph, t, values(graph), SINGLE[0])
+    assert turns_many(program, t, values(program))
+    truth = exact(program, t)
+    for method in DOUBLE:
+        assert gap(program, t, method, truth) < 1e-13
+    table, _ = run(program, t, values(program), SINGLE[0])
     for member in ("x", "y"):
         # The arm's pin is the crank's tip.
-        row = graph.names.index(f"pose:arm:{member}")
+        row = program.names.index(f"pose:arm:{member}")
         assert np.max(np.abs(table.out[row] - truth[row])) < 1e-6 * 0.1
 
 
@@ -327,8 +333,11 @@ def test_iterated_angles_are_kept_within_a_turn():
     assert iterated.newton is not None
     assert all(iterated.newton.turning)
     t = np.linspace(0.0, 1e4, 50_001)
-    for rung, allowed in ((Rung("c"), 1e-13), (Rung("c", "single"), 1e-5)):
-        one, two = (run(graph, t, values(graph), rung)[0] for graph in (iterated, closed))
+    for method, allowed in (
+        (EvaluationMethod("c"), 1e-13),
+        (EvaluationMethod("c", "single"), 1e-5),
+    ):
+        one, two = (run(program, t, values(program), method)[0] for program in (iterated, closed))
         assert not one.status.any()
         assert np.max(np.abs(one.iterated)) <= math.pi * (1 + 1e-6)
         for name in ("effort:O", "reaction:C:fx"):
@@ -337,29 +346,29 @@ def test_iterated_angles_are_kept_within_a_turn():
 
 
 @pytest.mark.parametrize(
-    ("rungs", "later", "allowed"),
+    ("methods", "later", "allowed"),
     [(DOUBLE, 1e6, 1e-13), (SINGLE, 1e4, 1e-5)],
     ids=["double", "single"],
 )
-def test_iterated_loops_after_a_million_turns(rungs, later, allowed):
+def test_iterated_loops_after_a_million_turns(methods, later, allowed):
     m = drag_link(pin=pinned).mechanism
     scene = Scene(
         m, {"O": polynomial(0.2, 2 * math.pi)}, posture=TURNING, t=(later, later + 1.0, 41)
     )
-    graph, t = derive(scene, ["reaction:C", "effort"]), np.linspace(*scene.span, scene.t[2])
-    for rung in rungs:
-        assert gap(graph, t, rung) < allowed
+    program, t = derive(scene, ["reaction:C", "effort"]), np.linspace(*scene.span, scene.t[2])
+    for method in methods:
+        assert gap(program, t, method) < allowed
 
 
 def test_iterated_angles_that_a_gear_counts_are_not():
     scene = wheel_on_drag_link()
-    graph = derive(scene, ["motion"])
-    turning = dict(zip(("A", "C", "W"), graph.newton.turning, strict=False))
-    assert not all(graph.newton.turning), turning
+    program = derive(scene, ["motion"])
+    turning = dict(zip(("A", "C", "W"), program.newton.turning, strict=False))
+    assert not all(program.newton.turning), turning
     t = np.linspace(0.0, 40.0, 801)
-    for rung in (Rung("vm"), Rung("c"), Rung("lanes")):
-        table, _ = run(graph, t, values(graph), rung)
-        rows = dict(zip(graph.names, table.out, strict=True))
+    for method in (EvaluationMethod("vm"), EvaluationMethod("c"), EvaluationMethod("lanes")):
+        table, _ = run(program, t, values(program), method)
+        rows = dict(zip(program.names, table.out, strict=True))
         turned = np.unwrap(rows["motion:C"])
         assert turned[-1] - turned[0] > 18 * 2 * math.pi
         np.testing.assert_allclose(rows["motion:W"], -0.3 * turned, atol=1e-11)
@@ -367,22 +376,22 @@ def test_iterated_angles_that_a_gear_counts_are_not():
 
 def test_from_few_turns_to_many():
     """Doubles that count, and pairs, on either side of where the one takes over."""
-    graph = derive(slider_crank(["all"]))
-    p, stop = values(graph), (FEW_TURNS - 0.05) / (25 * math.pi)
+    program = derive(slider_crank(["all"]))
+    p, stop = values(program), (FEW_TURNS - 0.05) / (25 * math.pi)
     below, above = np.linspace(0.0, stop, 50), np.linspace(0.0, stop + 1e-3, 50)
-    assert not turns_many(graph, below, p)
-    assert turns_many(graph, above, p)
-    one, two = (run(graph, t, p, Rung("vm"))[0] for t in (below, above))
+    assert not turns_many(program, below, p)
+    assert turns_many(program, above, p)
+    one, two = (run(program, t, p, EvaluationMethod("vm"))[0] for t in (below, above))
     assert (one.stages.compensated, two.stages.compensated) == (False, True)
-    assert gap(graph, below[-5:], Rung("vm")) < 1e-13
-    pairs = compensated(graph, "double")
+    assert gap(program, below[-5:], EvaluationMethod("vm")) < 1e-13
+    pairs = compensated(program, "double")
     for t in below[-5:]:
         counted = np.array(pairs.instant(*pairs.drive(t, p), [], p))
-        once = np.array(instant_at(graph, t, p))
+        once = np.array(instant_at(program, t, p))
         size = {}
-        for name, row in zip(graph.names, one.out, strict=True):
+        for name, row in zip(program.names, one.out, strict=True):
             size[kind_of(name)] = max(size.get(kind_of(name), 0.0), np.max(np.abs(row)))
-        for name, x, y in zip(graph.names, counted, once, strict=True):
+        for name, x, y in zip(program.names, counted, once, strict=True):
             assert abs(x - y)[0] <= 1e-13 * (size[kind_of(name)] or 1.0), name
 
 
@@ -421,8 +430,8 @@ def test_from_few_turns_to_many():
     ],
 )
 def test_what_counts(scene, instants, expected):
-    graph = derive(scene(), ["load:load", "effort"])
-    assert turns_many(graph, np.linspace(*instants, 101), values(graph)) is expected
+    program = derive(scene(), ["load:load", "effort"])
+    assert turns_many(program, np.linspace(*instants, 101), values(program)) is expected
 
 
 def test_fixed_parameters_keep_the_phase_of_a_motion():
@@ -446,8 +455,8 @@ def test_fixed_parameters_keep_the_phase_of_a_motion():
 
 def test_what_cannot_be_followed_is_not_in_single():
     scene = counting(RAMP, lambda m, angle: doubled(angle))
-    graph = derive(scene, ["load:load"])
-    assert not turns_many(graph, np.array([1e6]), values(graph))
+    program = derive(scene, ["load:load"])
+    assert not turns_many(program, np.array([1e6]), values(program))
     with pytest.raises(
         DeclarationError, match="function 'instant' cannot be followed: it calls another one"
     ):

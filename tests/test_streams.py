@@ -19,7 +19,7 @@ from lagrange_casadi.base.publish import check_writable, filling, replacing, wri
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import PathError, StoreError
 from lagrange_casadi.figures.trade_plot import draw_trade
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.sweep import sweep
 from lagrange_casadi.studies.sweep.parts import Folder
 from lagrange_casadi.studies.trade import Measurement, Trade
@@ -85,7 +85,7 @@ def test_csv_goes_through_a_pipe(file, pipe, listen, capfd, command):
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
 def test_a_picture_goes_through_a_pipe(pipe, listen, ending):
-    one = Measurement(Rung("c"), 1e-9, 1e-3, 1e-3, "effort:O")
+    one = Measurement(EvaluationMethod("c"), 1e-9, 1e-3, 1e-3, "effort:O")
     heard = listen(pipe)
     with writing(pipe) as (opened,):
         draw_trade(Trade("x", 1, 1, (one,), {}), opened, ending)

@@ -80,8 +80,8 @@ def test_peaks_are_those_of_finer_instants_and_of_the_graph(name):
             )
             assert below.value * (1 - 1e-12) <= peak.value <= below.value * (1 + 5e-4)
             assert abs(coarse.stress(link).peak(kind, notches=notches).value) <= peak.value
-    graph = evaluate(scene, t=(start, stop, 33), wanted=[f"safety:{link}"], certificate=False)
-    used = refine(scene, graph, [f"utilisation:{link}:{way}" for way in ("yield", "buckling")])
+    program = evaluate(scene, t=(start, stop, 33), wanted=[f"safety:{link}"], certificate=False)
+    used = refine(scene, program, [f"utilisation:{link}:{way}" for way in ("yield", "buckling")])
     safety = refine_safety(scene, coarse, link)
     assert safety.against("yield") == pytest.approx(1 / used[0].value, rel=1e-9)
     assert safety.against("buckling") == pytest.approx(1 / used[1].value, rel=1e-5)

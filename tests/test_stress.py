@@ -10,7 +10,7 @@ from lagrange_casadi import beams, evaluate, load, save
 from lagrange_casadi.equations.stress import KINDS
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.strength.member import Member
-from lagrange_casadi.strength.stress import summits
+from lagrange_casadi.strength.stress import maxima
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -235,7 +235,7 @@ def test_summits_are_found_where_the_highest_powers_are_nothing_too(degree):
         for weights in KINDS.values():
             values = np.polynomial.chebyshev.chebval(grid, np.moveaxis(c, 2, 0))
             fine = weights[0] * values[0] ** 2 + weights[1] * (values[1] ** 2 + values[2] ** 2)
-            found, x, _ = summits(c, weights)
+            found, x, _ = maxima(c, weights)
             assert np.all(found >= fine.max(axis=1) * (1 - 1e-13))
             # What a grid misses is the square of half its step, times that of the degree.
             assert np.all(found <= fine.max(axis=1) * (1 + (math.pi / 12000 * 2 * degree) ** 2))

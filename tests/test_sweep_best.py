@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.studies.sweep import Condition, best, chosen, reading, sweep
-from lagrange_casadi.studies.sweep.best import _front, missed, tally
+from lagrange_casadi.studies.sweep.best import _front, counts, missed
 
 pytestmark = pytest.mark.quick
 
@@ -89,8 +89,8 @@ def test_values_that_never_are_are_told_with_the_nearest(swept):
 
 def test_how_many_meet_conditions(swept):
     there = (swept["l"] < 0.3).repeat(6)
-    assert tally(swept) == (120, (swept["status"] == 0).sum())
-    assert tally(swept, "l<0.3") == (there.sum(), (there & (swept["status"].ravel() == 0)).sum())
+    assert counts(swept) == (120, (swept["status"] == 0).sum())
+    assert counts(swept, "l<0.3") == (there.sum(), (there & (swept["status"].ravel() == 0)).sum())
 
 
 def test_a_status_is_a_whole_number(swept):

@@ -15,7 +15,7 @@ import pytest
 import sweeps
 from sweeps import GRID, SIZE, StopError, run, stop_after
 
-from lagrange_casadi.base.room import cores
+from lagrange_casadi.base.space import cores
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoppedError, StoreError
 from lagrange_casadi.studies.sweep import sweep
 from lagrange_casadi.studies.sweep.parts import Folder

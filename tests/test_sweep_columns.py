@@ -8,7 +8,7 @@ from lagrange_casadi import derive, evaluate
 from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.peaks import forces, refine
 from lagrange_casadi.studies.sweep import columns, sweep
 from lagrange_casadi.studies.sweep.plan import Task
@@ -222,7 +222,7 @@ def test_what_no_file_keeps_in_one_piece_is_refused(slider_crank, tmp_path):
 
 
 def test_a_design_that_memory_cannot_hold_is_refused(slider_crank, tmp_path, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.base.room.memory", lambda: 2.05e7)
+    monkeypatch.setattr("lagrange_casadi.base.space.memory", lambda: 2.05e7)
     with pytest.raises(
         SizeError,
         match=(
@@ -245,7 +245,9 @@ def test_a_design_that_memory_cannot_hold_is_refused(slider_crank, tmp_path, mon
 def harvest(monkeypatch):
     """What is kept of formulas: histories of 7 instants, at 3 ratios."""
     sweeps.use(monkeypatch, count=7)
-    return Task(Timing(0, 1, 7), (0, 1, 3), "histories", Rung()).harvest(derive(sweeps.scene()))
+    return Task(Timing(0, 1, 7), (0, 1, 3), "histories", EvaluationMethod()).harvest(
+        derive(sweeps.scene())
+    )
 
 
 def test_a_block_is_what_takes_a_second_and_fits_into_memory(harvest, monkeypatch):

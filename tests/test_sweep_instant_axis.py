@@ -164,10 +164,10 @@ def test_a_worker_that_makes_the_scene_anew_has_the_same_instants(asked):
     plan = Plan.of(scene, designs_of({"rpm": [60.0, 600.0]}), Request(**words), "histories")
     other, p = press(uneven, wanted=["effort"]), plan.block(0, 2)
     task = pickle.loads(pickle.dumps(plan.task))
-    graph = derive(other)
-    harvest = task.harvest(graph)
-    assert signature(graph, task, harvest.engine.provenance) == signature(
-        plan.graph, plan.task, plan.harvest.engine.provenance
+    program = derive(other)
+    harvest = task.harvest(program)
+    assert signature(program, task, harvest.engine.provenance) == signature(
+        plan.program, plan.task, plan.harvest.engine.provenance
     )
     for one, column in zip(harvest.evaluate(p), plan.harvest.evaluate(p), strict=True):
         assert one.tobytes() == column.tobytes()

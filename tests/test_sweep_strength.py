@@ -24,7 +24,7 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.cli import main, program
 from lagrange_casadi.errors import DeclarationError, NoDesignError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety
 from lagrange_casadi.strength.fatigue import (
@@ -167,11 +167,11 @@ def at_once(scene, link):
     """Utilisation against fatigue of a link of one design as sweeps tell it of many, and as its
     solution does.
     """
-    engine, mechanism = DesignEngine.of(scene, rung=Rung("vm")), scene.mechanism
+    engine, mechanism = DesignEngine.of(scene, method=EvaluationMethod("vm")), scene.mechanism
     p = np.array([list(mechanism.values().values())])
     names, own = {name: k for k, name in enumerate(engine.columns)}, mechanism.links[link]
     fatigue = FibreStresses.of(
-        engine.graph.data, link, [output for output in engine.outputs if output.along]
+        engine.program.data, link, [output for output in engine.outputs if output.along]
     )
     members = engine.evaluate(p, histories=True).series[
         :, [names[str(member)] for member in fatigue.members]
@@ -290,7 +290,7 @@ def test_strength_is_kept_beside_all():
     scene = Scene(
         m, {"O": harmonic(0.0, 0.6, 2.0)}, t=(0, 0.5, 9), wanted=["all", "safety", "deflection:arm"]
     )
-    plan = Plan.of(scene, designs_of({"l": [0.4]}), Request(rung=Rung("vm")))
+    plan = Plan.of(scene, designs_of({"l": [0.4]}), Request(method=EvaluationMethod("vm")))
     kept = {column.name for column in plan.columns}
     for name in evaluate(scene, backend="vm", certificate=False).names():
         assert (f"peak:{name}" in kept) == (not name.startswith(("motion:", "pose:"))), name

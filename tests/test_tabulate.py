@@ -440,7 +440,7 @@ def test_a_station_that_stands_still_is_on_no_other_side_of_a_section(place):
     """
     scene = with_a_load(place)
     read, true = (
-        evaluate(scene, backend="vm", **rung).section("rod") for rung in ({"table": 256}, {})
+        evaluate(scene, backend="vm", **method).section("rod") for method in ({"table": 256}, {})
     )
     np.testing.assert_array_equal(read.law.loads[0].station, true.law.loads[0].station)
     np.testing.assert_allclose(read.shear, true.shear, rtol=0, atol=1e-9)

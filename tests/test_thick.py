@@ -25,7 +25,7 @@ from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, MobilityError, ParameterError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.store.runs import check
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
@@ -219,7 +219,7 @@ def test_peaks_between_instants_and_of_sweeps():
         np.array([[5.0, 0.02], [-20.0, 0.1]]),
         [f"section:shaft:{force}" for force in SPACE.forces],
     )
-    engine = DesignEngine.of(one, rung=Rung("lanes"))
+    engine = DesignEngine.of(one, method=EvaluationMethod("lanes"))
     swept = engine.evaluate(designs)
     assert swept.status.tolist() == [Status.OK] * 2
     names = [str(quantity) for quantity in engine.quantities]

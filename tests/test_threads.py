@@ -276,12 +276,14 @@ def test_a_thread_finds_its_own_answer_again():
 
 
 @pytest.mark.parametrize(
-    "rung", [{}, {"backend": "vm"}, {"newton": 3}, {"precision": "single"}, {"table": 32}], ids=str
+    "method",
+    [{}, {"backend": "vm"}, {"newton": 3}, {"precision": "single"}, {"table": 32}],
+    ids=str,
 )
-def test_one_scene_is_evaluated_by_many_threads(rung):
+def test_one_scene_is_evaluated_by_many_threads(method):
     def asked(l):
-        scene = threaded.ITERATED if "newton" in rung else threaded.SHARED
-        found = evaluate(scene, parameters={"l": l}, t=(0.0, 1.0, 9), **rung)
+        scene = threaded.ITERATED if "newton" in method else threaded.SHARED
+        found = evaluate(scene, parameters={"l": l}, t=(0.0, 1.0, 9), **method)
         laws = {
             f"bending:{name}": found.section(name).bending for name in found.links_with_sections
         }

@@ -42,8 +42,8 @@ def stepped():
 
 
 def test_only_what_is_wanted_is_in_the_graph():
-    graph = derive(stepped(), ["reaction:A"])
-    assert {str(output) for output in graph.outputs} == {
+    program = derive(stepped(), ["reaction:A"])
+    assert {str(output) for output in program.outputs} == {
         "reaction:A:fx",
         "reaction:A:fy",
         "reaction:A:mz",
@@ -156,9 +156,9 @@ def test_the_energy_is_the_least_of_all_equilibria(elastic):
 
 def test_forces_through_a_link_without_a_beam_stay_open():
     scene, plain = (three_cranks(made(ROUND), elastic=elastic) for elastic in (True, False))
-    graph = derive(scene, ["all"])
+    program = derive(scene, ["all"])
     p = np.zeros(0)
-    _, left_open = determinate(graph, np.array([0.0, 0.3]), p)
+    _, left_open = determinate(program, np.array([0.0, 0.3]), p)
     _, before = determinate(derive(plain, ["all"]), np.array([0.0, 0.3]), p)
     assert set(left_open) == set(before)
     assert Output("reaction", "B1", "fy") in left_open

@@ -15,17 +15,17 @@ from stepped import iterated
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import AccuracyError, DeclarationError, StoreError
-from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.studies.trade import COMPARED, RUNGS, Measurement, Trade, trade
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.studies.trade import COMPARED, METHODS, Measurement, Trade, trade
 
 CASES = Path(__file__).parent.parent / "cases"
 SOME = (
-    Rung("c"),
-    Rung("vm"),
-    Rung("c", "single"),
-    Rung("lanes", newton=1),
-    Rung("lanes", newton=2),
-    Rung("c", table=1e-6),
+    EvaluationMethod("c"),
+    EvaluationMethod("vm"),
+    EvaluationMethod("c", "single"),
+    EvaluationMethod("lanes", newton=1),
+    EvaluationMethod("lanes", newton=2),
+    EvaluationMethod("c", table=1e-6),
 )
 """All that a mechanism may have whose loop is iterated, and whose one drive turns."""
 
@@ -36,7 +36,7 @@ WANTED = ("effort", "motion", "section")
 def measured():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(importlib.import_module("lagrange_casadi.studies.trade"), "INSTANTS", 1000)
-        return trade(iterated(WANTED), rungs=SOME)
+        return trade(iterated(WANTED), methods=SOME)
 
 
 def test_every_rung_is_measured(measured):
@@ -51,17 +51,23 @@ def test_every_rung_is_measured(measured):
 
 def test_errors_are_what_each_rung_may_have(measured):
     error = {one.rung: one.largest for one in measured.measurements}
-    assert error[Rung("c")] == error[Rung("vm")] < 1e-14
-    assert 1e-8 < error[Rung("c", "single")] < 2e-6
-    assert 1e-14 < error[Rung("lanes", newton=2)] < error[Rung("lanes", newton=1)] ** 1.5
-    assert 1e-9 < error[Rung("c", table=1e-6)] <= 1e-6
+    assert error[EvaluationMethod("c")] == error[EvaluationMethod("vm")] < 1e-14
+    assert 1e-8 < error[EvaluationMethod("c", "single")] < 2e-6
+    assert (
+        1e-14
+        < error[EvaluationMethod("lanes", newton=2)]
+        < error[EvaluationMethod("lanes", newton=1)] ** 1.5
+    )
+    assert 1e-9 < error[EvaluationMethod("c", table=1e-6)] <= 1e-6
 
 
 def test_an_error_is_the_difference_that_there_is(measured):
     """By solutions of another backend, where the rung errs by far more than rounding."""
     scene = iterated(WANTED)
     exact, rough = evaluate(scene, backend="vm"), evaluate(scene, backend="lanes", newton=1)
-    found = next(one for one in measured.measurements if one.rung == Rung("lanes", newton=1))
+    found = next(
+        one for one in measured.measurements if one.rung == EvaluationMethod("lanes", newton=1)
+    )
     kept = np.unique(np.linspace(0, exact.t.size - 1, COMPARED).astype(int))
     gap = np.max(np.abs(exact.series[found.worst] - rough.series[found.worst])[kept]) / np.max(
         np.abs(exact.series[found.worst])
@@ -70,7 +76,9 @@ def test_an_error_is_the_difference_that_there_is(measured):
 
 
 def entry(seconds, largest, backend="c"):
-    return Measurement(Rung(backend, flags=f"-D{seconds}"), seconds, largest, largest, "effort:O")
+    return Measurement(
+        EvaluationMethod(backend, flags=f"-D{seconds}"), seconds, largest, largest, "effort:O"
+    )
 
 
 def test_the_front_and_the_fastest():
@@ -102,9 +110,13 @@ def test_what_a_scene_has_not_is_refused_with_the_reason():
         load_case(CASES / "arm").scene,
         t=(0, 2, 11),
         wanted=["effort"],
-        rungs=(Rung("c"), Rung("c", table=64), Rung("c", newton=1)),
+        methods=(
+            EvaluationMethod("c"),
+            EvaluationMethod("c", table=64),
+            EvaluationMethod("c", newton=1),
+        ),
     )
-    assert [one.rung for one in found.measurements] == [Rung("c")]
+    assert [one.rung for one in found.measurements] == [EvaluationMethod("c")]
     assert list(found.refused) == ["--backend c --table 64"]
     assert "one driven joint" in found.refused["--backend c --table 64"]
 
@@ -116,7 +128,7 @@ def test_what_is_zero_but_for_rounding_is_judged_beside_other_motions():
         load_case("cardan_shaft").scene,
         wanted=["section:tube"],
         t=(0.0, 0.1, 9),
-        rungs=(Rung("c"), Rung("c", table=1e-6)),
+        methods=(EvaluationMethod("c"), EvaluationMethod("c", table=1e-6)),
     )
     exact, table = sorted(found.measurements, key=lambda one: one.largest)
     assert exact.largest < 1e-12
@@ -124,22 +136,22 @@ def test_what_is_zero_but_for_rounding_is_judged_beside_other_motions():
 
 
 def test_what_exported_c_can_be_is_recommended_apart():
-    rungs = (
-        Rung("lanes", "single"),
-        Rung("c", flags="-O1"),
-        Rung("c", "single"),
-        Rung("c", newton=2),
-        Rung("vm"),
+    methods = (
+        EvaluationMethod("lanes", "single"),
+        EvaluationMethod("c", flags="-O1"),
+        EvaluationMethod("c", "single"),
+        EvaluationMethod("c", newton=2),
+        EvaluationMethod("vm"),
     )
     errors = (1e-7, 1e-15, 1e-7, 1e-12, 1e-15)
     measured = tuple(
-        Measurement(rung, k, error, error, "effort:O")
-        for k, (rung, error) in enumerate(zip(rungs, errors, strict=True))
+        Measurement(method, k, error, error, "effort:O")
+        for k, (method, error) in enumerate(zip(methods, errors, strict=True))
     )
     found = Trade("x", 1, 1, measured, {})
-    assert found.fastest(1e-6).rung == Rung("lanes", "single")
-    assert found.exported.fastest(1e-6).rung == Rung("c", "single")
-    assert found.exported.fastest(1e-9).rung == Rung("c", newton=2)
+    assert found.fastest(1e-6).rung == EvaluationMethod("lanes", "single")
+    assert found.exported.fastest(1e-6).rung == EvaluationMethod("c", "single")
+    assert found.exported.fastest(1e-9).rung == EvaluationMethod("c", newton=2)
 
 
 def test_graphs_that_call_functions_have_no_reference():
@@ -148,13 +160,16 @@ def test_graphs_that_call_functions_have_no_reference():
     joint = m.revolute("J", m.ground, arm)
     m.torque("t", arm, doubled(m.coordinate(joint)))
     with pytest.raises(DeclarationError, match="has no C: it calls another one"):
-        trade(Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)), rungs=(Rung("c"),))
+        trade(
+            Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)),
+            methods=(EvaluationMethod("c"),),
+        )
 
 
 @pytest.mark.long
 def test_the_command(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("lagrange_casadi.studies.trade.RUNGS", RUNGS)
+    monkeypatch.setattr("lagrange_casadi.studies.trade.METHODS", METHODS)
     monkeypatch.setattr("lagrange_casadi.studies.trade.ROUNDS", 1)
     arguments = ["trade", str(CASES / "slider_crank"), "--want", "effort", "--t", "0:0.08:201"]
     assert main([*arguments, "--accuracy", "1e-9"]) == 0
@@ -165,7 +180,7 @@ def test_the_command(tmp_path, monkeypatch, capfd):
     assert "error" not in err
     stored = json.loads((tmp_path / "slider_crank_trade.json").read_text())
     assert {one["options"] for one in stored["rungs"]} == {
-        rung.options for rung in RUNGS if rung.newton is None
+        method.options for method in METHODS if method.newton is None
     }
     assert any(one["front"] for one in stored["rungs"])
     assert len(stored["peaks"]) > 3

@@ -11,7 +11,7 @@ from mechanisms import press, uneven
 
 from lagrange_casadi import Mechanism, Scene, motion
 from lagrange_casadi.declare.description import kinds_of_described
-from lagrange_casadi.declare.turned import note
+from lagrange_casadi.declare.revolutions import note
 from lagrange_casadi.equations.model_data import template
 from lagrange_casadi.studies.sweep.notes import turning_note
 

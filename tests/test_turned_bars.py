@@ -27,10 +27,10 @@ from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.beams.profiles import Profile
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.figures.figures import default_figures, draw
-from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety, refine_stress
 from lagrange_casadi.studies.sizing import size
+from lagrange_casadi.verification.certificate import certify
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -29,9 +29,9 @@ from stepped import pinned
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, table
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.equations.turns import tells_turns
+from lagrange_casadi.equations.revolutions import depends_on_turns
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import refine
 
@@ -65,9 +65,9 @@ def assert_followed(scene, joints, count=5, **keywords):
     m, (start, stop, _) = scene.mechanism, scene.t
     values = m.values(keywords.get("parameters"))
     solution = evaluate(scene, t=(start, stop, count), **keywords)
-    graph = derive(scene)
+    program = derive(scene)
     oracle = oracle_of(m, values, loads=[Coil(m.joints[joint]) for joint in joints])
-    found, drives = columns_at(graph, start, values)
+    found, drives = columns_at(program, start, values)
     guess, before, worst = postures(m, found, drives, 0.02), start, 0.0
     for joint, (drive, *_) in drives.items():
         parent, child = (guess.get(body.name, (0.0, 0.0, 0.0)) for body in m.joints[joint].bodies)
@@ -83,11 +83,11 @@ def assert_followed(scene, joints, count=5, **keywords):
         fast = max(
             abs(rate)
             for moment in (before, t)
-            for rate in graph.motion(moment, list(values.values()))[1].full().ravel()
+            for rate in program.motion(moment, list(values.values()))[1].full().ravel()
         )
         for step in np.linspace(before, t, 2 + int(fast * (t - before) / SMALL))[1:] if i else [t]:
-            d = [x.full().ravel() for x in graph.motion(step, list(values.values()))]
-            drives = {joint: tuple(row[k] for row in d) for k, joint in enumerate(graph.driven)}
+            d = [x.full().ravel() for x in program.motion(step, list(values.values()))]
+            drives = {joint: tuple(row[k] for row in d) for k, joint in enumerate(program.driven)}
             # On the way the motion is enough.
             solved = oracle.solve(drives, guess) if step == t else oracle.move(drives, guess)
             guess = {body: tuple(x.v for x in q) for body, q in solved.q.items()}
@@ -243,7 +243,7 @@ def test_sweeps_count_the_same_and_refuse_by_name(backend):
     """Among them a crank-rocker where the defaults are a drag link: its turns are others."""
     scene = sprung("C", **DRAG_LINK, parametric=True, count=65)
     wanted = ["effort", "load:coil_C"]
-    engine = DesignEngine.of(scene, wanted, None, Rung(backend))
+    engine = DesignEngine.of(scene, wanted, None, EvaluationMethod(backend))
     # The first crank-rocker comes near a dead centre, and the last one does not.
     designs = np.array(
         [
@@ -421,7 +421,7 @@ def test_many_turns_keep_their_phase(precision):
         sprung("B", law=polynomial(start, 9.0), **DRAG_LINK) for start in (0.2, 0.2 + 2e6 * math.pi)
     )
     graphs = [derive(scene, ["load:coil_B"]) for scene in (near, far)]
-    assert all("_turned:B" in graph.names for graph in graphs)
+    assert all("_turned:B" in program.names for program in graphs)
     one, other = (
         evaluate(scene, wanted=["load:coil_B"], precision=precision).series["load:coil_B:mz"]
         for scene in (near, far)
@@ -456,8 +456,8 @@ def test_what_does_not_tell_turns_apart_is_left_within_one():
         m.revolute("B", b.tip, s)
         m.prismatic("guide", m.ground, s, axis=(1, 0))
         m.torque("seen_by", b, see(m.coordinate(joint)))
-        graph = derive(Scene(m, {"O": polynomial(0, 6.0)}, posture={"b": 0.0}))
-        assert ("_turned:A" in graph.names) is counts
+        program = derive(Scene(m, {"O": polynomial(0, 6.0)}, posture={"b": 0.0}))
+        assert ("_turned:A" in program.names) is counts
 
 
 @pytest.mark.parametrize(
@@ -483,7 +483,7 @@ def test_what_does_not_tell_turns_apart_is_left_within_one():
 def test_whether_an_expression_tells_turns_apart(see, tells):
     """By its operations; and where it says no, none of many whole turns makes a difference."""
     x, y = ca.SX.sym("x"), ca.SX.sym("y")
-    assert tells_turns(see(x, y), x) is tells
+    assert depends_on_turns(see(x, y), x) is tells
     if not tells:
         f = ca.Function("f", [x, y], [see(x, y)])
         for at, other in np.random.default_rng(0).uniform(-4, 4, (50, 2)):

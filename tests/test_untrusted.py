@@ -21,7 +21,7 @@ from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError, StoreE
 from lagrange_casadi.figures.figures import TimePlot
 from lagrange_casadi.shapes.kept import dump_specs, parse_specs
 from lagrange_casadi.store import runs as store
-from lagrange_casadi.store.untrusted import check_shape, parsed, told_as
+from lagrange_casadi.store.untrusted import check_shape, parsed, reported_as
 from lagrange_casadi.studies.sweep import Listed, sweep
 from lagrange_casadi.studies.sweep.checking import check_sweep, progress
 from lagrange_casadi.studies.sweep.parts import Folder
@@ -345,7 +345,7 @@ def test_a_shape_names_the_place_that_it_does_not_fit(value, shape, place):
 
 def test_what_is_no_error_of_ours_becomes_one():
     def fail(error):
-        with told_as("damaged", "x.h5"):
+        with reported_as("damaged", "x.h5"):
             raise error
 
     with pytest.raises(StoreError, match=r"^x\.h5: damaged: two lines$"):

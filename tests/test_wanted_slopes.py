@@ -84,14 +84,17 @@ def test_they_are_those_made_backwards(make, asked):
 
 def test_few_rows_are_made_backwards():
     """As a gradient is: one row by five parameters takes a sweep, not five."""
-    graph = derive(slider_crank(), ["effort", "motion"])
-    row = [k for output, k in graph.outputs.items() if str(output) == "effort:O"]
+    program = derive(slider_crank(), ["effort", "motion"])
+    row = [k for output, k in program.outputs.items() if str(output) == "effort:O"]
     every = list(range(5))
-    backwards, forward = total(graph, row, every), total(graph, list(graph.outputs.values()), every)
-    singles = sum(total(graph, row, [k]).n_instructions() for k in every)
+    backwards, forward = (
+        total(program, row, every),
+        total(program, list(program.outputs.values()), every),
+    )
+    singles = sum(total(program, row, [k]).n_instructions() for k in every)
     assert backwards.n_instructions() < 0.6 * singles
-    given = [0.01, *graph.motion(0.01, (values := [0.1, 0.2, 0.1, 0.1, 0.1])), [], values]
-    place = [*graph.outputs.values()].index(row[0])
+    given = [0.01, *program.motion(0.01, (values := [0.1, 0.2, 0.1, 0.1, 0.1])), [], values]
+    place = [*program.outputs.values()].index(row[0])
     np.testing.assert_allclose(
         backwards(*given).full()[:, 0], forward(*given).full()[:, place], rtol=1e-13, atol=1e-15
     )

@@ -15,8 +15,8 @@ import numpy as np
 from lagrange_casadi import derive
 from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.judge.reference import DIGITS, reference
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.verification.reference import DIGITS, reference
 
 MP = mpmath.mp
 RATIOS = (0.0, 0.31, 0.64, 1.0)
@@ -46,15 +46,17 @@ def truth(scene, t, parameters=None):
     numbers of fifty digits.
     """
     values = scene.mechanism.values(parameters)
-    graph, p = derive(scene), list(values.values())
+    program, p = derive(scene), list(values.values())
     z = None
-    if graph.newton is not None:
+    if program.newton is not None:
         grid = np.unique([*np.linspace(*scene.span, 200), *t])
-        z = run(graph, grid, np.array(p), Rung("vm"))[0].iterated[:, np.searchsorted(grid, t)]
+        z = run(program, grid, np.array(p), EvaluationMethod("vm"))[0].iterated[
+            :, np.searchsorted(grid, t)
+        ]
     decisions = [[] for _ in t]
     rest = iter(decisions)
     rows = reference(
-        graph, t, p, z=z, following=lambda arithmetic: _listening(arithmetic, next(rest))
+        program, t, p, z=z, following=lambda arithmetic: _listening(arithmetic, next(rest))
     )
     sides = []
     for i, (row, others) in enumerate(zip(rows, _others(decisions), strict=True)):
@@ -62,13 +64,13 @@ def truth(scene, t, parameters=None):
         for taken in others:
             at = None if z is None else z[:, i : i + 1]
             found += reference(
-                graph,
+                program,
                 t[i : i + 1],
                 p,
                 z=at,
                 following=lambda arithmetic, taken=taken: _taking(arithmetic, taken),
             )
-        sides.append([dict(zip(graph.names, one, strict=True)) for one in found])
+        sides.append([dict(zip(program.names, one, strict=True)) for one in found])
     return Truth(scene.mechanism, values, sides)
 
 

@@ -162,8 +162,8 @@ def _motor(
         numbers[column] = number * unit
     stall, rated, rated_speed, peak, most, inertia = (numbers[column] for column in needed)
     if rated > stall or stall > peak or rated_speed > most:
-        told = f"{needed[1]} <= {needed[0]} <= {needed[3]}"
-        raise DeclarationError(f"{row.where}: expected {told}, and rated_speed <= max_speed")
+        relation = f"{needed[1]} <= {needed[0]} <= {needed[3]}"
+        raise DeclarationError(f"{row.where}: expected {relation}, and rated_speed <= max_speed")
     if (knee[0] in numbers) != (knee[1] in numbers):
         raise DeclarationError(f"{row.where}: expected both {' and '.join(knee)}, or none")
     if knee[0] in numbers and not (numbers[knee[0]] <= most and numbers[knee[1]] <= peak):

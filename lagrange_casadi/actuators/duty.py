@@ -194,8 +194,8 @@ def duty_of(
     held = solution.held.get(joint) if held is None else held
     if held is not None:
         effort = np.where(rests, held.worst, effort)
-    open_ = int(np.count_nonzero(~np.isfinite(effort)))
-    if open_:
+    missing = int(np.count_nonzero(~np.isfinite(effort)))
+    if missing:
         why = (
             "; joints with friction are at rest there: use the range of holding(), or give their"
             " friction smooth="
@@ -207,7 +207,7 @@ def duty_of(
             )
         why = why if solution.resting.any() else ""
         raise DeclarationError(
-            f"the effort of drive '{joint}' is indeterminate at {open_} of {solution.t.size}"
+            f"the effort of drive '{joint}' is indeterminate at {missing} of {solution.t.size}"
             f" instants{why}"
         )
     # The gearbox takes its losses from whoever gives power; what holds at rest gets no help from

@@ -10,13 +10,13 @@ from ..arguments import public
 from ..base.arrays import Array
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, instants_of
-from ..equations.seen_inertia import SeenInertia, seen_inertia
+from ..equations.reflected_inertia import ReflectedInertia, reflected_inertia
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.backends import run
+from ..instants.evaluation_method import EvaluationMethod
 from ..instants.refusal import refuse
-from ..instants.rung import Rung
 
-_VM = Rung("vm")
+_VM = EvaluationMethod("vm")
 
 
 @public
@@ -40,7 +40,7 @@ def inertia_at(
     and motions are not as many, and as :func:`.evaluate` does.
     """
     values = scene.values(parameters)
-    seen = seen_inertia(scene, values)
+    seen = reflected_inertia(scene, values)
     if joint not in seen.drives:
         raise UnknownNameError("drive", joint, seen.drives)
     several = len(seen.motions) > 1
@@ -63,7 +63,7 @@ def inertia_at(
     return _alone(seen, np.asarray(found.out, float), seen.drives.index(joint))
 
 
-def _alone(seen: SeenInertia, out: Array, drive: int) -> Array:
+def _alone(seen: ReflectedInertia, out: Array, drive: int) -> Array:
     """Inertia at one drive alone, from the columns M and R (columns, t)."""
     count = len(seen.motions)
     matrix, by_rate = (

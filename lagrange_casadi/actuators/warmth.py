@@ -39,5 +39,5 @@ def warmest(t: Array, torque: Array, time_constant: float = math.inf) -> float:
     rises = (rate < 0.0) & (start < heat[:-1])
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         after = time_constant * np.log1p((start - heat[:-1]) / (rate * time_constant))
-        met = np.where(rises & (after < steps), heat[:-1] + rate * after, 0.0)
-    return math.sqrt(max(max(warm), float(met.max())))
+        reached = np.where(rises & (after < steps), heat[:-1] + rate * after, 0.0)
+    return math.sqrt(max(max(warm), float(reached.max())))

@@ -66,11 +66,11 @@ def mechanism(motion: Motion, stage: Stage, *, names: bool) -> Iterator[Thing]:
             yield _block(motion, stage, joint, masses, colours)
     for joint in joints:
         if joint.kind in _PINS:
-            ball = joint.kind == "spherical"
+            sphere = joint.kind == "spherical"
             yield Dot(
                 stage.on_sheet(motion.place(joint.child)),
-                (4.0 if ball else 4.8) * stage.unit,
-                INK if ball else "#ffffff",
+                (4.0 if sphere else 4.8) * stage.unit,
+                INK if sphere else "#ffffff",
             )
     for spot in path_spots(description).values():
         yield Dot(stage.on_sheet(motion.place(spot)), 3.6 * stage.unit, PATH)

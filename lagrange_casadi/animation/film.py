@@ -111,13 +111,13 @@ class Animation:
 
     def _repr_html_(self) -> str:
         """The file itself, within the page."""
-        told, kind = escape(str(self.path)), _KINDS.get(self.path.suffix.lower())
+        path, kind = escape(str(self.path)), _KINDS.get(self.path.suffix.lower())
         if kind is None or not self.path.is_file():
-            return f"<p>{told}</p>"
+            return f"<p>{path}</p>"
         source = f"data:{kind};base64,{b64encode(self.path.read_bytes()).decode()}"
         if kind.startswith("video"):
-            return f'<video src="{source}" title="{told}" autoplay loop controls muted></video>'
-        return f'<img src="{source}" alt="{told}">'
+            return f'<video src="{source}" title="{path}" autoplay loop controls muted></video>'
+        return f'<img src="{source}" alt="{path}">'
 
 
 @public

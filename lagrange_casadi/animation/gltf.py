@@ -28,7 +28,7 @@ from ..shapes.views import upright
 from ..version import __version__
 from .forces import LONGEST, actions_of, largest_of
 from .motion import Motion
-from .solids import Mesh, arrow, ball, block, cylinder, frame_along, prism, together
+from .solids import Mesh, arrow, block, cylinder, frame_along, prism, sphere, together
 
 _KEPT = ("nodes", "meshes", "materials", "accessors", "bufferViews")
 """Lists of a file, in the order in which they stand there."""
@@ -70,7 +70,7 @@ class _Scene:
     chosen: npt.NDArray[np.intp]
     seconds: float
     forces: bool
-    told: dict[str, list[Any]] = field(default_factory=lambda: {key: [] for key in _KEPT})
+    content: dict[str, list[Any]] = field(default_factory=lambda: {key: [] for key in _KEPT})
     channels: list[Any] = field(default_factory=list)
     samplers: list[Any] = field(default_factory=list)
     data: bytearray = field(default_factory=bytearray)
@@ -100,7 +100,7 @@ class _Scene:
             "asset": {"version": "2.0", "generator": f"lagrange_casadi {__version__}"},
             "scene": 0,
             "scenes": [{"name": self.solution.case, "nodes": [top]}],
-            **self.told,
+            **self.content,
             "animations": [{"name": "cycle", "channels": self.channels, "samplers": self.samplers}],
             "buffers": [{"byteLength": len(self.data)}],
         }
@@ -227,8 +227,8 @@ class _Scene:
                 "mode": _LINE,
                 "material": self._material(PATH),
             }
-            self.told["meshes"].append({"name": name, "primitives": [line]})
-            yield self._node({"name": f"way of {name}", "mesh": len(self.told["meshes"]) - 1})
+            self.content["meshes"].append({"name": name, "primitives": [line]})
+            yield self._node({"name": f"way of {name}", "mesh": len(self.content["meshes"]) - 1})
 
     def _axis(self, joint: JointShape) -> Array:
         """The first axis of a joint, on its child's axes, at the first instant."""
@@ -253,8 +253,8 @@ class _Scene:
         return np.asarray(axes.transpose(0, 2, 1))
 
     def _node(self, node: dict[str, Any]) -> int:
-        self.told["nodes"].append(node)
-        return len(self.told["nodes"]) - 1
+        self.content["nodes"].append(node)
+        return len(self.content["nodes"]) - 1
 
     def _mesh(self, name: str, mesh: Mesh, colour: str) -> int:
         attributes = {
@@ -268,11 +268,11 @@ class _Scene:
             "mode": _TRIANGLES,
             "material": self._material(colour),
         }
-        self.told["meshes"].append({"name": name, "primitives": [primitive]})
-        return len(self.told["meshes"]) - 1
+        self.content["meshes"].append({"name": name, "primitives": [primitive]})
+        return len(self.content["meshes"]) - 1
 
     def _material(self, colour: str) -> int:
-        known = [material["name"] for material in self.told["materials"]]
+        known = [material["name"] for material in self.content["materials"]]
         if colour not in known:
             share = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
             linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
@@ -281,7 +281,7 @@ class _Scene:
                 "metallicFactor": 0.2,
                 "roughnessFactor": 0.6,
             }
-            self.told["materials"].append({"name": colour, "pbrMetallicRoughness": surface})
+            self.content["materials"].append({"name": colour, "pbrMetallicRoughness": surface})
             known.append(colour)
         return known.index(colour)
 
@@ -304,11 +304,11 @@ class _Scene:
             {"target": target} if target else {}
         )
         self.data += values.tobytes()
-        self.told["bufferViews"].append(view)
+        self.content["bufferViews"].append(view)
         kind = "SCALAR" if values.ndim == 1 else f"VEC{values.shape[1]}"
         component = _WHOLE if values.dtype.kind == "u" else _FLOAT
         accessor = {
-            "bufferView": len(self.told["bufferViews"]) - 1,
+            "bufferView": len(self.content["bufferViews"]) - 1,
             "componentType": component,
             "count": len(values),
             "type": kind,
@@ -316,8 +316,8 @@ class _Scene:
         if ends:
             rows = values.reshape(len(values), -1)
             accessor |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
-        self.told["accessors"].append(accessor)
-        return len(self.told["accessors"]) - 1
+        self.content["accessors"].append(accessor)
+        return len(self.content["accessors"]) - 1
 
 
 def _solids(shape: Shape, girth: float) -> Iterator[Mesh]:
@@ -338,7 +338,7 @@ def _pin(joint: JointShape, axis: Array, girth: float) -> Mesh:
     """A joint on its child: a ball, a block that slides along an axis, or a pin along it."""
     at = np.array(joint.child.at)
     if joint.kind in ("spherical", "free"):
-        return ball(at, 1.5 * girth)
+        return sphere(at, 1.5 * girth)
     if joint.kind in ("prismatic", "planar"):
         return block(at, frame_along(axis), [4.4 * girth, 2.6 * girth, 2.6 * girth])
     # The pin of a planar slot is across the plane, and not along the slot.

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
-from ..base.room import require
+from ..base.space import require
 from ..errors import LagrangeCasadiError, StoreError, one_line
 from ..shapes.pictures import one_at_a_time
 from .drawn import INK, Dot, Picture, Thing, Words

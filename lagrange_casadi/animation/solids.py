@@ -88,7 +88,7 @@ def arrow(heads: int) -> Mesh:
     return together([shaft, *(cone((end - 0.16) * ahead, end * ahead, 0.05) for end in ends)])
 
 
-def ball(centre: Array, radius: float) -> Mesh:
+def sphere(centre: Array, radius: float) -> Mesh:
     """A ball."""
     up, around = np.meshgrid(
         np.linspace(0.0, np.pi, _RINGS + 1), 2.0 * np.pi * np.arange(_ROUND) / _ROUND, indexing="ij"

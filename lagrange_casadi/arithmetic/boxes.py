@@ -116,8 +116,8 @@ class _Boxes:
         """Bounds with room for rounding."""
         low, high = box
         self.width += high - low
-        room = _WIDER * ca.fmax(ca.fabs(low), ca.fabs(high))
-        return low - room, high + room
+        capacity = _WIDER * ca.fmax(ca.fabs(low), ca.fabs(high))
+        return low - capacity, high + capacity
 
     def unknown(self, where: Any) -> None:
         """Bounds that exclude nothing."""

@@ -229,7 +229,7 @@ def _arriving(place: Path) -> Iterator[Path]:
         names = sorted(os.listdir(near))
         for name in names:
             os.replace(Path(near) / name, place / name)
-    _make_room(place, {name.partition(".")[0] for name in names})
+    _make_space(place, {name.partition(".")[0] for name in names})
 
 
 def use(file: Path) -> None:
@@ -274,7 +274,7 @@ def remove(entries: Iterable[Entry]) -> int:
     return removed
 
 
-def _make_room(place: Path, fresh: set[str]) -> None:
+def _make_space(place: Path, fresh: set[str]) -> None:
     """Remove what was used longest ago, until the rest is within the limit, and what was left
     behind; what is ``fresh`` stays.
     """

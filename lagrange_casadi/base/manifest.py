@@ -150,8 +150,8 @@ class Manifest:
                 (folder / name).unlink()
         with replacing(
             folder / self.name
-        ) as told:  # though nothing went: it removes the draft of one that was killed here
-            _write(told, self.text(files, more))
+        ) as draft_folder:  # though nothing went: it removes the draft of one that was killed here
+            _write(draft_folder, self.text(files, more))
 
 
 def _write(path: Path, text: str) -> None:

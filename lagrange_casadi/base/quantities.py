@@ -24,9 +24,9 @@ def law_members(space: bool) -> tuple[str, ...]:
     return table_of(space).law
 
 
-def station_members(space: bool) -> tuple[str, ...]:
+def load_point_members(space: bool) -> tuple[str, ...]:
     """Members of a load point of a link in files."""
-    return table_of(space).station
+    return table_of(space).load_point
 
 
 def force_members(space: bool, *, moment: bool = True) -> tuple[str, ...]:
@@ -35,7 +35,7 @@ def force_members(space: bool, *, moment: bool = True) -> tuple[str, ...]:
     return (*forces, *moments) if moment else forces
 
 
-def own_members(*, moment: bool = True) -> tuple[str, ...]:
+def local_members(*, moment: bool = True) -> tuple[str, ...]:
     """The components of a reaction in space on the joint's own axes."""
     return ("fu", "fv", "fw", "mu", "mv", "mw") if moment else ("fu", "fv", "fw")
 
@@ -59,8 +59,9 @@ def compared(units: Sequence[str]) -> list[int]:
 
 
 _LAWS = {*PLANE.law, *SPACE.law}
-_SPREAD = re.compile(
-    rf"(?:({'|'.join((*PLANE.spread, *SPACE.spread, *SPACE.couples))})(0|[1-9]\d*)|(width|end))"
+_DISTRIBUTED = re.compile(
+    rf"(?:({'|'.join((*PLANE.distributed, *SPACE.distributed, *SPACE.couples))})"
+    r"(0|[1-9]\d*)|(width|end))"
 )
 _ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
 _COORDINATE = ".coordinate"
@@ -91,7 +92,7 @@ class Output:
     group: str
     part: str
     member: str = ""
-    station: str = ""
+    load_point: str = ""
     power: int | None = None
 
     @classmethod
@@ -110,13 +111,15 @@ class Output:
                     return cls(group, text.removesuffix(ending), member)
             return cls(group, text)
         if group == "section" and len(rest) == 2:
-            station, member = rest
-            if station == "law" and member in _LAWS:
+            load_point, member = rest
+            if load_point == "law" and member in _LAWS:
                 return cls("law", part, member)
-            if found := _SPREAD.fullmatch(member):
+            if found := _DISTRIBUTED.fullmatch(member):
                 direction, power, end = found.groups()
-                return cls("spread", part, end or direction, station, None if end else int(power))
-            return cls("station", part, member, station)
+                return cls(
+                    "spread", part, end or direction, load_point, None if end else int(power)
+                )
+            return cls("station", part, member, load_point)
         if group == "holding":
             part, _, member = text.rpartition(":")
             return cls(group, part, member)
@@ -133,7 +136,7 @@ class Output:
             return f"motion:{self.part}{_ENDINGS.get(self.member, plain)}"
         if self.along:
             power = "" if self.power is None else self.power
-            return f"section:{self.part}:{self.station or 'law'}:{self.member}{power}"
+            return f"section:{self.part}:{self.load_point or 'law'}:{self.member}{power}"
         return ":".join(word for word in (self.group, self.part, self.member) if word)
 
     @property

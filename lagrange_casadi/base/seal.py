@@ -20,7 +20,7 @@ from io import FileIO
 from pathlib import Path
 
 from ..errors import PathError, StoreError, check_kind, one_line
-from .room import cores
+from .space import cores
 from .streams import check_regular
 
 try:
@@ -54,8 +54,8 @@ class Seal:
     def of(cls, file: FileIO, kind: str, length: int) -> Seal:
         """The seal of the first ``length`` bytes of a file."""
         file.seek(0)
-        told = hashlib.sha256(b"".join([f"{kind} {length}\n".encode(), *_digests(file, length)]))
-        return cls(kind, length, told.hexdigest())
+        digest = hashlib.sha256(b"".join([f"{kind} {length}\n".encode(), *_digests(file, length)]))
+        return cls(kind, length, digest.hexdigest())
 
     @classmethod
     def read(cls, text: bytes) -> Seal | None:
@@ -84,7 +84,7 @@ class Seal:
 
 
 @dataclass(frozen=True)
-class Seen:
+class VerifiedFile:
     """A file that was verified: which, and when it was last changed."""
 
     device: int
@@ -93,19 +93,19 @@ class Seen:
     changed: int
 
     @classmethod
-    def of(cls, status: os.stat_result) -> Seen:
+    def of(cls, status: os.stat_result) -> VerifiedFile:
         """Make it from the system's description of a file."""
         return cls(status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
 
     def is_at(self, path: str | os.PathLike[str]) -> bool:
         """Return whether the file is still there, unchanged."""
         try:
-            return self == Seen.of(os.stat(path))
+            return self == VerifiedFile.of(os.stat(path))
         except OSError:
             return False
 
 
-def seal(path: Path, kind: str) -> Seen:
+def seal(path: Path, kind: str) -> VerifiedFile:
     """Put the seal at the end of a file that is otherwise finished, which is as good as verified
     then. Raises ``OSError``.
     """
@@ -114,7 +114,7 @@ def seal(path: Path, kind: str) -> Seen:
         found = Seal.of(file, kind, file.seek(0, os.SEEK_END))
         written.result()
         file.write(found.text)
-        return Seen.of(os.fstat(file.fileno()))
+        return VerifiedFile.of(os.fstat(file.fileno()))
 
 
 def kind_of(path: str | os.PathLike[str]) -> str | None:
@@ -127,7 +127,7 @@ def kind_of(path: str | os.PathLike[str]) -> str | None:
     return found.kind if found else None
 
 
-def verify(path: str | os.PathLike[str]) -> Seen:
+def verify(path: str | os.PathLike[str]) -> VerifiedFile:
     """Read all of a file, and hold it to its seal.
 
     Raises :class:`PathError` for no file, :class:`StoreError` for one that is damaged, has no seal,
@@ -145,7 +145,7 @@ def verify(path: str | os.PathLike[str]) -> Seen:
             )
         if Seal.of(file, found.kind, found.length) != found:
             raise StoreError(f"{path}: damaged: its bytes are not those that were written")
-    return Seen.of(there)
+    return VerifiedFile.of(there)
 
 
 def is_held(path: str | os.PathLike[str]) -> bool:

@@ -233,11 +233,11 @@ _AXIAL_LAW = (
         "axial force for a unit of the first moment mu1 from the section to the tip",
     ),
 )
-_STATION_N = Quantity(
+_LOAD_POINT_N = Quantity(
     "station", "n", ("t",), FORCE, "force on the link at a station, along the axis"
 )
-_STATION = Quantity("station", "station", ("t",), "1", "place of the station, ratio xi/l")
-_SPREAD = (
+_LOAD_POINT = Quantity("station", "station", ("t",), "1", "place of the station, ratio xi/l")
+_DISTRIBUTED = (
     Quantity(
         "spread",
         "width",
@@ -254,7 +254,7 @@ def _spread(member: str, direction: str) -> Quantity:
     return Quantity("spread", member, ("t",), "N/m", meaning)
 
 
-_SPREAD_N = _spread("qn", "in the direction of the axis")
+_DISTRIBUTED_N = _spread("qn", "in the direction of the axis")
 _COUPLE = "couple of the slices' rotary inertia, {}: coefficient of a power of (end - xi/l)/width"
 _COUPLES = tuple(Quantity("spread", f"c{x}", ("t",), FORCE, _COUPLE.format(x)) for x in "xyz")
 
@@ -300,13 +300,13 @@ QUANTITIES = (
     *_AXIAL_LAW,
     *_shear_law("f", "shear force"),
     Quantity("law", "m0", ("t",), MOMENT, "bending moment at the tip"),
-    _STATION_N,
+    _LOAD_POINT_N,
     Quantity("station", "f", ("t",), FORCE,
         "force on the link at a station, 90 deg counter-clockwise of the axis"),
     Quantity("station", "m", ("t",), MOMENT, "moment on the link at a station"),
-    _STATION,
-    *_SPREAD,
-    _SPREAD_N,
+    _LOAD_POINT,
+    *_DISTRIBUTED,
+    _DISTRIBUTED_N,
     _spread("qf", "90 deg counter-clockwise of the axis"),
 )  # fmt: skip
 
@@ -348,7 +348,7 @@ SPATIAL_QUANTITIES = (
     *_shear_law("fz", "shear force, z,"),
     Quantity("law", "my0", ("t",), MOMENT, "bending moment at the tip, y"),
     Quantity("law", "mx0", ("t",), MOMENT, "torsional moment at the tip"),
-    _STATION_N,
+    _LOAD_POINT_N,
     Quantity("station", "fy", ("t",), FORCE, "force on the link at a station, along the link's y"),
     Quantity("station", "fz", ("t",), FORCE, "force on the link at a station, along the link's z"),
     Quantity("station", "mx", ("t",), MOMENT, "moment on the link at a station, about the axis"),
@@ -356,9 +356,9 @@ SPATIAL_QUANTITIES = (
         "moment on the link at a station, about the link's y"),
     Quantity("station", "mz", ("t",), MOMENT,
         "moment on the link at a station, about the link's z"),
-    _STATION,
-    *_SPREAD,
-    _SPREAD_N,
+    _LOAD_POINT,
+    *_DISTRIBUTED,
+    _DISTRIBUTED_N,
     _spread("qfy", "in the direction of the link's y"),
     _spread("qfz", "in the direction of the link's z"),
     *_COUPLES,
@@ -384,7 +384,7 @@ class Terms:
 
     coefficients: tuple[str, ...]
     acting: str
-    spread: str = ""
+    distributed: str = ""
     shear: str = ""
     arm: int = 0
     couple: str = ""
@@ -422,16 +422,16 @@ class Table:
         return self._members("law")
 
     @cached_property
-    def station(self) -> tuple[str, ...]:
+    def load_point(self) -> tuple[str, ...]:
         """The members of what acts on a link at a station."""
         return self._members("station")
 
     @cached_property
-    def spread(self) -> tuple[str, ...]:
+    def distributed(self) -> tuple[str, ...]:
         """The members of a load along a link that come once for each power of the place: its
         directions, that of the axis first.
         """
-        others = {row.member for row in (*_SPREAD, *_COUPLES)}
+        others = {row.member for row in (*_DISTRIBUTED, *_COUPLES)}
         return tuple(member for member in self._members("spread") if member not in others)
 
     @cached_property
@@ -444,7 +444,10 @@ class Table:
     @cached_property
     def place_first(self) -> tuple[str, ...]:
         """Members of ``station`` in the order of emitted C and of a law's loads."""
-        return (_STATION.member, *(member for member in self.station if member != _STATION.member))
+        return (
+            _LOAD_POINT.member,
+            *(member for member in self.load_point if member != _LOAD_POINT.member),
+        )
 
     @cached_property
     def forces(self) -> tuple[str, ...]:

@@ -91,8 +91,8 @@ def number(value: object, unit: str = "1", *, finite: bool = True) -> float:
     Raises :class:`.NumberError`, a ``ValueError``, for anything else, and if it must be ``finite``
     for what is not.
     """
-    read, told = typed(value)
-    found = double(read) if told in ("", unit) else None
+    read, written_unit = typed(value)
+    found = double(read) if written_unit in ("", unit) else None
     if found is None or not (math.isfinite(found) or not finite):
         raise NumberError(
             f"expected {'a finite ' if finite else 'a '}{in_words(unit)}, got {shown(value)}"

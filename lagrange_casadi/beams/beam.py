@@ -123,7 +123,7 @@ class Beam:
         return found
 
 
-def told_beam(beam: Beam, number: Callable[[Any], float]) -> dict[str, Any]:
+def beam_to_numbers(beam: Beam, number: Callable[[Any], float]) -> dict[str, Any]:
     """A beam, its expressions as numbers."""
     course, shapes = beam.course, list(beam.course.shapes())
     known = [
@@ -146,30 +146,36 @@ def told_beam(beam: Beam, number: Callable[[Any], float]) -> dict[str, Any]:
     }
 
 
-def beam_told(told: Mapping[str, Any]) -> Beam:
+def beam_from_numbers(record: Mapping[str, Any]) -> Beam:
     """The beam of such numbers.
 
     Raises ``ValueError``, ``TypeError``, ``LookupError`` or :class:`.DeclarationError` for what is
     none, as in a forged file.
     """
-    for shape in told["shapes"]:
+    for shape in record["shapes"]:
         kind, numbers = shape["kind"], shape["dimensions"]
         known = dimensions_of(kind)
         if kind not in kinds() or (known is not None and tuple(numbers) != known):
             raise ValueError(f"{kind!r} is no cross-section with these dimensions")
         if not all(type(x) in (int, float) and math.isfinite(x) for x in numbers.values()):
             raise ValueError(f"the dimensions of a {kind} are not numbers")
-    breaks = tuple(map(float, told["breaks"]))
-    if len(breaks) != len(told["cells"]) + 1 or any(b <= a for a, b in itertools.pairwise(breaks)):
+    breaks = tuple(map(float, record["breaks"]))
+    if len(breaks) != len(record["cells"]) + 1 or any(
+        b <= a for a, b in itertools.pairwise(breaks)
+    ):
         raise ValueError("the breaks of a beam do not fit its cells")
-    return beam_of(told)
+    return beam_of(record)
 
 
-def beam_of(told: Mapping[str, Any]) -> Beam:
-    """Make the beam of what :func:`told_beam` wrote, be it numbers or expressions."""
-    shapes = [Shape(shape["kind"], dict(shape["dimensions"])) for shape in told["shapes"]]
-    breaks = tuple(map(float, told["breaks"]))
-    course = Course(breaks, tuple((shapes[first], shapes[last]) for first, last in told["cells"]))
-    material = Material(**{entry.name: told["material"][entry.name] for entry in fields(Material)})
-    columns = None if told["columns"] is None else tuple(told["columns"])
-    return Beam(course, material, [Notch(**notch) for notch in told["notches"]], columns)
+def beam_of(numbers: Mapping[str, Any]) -> Beam:
+    """Make the beam of what :func:`beam_to_numbers` wrote, be it numbers or expressions."""
+    shapes = [Shape(shape["kind"], dict(shape["dimensions"])) for shape in numbers["shapes"]]
+    breaks = tuple(map(float, numbers["breaks"]))
+    course = Course(
+        breaks, tuple((shapes[first], shapes[last]) for first, last in numbers["cells"])
+    )
+    material = Material(
+        **{entry.name: numbers["material"][entry.name] for entry in fields(Material)}
+    )
+    columns = None if numbers["columns"] is None else tuple(numbers["columns"])
+    return Beam(course, material, [Notch(**notch) for notch in numbers["notches"]], columns)

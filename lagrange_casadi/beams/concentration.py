@@ -238,10 +238,10 @@ def _fitted(load: str, fit: _Fit, wide: float, narrow: float, radius: float) -> 
     )
 
 
-def _lengths(what: str, **told: float | str) -> list[float]:
+def _lengths(what: str, **lengths: float | str) -> list[float]:
     """Positive lengths [m]. Raises :class:`.DeclarationError` for what is none."""
     found = []
-    for name, value in told.items():
+    for name, value in lengths.items():
         try:
             found.append(number(value, "m"))
         except NumberError as error:

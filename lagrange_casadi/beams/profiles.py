@@ -31,9 +31,9 @@ class Profile:
         """
         names = dimensions_of(kind)
         if names is None or set(names) != set(self.dimensions):
-            told = ", ".join(names or ("none by name",))
+            valid = ", ".join(names or ("none by name",))
             raise DeclarationError(
-                f"profile '{self.name}': a {kind} has the dimensions {told}, got"
+                f"profile '{self.name}': a {kind} has the dimensions {valid}, got"
                 f" {', '.join(self.dimensions)}"
             )
         return Shape(kind, {name: self.dimensions[name] for name in names})

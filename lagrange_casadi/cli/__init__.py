@@ -200,10 +200,10 @@ def _insistent() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def _unless_interrupted(told: Callable[[Any], Any]) -> Callable[[Any], Any]:
+def _unless_interrupted(report: Callable[[Any], Any]) -> Callable[[Any], Any]:
     """Report exceptions that Python ignores, except interrupts."""
     return lambda ignored: (
-        None if issubclass(ignored.exc_type, KeyboardInterrupt) else told(ignored)
+        None if issubclass(ignored.exc_type, KeyboardInterrupt) else report(ignored)
     )
 
 

@@ -16,10 +16,10 @@ from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene, kinds
 from ..declare.times import Over
 from ..errors import CertificateError
-from ..judge.certificate import failure
 from ..store.runs import load
-from ..store.untrusted import told_as
+from ..store.untrusted import reported_as
 from ..studies.evaluate import evaluate
+from ..verification.certificate import failure
 from .echo import echo
 from .options import parameters
 
@@ -49,7 +49,7 @@ def animate(
         check_ending(out)
         check_writable(out)
         solution = load(target)
-        with told_as("cannot be shown", target):
+        with reported_as("cannot be shown", target):
             write_animation(solution, out, film)
     else:
         if out:

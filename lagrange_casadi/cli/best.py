@@ -11,7 +11,7 @@ from ..errors import NoDesignError
 from ..studies.sweep import Sweep
 from ..studies.sweep import best as find
 from ..studies.sweep.axes import DESIGN, counted, grouped
-from ..studies.sweep.best import missed, tally
+from ..studies.sweep.best import counts, missed
 from .echo import echo
 from .rows import show, write_csv
 
@@ -33,10 +33,10 @@ def best(
         sweep, minimise=minimise, maximise=maximise, where=where, count=count, columns=columns
     )
     if not found:
-        met, with_result = (grouped(count) for count in tally(sweep, where))
+        satisfied, with_result = (grouped(count) for count in counts(sweep, where))
         raise NoDesignError(
             f"{file}: no design has a result and meets the conditions: of {counted(sweep.size)},"
-            f" {met} meet them, {with_result} of these with a result{missed(sweep, where)}"
+            f" {satisfied} meet them, {with_result} of these with a result{missed(sweep, where)}"
         )
     names, piped = list(found[0].values), csv is not None and is_standard_output(csv)
     if not piped:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import click
 
-from ..base.room import memory
+from ..base.space import memory
 from ..base.vocabulary import TIME_LIMIT
 from ..codegen import programs
 from ..errors import LagrangeCasadiError, PathError, StoreError, one_line
@@ -89,18 +89,18 @@ def _findings_apart(file: Path, seconds: float) -> list[str]:
             " forged"
         )
     try:
-        told = parsed(done.stdout, _ANSWER)
+        answer = parsed(done.stdout, _ANSWER)
     except (ValueError, RecursionError):
         last = done.stderr.strip().rpartition("\n")[2][:_LENGTH]
         raise StoreError(
             f"{file}: the process that reads it gave no answer (status"
             f" {done.returncode}){last and ': '}{last}"
         ) from None
-    if told["refused"]:
-        raise (PathError if told["status"] == PathError.exit_status else StoreError)(
-            told["refused"]
+    if answer["refused"]:
+        raise (PathError if answer["status"] == PathError.exit_status else StoreError)(
+            answer["refused"]
         )
-    return list(told["findings"])
+    return list(answer["findings"])
 
 
 def answer(file: str) -> None:

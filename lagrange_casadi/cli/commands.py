@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from ..base.room import MOST_THREADS
+from ..base.space import MOST_THREADS
 from ..base.vocabulary import (
     RATE,
     SECONDS,
@@ -26,9 +26,9 @@ from .options import (
     arithmetic,
     even_points,
     instants,
+    method,
     over,
     place,
-    rung,
     settings_by,
     wanted,
 )
@@ -52,7 +52,7 @@ from .options import (
     " kind"
     " such as section, or all; repeatable. Default: those of the case."
 )
-@rung
+@method
 @click.option(
     "--threads",
     type=click.IntRange(1, MOST_THREADS),

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from ..base.room import MOST_THREADS
+from ..base.space import MOST_THREADS
 from ..base.vocabulary import (
     BACKENDS,
     CRITERIA,
@@ -35,7 +35,7 @@ from .options import (
     settings_by,
     share,
     tolerance,
-    untabled_rung,
+    untabled_method,
     wanted,
 )
 
@@ -77,7 +77,7 @@ from .options import (
     " as"
     " well.",
 )
-@untabled_rung
+@untabled_method
 @click.option(
     "--workers",
     type=click.IntRange(1, MOST_THREADS),

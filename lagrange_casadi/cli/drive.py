@@ -21,8 +21,8 @@ from ..declare.scene import kinds
 from ..declare.times import Over
 from ..errors import CertificateError, LagrangeCasadiError, UnknownNameError
 from ..instants.solution import Solution
-from ..judge.certificate import failure, summary
 from ..studies.evaluate import evaluate
+from ..verification.certificate import failure, summary
 from .echo import echo
 from .options import parameters
 
@@ -188,12 +188,12 @@ def _choice_lines(choice: Choice, count: int) -> Iterator[str]:
 
 
 def _speed(duty: Duty) -> str:
-    told = (
+    speed = (
         f"{duty.peak_speed:.5g} m/s"
         if duty.linear
         else f"{duty.peak_speed * 60.0 / math.tau:.5g} 1/min"
     )
-    return f"peak speed {told}"
+    return f"peak speed {speed}"
 
 
 def _energy(duty: Duty) -> str:

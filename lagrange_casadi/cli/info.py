@@ -171,21 +171,21 @@ def _in_plane(joint: Description) -> str:
 
 def _in_space(joint: Description, description: Description) -> str:
     """Describe a joint in space: the axis of each of its coordinates, and what drives it."""
-    told, unmeasured = "", set(description["unmeasured"])
+    text, unmeasured = "", set(description["unmeasured"])
     for (name, kind), axis in zip(joint["coordinates"].items(), joint["axes"], strict=True):
         if name not in unmeasured:
             own = name.partition(":")[2]
             lead = f" ({joint['pitch'] * math.tau:g} m a turn)" if joint["pitch"] else ""
             word = (
                 f"{'along' if kind == 'slide' else 'about'}"
-                f" {_vector(axis)}{'' if told else ' of ' + joint['parent']['body']}"
+                f" {_vector(axis)}{'' if text else ' of ' + joint['parent']['body']}"
             )
-            told += f", {own + ' ' if own else ''}{word}{lead}{_driven(name, joint, description)}"
+            text += f", {own + ' ' if own else ''}{word}{lead}{_driven(name, joint, description)}"
     barred = {joint["parent"]["body"], joint["child"]["body"]} & set(description["bars"])
     return (
-        told
+        text
         if barred or not unmeasured & set(joint["coordinates"])
-        else f"{told}, closes a loop: its angles are not evaluated"
+        else f"{text}, closes a loop: its angles are not evaluated"
     )
 
 

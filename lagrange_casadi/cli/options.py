@@ -328,10 +328,10 @@ over = click.option(
 )
 """Instants by a drive."""
 
-rung = _together(_BACKEND, _PRECISION, _NEWTON, _TABLE, _FLAGS)
-"""The options of a :class:`.Rung`."""
+method = _together(_BACKEND, _PRECISION, _NEWTON, _TABLE, _FLAGS)
+"""The options of a :class:`.EvaluationMethod`."""
 
-untabled_rung = _together(_BACKEND, _PRECISION, _NEWTON, _FLAGS)
+untabled_method = _together(_BACKEND, _PRECISION, _NEWTON, _FLAGS)
 """Options of an evaluation without a table."""
 
 arithmetic = _together(_PRECISION, _NEWTON, _TABLE)

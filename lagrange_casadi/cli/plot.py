@@ -14,7 +14,7 @@ from ..errors import NoDesignError
 from ..shapes.index import MANIFEST, NAME, write_index
 from ..shapes.kept import parse_specs
 from ..store.runs import figure_specs, load
-from ..store.untrusted import told_as
+from ..store.untrusted import reported_as
 from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.default_figures import default_plots
 from ..studies.sweep.plots import Spec, draw_sweep
@@ -51,7 +51,7 @@ def plot(
         raise click.UsageError("--over, --at and --against go with a sweep's file")
     else:
         solution, drawn = load(file), parse_specs(figure_specs(file))
-        with told_as(_UNDRAWN, file), MANIFEST.filling(out) as draft:
+        with reported_as(_UNDRAWN, file), MANIFEST.filling(out) as draft:
             draw_with_progress(solution, drawn, draft, si)
         if not drawn:
             for line in untold_lines(solution):
@@ -65,7 +65,7 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
     Raises :class:`NoDesignError` where no figure shows anything.
     """
     skipped, drawn = [], []
-    with told_as(_UNDRAWN, sweep.path), MANIFEST.filling(out) as draft:
+    with reported_as(_UNDRAWN, sweep.path), MANIFEST.filling(out) as draft:
         for path, why in tqdm(
             draw_sweep(sweep, specs, draft),
             total=len(specs),
@@ -86,8 +86,8 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
 
 def _number(sweep: Sweep, name: str, value: float | str) -> float:
     """Number of a fixed parameter, which may have a unit."""
-    found, told = typed(value)
-    if told and (unit := sweep.parameters.get(name)) != told:
+    found, written_unit = typed(value)
+    if written_unit and (unit := sweep.parameters.get(name)) != written_unit:
         raise click.UsageError(f"--at: parameter '{name}' is in {unit}, got {value}")
     return float(found)
 

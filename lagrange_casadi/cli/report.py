@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.quantities import Output
 from ..declare.description import bends_of
-from ..instants.ordering import error_of, told
+from ..instants.ordering import error_of, ordered
 from ..instants.solution import Peak, Solution
 from ..instants.statistics import Statistics
 
@@ -71,7 +71,7 @@ class Rows:
         inner = () if verbose else bends_of(solution.description)
         outputs = [
             output
-            for output in told(solution)
+            for output in ordered(solution)
             if output.part not in inner or f"reaction:{output.part}" in asked
         ]
         return cls(solution, tuple(_row(solution, output, peaks) for output in outputs))
@@ -101,13 +101,17 @@ class Rows:
                 line = peak_line(self.solution, row.peak, self._scales[unit])
                 yield card(words, line)
 
-    def table(self, room: int | None = None) -> Iterator[str]:
+    def table(self, capacity: int | None = None) -> Iterator[str]:
         """Write a row for each quantity, or for the most important ones if there is ``room`` for
         some only.
         """
         if not self.rows:
             return
-        rows = self.rows if room is None or len(self.rows) <= room else self._first(room - 1)
+        rows = (
+            self.rows
+            if capacity is None or len(self.rows) <= capacity
+            else self._first(capacity - 1)
+        )
         yield from _aligned(self._heads(), [self._cells(row) for row in rows])
         if len(rows) < len(self.rows):
             yield (

@@ -13,16 +13,16 @@ from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, one_line
 from ..instants.solution import Solution
-from ..judge.certificate import failure
 from ..portable.wasm import check_zig
 from ..report import ENDINGS, Live, with_motion, write_report
 from ..report.instants import shown_instants
 from ..report.live import run_of
 from ..report.of_sweep import is_of, write_sweep_report
 from ..store.runs import load
-from ..store.untrusted import told_as
+from ..store.untrusted import reported_as
 from ..studies.evaluate import evaluate
 from ..studies.sweep import Sweep, is_sweep
+from ..verification.certificate import failure
 from .echo import echo
 from .options import parameters
 from .strength_lines import untold_lines
@@ -58,7 +58,7 @@ def report(
             _of_sweep(target, out, case)
             return
         solution = load(target)
-        with told_as(_UNSHOWN, target):
+        with reported_as(_UNSHOWN, target):
             write_report(solution, out)
     else:
         loaded = load_case(target)
@@ -69,10 +69,12 @@ def report(
         given, timing = parameters(settings), scene.timing(t, over)
         engine = Live.of(scene, timing, wanted, run_of(loaded.name), given) if live else None
         # What a page computes anew is what equilibrium tells.
-        told = False if live else None
-        solution = evaluate(scene, parameters=given, t=t, over=over, wanted=wanted, elastic=told)
+        live_only = False if live else None
+        solution = evaluate(
+            scene, parameters=given, t=t, over=over, wanted=wanted, elastic=live_only
+        )
         write_report(solution, out, engine)
-    _tell(solution, out)
+    _announce(solution, out)
 
 
 def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
@@ -96,12 +98,12 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
             err=True,
         )
         found = scene = None
-    with told_as(_UNSHOWN, target):
+    with reported_as(_UNSHOWN, target):
         write_sweep_report(sweep, out, scene, run_of(found.name if found else sweep.case))
     echo(f"wrote {out}: open it in a browser")
 
 
-def _tell(solution: Solution, out: Path) -> None:
+def _announce(solution: Solution, out: Path) -> None:
     """Say what was written.
 
     Raises :class:`CertificateError` where the certificate fails: the page is there, and says so.

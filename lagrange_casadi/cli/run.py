@@ -15,7 +15,7 @@ from ..base.publish import check_writable
 from ..base.streams import is_standard_output
 from ..base.vocabulary import Backend, Precision
 from ..case import load_case
-from ..declare import turned
+from ..declare import revolutions
 from ..declare.description import beams_of, fitted_of, kinds_of_described, values_of
 from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
@@ -24,12 +24,12 @@ from ..declare.wanted_names import among
 from ..errors import CertificateError
 from ..instants.frames import TIME, columns
 from ..instants.solution import Solution
-from ..judge.certificate import failure, summary
 from ..shapes.index import MANIFEST
 from ..shapes.kept import dump_specs
 from ..store.runs import check_target, save
 from ..studies.evaluate import evaluate
 from ..studies.peaks import forces, refine, resultants
+from ..verification.certificate import failure, summary
 from .drawing import draw_with_progress
 from .echo import echo
 from .elastic_lines import elastic_card, elastic_lines
@@ -98,12 +98,12 @@ def run(
     place = folder or usual
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
     heads = columns(solution) if csv else {}
-    told = (
+    written = (
         csv_written([TIME, *heads], rows_of([solution.t, *heads.values()]), csv)
         if csv
         else nullcontext()
     )
-    with told, MANIFEST.filling(folder) if folder else nullcontext() as draft:
+    with written, MANIFEST.filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
             draw_with_progress(solution, loaded.figures, draft)
             drawn = figures_in(draft)
@@ -133,8 +133,8 @@ def run(
         + (f" and the figures in {folder}/" if folder else "")
         + (f", and {csv}" if csv else "")
     )
-    room = None if verbose else max(_SCREEN - len(head) - len(rest) - 1, _FEWEST)
-    for line in (*head, *rows.table(room), *rest):
+    capacity = None if verbose else max(_SCREEN - len(head) - len(rest) - 1, _FEWEST)
+    for line in (*head, *rows.table(capacity), *rest):
         say(line)
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")
@@ -174,5 +174,7 @@ def _head(solution: Solution, refined: bool | None) -> str:
 
 def _notes(scene: Scene, solution: Solution, timing: Timing) -> Iterator[str]:
     values = np.array([list(values_of(solution.description).values())])
-    turns = turned.note(scene.prescribed, kinds_of_described(solution.description), timing, values)
+    turns = revolutions.note(
+        scene.prescribed, kinds_of_described(solution.description), timing, values
+    )
     yield from (f"note: {note}" for note in (*solution.notes, turns) if note)

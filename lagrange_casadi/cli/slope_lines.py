@@ -9,7 +9,7 @@ from ..base.quantities import AVERAGED, Output
 from ..base.vocabulary import Backend
 from ..declare.scene import Scene
 from ..errors import DeclarationError
-from ..instants.ordering import told
+from ..instants.ordering import ordered
 from ..instants.solution import Solution
 from ..sensitivity.peaks import PeakKind
 from ..studies.sensitivities import Changes, sensitivities
@@ -28,7 +28,7 @@ def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[
     column for each parameter.
     """
     by = solution.sensitivities.parameters
-    names = [str(output) for output in told(solution) if solution.determined(output)]
+    names = [str(output) for output in ordered(solution) if solution.determined(output)]
     if not by or not names:
         return
     try:

@@ -12,7 +12,7 @@ from ..base.streams import is_standard_output
 from ..errors import NoDesignError
 from ..studies.sweep import Sweep, chosen
 from ..studies.sweep.axes import counted, grouped
-from ..studies.sweep.best import conditions_in, missed, tally
+from ..studies.sweep.best import conditions_in, counts, missed
 from ..studies.sweep.instant_axis import in_words
 from ..studies.sweep.meanings import STATUS
 from .echo import echo
@@ -48,15 +48,15 @@ def table(
         count = write_csv(names, (values for _, values in found), csv)
         echo(f"wrote {csv}: {counted(count, what)}", err=is_standard_output(csv))
     elif show(sweep, names, islice(found, min(rows, sys.maxsize))) == rows:
-        met, with_result = tally(sweep, where, along)
-        if met > rows:
-            what = counted(met, what) + (" that meet the conditions" if where else "")
+        satisfied, with_result = counts(sweep, where, along)
+        if satisfied > rows:
+            what = counted(satisfied, what) + (" that meet the conditions" if where else "")
             echo(
                 f"... of {what}, {grouped(with_result)} with a result; --rows N shows more, --csv"
                 " OUT.csv writes all"
             )
     if not columns:
-        _tell_of_others(sweep, names)
+        _mention_others(sweep, names)
 
 
 def _rows(
@@ -73,7 +73,7 @@ def _rows(
     )
 
 
-def _tell_of_others(sweep: Sweep, shown: Sequence[str]) -> None:
+def _mention_others(sweep: Sweep, shown: Sequence[str]) -> None:
     """Name the columns that are not shown, by their axes, and how to show them."""
     others: dict[tuple[str, ...], list[str]] = {}
     for kept in sweep.columns.values():

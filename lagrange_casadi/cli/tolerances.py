@@ -17,7 +17,7 @@ from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import DeclarationError
 from ..studies.tolerances import Spreads
-from ..studies.tolerances import tolerances as spreads_of
+from ..studies.tolerances import tolerances as distributed_loads_of
 from .echo import echo
 from .options import parameters
 
@@ -37,15 +37,15 @@ def tolerances(
     out: Path | None,
 ) -> None:
     """See :func:`.commands.tolerances`."""
-    told = dict(within)
-    if len(told) < len(within):
+    widths = dict(within)
+    if len(widths) < len(within):
         raise DeclarationError("tolerance: a parameter has one twice")
     if out is not None:
         check_writable(out)
     loaded = load_case(case)
-    found = spreads_of(
+    found = distributed_loads_of(
         loaded.scene,
-        told,
+        widths,
         parameters=parameters(settings),
         wanted=want or None,
         t=t,

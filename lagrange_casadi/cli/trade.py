@@ -16,9 +16,9 @@ from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import DeclarationError
 from ..figures.trade_plot import draw_trade
-from ..instants.rung import Rung
+from ..instants.evaluation_method import EvaluationMethod
 from ..shapes.pictures import PICTURES
-from ..studies.trade import RUNGS, Trade
+from ..studies.trade import METHODS, Trade
 from ..studies.trade import trade as measure
 from .echo import echo
 from .options import parameters
@@ -48,10 +48,10 @@ def trade(
                 f"{option} {target}: expected a name that ends in {' or '.join(endings)}"
             )
         check_writable(target)
-    with tqdm(total=len(RUNGS), desc="methods", leave=False, disable=None) as bar:
+    with tqdm(total=len(METHODS), desc="methods", leave=False, disable=None) as bar:
 
-        def progress(rung: Rung) -> None:
-            bar.set_postfix_str(rung.options)
+        def progress(method: EvaluationMethod) -> None:
+            bar.set_postfix_str(method.options)
             bar.update()
 
         found = measure(
@@ -78,7 +78,7 @@ def trade(
 def _print(found: Trade) -> None:
     width = max(len(one.rung.options) for one in found.measurements)
     default = next(
-        (one.seconds for one in found.measurements if one.rung == Rung("lanes")),
+        (one.seconds for one in found.measurements if one.rung == EvaluationMethod("lanes")),
         found.measurements[0].seconds,
     )
     echo(

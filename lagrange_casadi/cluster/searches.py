@@ -14,9 +14,9 @@ from typing import Any
 
 from ..errors import ClusterError, LagrangeCasadiError
 from ..studies.designs.engine import DesignEngine
-from ..studies.optimise.finder import Errand, Finder
-from ..studies.optimise.hands import Told
-from ..studies.optimise.trail import STOPPED, Trail
+from ..studies.optimise.executors import Progress
+from ..studies.optimise.search_run import STOPPED, SearchRun
+from ..studies.optimise.solver import SearchTask, Solver
 from ..studies.sweep.blocks import Queue
 from ..studies.sweep.plan import difference
 from .sweeps import Asked, Cluster
@@ -31,25 +31,25 @@ class Workers:
     cluster: Cluster
 
     def go(
-        self, finder: Finder, errands: Sequence[Errand], told: Told
-    ) -> Iterator[tuple[int, Trail]]:
+        self, solver: Solver, tasks: Sequence[SearchTask], progress: Progress
+    ) -> Iterator[tuple[int, SearchRun]]:
         """The ways of errands, as they are done. What was not done after an interrupt is not told.
 
         Raises :class:`ClusterError` where the cluster cannot serve.
         """
-        sent = pickle.dumps((finder.engine.graph, finder.question))
-        words = finder.question.words(finder.engine)
-        queue = Queue((k, k + 1) for k in range(len(errands)))
+        sent = pickle.dumps((solver.engine.program, solver.question))
+        words = solver.question.words(solver.engine)
+        queue = Queue((k, k + 1) for k in range(len(tasks)))
 
         def asked(start: int, _stop: int) -> Asked:
-            return Asked(_descend, (sent, words, errands[start]))
+            return Asked(_descend, (sent, words, tasks[start]))
 
         for done in self.cluster.done(asked, queue):
             if done is None:
                 continue
-            number, _, trail = done
-            told(number, trail.objective, trail.excess)
-            yield number, trail
+            number, _, run = done
+            progress(number, run.objective, run.excess)
+            yield number, run
 
 
 def searching(address: str) -> Workers:
@@ -60,26 +60,26 @@ def searching(address: str) -> Workers:
     return Workers(Cluster(address))
 
 
-def _descend(sent: bytes, words: Mapping[str, Any], errand: Errand) -> Trail:
+def _descend(sent: bytes, words: Mapping[str, Any], task: SearchTask) -> SearchRun:
     """Run a start on a worker."""
     try:
         with _building:  # a finder goes one way at a time
-            finder = _built(sent)
-            found = difference(words, finder.question.words(finder.engine))
+            solver = _built(sent)
+            found = difference(words, solver.question.words(solver.engine))
             if found:
                 raise ClusterError(f"a worker would not give the same numbers: {found} there")
-            trail = finder.descend(errand, lambda *_: None)
+            run = solver.descend(task, lambda *_: None)
     except ClusterError:
         raise
     except LagrangeCasadiError as error:
         # Not every error of ours can be sent as what it is.
         raise ClusterError(f"a worker failed: {error}") from None
-    if trail.ending == STOPPED:
+    if run.ending == STOPPED:
         raise ClusterError("a worker was interrupted")
-    return trail
+    return run
 
 
 @functools.lru_cache(maxsize=4)
-def _built(sent: bytes) -> Finder:
-    graph, question = pickle.loads(sent)
-    return Finder.of(question, DesignEngine.compiled(graph, question.timing, question.rung))
+def _built(sent: bytes) -> Solver:
+    program, question = pickle.loads(sent)
+    return Solver.of(question, DesignEngine.compiled(program, question.timing, question.method))

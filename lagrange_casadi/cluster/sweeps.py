@@ -24,8 +24,8 @@ from ..equations.program import Program
 from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line, warn
 from ..studies.sweep.blocks import Queue
 from ..studies.sweep.columns import Harvest
-from ..studies.sweep.crew import Crew
 from ..studies.sweep.plan import Plan, Task, difference, signature
+from ..studies.sweep.thread_pool import ThreadPool
 from ..studies.sweep.workers import PATIENCE, PULSE, Blocks
 
 _PATIENCE = 10.0
@@ -66,11 +66,13 @@ class Cluster:
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue, in the order in which workers are done."""
-        sent = pickle.dumps((plan.graph, plan.harvest.whole))
-        told = signature(plan.graph, plan.task, plan.harvest.engine.provenance)
+        sent = pickle.dumps((plan.program, plan.harvest.whole))
+        identity = signature(plan.program, plan.task, plan.harvest.engine.provenance)
 
         def asked(start: int, stop: int) -> Asked:
-            return Asked(_evaluate, (sent, plan.task, told, plan.block(start, stop), plan.room))
+            return Asked(
+                _evaluate, (sent, plan.task, identity, plan.block(start, stop), plan.capacity)
+            )
 
         yield from self.done(asked, queue)
 
@@ -134,7 +136,7 @@ class Cluster:
                 if pause():
                     return
                 continue
-            coming = Crew.alone(future.result)
+            coming = ThreadPool.alone(future.result)
             while not wait([coming], PULSE).done:
                 yield None
                 if pause():
@@ -241,7 +243,7 @@ class _Roll:
             threading.Event(),
             time.monotonic() + _PROBED,
         )
-        Crew.alone(self._ask)
+        ThreadPool.alone(self._ask)
 
     @property
     def ready(self) -> bool:
@@ -265,7 +267,7 @@ class _Roll:
                 self.lost = self._client.status == "running"
                 return
             for address in counts.keys() - self._asked.keys():
-                self._asked[address] = Crew.alone(self._probe, address)
+                self._asked[address] = ThreadPool.alone(self._probe, address)
             self.threads = sum(counts.values())
             self._known.set()
             self._again.wait(_ROLL)
@@ -281,7 +283,7 @@ class _Roll:
 
 def _let_go(client: Future[Any]) -> None:
     if client.exception() is None:
-        wait([Crew.alone(client.result().close, 2)], _GOODBYE)
+        wait([ThreadPool.alone(client.result().close, 2)], _GOODBYE)
 
 
 def _first(waiting: Any) -> Any | None:
@@ -333,15 +335,17 @@ class Asked:
         return self.function, self.arguments
 
 
-def _evaluate(sent: bytes, task: Task, told: Mapping[str, Any], p: Array, room: int) -> list[bytes]:
+def _evaluate(
+    sent: bytes, task: Task, identity: Mapping[str, Any], p: Array, capacity: int
+) -> list[bytes]:
     """Evaluate the columns of a block of designs on a worker."""
     try:
         with _building:
-            graph, harvest = _built(sent, task)
-        found = difference(told, signature(graph, task, harvest.engine.provenance))
+            program, harvest = _built(sent, task)
+        found = difference(identity, signature(program, task, harvest.engine.provenance))
         if found:
             raise ClusterError(f"a worker would not give the same numbers: {found} there")
-        return harvest.chunks(p, room)
+        return harvest.chunks(p, capacity)
     except ClusterError:
         raise
     except LagrangeCasadiError as error:
@@ -351,5 +355,5 @@ def _evaluate(sent: bytes, task: Task, told: Mapping[str, Any], p: Array, room: 
 
 @functools.lru_cache(maxsize=4)
 def _built(sent: bytes, task: Task) -> tuple[Program, Harvest]:
-    graph, whole = pickle.loads(sent)
-    return graph, task.harvest(graph, whole)
+    program, whole = pickle.loads(sent)
+    return program, task.harvest(program, whole)

@@ -18,8 +18,8 @@ from ..base.vocabulary import Precision
 from ..declare.limits import END
 from ..equations.program import Program
 from ..equations.status import NEAR, outside
-from ..summits.panels import TOPS
-from ..summits.sharpness import Watch
+from ..peak_search.intervals import TOPS
+from ..peak_search.sharpness import Watch
 from .calls import Call
 from .emit import FOLLOW, Parts, emit_scene, following
 from .link_curves import Along, along, turning
@@ -79,7 +79,7 @@ class Reduction:
     ``quantities`` off links are one column, or the size of a vector of two; then come the forces of
     each of ``links``. ``units`` numbers the units of all of them, ``efforts`` says which have
     means. ``checks`` are the columns of a graph's bounds with their kinds, then the sizes of rows'
-    terms; ``doubts`` are the checks that leave a quantity open, by number of both.
+    terms; ``indeterminate_checks`` are the checks that leave a quantity open, by number of both.
     ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them
     not zero either: the first is the mechanism's extent [m]. Then comes what ``sections.c`` takes
     for each link, and the limits of bounds. ``watches`` are what the last columns are watched for,
@@ -91,8 +91,8 @@ class Reduction:
     units: tuple[int, ...]
     efforts: tuple[int, ...]
     checks: tuple[tuple[int, str], ...]
-    doubts: tuple[tuple[int, int], ...]
-    matter: Any
+    indeterminate_checks: tuple[tuple[int, int], ...]
+    mass_properties: Any
     positive: int
     margins: int
     statuses: Mapping[str, int]
@@ -131,32 +131,36 @@ class Reduction:
         return Tables.of(self.curves, self.units, self.watches, self.knots, precision)
 
 
-def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: Reduction) -> str:
+def emit_designs(program: Program, stages: Stages, newton: int | None, reduction: Reduction) -> str:
     """The whole C file, as that of :func:`.emit`, with :data:`DESIGNS` in place of what evaluates
     instants alone.
     """
-    parts = Parts.of(graph, stages, len(reduction.watches))
-    text = emit_scene(graph, stages, newton, parts)
+    parts = Parts.of(program, stages, len(reduction.watches))
+    text = emit_scene(program, stages, newton, parts)
     text += print_functions(
-        {"matter_of": reduction.matter, "status_of": graph.status, "beside_of": graph.beside},
+        {
+            "matter_of": reduction.mass_properties,
+            "status_of": program.status,
+            "beside_of": program.beside,
+        },
         stages.precision,
         prefix="matter",
         packs=True,
     )
     if stages.loops and newton is not None:
-        text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
+        text += following(program, stages, None, parts.sizes | {"follow": BEGIN})
     text += (
         interface(stages.precision)
         + CALL.text(parts.sizes["real"])
-        + _defined(_macros(graph, stages, newton, reduction, parts))
+        + _defined(_macros(program, stages, newton, reduction, parts))
     )
-    text += _tables(graph, reduction) + _source("sections.c") + turning(reduction.links)
+    text += _tables(program, reduction) + _source("sections.c") + turning(reduction.links)
     text += _curves(reduction)
     return text + "".join(_source(name) for name in _FILES)
 
 
 def _macros(
-    graph: Program, stages: Stages, newton: int | None, reduction: Reduction, parts: Parts
+    program: Program, stages: Stages, newton: int | None, reduction: Reduction, parts: Parts
 ) -> dict[str, object]:
     sizes, precision = parts.sizes, stages.precision
     checks, curves = len(reduction.checks), len(reduction.curves)
@@ -175,9 +179,9 @@ def _macros(
             name.upper(): sizes[name]
             for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs", "outputs")
         },
-        "MATTER": max(1, reduction.matter.size1_out(0)),
+        "MATTER": max(1, reduction.mass_properties.size1_out(0)),
         "MARGINS": reduction.margins,
-        "LIMITS": reduction.matter.size1_out(0) - len(graph.bounds),
+        "LIMITS": reduction.mass_properties.size1_out(0) - len(program.bounds),
         "POSITIVE": reduction.positive,
         "QUANTITIES": quantities,
         "CURVES": curves,
@@ -185,11 +189,11 @@ def _macros(
         "CHECKED": curves + reduction.places,
         "WATCHES": len(reduction.watches),
         "CHECKS": checks,
-        "BOUNDS": len(graph.bounds),
-        "DOUBTS": len(reduction.doubts),
+        "BOUNDS": len(program.bounds),
+        "DOUBTS": len(reduction.indeterminate_checks),
         "EFFORTS": len(reduction.efforts),
         "NEAR": _real(NEAR),
-        "OUTSIDE": _real(outside(graph)),
+        "OUTSIDE": _real(outside(program)),
         "INSIDE": INSIDE,
         "ROUNDS": ROUNDS,
         "TOPS": TOPS,
@@ -211,11 +215,11 @@ def _defined(macros: Mapping[str, object]) -> str:
     return "".join(f"#define DESIGNS_{name} {value}\n" for name, value in macros.items())
 
 
-def _tables(graph: Program, reduction: Reduction) -> str:
+def _tables(program: Program, reduction: Reduction) -> str:
     columns, kinds = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("",))
-    sizes = itertools.count(len(graph.bounds))
-    beside = [next(sizes) if bound.kind == "ROW" else -1 for bound in graph.bounds] or [-1]
-    statuses = [Status.OK, *(rule.status for rule in graph.rules)]
+    sizes = itertools.count(len(program.bounds))
+    beside = [next(sizes) if bound.kind == "ROW" else -1 for bound in program.bounds] or [-1]
+    statuses = [Status.OK, *(rule.status for rule in program.rules)]
     others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
     breaks = [
         _table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others
@@ -231,9 +235,15 @@ def _tables(graph: Program, reduction: Reduction) -> str:
             _table("int", "designs_sized", beside),
             _table("int", "designs_status", map(int, statuses)),
             _table("int", "designs_effort", reduction.efforts or (0,)),
-            _table("int", "designs_doubted", [check for check, _ in reduction.doubts] or (0,)),
             _table(
-                "int", "designs_doubtful", [quantity for _, quantity in reduction.doubts] or (0,)
+                "int",
+                "designs_doubted",
+                [check for check, _ in reduction.indeterminate_checks] or (0,),
+            ),
+            _table(
+                "int",
+                "designs_doubtful",
+                [quantity for _, quantity in reduction.indeterminate_checks] or (0,),
             ),
             *breaks,
         )

@@ -261,20 +261,22 @@ LAGRANGE_CASADI_EXPORT void {follow}(const {call}* call) {{
 """
 
 
-def emit(graph: Program, stages: Stages | None = None, newton: int | None = None) -> str:
+def emit(program: Program, stages: Stages | None = None, newton: int | None = None) -> str:
     """The whole C file of a scene; the same text in every process, on every machine, for the same
     version of CasADi.
 
     ``stages`` say in which arithmetic, default: :func:`.plain`. ``newton`` is how many steps
     iterated loops take an instant, None for as many as they need.
     """
-    stages = plain(graph) if stages is None else stages
-    parts = Parts.of(graph, stages)
+    stages = plain(program) if stages is None else stages
+    parts = Parts.of(program, stages)
     single = _IN_PAIRS.format(**parts.sizes) if stages.precision == "single" else ""
-    return emit_scene(graph, stages, newton, parts) + _EVALUATE.format(**parts.sizes, single=single)
+    return emit_scene(program, stages, newton, parts) + _EVALUATE.format(
+        **parts.sizes, single=single
+    )
 
 
-def emit_scene(graph: Program, stages: Stages, newton: int | None, parts: Parts) -> str:
+def emit_scene(program: Program, stages: Stages, newton: int | None, parts: Parts) -> str:
     """First part of every C file of a scene: its functions, and the loop for a pack of instants."""
     sizes = parts.sizes
     text = (
@@ -284,7 +286,7 @@ def emit_scene(graph: Program, stages: Stages, newton: int | None, parts: Parts)
     )
     text += print_functions(parts.narrow, stages.precision, prefix="follow")
     if stages.loops:
-        text += following(graph, stages, newton, sizes)
+        text += following(program, stages, newton, sizes)
     text += WIDE + print_functions(parts.wide, stages.precision, prefix="scene", packs=True)
     return text + _PACK.format(
         **sizes, drive=_DRIVE.format(**sizes) if sizes["nc"] + sizes["nd"] else ""
@@ -300,12 +302,12 @@ class Parts:
     sizes: dict[str, Any]
 
     @classmethod
-    def of(cls, graph: Program, stages: Stages, watched: int = 0) -> Parts:
+    def of(cls, program: Program, stages: Stages, watched: int = 0) -> Parts:
         """Make the parts of a scene, whose last columns are ``watched``: no outputs."""
         constants, instant = hoisted(stages.instant)
         narrow = {"lead": stages.drive, "loops": stages.loops} if stages.loops else {}
         wide = {"drive": stages.drive, "constants_of": constants, "instant": instant}
-        sizes = _sizes(graph, stages) | {"constants": constants.size1_out(0)}
+        sizes = _sizes(program, stages) | {"constants": constants.size1_out(0)}
         place = sizes["nt"] + sizes["nc"] + 2 * sizes["nd"]
         room = {"given": sizes["nt"] * sizes["np"], "fixed": sizes["constants"]}
         sizes |= {
@@ -316,14 +318,14 @@ class Parts:
         return cls(narrow, wide, sizes)
 
 
-def following(graph: Program, stages: Stages, newton: int | None, sizes: dict[str, Any]) -> str:
+def following(program: Program, stages: Stages, newton: int | None, sizes: dict[str, Any]) -> str:
     """The function that closes iterated loops, by so many steps an instant; its name is
     ``sizes["follow"]``.
     """
-    assert graph.newton is not None
+    assert program.newton is not None
     number = literal(stages.precision)
     rule = newton_rule(stages.precision, newton)
-    turns = ", ".join(str(int(turning)) for turning in graph.newton.turning)
+    turns = ", ".join(str(int(turning)) for turning in program.newton.turning)
     slow = (
         f"size > {number(rule['rate'])}*before && size > {number(rule['rounding'])}"
         if newton is None
@@ -371,9 +373,9 @@ def _told(newton: int | None) -> str:
    too large to believe."""
 
 
-def _sizes(graph: Program, stages: Stages) -> dict[str, Any]:
+def _sizes(program: Program, stages: Stages) -> dict[str, Any]:
     """Values for the templates."""
-    columns = len(graph.columns)
+    columns = len(program.columns)
     return {
         "evaluate": EVALUATE,
         "follow": FOLLOW,
@@ -382,10 +384,10 @@ def _sizes(graph: Program, stages: Stages) -> dict[str, Any]:
         "columns": columns,
         "rows": max(1, columns),
         "nt": stages.drive.size1_in(0),
-        "np": graph.instant.size1_in("p"),
+        "np": program.instant.size1_in("p"),
         "nc": stages.drive.size1_out(0),
-        "nd": graph.instant.size1_in("d"),
-        "nz": graph.instant.size1_in("z"),
+        "nd": program.instant.size1_in("d"),
+        "nz": program.instant.size1_in("z"),
         "OK": int(Status.OK),
         "NOT_CONVERGED": int(Status.NOT_CONVERGED),
         "NOT_FINITE": int(Status.NOT_FINITE),

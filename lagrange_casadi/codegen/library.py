@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES
 from ..base.vocabulary import Precision
-from ..summits.panels import Listed
+from ..peak_search.intervals import Listed
 from .calls import Call
 from .compiler import Compiler, broken, loaded, packed, statements
 from .designs import CALL, DESIGNS, Reduction
@@ -34,7 +34,7 @@ _LONGEST, _SLOWER = 128, 4
 """Into how many threads' worth a call is cut, some tenths of a second; and how much slower is what
 is done by the instant.
 """
-_LINE, _SPREAD = 16, 8
+_LINE, _DISTRIBUTED = 16, 8
 """Values of a cache line of either precision; and into how many parts a thread's share of designs
 is cut, for they differ.
 """
@@ -177,7 +177,9 @@ class DesignsLibrary:
         """
         n = p.shape[0]
         shares = max(1, min(threads, n // self.share))
-        size = max(1, min(_LONGEST * self.share, -(-n // (_SPREAD * shares)) if shares > 1 else n))
+        size = max(
+            1, min(_LONGEST * self.share, -(-n // (_DISTRIBUTED * shares)) if shares > 1 else n)
+        )
 
         def run(start: int) -> None:
             cut = slice(start, start + size)

@@ -13,7 +13,7 @@ from typing import Any
 
 from ..base.arrays import Expression
 from ..base.tables import SPACE
-from ..summits.polynomials import interpolation
+from ..peak_search.polynomials import interpolation
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,10 @@ class Along:
     """
 
     law: tuple[int, ...]
-    stations: tuple[tuple[int, ...], ...]
+    load_points: tuple[tuple[int, ...], ...]
     breaks: tuple[float, ...]
     terms: int
-    spreads: tuple[tuple[int, ...], ...] = ()
+    distributed_loads: tuple[tuple[int, ...], ...] = ()
     marks: tuple[tuple[int, ...] | float, ...] = ()
     thick: bool = False
 
@@ -46,8 +46,8 @@ class Along:
         """True if nothing but the link's own even mass acts between its ends."""
         return (
             not self.space
-            and not self.stations
-            and not self.spreads
+            and not self.load_points
+            and not self.distributed_loads
             and len(self.breaks) == 2
             and self.terms == 1
         )
@@ -55,7 +55,7 @@ class Along:
     @property
     def parted(self) -> int:
         """Number of places that divide the link: load points, and ends of distributed loads."""
-        return len(self.stations) + len(self.marks)
+        return len(self.load_points) + len(self.marks)
 
     @property
     def directions(self) -> int:
@@ -65,19 +65,21 @@ class Along:
     @property
     def powers(self) -> tuple[int, ...]:
         """Number of powers of each distributed load."""
-        return tuple((len(spread) - 2) // self.directions for spread in self.spreads)
+        return tuple(
+            (len(distributed) - 2) // self.directions for distributed in self.distributed_loads
+        )
 
     @property
     def places(self) -> tuple[tuple[int | str, ...], ...]:
         """Places along the link of each curve of each force: a row of places, ``BASE`` or ``TIP``.
         See ``sections.c``.
         """
-        parts, stations = self.parted + 1, self.parted
+        parts, load_points = self.parted + 1, self.parted
         turns = self._turns
         ends: tuple[int | str, ...] = (
             "BASE",
             "TIP",
-            *(sum(turns) * parts + k for k in range(stations) for _ in range(2)),
+            *(sum(turns) * parts + k for k in range(load_points) for _ in range(2)),
         )
         firsts = itertools.accumulate(turns, initial=0)
         return tuple(
@@ -98,22 +100,24 @@ class Along:
         axial force and the shear too, and of the bending moment.
         """
         highest = max([self.terms, *(many - 1 for many in self.powers)])
-        sizes = (2 * highest + 1 if self.spreads else highest + 2, 2 * highest + 3)
-        return (sizes if self.space else ()) + ((highest, highest + 1) if self.spreads else ())
+        sizes = (2 * highest + 1 if self.distributed_loads else highest + 2, 2 * highest + 3)
+        return (sizes if self.space else ()) + (
+            (highest, highest + 1) if self.distributed_loads else ()
+        )
 
     @property
     def _turns(self) -> tuple[int, ...]:
         """Largest number of extrema of each section force between two load points, in the order of
         its table.
         """
-        if self.spreads:
+        if self.distributed_loads:
             return (2, 2, 2, 2 if self.thick else 0, 2, 2, 2, 2) if self.space else (2, 2, 2)
         return (1, 1, 1, 0, 2, 2, 2, 2) if self.space else (1, 1, 2)
 
 
 def along(number: int, link: Along, into: str, offset: int) -> str:
     """Code for the curves of a link of columns y."""
-    loads = [f"y[{column}]" for station in link.stations for column in station]
+    loads = [f"y[{column}]" for load_point in link.load_points for column in load_point]
     for mark in link.marks:
         place = (
             f"(DESIGNS_REAL) {mark:.17g}"
@@ -121,10 +125,12 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
             else " - ".join(f"y[{column}]" for column in mark)
         )
         loads += [place, *["0"] * (6 if link.space else 3)]
-    spread = [f"y[{column}]" if column >= 0 else "0" for load in link.spreads for column in load]
+    distributed = [
+        f"y[{column}]" if column >= 0 else "0" for load in link.distributed_loads for column in load
+    ]
     taken = "".join(f"    law[{i}] = y[{column}];\n" for i, column in enumerate(link.law))
     taken += "".join(f"    loads[{i}] = {value};\n" for i, value in enumerate(loads))
-    taken += "".join(f"    spread[{i}] = {value};\n" for i, value in enumerate(spread))
+    taken += "".join(f"    spread[{i}] = {value};\n" for i, value in enumerate(distributed))
     if link.uniform:
         inner = (
             f"    casadi_real law[7];\n{taken}    designs_uniform(matter + {offset}, law,"
@@ -134,21 +140,21 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
     sizes, room = f"{len(link.breaks) - 1}, {link.terms}, {link.parted}", ""
     nodes = [f"&designs_nodes{degree}" for degree in link.degrees]
     along_it = (
-        f", {len(link.spreads)}, {link.directions}, 1, powers, spread"
-        if link.spreads
+        f", {len(link.distributed_loads)}, {link.directions}, 1, powers, spread"
+        if link.distributed_loads
         else ", 0, 0, 0, 0, 0"
     )
     along_it += f", 0, {int(link.thick)}, 0"
     if link.space:
-        room = f", room[{_room(link)}]"
+        room = f", room[{_capacity(link)}]"
         call = f"designs_along_in_space(&link, nodes, marks, room, {into});"
         tables = f"    const designs_nodes* const nodes[] = {{{', '.join(nodes)}}};\n"
-    elif link.spreads:
+    elif link.distributed_loads:
         call, tables = f"designs_along_loaded(&link, {', '.join(nodes)}, marks, {into});", ""
     else:
         call, tables = f"designs_along(&link, marks, {into});", ""
-    if link.spreads:
-        room += f", spread[{len(spread)}]"
+    if link.distributed_loads:
+        room += f", spread[{len(distributed)}]"
         tables += f"    const int powers[] = {{{', '.join(map(str, link.powers))}}};\n"
     inner = f"""    casadi_real law[{len(link.law)}], loads[{max(1, len(loads))}];
     casadi_real marks[{link.parted + 1}]{room};
@@ -159,18 +165,18 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
     return f"  if (need >> {min(number, 63)} & 1) {{\n{inner}  }}\n"
 
 
-def _room(link: Along) -> int:
+def _capacity(link: Along) -> int:
     """Variables that both planes of a link in space need, and torsion of thick slices: a law,
     loads, values and places.
     """
-    stations, parts = link.parted, link.parted + 1
-    turns = 2 * parts if link.spreads else parts
+    load_points, parts = link.parted, link.parted + 1
+    turns = 2 * parts if link.distributed_loads else parts
     return (3 if link.thick else 2) * (
-        7 + 4 * stations + 3 * (2 + 2 * stations) + 4 * turns + 4 * parts + stations
+        7 + 4 * load_points + 3 * (2 + 2 * load_points) + 4 * turns + 4 * parts + load_points
     )
 
 
-def matter_of(
+def mass_properties_of(
     link: Along, length: Expression, cells: Sequence[Sequence[Expression]]
 ) -> list[Expression]:
     """Arguments of ``sections.c`` for a link, from its length [m] and its cells [kg], filled up to

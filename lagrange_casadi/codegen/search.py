@@ -23,17 +23,17 @@ import numpy.typing as npt
 from ..arithmetic.compensated import DTYPES
 from ..base.arrays import Array
 from ..base.vocabulary import Precision
-from ..summits import between, panels
-from ..summits import search as reference
-from ..summits.between import Flags
-from ..summits.panels import TOPS, Curves, CurveSource, Listed, Peaks, Samples
-from ..summits.sharpness import Kind, Watch
+from ..peak_search import between, intervals
+from ..peak_search import search as reference
+from ..peak_search.between import Flags
+from ..peak_search.intervals import TOPS, Curves, CurveSource, Listed, Peaks, Samples
+from ..peak_search.sharpness import Kind, Watch
 from .calls import Call
 from .compiler import Compiler, broken, loaded, packed
 from .emit import START
 
 FUNCTION = "lagrange_casadi_search"
-_ROOM = "lagrange_casadi_search_room"
+_CAPACITY = "lagrange_casadi_search_room"
 
 CURVES = Call(
     "lagrange_casadi_curves",
@@ -111,12 +111,12 @@ _DEEPEST: dict[Precision, int] = {"double": reference.DEEPEST, "single": 8}
 _FINEST: dict[Precision, int] = {"double": reference.FINEST, "single": 5}
 """Finest level, in whose steps nothing hides but beside a pole."""
 
-_SIDE: dict[Precision, float] = {"double": panels.SIDE, "single": 1e-5}
+_SIDE: dict[Precision, float] = {"double": intervals.SIDE, "single": 1e-5}
 """Distance of the sides of a kink or a jump, in steps between instants."""
 
 _STRETCH: dict[Precision, float] = {"double": reference.STRETCH, "single": 1e-2}
 _LAST: dict[Precision, float] = {"double": reference.LAST, "single": 1e-5}
-_FILES = ("panels.c", "between.c", "fits.c", "looks.c", "within.c", "search.c")
+_FILES = ("intervals.c", "between.c", "fits.c", "samples.c", "within.c", "search.c")
 _LINE = 16
 """Values of a cache line of either precision."""
 
@@ -189,15 +189,15 @@ def _macros(precision: Precision) -> dict[str, object]:
     }
     return {
         **{name: f"((search_real) {value:.17g})" for name, value in reals.items()},
-        "SPACING": f"{panels.SPACING:.17g}",
+        "SPACING": f"{intervals.SPACING:.17g}",
         "SIDE": f"{_SIDE[precision]:.17g}",
         "RATE": f"{between.RATE:.17g}",
-        "INNER": panels.INNER,
+        "INNER": intervals.INNER,
         "DEEPEST": _DEEPEST[precision],
         "FINEST": _FINEST[precision],
         "BESIDE_REST": reference.BESIDE_REST,
         "TOPS": TOPS,
-        "PANELS": reference.PANELS,
+        "PANELS": reference.INTERVALS,
         **{f"IS_{kind.name}": int(kind) for kind in Kind},
     }
 
@@ -401,7 +401,7 @@ def load_search(
     try:
         return Search(
             CALL.declare(getattr(library, FUNCTION)),
-            CALL.declare(getattr(library, _ROOM)),
+            CALL.declare(getattr(library, _CAPACITY)),
             precision,
         )
     except AttributeError as error:

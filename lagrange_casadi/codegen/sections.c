@@ -105,7 +105,7 @@ DESIGNS_INLINE casadi_real designs_shear(const designs_link* link, int cell, cas
   return law[3] + law[4]*tail[0] + law[5]*(link->matter[0]*(u*tail[0] + tail[1]));
 }
 
-/* What sections at a ratio feel of loads along the link: see equations/spreads.py. */
+/* What sections at a ratio feel of loads along the link: see equations/distributed_loads.py. */
 static inline void designs_spread(const designs_link* link, casadi_real u, casadi_real* force) {
   const casadi_real *load = link->spread, l = link->matter[0];
   casadi_real x, reach, lever, power, share;

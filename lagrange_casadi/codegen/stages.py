@@ -57,26 +57,26 @@ class Stages(Graphs):
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def plain(graph: Program) -> Stages:
+def plain(program: Program) -> Stages:
     """The stages of a graph in doubles that count turns themselves."""
-    t, d, rate, acceleration, z, p = graph.instant.sx_in()
+    t, d, rate, acceleration, z, p = program.instant.sx_in()
     counted = ca.vertcat(t, d)
     instant = ca.Function(
         "instant",
         [counted, rate, acceleration, z, p],
-        graph.instant.call([t, d, rate, acceleration, z, p]),
+        program.instant.call([t, d, rate, acceleration, z, p]),
     )
     loops = None
-    if graph.newton is not None:
-        loops = ca.Function("loops", [z, counted, p], graph.newton.step.call([z, t, d, p]))
-    driven = graph.motion.call([t, p])
+    if program.newton is not None:
+        loops = ca.Function("loops", [z, counted, p], program.newton.step.call([z, t, d, p]))
+    driven = program.motion.call([t, p])
     drive = ca.Function("drive", [t, p], [ca.vertcat(t, driven[0]), *driven[1:]])
     return Stages(drive, loops, instant)
 
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def compensated(graph: Program, precision: Precision) -> Stages:
+def compensated(program: Program, precision: Precision) -> Stages:
     """The stages of a graph in pairs.
 
     Raises :class:`DeclarationError` for a graph that cannot be followed.
@@ -84,15 +84,15 @@ def compensated(graph: Program, precision: Precision) -> Stages:
     pairs, single = Pairs(precision), precision == "single"
     time, parameters = (
         ca.SX.sym("t", 2 if single else 1),
-        ca.SX.sym("p", graph.instant.size1_in("p"), 2 if single else 1),
+        ca.SX.sym("p", program.instant.size1_in("p"), 2 if single else 1),
     )
     t_pair, *p_pairs = (
         Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters))
     )
-    driven, *changes = interpret(graph.laws.motion, [[t_pair], p_pairs], pairs.arithmetic)
+    driven, *changes = interpret(program.laws.motion, [[t_pair], p_pairs], pairs.arithmetic)
     # As a controller gives them: see controlled().
     driven = [Pair(x.high, _rest(x)) for x in driven] if single else driven
-    handed, loops, instant = _counted(graph, pairs, t_pair, driven, p_pairs)
+    handed, loops, instant = _counted(program, pairs, t_pair, driven, p_pairs)
     given = [handed, *(_column([pair.value for pair in row]) for row in changes)]
     drive = ca.Function("drive", [time, ca.vec(parameters)], given, {"cse": True})
     return Stages(drive, loops, instant, precision, compensated=True)
@@ -119,7 +119,7 @@ class Controlled(Graphs):
 @symbolic
 @functools.lru_cache(maxsize=32)
 def controlled(
-    graph: Program, precision: Precision, fixed: tuple[float, ...] | None = None
+    program: Program, precision: Precision, fixed: tuple[float, ...] | None = None
 ) -> Controlled:
     """The stages of a graph by its driven coordinates; in doubles the caller counts turns, in
     singles pairs do.
@@ -129,21 +129,21 @@ def controlled(
     """
     names = ["moment", "p"]
     if precision == "double":
-        stages, p = plain(graph), graph.instant.sx_in("p")
+        stages, p = plain(program), program.instant.sx_in("p")
         moment = ca.SX.sym("moment", stages.instant.size1_in(0))
         return Controlled(
-            graph.laws.motion,
+            program.laws.motion,
             ca.Function("count", [moment, p], [moment], names, ["counted"]),
             *_others(stages),
         )
-    pairs, rows = Pairs(precision), 1 + len(graph.driven)
-    moment, p = ca.SX.sym("moment", rows, 2), graph.instant.sx_in("p")
+    pairs, rows = Pairs(precision), 1 + len(program.driven)
+    moment, p = ca.SX.sym("moment", rows, 2), program.instant.sx_in("p")
     t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
     known = [Pair(x) for x in _split(p)] if fixed is None else [pairs.constant(x) for x in fixed]
-    handed, loops, instant = _counted(graph, pairs, t, driven, known)
+    handed, loops, instant = _counted(program, pairs, t, driven, known)
     count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
     return Controlled(
-        _paired_law(graph.laws.motion, pairs, p, known), count, loops, instant, precision
+        _paired_law(program.laws.motion, pairs, p, known), count, loops, instant, precision
     )
 
 
@@ -171,30 +171,34 @@ def _paired_law(smooth: Any, pairs: Pairs, p: Any, known: Sequence[Pair]) -> Any
     )
 
 
-def stages_for(graph: Program, precision: Precision, t: Array, p: Array) -> Stages:
+def stages_for(program: Program, precision: Precision, t: Array, p: Array) -> Stages:
     """Stages for instants and parameters: in pairs if numbers are single, and if angles count many
     turns.
     """
     return (
-        compensated(graph, precision)
-        if precision == "single" or turns_many(graph, t, p)
-        else plain(graph)
+        compensated(program, precision)
+        if precision == "single" or turns_many(program, t, p)
+        else plain(program)
     )
 
 
-def turns_many(graph: Program, t: Array, p: Array) -> bool:
+def turns_many(program: Program, t: Array, p: Array) -> bool:
     """Return whether some angle counts so many turns over the instants that one double loses its
     phase.
     """
-    functions = (graph.instant, graph.laws.motion, *([graph.newton.step] if graph.newton else []))
+    functions = (
+        program.instant,
+        program.laws.motion,
+        *([program.newton.step] if program.newton else []),
+    )
     if not all(followable(function) for function in functions):
         return False
     sampled = t[np.linspace(0, t.size - 1, min(t.size, _SAMPLES)).astype(int)]
-    return _largest(graph, tuple(sampled), tuple(p)) > FEW_TURNS
+    return _largest(program, tuple(sampled), tuple(p)) > FEW_TURNS
 
 
 @functools.lru_cache(maxsize=256)
-def _largest(graph: Program, instants: tuple[float, ...], p: tuple[float, ...]) -> float:
+def _largest(program: Program, instants: tuple[float, ...], p: tuple[float, ...]) -> float:
     """The largest counted angle under a sine or cosine [rad], or of which whole turns are taken.
 
     What is counted is a row over the instants, what parameters set a number, and anything else
@@ -221,12 +225,12 @@ def _largest(graph: Program, instants: tuple[float, ...], p: tuple[float, ...]) 
         for rule in (measured, counted)
     )
     t = np.array(instants)
-    unknown, rates = [None] * graph.instant.size1_in("z"), [None] * len(graph.driven)
+    unknown, rates = [None] * program.instant.size1_in("z"), [None] * len(program.driven)
     with np.errstate(all="ignore"):
-        driven = list(interpret(graph.laws.motion, [[t], p], following)[0])
-        if graph.newton is not None:
-            interpret(graph.newton.step, [unknown, [t], driven, p], of_counted)
-        interpret(graph.instant, [[t], driven, rates, rates, unknown, p], of_counted)
+        driven = list(interpret(program.laws.motion, [[t], p], following)[0])
+        if program.newton is not None:
+            interpret(program.newton.step, [unknown, [t], driven, p], of_counted)
+        interpret(program.instant, [[t], driven, rates, rates, unknown, p], of_counted)
     return max(angles)
 
 
@@ -256,9 +260,9 @@ class _Counting:
     def arithmetic(self) -> Arithmetic:
         known = numpy_arithmetic().operations
         rules: dict[int, Any] = {code: functools.partial(self.apply, code) for code in known}
-        return Arithmetic(self.constant, rules | {ca.OP_CALL: self.look})
+        return Arithmetic(self.constant, rules | {ca.OP_CALL: self.read_table})
 
-    def look(self, lookup: Lookup, value: _Value) -> _Value:
+    def read_table(self, lookup: Lookup, value: _Value) -> _Value:
         return _Value(lookup.function(self.settled(value)))
 
     def constant(self, value: float) -> _Value:
@@ -321,13 +325,13 @@ _FOLLOWED = {
 
 
 def _counted(
-    graph: Program, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]
+    program: Program, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]
 ) -> tuple[Any, Any | None, Any]:
     """Outputs of the drive stage for time and driven coordinates, and the loops and the instant
     that take them.
     """
     counting = _Counting(pairs)
-    _, _, rate, acceleration, z, symbols = graph.instant.sx_in()
+    _, _, rate, acceleration, z, symbols = program.instant.sx_in()
     t_value, d_values = _Value(pair=t), [_Value(pair=pair) for pair in driven]
     p_values = [
         _Value(symbol, pair, fixed=True) for symbol, pair in zip(_split(symbols), p, strict=True)
@@ -338,15 +342,15 @@ def _counted(
     found = (
         [
             interpret(
-                graph.newton.step, [z_values, [t_value], d_values, p_values], counting.arithmetic
+                program.newton.step, [z_values, [t_value], d_values, p_values], counting.arithmetic
             )
         ]
-        if graph.newton
+        if program.newton
         else []
     )
     found.append(
         interpret(
-            graph.instant,
+            program.instant,
             [[t_value], d_values, rates, accelerations, z_values, p_values],
             counting.arithmetic,
         )
@@ -367,7 +371,7 @@ def _counted(
     )
     loops = (
         ca.Function("loops", [z, counted, symbols], results[0], {"cse": True})
-        if graph.newton
+        if program.newton
         else None
     )
     return handed, loops, instant

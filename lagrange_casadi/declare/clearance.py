@@ -61,11 +61,11 @@ class Clearance:
             rows, self._whole, self._open, ca.vertsplit(beside), strict=True
         ):
             sizes.append(ca.fmax(of, ca.fmax(ca.fabs(low), ca.fabs(high))))
-            room = _NEAR * sizes[-1]
+            capacity = _NEAR * sizes[-1]
             off = (
-                ca.floor(low - room) == ca.floor(high + room)
+                ca.floor(low - capacity) == ca.floor(high + capacity)
                 if whole
-                else ca.logic_or(low > room, high < -room)
+                else ca.logic_or(low > capacity, high < -capacity)
             )
             clear = ca.logic_and(clear, off if open_ else ca.logic_or(off, low == high))
         found = [1.0 - clear, ca.vertcat(*sizes)]

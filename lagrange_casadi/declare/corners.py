@@ -23,7 +23,7 @@ from .motion import smooth_laws
 from .parts import Constraint
 from .scene import Scene
 
-_LOOKED_AT = 4001
+_SAMPLED = 4001
 
 
 def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | None:
@@ -91,7 +91,7 @@ class Corners(Graphs):
         parameters ``p``.
         """
         for joint, smooth in self.laws.items():
-            found = smooth.kink(np.linspace(*span, _LOOKED_AT)[None], p)
+            found = smooth.kink(np.linspace(*span, _SAMPLED)[None], p)
             if found is not None:
                 raise found.refused(f"the motion of joint '{joint}'")
 
@@ -159,7 +159,7 @@ def _broken_law(smooth: Smooth, rows: bytes) -> npt.NDArray[np.bool_]:
 
 def _instants(start: Array, stop: Array) -> Array:
     """Paths (d, 1, n) in time."""
-    return np.linspace(start, stop, _LOOKED_AT, axis=-1)[:, None]
+    return np.linspace(start, stop, _SAMPLED, axis=-1)[:, None]
 
 
 def _broken_constraint(smooth: Smooth, paths: Array, p: Array) -> npt.NDArray[np.bool_]:

@@ -181,14 +181,14 @@ def _rows(matrix: Any) -> Rows:
     return x, y, z
 
 
-def _place(told: Description) -> Place:
-    return Place(told["body"], (told["x"], told["y"], told.get("z", 0.0)))
+def _place(entry: Description) -> Place:
+    return Place(entry["body"], (entry["x"], entry["y"], entry.get("z", 0.0)))
 
 
-def _body(told: Description, space: bool) -> BodyNumbers:
-    length, mass = told["length"], told["mass"]
-    if "centre" in told:
-        centre = told["centre"]
+def _body(entry: Description, space: bool) -> BodyNumbers:
+    length, mass = entry["length"], entry["mass"]
+    if "centre" in entry:
+        centre = entry["centre"]
         inertia = (
             _rows(centre["inertia"])
             if space
@@ -197,49 +197,51 @@ def _body(told: Description, space: bool) -> BodyNumbers:
         return BodyNumbers(length, mass, (centre["x"], centre["y"], centre.get("z", 0.0)), inertia)
     if length is None or mass == 0.0:
         return BodyNumbers(length, mass)
-    _, first, second = (float(tail[0]) for tail in density_of(told).tails(np.zeros(1)))
+    _, first, second = (float(tail[0]) for tail in density_of(entry).tails(np.zeros(1)))
     middle = first / mass
     across = (second - first * middle) * length**2
-    yy, zz, yz = slices_of(told)
+    yy, zz, yz = slices_of(entry)
     inertia = (yy + zz, 0.0, 0.0), (0.0, across + zz, -yz), (0.0, -yz, across + yy)
     return BodyNumbers(length, mass, (middle * length, 0.0, 0.0), inertia)
 
 
-def _joint(_: str, told: Description) -> JointNumbers:
-    axes = zip(told["coordinates"].items(), told["axes"], strict=True)
+def _joint(_: str, entry: Description) -> JointNumbers:
+    axes = zip(entry["coordinates"].items(), entry["axes"], strict=True)
     return JointNumbers(
-        kind=told["kind"],
-        parent=_place(told["parent"]),
-        child=_place(told["child"]),
+        kind=entry["kind"],
+        parent=_place(entry["parent"]),
+        child=_place(entry["child"]),
         axes=tuple(AxisNumbers(name, kind, tuple(direction)) for (name, kind), direction in axes),
-        triad=_rows(told["triad"]),
-        turned=_rows(told["turned"]),
-        pitch=told["pitch"],
+        triad=_rows(entry["triad"]),
+        turned=_rows(entry["turned"]),
+        pitch=entry["pitch"],
     )
 
 
-def _planar_joint(name: str, told: Description) -> JointNumbers:
+def _planar_joint(name: str, entry: Description) -> JointNumbers:
     """A joint of the plane: what turns does so about z."""
-    x, y = told["axis"]
-    slides = told["kind"] in ("prismatic", "slot")
-    c, s = math.cos(told["angle"]), math.sin(told["angle"])
+    x, y = entry["axis"]
+    slides = entry["kind"] in ("prismatic", "slot")
+    c, s = math.cos(entry["angle"]), math.sin(entry["angle"])
     axis = (
-        [AxisNumbers(name, told["coordinate"], (x, y, 0.0) if slides else _Z)]
-        if told["coordinate"]
+        [AxisNumbers(name, entry["coordinate"], (x, y, 0.0) if slides else _Z)]
+        if entry["coordinate"]
         else []
     )
     return JointNumbers(
-        kind=told["kind"],
-        parent=_place(told["parent"]),
-        child=_place(told["child"]),
+        kind=entry["kind"],
+        parent=_place(entry["parent"]),
+        child=_place(entry["child"]),
         axes=tuple(axis),
         triad=((x, y, 0.0), (-y, x, 0.0), _Z) if slides else (_Z, _X, _Y),
         turned=((c, s, 0.0), (-s, c, 0.0), _Z),
-        free=told["kind"] == "slot",
+        free=entry["kind"] == "slot",
     )
 
 
-def _friction(told: Description) -> tuple[Any, ...]:
+def _friction(entry: Description) -> tuple[Any, ...]:
     return (
-        (told["friction"]["coordinate"], told["friction"]["numbers"]) if "friction" in told else ()
+        (entry["friction"]["coordinate"], entry["friction"]["numbers"])
+        if "friction" in entry
+        else ()
     )

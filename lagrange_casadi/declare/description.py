@@ -15,10 +15,10 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
-from ..beams.beam import told_beam
+from ..beams.beam import beam_to_numbers
 from ..geometry.vectors import cross
 from .density import Density, NumericDensity
-from .fitted import told_parts
+from .fitted import parts_to_numbers
 from .joints import Joint
 from .mechanism import Mechanism
 from .parts import Friction, Link, Load, Point, PointMass, RigidMass
@@ -142,8 +142,8 @@ def slices_of(body: Description) -> tuple[float, float, float]:
     return _density(slices["yy"]).mass, _density(slices["zz"]).mass, _density(slices["yz"]).mass
 
 
-def _density(told: Description) -> NumericDensity:
-    return NumericDensity(tuple(told["breaks"]), tuple(tuple(cell) for cell in told["cells"]))
+def _density(entry: Description) -> NumericDensity:
+    return NumericDensity(tuple(entry["breaks"]), tuple(tuple(cell) for cell in entry["cells"]))
 
 
 def coordinates_of(description: Description) -> dict[str, str]:
@@ -166,12 +166,12 @@ def kinds_of_described(description: Description) -> Kinds:
     the units of its outputs.
     """
     coordinates = coordinates_of(description) | motions_of(description)
-    rubbing = {
+    sliding = {
         name: load["friction"]["coordinate"]
         for name, load in description["loads"].items()
         if "friction" in load
     }
-    frictions = {name: coordinates[coordinate] for name, coordinate in rubbing.items()}
+    frictions = {name: coordinates[coordinate] for name, coordinate in sliding.items()}
     return Kinds(coordinates, frictions, description.get("outputs", {}))
 
 
@@ -410,18 +410,18 @@ def _described(
             else number(mass.inertia)
         }
 
-    def matter(body: Link | PointMass) -> Description:
+    def mass_properties(body: Link | PointMass) -> Description:
         if isinstance(body, PointMass):
             return {"length": None, "mass": number(body.mass)}
         length = number(body.length)
         if isinstance(body.mass, RigidMass):
             return {"length": length, "mass": number(body.mass.mass), "centre": centre(body.mass)}
-        told = along(body, body.mass)
+        entry = along(body, body.mass)
         if body.mass.slices is not None:
             names = zip(("yy", "zz", "yz"), body.mass.slices.each, strict=True)
-            told["slices"] = {name: along(body, moment) for name, moment in names}
-        found = {"length": length, "mass": None, "density": told}
-        return found if body.beam is None else found | {"beam": told_beam(body.beam, number)}
+            entry["slices"] = {name: along(body, moment) for name, moment in names}
+        found = {"length": length, "mass": None, "density": entry}
+        return found if body.beam is None else found | {"beam": beam_to_numbers(body.beam, number)}
 
     def along(link: Link, density: Density) -> Description:
         scale = link.length if density.per_length else 1.0
@@ -432,13 +432,13 @@ def _described(
 
     def fitted(joint: Joint) -> Description:
         parts = mechanism.fitted.get(joint.name)
-        return {"fitted": told_parts(parts, number)} if parts else {}
+        return {"fitted": parts_to_numbers(parts, number)} if parts else {}
 
     def freedoms(joint: Joint) -> Description:
         if joint.turned is None:
-            told: Description = {"coordinate": joint.coordinate, "driven": joint.name in driven}
+            entry: Description = {"coordinate": joint.coordinate, "driven": joint.name in driven}
             ends = {"parent": place(joint.parent), "child": place(joint.child)}
-            return told | ends | {"axis": vector(joint.axis), "angle": number(joint.angle)}
+            return entry | ends | {"axis": vector(joint.axis), "angle": number(joint.angle)}
         x, y = joint.turned
         return {
             "coordinates": {axis.coordinate: axis.kind for axis in joint.axes},
@@ -463,7 +463,7 @@ def _described(
             found["friction"] = {"coordinate": load.axis.coordinate, "numbers": numbers}
         return found
 
-    bodies = {body.name: matter(body) for body in mechanism.moving}
+    bodies = {body.name: mass_properties(body) for body in mechanism.moving}
     loads = {name: load_of(load) for name, load in mechanism.loads.items()}
     joints = {
         joint.name: {"kind": joint.kind} | freedoms(joint) | fitted(joint)
@@ -490,7 +490,7 @@ def _described(
         if c.transmission is not None and c.transmission.loss is not None
     ]
     unturned = [joint.name for joint in mechanism.joints.values() if _lies_by_default(joint)]
-    told = (
+    optional = (
         ("paths", paths),
         ("outlines", outlines),
         ("losses", lossy),
@@ -506,4 +506,4 @@ def _described(
         "loads": loads,
         "rows": {name: row.replaces for name, row in mechanism.rows.items()},
         "constraints": list(mechanism.constraints),
-    } | {name: found for name, found in told if found}
+    } | {name: found for name, found in optional if found}

@@ -205,19 +205,19 @@ def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, V
 
     Raises :class:`DeclarationError` for what is no symmetric matrix, and are not three moments.
     """
-    told = f"{what}: inertia"
+    where = f"{what}: inertia"
     if (
         isinstance(inertia, (tuple, list))
         and len(inertia) == 3
         and not any(isinstance(row, (tuple, list)) for row in inertia)
     ):
-        x, y, z = vector(told, inertia, checked)
+        x, y, z = vector(where, inertia, checked)
         return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
     if not isinstance(inertia, (tuple, list)) or len(inertia) != 3:
         raise DeclarationError(
-            f"{told} must be three moments of inertia or a 3 x 3 matrix, got {inertia!r}"
+            f"{where} must be three moments of inertia or a 3 x 3 matrix, got {inertia!r}"
         )
-    rows = [list(vector(told, row, checked)) for row in inertia]
+    rows = [list(vector(where, row, checked)) for row in inertia]
     size = max(
         (abs(entry) for row in rows for entry in row if isinstance(entry, float)), default=0.0
     )
@@ -225,7 +225,7 @@ def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, V
         for j in range(i):
             if not _is_same(rows[i][j], rows[j][i], size):
                 raise DeclarationError(
-                    f"{told} must be symmetric, and entries ({i + 1}, {j + 1}) and ({j + 1},"
+                    f"{where} must be symmetric, and entries ({i + 1}, {j + 1}) and ({j + 1},"
                     f" {i + 1}) differ"
                 )
             rows[i][j] = rows[j][i]

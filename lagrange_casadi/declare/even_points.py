@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
-from ..base.room import require
+from ..base.space import require
 from ..base.units import number
 from ..errors import DeclarationError, shown
 

@@ -82,7 +82,7 @@ def scalar(
     return found
 
 
-def coordinates(what: str, told: Iterable[tuple[Any, str]]) -> tuple[list[Expression], str]:
+def coordinates(what: str, terms: Iterable[tuple[Any, str]]) -> tuple[list[Expression], str]:
     """Numbers or expressions of a joint's coordinate, each with what it is per, as ``"/s"``; and in
     which unit texts tell them.
 
@@ -91,7 +91,7 @@ def coordinates(what: str, told: Iterable[tuple[Any, str]]) -> tuple[list[Expres
     """
     found: list[Expression] = []
     units: set[str] = set()
-    for value, per in told:
+    for value, per in terms:
         read, unit = typed(value)
         base = unit.removesuffix(per)
         if isinstance(value, str) and unit not in (f"rad{per}", f"m{per}"):
@@ -121,7 +121,7 @@ def sound(condition: ca.SX) -> ca.SX:
     return ca.sqrt(2.0 * condition - 1.0)
 
 
-def told(error: BaseException) -> str:
+def error_text(error: BaseException) -> str:
     """Message of an error in a line; for a choice that Python cannot make for a symbol, the
     function that makes it.
     """

@@ -141,7 +141,7 @@ def positive(name: str, number: float) -> bool:
     return 0.0 <= number < math.inf if name in _MAY_BE_ZERO else 0.0 < number < math.inf
 
 
-def told_parts(parts: Mapping[str, Fitted], number: Callable[[Any], float]) -> dict[str, Any]:
+def parts_to_numbers(parts: Mapping[str, Fitted], number: Callable[[Any], float]) -> dict[str, Any]:
     """Parts in plain numbers, as a file keeps them."""
 
     def plain(name: str, value: Operand) -> Any:
@@ -153,13 +153,13 @@ def told_parts(parts: Mapping[str, Fitted], number: Callable[[Any], float]) -> d
     }
 
 
-def parts_told(told: Mapping[str, Any]) -> dict[str, Fitted]:
+def parts_from_numbers(record: Mapping[str, Any]) -> dict[str, Fitted]:
     """The parts of such numbers.
 
     Raises ``LookupError`` or ``TypeError`` for what are none, as in a forged file.
     """
     found: dict[str, Fitted] = {}
-    for kind, numbers in told.items():
+    for kind, numbers in record.items():
         words = dict(numbers)
         if "material" in words:
             words["material"] = Material(**words["material"])

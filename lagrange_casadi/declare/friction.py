@@ -19,7 +19,7 @@ _IN_PLANE, _IN_SPACE = (
 
 
 def friction(
-    own: Ownership, name: str, joint: Joint, along: str, told: Mapping[str, Expression | None]
+    own: Ownership, name: str, joint: Joint, along: str, given: Mapping[str, Expression | None]
 ) -> Friction:
     """Friction in a joint of a mechanism, with the numbers that are ``told`` of it; ``along`` names
     a coordinate of a joint of two.
@@ -33,7 +33,7 @@ def friction(
     units = _UNITS | {"smooth": "rad/s" if axis.kind == "angle" else "m/s"}
     numbers = {
         key: _number(own, what, key, value, units.get(key, "1"))
-        for key, value in told.items()
+        for key, value in given.items()
         if value is not None
     }
     _require(what, joint, axis, numbers)
@@ -138,17 +138,17 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
             raise DeclarationError(
                 f"{what}: joint '{joint.name}' turns; expected radius=, that of its pin [m]"
             )
-        borne = (
+        bears_moment = (
             joint.turned is not None
             and joint.kind in ("revolute", "cylindrical")
             and joint.bears_moment
         )
-        if borne and "length" not in numbers:
+        if bears_moment and "length" not in numbers:
             raise DeclarationError(
                 f"{what}: joint '{joint.name}' transmits a moment; expected length=, the distance"
                 " of its two bearings [m]"
             )
-        if "length" in numbers and not borne:
+        if "length" in numbers and not bears_moment:
             raise DeclarationError(
                 f"{what}: joint '{joint.name}' turns and has no guide length; expected radius= in"
                 " place of length="

@@ -149,7 +149,7 @@ class Joint:
         return self.child if self.child.body is body else self.parent
 
     @property
-    def lets(self) -> tuple[Freedom, ...]:
+    def freedoms(self) -> tuple[Freedom, ...]:
         """The freedoms of its kind."""
         return (IN_PLANE if self.turned is None else IN_SPACE)[self.kind]
 
@@ -169,7 +169,7 @@ class Joint:
     def _axes(self, *, turns: bool) -> tuple[Axis, ...]:
         named = [
             freedom
-            for freedom in self.lets
+            for freedom in self.freedoms
             if freedom.name is not None and (turns or freedom.move == "slide")
         ]
         return tuple(
@@ -186,17 +186,19 @@ class Joint:
     @property
     def slides(self) -> bool:
         """True if the child's point moves along a line of the parent, or more."""
-        return any(freedom.move != "turn" for freedom in self.lets)
+        return any(freedom.move != "turn" for freedom in self.freedoms)
 
     @property
     def holds_direction(self) -> bool:
         """True if the child's direction follows from the parent's."""
-        return self.child.body.oriented and all(freedom.move == "slide" for freedom in self.lets)
+        return self.child.body.oriented and all(
+            freedom.move == "slide" for freedom in self.freedoms
+        )
 
     @property
     def turns(self) -> int:
         """About how many axes it lets its child turn."""
-        return sum(freedom.move != "slide" for freedom in self.lets)
+        return sum(freedom.move != "slide" for freedom in self.freedoms)
 
     @property
     def bears_moment(self) -> bool:

@@ -429,14 +429,14 @@ def _finite(rows: Array) -> Array:
 
 
 def _owners(
-    look: Callable[[Array, Array], Iterator[tuple[Any, ...]]], paths: Array, p: Array
+    search: Callable[[Array, Array], Iterator[tuple[Any, ...]]], paths: Array, p: Array
 ) -> Flags:
     """Return which paths (d, symbols, n) have a finding."""
     found = np.zeros(len(paths), bool)
     size = max(1, _AT_ONCE // max(paths.shape[2], 1))
     for start in range(0, len(paths), size):
         some = slice(start, start + size)
-        found[[start + k for k, *_ in look(paths[some], p[some])]] = True
+        found[[start + k for k, *_ in search(paths[some], p[some])]] = True
     return found
 
 

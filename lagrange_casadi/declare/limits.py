@@ -41,10 +41,10 @@ def check_connected(
         if body.name not in reached and reached & {other.name for other in joint.bodies}
     }:
         reached |= new
-    loose = [f"'{body.name}'" for body in bodies if body.name not in reached]
-    if loose:
+    apart = [f"'{body.name}'" for body in bodies if body.name not in reached]
+    if apart:
         raise DeclarationError(
-            f"mechanism '{name}': {', '.join(loose)} {'is' if len(loose) == 1 else 'are'} not"
+            f"mechanism '{name}': {', '.join(apart)} {'is' if len(apart) == 1 else 'are'} not"
             " connected to the ground by any chain of joints; joints declared:"
             f" {', '.join(joint.name for joint in joined) or 'none'}"
         )
@@ -140,17 +140,17 @@ def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
     return f"'{name}' is not a link and has no sections; links: {', '.join(links)}"
 
 
-def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
+def parameters_note(mechanism: Mechanism, values: Mapping[str, float]) -> str:
     """Parameters of a result, to end a message with: the defaults, or others; empty if there are
     none.
     """
-    return told_values(
+    return values_note(
         values or {name: parameter.default for name, parameter in mechanism.parameters.items()},
         not values,
     )
 
 
-def told_values(values: Mapping[str, float], default: bool = False) -> str:
+def values_note(values: Mapping[str, float], default: bool = False) -> str:
     """Name the values of all parameters, to end a message with; nothing where there are none."""
     listed = [f"{name} = {value:.6g}" for name, value in values.items()]
     if len(listed) > _TOLD:

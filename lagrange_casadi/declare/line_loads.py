@@ -10,12 +10,12 @@ from typing import Any, TypeAlias
 import casadi as ca
 
 from ..errors import DeclarationError
-from .expressions import told
+from .expressions import error_text
 from .ownership import Ownership
 from .parts import Expression, LineLoad, Link
 from .powers import powers
 
-Spread: TypeAlias = "Expression | tuple[Expression, Expression] | Callable[[Any], Expression]"
+LoadDensity: TypeAlias = "Expression | tuple[Expression, Expression] | Callable[[Any], Expression]"
 """A value along a link: one throughout, a pair for where it begins and ends, or a polynomial of the
 distance from the base.
 """
@@ -31,7 +31,7 @@ def line_load(
     own: Ownership,
     name: str,
     link: Link,
-    components: Sequence[Spread],
+    components: Sequence[LoadDensity],
     between: Between,
     turning: bool,
 ) -> LineLoad:
@@ -75,7 +75,7 @@ def line_load(
 
 def _powers(
     what: str,
-    value: Spread,
+    value: LoadDensity,
     start: Expression,
     end: Expression,
     checked: Callable[[Expression], Expression],
@@ -106,7 +106,7 @@ def _of_function(
         value = function(distance)
     except Exception as error:  # whatever a user's function raises
         raise DeclarationError(
-            f"{what}: its function of the distance fails: {told(error)}"
+            f"{what}: its function of the distance fails: {error_text(error)}"
         ) from error
     if not isinstance(value, ca.SX):
         return [checked(value)]

@@ -27,8 +27,8 @@ from .fitted import Fitted
 from .friction import friction
 from .joints import Axis, Joint, JointKind
 from .limits import check_connected, parameter_values
-from .line_loads import Between, Spread, line_load
-from .matter import beam_of, matter_of
+from .line_loads import Between, LoadDensity, line_load
+from .mass_properties import beam_of, mass_properties_of
 from .measures import Measures
 from .ownership import Ownership
 from .parts import (
@@ -51,8 +51,8 @@ from .parts import (
     Vector,
 )
 from .planar_joints import in_plane
-from .possible import demands
-from .results import Asked, OwnOutput, Results
+from .results import Asked, Results, UserOutput
+from .validity import demands
 
 
 @public
@@ -79,7 +79,7 @@ class Mechanism(Graphs):
     loads: dict[str, Load] = field(default_factory=dict, init=False)
     constraints: dict[str, Constraint] = field(default_factory=dict, init=False)
     rows: dict[str, Row] = field(default_factory=dict, init=False)
-    outputs: dict[str, OwnOutput] = field(default_factory=dict, init=False)
+    outputs: dict[str, UserOutput] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
     fitted: dict[str, dict[str, Fitted]] = field(default_factory=dict, init=False)
     snapped: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
@@ -186,11 +186,13 @@ class Mechanism(Graphs):
         self.own.free("link", name, self.bodies)
         what, checked = f"link '{name}'", self.own.expression
         beam = beam_of(what, beam, checked)
-        matter = matter_of(what, mass, density, centre, inertia, checked, beam=beam)
+        mass_properties = mass_properties_of(
+            what, mass, density, centre, inertia, checked, beam=beam
+        )
         return cast(
             Link,
             self.bodies.setdefault(
-                name, Link(name, checked(f"{what}: length", length, "m"), matter, beam)
+                name, Link(name, checked(f"{what}: length", length, "m"), mass_properties, beam)
             ),
         )
 
@@ -253,12 +255,12 @@ class Mechanism(Graphs):
         """Tie two joints: coordinate of ``second`` = ratio (that of ``first``) + offset (or ``"15
         deg"``); a mesh has -z1/z2.
         """
-        told = (
+        numbers = (
             ("ratio", ratio, "1"),
             ("offset", offset, "m" if self.own.moving_joint(second)[1].kind == "slide" else "rad"),
         )
         ratio, offset = (
-            self.own.expression(f"gear '{name}': {word}", value, of) for word, value, of in told
+            self.own.expression(f"gear '{name}': {word}", value, of) for word, value, of in numbers
         )
         return self.constraint(
             name, self.coordinate(second) - ratio * self.coordinate(first) - offset
@@ -339,8 +341,8 @@ class Mechanism(Graphs):
         name: str,
         link: Link,
         *,
-        x: Spread = 0.0,
-        y: Spread = 0.0,
+        x: LoadDensity = 0.0,
+        y: LoadDensity = 0.0,
         between: Between = None,
         turning: bool = False,
     ) -> LineLoad:
@@ -427,13 +429,13 @@ class Mechanism(Graphs):
         """Let a joint rub, a pin or a guide, by what it bears; ``along`` one of two coordinates of
         it: see :class:`.Friction`.
         """
-        told = {"mu": mu, "radius": radius, "length": length, "viscous": viscous}
-        told |= {"static": static, "stribeck": stribeck, "smooth": smooth}
+        numbers = {"mu": mu, "radius": radius, "length": length, "viscous": viscous}
+        numbers |= {"static": static, "stribeck": stribeck, "smooth": smooth}
         return cast(
-            Friction, self.loads.setdefault(name, friction(self.own, name, joint, along, told))
+            Friction, self.loads.setdefault(name, friction(self.own, name, joint, along, numbers))
         )
 
-    def output(self, name: str, expression: Any, *, unit: str = "1") -> OwnOutput:
+    def output(self, name: str, expression: Any, *, unit: str = "1") -> UserOutput:
         """Declare an output of one's own, ``output:NAME``, with its unit: an expression of what
         loads see and of `results`.
         """
@@ -443,7 +445,7 @@ class Mechanism(Graphs):
             self.own.expression(f"output '{name}'", expression, moving=True, found=True)
         )
         made_of = tuple(asked for asked in self.asked if ca.depends_on(expression, asked.symbol))
-        self.outputs[name] = OwnOutput(name, expression, unit, made_of)
+        self.outputs[name] = UserOutput(name, expression, unit, made_of)
         return self.outputs[name]
 
     def path(self, name: str, point: Body | Point) -> Path:

@@ -19,12 +19,12 @@ from ..base.symbolic import symbolic
 from ..errors import DeclarationError, shown
 from .curves import curve, rows
 from .ends import beyond_ends
-from .expressions import coordinates, scalar, symbols_of, told
+from .expressions import coordinates, error_text, scalar, symbols_of
 from .kinks import Smooth
 from .parts import Expression
-from .possible import Demand
 from .scaled import Scaled
 from .stretches import Stretch
+from .validity import Demand
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,11 +78,11 @@ def polynomial(*coefficients: Expression) -> Motion:
     """
     if not coefficients:
         raise DeclarationError("polynomial: expected at least one coefficient")
-    told, unit = coordinates("polynomial", ((c, _per(k)) for k, c in enumerate(coefficients)))
+    terms, unit = coordinates("polynomial", ((c, _per(k)) for k, c in enumerate(coefficients)))
 
     def graph(t: ca.SX) -> ca.SX:
-        value = ca.SX(told[-1])
-        for coefficient in reversed(told[:-1]):
+        value = ca.SX(terms[-1])
+        for coefficient in reversed(terms[:-1]):
             value = value * t + coefficient
         return value
 
@@ -220,7 +220,7 @@ def _scalar(joint: str, law: Motion, t: ca.SX, parameters: ca.SX) -> Expression:
     except Exception as error:
         raise DeclarationError(
             f"the motion of joint '{joint}' cannot be made as an expression of the time t"
-            f" (CasADi's functions, numbers without units): {told(error)[:240]}"
+            f" (CasADi's functions, numbers without units): {error_text(error)[:240]}"
         ) from None
     if isinstance(value, float) and math.isnan(value):
         raise DeclarationError(

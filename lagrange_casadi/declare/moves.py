@@ -18,9 +18,9 @@ from ..errors import DeclarationError
 from .expressions import check_name, coordinates, plain, scalar, sound, symbols_of
 from .motion import Motion
 from .parts import Expression
-from .possible import Demand, Evaluator
 from .rest_laws import Limits, RestLaw, rest_law, s_curve_within, trapezoid_within
 from .stretches import Stretch
+from .validity import Demand, Evaluator
 
 _PER = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
 _FORGIVEN = 1e-9
@@ -318,11 +318,11 @@ def _timed(
     what: str, part: Move, by: Expression, common: Limits, demands: _Demanded
 ) -> tuple[RestLaw, Expression]:
     """The law of a move and its time, with what its limits demand."""
-    limits = _limits(what, part.limits if part.limits.told else common, demands)
-    if not limits.told and part.time is None:
+    limits = _limits(what, part.limits if part.limits.given else common, demands)
+    if not limits.given and part.time is None:
         raise DeclarationError(f"{what}: expected a time, or limits of speed, acceleration or jerk")
     size = ca.fabs(ca.SX(by))
-    if limits.told and part.time is None:
+    if limits.given and part.time is None:
         demands.add(
             Demand(
                 size,
@@ -332,21 +332,21 @@ def _timed(
                 ),
             )
         )
-    told = frozenset(limits.told)
+    given = frozenset(limits.given)
     named = part.law if part.law is not None else "polynomial_345"
     own = part.law is None or part.law in ("trapezoid", "s_curve")
-    if own and told == {"speed", "acceleration"} and part.law != "s_curve":
+    if own and given == {"speed", "acceleration"} and part.law != "s_curve":
         law = trapezoid_within(by, limits)
-    elif own and told == {"speed", "acceleration", "jerk"} and part.law != "trapezoid":
+    elif own and given == {"speed", "acceleration", "jerk"} and part.law != "trapezoid":
         law = s_curve_within(by, limits)
     else:
         law = rest_law(what, named)
-    if "jerk" in told and isinstance(law.jerk, float) and math.isinf(law.jerk):
+    if "jerk" in given and isinstance(law.jerk, float) and math.isinf(law.jerk):
         raise DeclarationError(
             f"{what}: accelerations of the law {law.name} jump, so its jerk is infinite; expected"
             " another law, or no limit of jerk"
         )
-    if not limits.told:
+    if not limits.given:
         return law, _expression(f"{what}: time", part.time, "s")
     least = plain(law.least_time(by, limits))
     if part.time is None:
@@ -355,7 +355,7 @@ def _timed(
 
     def refusal(number: Evaluator) -> str:
         broken = ", ".join(
-            f"{name} {readable(number(limit))}" for name, limit in limits.told.items()
+            f"{name} {readable(number(limit))}" for name, limit in limits.given.items()
         )
         asked, needed = (
             f"{readable(abs(number(by)))} in {readable(number(time))} s",
@@ -371,7 +371,7 @@ def _timed(
 
 def _limits(what: str, limits: Limits, demands: _Demanded) -> Limits:
     found: dict[str, Expression] = {}
-    for name, value in limits.told.items():
+    for name, value in limits.given.items():
         found[name] = demands.coordinate(f"{what}: {name}", value, _PER[name])
         demands.add(Demand(found[name], True, _not_positive(f"{what}: {name}", found[name])))
     return Limits(**found)
@@ -386,15 +386,15 @@ def _filled(
         for k, time in enumerate(times)
     ]
     lacking = [k for k, time in enumerate(known) if time is None]
-    told = [time for time in known if time is not None]
+    given = [time for time in known if time is not None]
     if period is None:
         if lacking:
             raise DeclarationError(
                 f"{_what(parts[lacking[0]], lacking[0])}: expected its time, or a period of all"
                 " moves"
             )
-        return told
-    whole, total = _expression("moves: period", period, "s"), _Sum(0.0).then(*told)
+        return given
+    whole, total = _expression("moves: period", period, "s"), _Sum(0.0).then(*given)
     if len(lacking) > 1:
         raise DeclarationError(
             f"moves: {len(lacking)} dwells have no time; expected a time for all but one"
@@ -411,8 +411,8 @@ def _filled(
                 ),
             )
         )
-        return told
-    left = _Sum(whole).then(*(-time if isinstance(time, ca.SX) else float(-time) for time in told))
+        return given
+    left = _Sum(whole).then(*(-time if isinstance(time, ca.SX) else float(-time) for time in given))
     demands.add(
         Demand(
             left,

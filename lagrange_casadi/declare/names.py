@@ -23,7 +23,7 @@ from .parts import (
     Spring,
     Torque,
 )
-from .results import OwnOutput
+from .results import UserOutput
 
 _WORDS: dict[type[object], str] = {
     Constraint: "a constraint",
@@ -33,7 +33,7 @@ _WORDS: dict[type[object], str] = {
     Joint: "a joint",
     LineLoad: "a load",
     Link: "a link",
-    OwnOutput: "an output",
+    UserOutput: "an output",
     Parameter: "a parameter",
     Path: "a path",
     PointMass: "a point mass",
@@ -42,7 +42,7 @@ _WORDS: dict[type[object], str] = {
     Torque: "a load",
 }
 
-Part = Parameter | Body | Joint | Load | Constraint | Row | OwnOutput | Path
+Part = Parameter | Body | Joint | Load | Constraint | Row | UserOutput | Path
 
 
 def check_free(kind: str, name: str, mechanism: str, others: Iterable[Mapping[str, Part]]) -> None:

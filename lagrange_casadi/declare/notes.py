@@ -33,11 +33,11 @@ def notes(
     drives = drives_of(description)
     moved = len(motions_of(description)) - len(description["rows"])
     if len(drives) > moved and Output("effort", drives[0]) in outputs:
-        told = (
+        text = (
             f"{len(drives)} drives ({', '.join(drives)}) make {moved}"
             f" motion{'s' if moved > 1 else ''}"
         )
-        yield f"{told}: of all efforts that do, these have the least weighted sum of squares"
+        yield f"{text}: of all efforts that do, these have the least weighted sum of squares"
     yield from _across(description)
     if resting.any():
         yield rest_note(t, outputs, resting)
@@ -142,12 +142,12 @@ def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np
     """Note on a joint with friction that is at rest at some instants, and on the frictions
     there.
     """
-    open_ = [
+    indeterminate = [
         o.part
         for o, values in outputs.items()
         if (o.group, o.member) == ("friction", "along") and np.isnan(values).any()
     ]
-    frictions = f" ({', '.join(open_)})" if open_ else ""
+    frictions = f" ({', '.join(indeterminate)})" if indeterminate else ""
     first, last = t[np.flatnonzero(resting)[[0, -1]]]
     when = (
         f"at {int(np.count_nonzero(resting))} of {t.size} instants, first at t = {first:.6g} s,"

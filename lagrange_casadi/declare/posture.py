@@ -34,6 +34,6 @@ def _rough(name: str, value: object, turns: bool) -> float:
         raise DeclarationError(f"posture of '{name}': {error}") from None
     if turns and abs(found) > TURNS:
         degrees = f"{math.degrees(found):.6g} deg, more than two turns"
-        told = f"; '{value:g} deg' is {value:g} degrees" if isinstance(value, (int, float)) else ""
-        raise DeclarationError(f"posture of '{name}': {found:.6g} rad is {degrees}{told}")
+        hint = f"; '{value:g} deg' is {value:g} degrees" if isinstance(value, (int, float)) else ""
+        raise DeclarationError(f"posture of '{name}': {found:.6g} rad is {degrees}{hint}")
     return found

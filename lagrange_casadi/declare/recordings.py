@@ -106,10 +106,10 @@ def read_samples(
     for name, valid, what in units:
         if name not in valid:
             raise UnknownNameError(what, str(name), valid, place=path.name)
-    for what, told in (("period", period), ("advance", advance)):
-        _finite(f"{path.name}: {what}", 0.0 if told is None else told)
+    for what, setting in (("period", period), ("advance", advance)):
+        _finite(f"{path.name}: {what}", 0.0 if setting is None else setting)
     words = ("ratio", "offset", "stretch")
-    (ahead,), told_in = coordinates(f"{path.name}: offset", [(offset, "")])
+    (ahead,), unit_in = coordinates(f"{path.name}: offset", [(offset, "")])
     each = zip(words, (ratio, ahead, stretch), strict=True)
     scales = [scalar(f"{path.name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
     recording = _read(path, time, value, unit, _TIMES[time_unit])
@@ -120,7 +120,7 @@ def read_samples(
     elif advance:
         raise DeclarationError(f"{path.name}: advance= needs periodic=True")
     noise = _noise(recording, smoothing)
-    return _law(recording, noise, points, periodic or period is not None, advance, scales, told_in)
+    return _law(recording, noise, points, periodic or period is not None, advance, scales, unit_in)
 
 
 def _finite(what: str, value: object) -> None:
@@ -222,7 +222,7 @@ def _law(
     periodic: bool,
     advance: float,
     scales: Sequence[Expression],
-    told_in: str,
+    unit_in: str,
 ) -> Motion:
     t, values, size = recording.t, recording.values, _UNITS[recording.unit]
     whole = float(t[-1] - t[0])
@@ -262,7 +262,7 @@ def _law(
         f" s{', repeated' if periodic else ''}"
     )
     return Motion(
-        graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off", unit=told_in
+        graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off", unit=unit_in
     )
 
 

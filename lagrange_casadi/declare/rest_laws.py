@@ -68,7 +68,7 @@ class Limits:
     jerk: Expression | None = None
 
     @property
-    def told(self) -> dict[str, Expression]:
+    def given(self) -> dict[str, Expression]:
         """Limits that are given, by name."""
         each = {"speed": self.speed, "acceleration": self.acceleration, "jerk": self.jerk}
         return {name: limit for name, limit in each.items() if limit is not None}

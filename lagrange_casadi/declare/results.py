@@ -42,7 +42,7 @@ class Asked:
 
 
 @dataclass(frozen=True, eq=False)
-class OwnOutput:
+class UserOutput:
     """An output of the user's own: an expression of time, parameters, measures and results, and its
     unit.
     """
@@ -143,8 +143,8 @@ class Results:
 
     def friction(self, friction: Friction) -> Rubbed:
         """The symbols of a friction and of the power that it takes."""
-        rubbing = [load for load in self.mechanism.loads.values() if isinstance(load, Friction)]
-        name = self._own("friction", friction, rubbing)
+        sliding = [load for load in self.mechanism.loads.values() if isinstance(load, Friction)]
+        name = self._own("friction", friction, sliding)
         return Rubbed(
             self._ask(Output("friction", name, "along")),
             self._ask(Output("friction", name, "loss")),

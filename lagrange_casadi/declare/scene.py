@@ -15,21 +15,21 @@ from ..base.units import within
 from ..base.vocabulary import Precision
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
 from ..methods import method
+from .compliant import Elastic, compliant_links
 from .density import Density
 from .drives import weighed
 from .even_points import EvenPoints, checked_ratios
-from .giving import Elastic, giving
 from .guiding import guided, laws_of
 from .laws import Laws
-from .limits import no_sections, told_parameters
+from .limits import no_sections, parameters_note
 from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Expression, Friction, Parameter
-from .possible import Demands, demands
 from .posture import rough_posture
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
 from .times import Over, Times, Timing, span_of
+from .validity import ParameterConstraints, demands
 from .wanted_names import SENSITIVITY, among, others
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
@@ -71,12 +71,12 @@ class Wanted:
         """
         every = outputs(mechanism)
         choices = [*every, *kinds(every)]
-        if (told := texts(names)) is None:
+        if (listed := texts(names)) is None:
             raise DeclarationError(
                 f"wanted: expected a list of output names, got {shown(names)}; valid:"
                 f" {', '.join(choices)}"
             )
-        names = told
+        names = listed
         for name in names:
             if name not in choices:
                 _refuse_output(mechanism, name)
@@ -290,7 +290,7 @@ class Scene(Graphs):
                 "drives",
                 MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)),
             )
-        object.__setattr__(self, "elastic", giving(self.mechanism, self.elastic))
+        object.__setattr__(self, "elastic", compliant_links(self.mechanism, self.elastic))
         refuse_late(self.mechanism)
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
@@ -300,7 +300,7 @@ class Scene(Graphs):
         try:
             self.mechanism.values()
         except ParameterError as error:
-            raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
+            raise ParameterError(f"{error}{parameters_note(self.mechanism, {})}") from None
         numbers = self.mechanism.values(self.assembly)
         self.checked(numbers)
         object.__setattr__(
@@ -415,8 +415,8 @@ class Scene(Graphs):
     @fitting
     def giving(self, elastic: Elastic | None) -> Scene:
         """Return the scene with what is said of elasticity; None is what it says itself."""
-        gives = self.elastic if elastic is None else giving(self.mechanism, elastic)
-        return self if gives == self.elastic else _giving(self, gives)
+        gives = self.elastic if elastic is None else compliant_links(self.mechanism, elastic)
+        return self if gives == self.elastic else _compliant(self, gives)
 
     @fitting
     def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
@@ -441,7 +441,7 @@ class Scene(Graphs):
         """First and last instant [s], with the parameters with which the scene is assembled."""
         return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
 
-    def demands(self, precision: Precision = "double") -> Demands:
+    def demands(self, precision: Precision = "double") -> ParameterConstraints:
         """Conditions on the parameters, of the mechanism's parts and of the moves of its motion,
         with the tolerance of a precision.
         """
@@ -449,7 +449,7 @@ class Scene(Graphs):
             demands(self.mechanism, precision),
             [demand for law in self.laws.values() for demand in law.demands],
         )
-        return Demands(parts.symbols, (*parts.each, *moved)) if moved else parts
+        return ParameterConstraints(parts.symbols, (*parts.each, *moved)) if moved else parts
 
     @public
     def checked(self, values: Mapping[str, float]) -> None:
@@ -496,5 +496,5 @@ class Scene(Graphs):
 
 
 @lru_cache(maxsize=32)
-def _giving(scene: Scene, elastic: Elastic) -> Scene:
+def _compliant(scene: Scene, elastic: Elastic) -> Scene:
     return replace(scene, elastic=elastic)

@@ -15,16 +15,16 @@ from ..arguments import public
 from ..base.arrays import Operand
 from ..errors import DeclarationError, shown
 from .density import Density
-from .matter import second_moments
+from .mass_properties import second_moments
 from .parts import Expression, Link, Point
-from .results import OwnOutput
+from .results import UserOutput
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
 
 
 @dataclass(frozen=True, eq=False)
-class Shaking(OwnOutput):
+class Shaking(UserOutput):
     """A component of a shaking force or moment, and the names of the bodies that it is of."""
 
     bodies: tuple[str, ...]
@@ -33,7 +33,7 @@ class Shaking(OwnOutput):
 @public
 def shaking(
     mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expression] = ()
-) -> tuple[OwnOutput, ...]:
+) -> tuple[UserOutput, ...]:
     """Declare the shaking force and the shaking moment of a mechanism as outputs, and return them.
 
     They are ``output:NAME_fx``, ``output:NAME_fy`` [N] and ``output:NAME_mz`` [N m], in space also
@@ -61,7 +61,7 @@ def shaking(
     )
     force, moment = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
     for body in mechanism.moving:
-        points, moments = _matter(mechanism, body)
+        points, moments = _mass_properties(mechanism, body)
         for mass, point in points:
             place, acceleration = _spatial(mechanism, point)
             arm = [x - c for x, c in zip(place, [*centre, 0.0], strict=False)]
@@ -112,7 +112,7 @@ def refuse_late(mechanism: Mechanism) -> None:
 _Pair = tuple[Point, Point]
 
 
-def _matter(
+def _mass_properties(
     mechanism: Mechanism, body: Any
 ) -> tuple[list[tuple[Expression, Point]], list[tuple[Operand, _Pair, _Pair]]]:
     """Points with mass that stand for a body, and second moments with the pairs of points that are
@@ -130,14 +130,14 @@ def _matter(
             pairs = ((yy, 0, 0), (zz, 1, 1), (yz, 0, 1), (yz, 1, 0))
             moments += [(moment, across[i], across[j]) for moment, i, j in pairs]
         return [(base, body.base), (tip, body.tip)], moments
-    matter = body.mass
-    place = [*matter.centre, 0.0][:3]
+    mass_properties = body.mass
+    place = [*mass_properties.centre, 0.0][:3]
     centre = body.at(*place)
     axes = [(centre, body.at(*(x + (k == i) for k, x in enumerate(place)))) for i in range(3)]
     if not mechanism.space:
-        return [(matter.mass, centre)], [(matter.inertia, axes[0], axes[0])]
-    inertias = second_moments(matter.inertia)
-    return [(matter.mass, centre)], [
+        return [(mass_properties.mass, centre)], [(mass_properties.inertia, axes[0], axes[0])]
+    inertias = second_moments(mass_properties.inertia)
+    return [(mass_properties.mass, centre)], [
         (inertias[i][j], axes[i], axes[j]) for i in range(3) for j in range(3)
     ]
 

@@ -17,8 +17,8 @@ from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
 from .joints import IN_SPACE, Joint, JointKind, Triad
-from .line_loads import Between, Spread, line_load
-from .matter import beam_of, matter_of
+from .line_loads import Between, LoadDensity, line_load
+from .mass_properties import beam_of, mass_properties_of
 from .measures import Measures
 from .mechanism import Mechanism
 from .parts import (
@@ -132,9 +132,15 @@ class SpatialMechanism(Mechanism):
             )
 
         beam = beam_of(what, beam, self.own.expression)
-        matter = matter_of(what, mass, density, centre, inertia, self.own.expression, rigid, beam)
+        mass_properties = mass_properties_of(
+            what, mass, density, centre, inertia, self.own.expression, rigid, beam
+        )
         link = Link(
-            name, self.own.expression(f"{what}: length", length, "m"), matter, beam, beside=aside
+            name,
+            self.own.expression(f"{what}: length", length, "m"),
+            mass_properties,
+            beam,
+            beside=aside,
         )
         self.bodies[name] = link
         if reference is not None:
@@ -365,9 +371,9 @@ class SpatialMechanism(Mechanism):
         name: str,
         link: Link,
         *,
-        x: Spread = 0.0,
-        y: Spread = 0.0,
-        z: Spread = 0.0,
+        x: LoadDensity = 0.0,
+        y: LoadDensity = 0.0,
+        z: LoadDensity = 0.0,
         between: Between = None,
         turning: bool = False,
     ) -> LineLoad:

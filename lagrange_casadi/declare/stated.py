@@ -138,13 +138,13 @@ class EquationGraph(Graphs):
     wrenches: ca.Function
 
     @classmethod
-    def of(cls, mechanism: Mechanism, told: Constraint | Row) -> EquationGraph:
+    def of(cls, mechanism: Mechanism, declared: Constraint | Row) -> EquationGraph:
         """The graph of one equation of a mechanism, from the expressions as they were declared."""
-        row = isinstance(told, Row)
-        expression = ca.SX(told.expression if isinstance(told, Row) else told.phi)
-        transmission = None if isinstance(told, Row) else told.transmission
+        row = isinstance(declared, Row)
+        expression = ca.SX(declared.expression if isinstance(declared, Row) else declared.phi)
+        transmission = None if isinstance(declared, Row) else declared.transmission
         return cls._over(
-            mechanism, told.name, expression, _seen(mechanism, expression), row, transmission
+            mechanism, declared.name, expression, _seen(mechanism, expression), row, transmission
         )
 
     @classmethod
@@ -290,8 +290,8 @@ class LoadGraph(Graphs):
     @classmethod
     def of(cls, mechanism: Mechanism, load: Force | Torque | Spring | LineLoad) -> LoadGraph:
         """The law of a load, from the expressions as they were declared."""
-        kind, told = _told(load)
-        numbers = ca.densify(ca.vertcat(*map(ca.SX, told)))
+        kind, coefficients = _told(load)
+        numbers = ca.densify(ca.vertcat(*map(ca.SX, coefficients)))
         found = _seen(mechanism, numbers)
         given = [*_columns(found), mechanism.time, mechanism.symbols]
         turning = getattr(load, "turning", False)

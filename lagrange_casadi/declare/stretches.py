@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .parts import Expression
-from .possible import Evaluator
 from .rest_laws import RestLaw
+from .validity import Evaluator
 
 _SAME = 1e-9
 """Relative size of a jump, of the largest of its kind, that is rounding."""

@@ -23,11 +23,11 @@ from ..errors import DeclarationError, NumberError, UnknownNameError, shown
 from .even_points import EvenPoints, checked, points
 from .expressions import scalar
 from .laws import Laws
-from .limits import told_values
+from .limits import values_note
 from .mechanism import Mechanism
 from .motion import Motion
+from .motion_inverse import Missed, MotionInverse, Passage
 from .parts import Expression
-from .reaching import Missed, Reaching, Way
 
 Over = tuple[str, Expression, Expression, int]
 """Equal steps of the coordinate of a driven joint [rad or m]: its name, start, stop and count; both
@@ -47,7 +47,7 @@ TURNS = 4.0 * math.pi
 and whole numbers over a drive.
 """
 
-_MOST_LOOKS = 1 << 16
+_MOST_SAMPLES = 1 << 16
 """Largest number of times at which a motion is checked for reversal."""
 
 
@@ -205,12 +205,12 @@ def even_of(timing: Timing, values: Mapping[str, float]) -> EvenPoints:
             return checked("t", (start, stop, timing.count))
         except DeclarationError as error:
             raise DeclarationError(
-                f"{error}{'' if timing.fixed else told_values(values)}"
+                f"{error}{'' if timing.fixed else values_note(values)}"
             ) from None
     if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
         raise DeclarationError(
             f"over: START and STOP must be finite and apart, got {start:g} and"
-            f" {stop:g}{told_values(values)}"
+            f" {stop:g}{values_note(values)}"
         )
     return start, stop, timing.count
 
@@ -237,7 +237,7 @@ def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Inst
         return Instants(points(even))
     coordinates = points(even)
     way = _way(laws, timing, values)
-    t = Reaching.of(laws, timing.joint).times(way, coordinates[None], _row(values))[0]
+    t = MotionInverse.of(laws, timing.joint).times(way, coordinates[None], _row(values))[0]
     if not np.isfinite(t).all():
         raise DeclarationError(
             f"over: {timing.count} coordinates of joint '{timing.joint}' from"
@@ -247,22 +247,22 @@ def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Inst
     return Instants(t, DriveAxis(timing.joint, timing.unit, coordinates))
 
 
-def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Way:
+def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Passage:
     """Times at which a drive goes from start to stop.
 
     Raises :class:`.DeclarationError` where it does not, and says what it does instead.
     """
     p = _row(values)
     start, stop, around = timing.bounds(p)
-    law = Reaching.of(laws, timing.joint)
-    way = law.way(start, stop, p, around, looks=min(4 * timing.count, _MOST_LOOKS) + 1)
+    law = MotionInverse.of(laws, timing.joint)
+    way = law.passage(start, stop, p, around, samples=min(4 * timing.count, _MOST_SAMPLES) + 1)
     why = Missed(int(way.missed[0]))
     if why is Missed.REACHED:
         return way
-    joint, told = timing.joint, functools.partial(_shown, timing)
+    joint, shown = timing.joint, functools.partial(_shown, timing)
     asked, where = (
-        f"from {told(start[0])} to {told(stop[0])}",
-        f"t = {way.t[0]:.6g} s, at {told(way.d[0])}",
+        f"from {shown(start[0])} to {shown(stop[0])}",
+        f"t = {way.t[0]:.6g} s, at {shown(way.d[0])}",
     )
     said = {
         Missed.STANDS_STILL: f"is at rest and does not go {asked}",
@@ -274,7 +274,7 @@ def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Way:
         Missed.ENDS: f"does not go {asked}: its samples end at {where}",
         Missed.NEVER: f"does not go {asked}",
     }[why]
-    raise DeclarationError(f"over: the motion of joint '{joint}' {said}{told_values(values)}")
+    raise DeclarationError(f"over: the motion of joint '{joint}' {said}{values_note(values)}")
 
 
 def _shown(timing: Timing, value: float) -> str:
@@ -320,8 +320,8 @@ def _bound(name: str, bound: Any, unit: str) -> Operand:
         found: Any = bound if isinstance(bound, ca.SX) else number(bound, unit, finite=False)
     except NumberError as error:
         raise DeclarationError(f"over: {name}: {error}") from None
-    told = unit == ANGLE and isinstance(found, float) and not isinstance(bound, str)
-    if told and math.isfinite(found) and abs(found) > TURNS and found == round(found):
+    as_number = unit == ANGLE and isinstance(found, float) and not isinstance(bound, str)
+    if as_number and math.isfinite(found) and abs(found) > TURNS and found == round(found):
         raise DeclarationError(
             f"over: {name}: {found:.6g} rad is {math.degrees(found):.6g} deg, more than two turns;"
             f" '{found:g} deg' is {found:g} degrees, and '{found:g} rad' as many turns"

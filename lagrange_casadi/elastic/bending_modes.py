@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.arrays import Array
-from ..declare.held import Ends
+from ..declare.end_conditions import Ends
 
 ROOTS: dict[Ends, float] = {
     ("pinned", "pinned"): np.pi,
@@ -180,9 +180,9 @@ def _sag(
     )
     held = {"free": [], "pinned": [0], "clamped": [0, 1], "guided": [1]}[ends[1]]
     if held:
-        felt = np.stack([tip_force, tip_couple])[held]
+        loads = np.stack([tip_force, tip_couple])[held]
         clamped = clamped - np.einsum(
-            "in,in->n", felt, np.linalg.solve(at_tip[np.ix_(held, held)], felt)
+            "in,in->n", loads, np.linalg.solve(at_tip[np.ix_(held, held)], loads)
         )
     return np.asarray(clamped).reshape(u.shape)
 

@@ -20,13 +20,13 @@ from numpy.polynomial import chebyshev
 
 from ..arguments import Numeric, public
 from ..base.arrays import Array
-from ..declare.held import ends_of
+from ..declare.end_conditions import ends_of
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.sizes import largest
 from ..instants.solution import Solution
-from ..instants.turning import turns_between
+from ..instants.turning import stationary_points
+from ..peak_search.polynomials import interpolation
 from ..strength.member import Member
-from ..summits.polynomials import interpolation
 from .compliance import Compliance, sorted_edges
 
 Against = Literal["ends", "base"]
@@ -149,7 +149,7 @@ class Deflection:
             )
 
         degree = (2 if space else 1) * (self._degree + 2)
-        turns = turns_between(
+        turns = stationary_points(
             slope, self._edges[:, :-1], self._edges[:, 1:], (0.0, 1.0), degree, signed=not space
         )
         places = np.concatenate([self._edges, turns.places.reshape(len(self._edges), -1)], axis=1)

@@ -19,7 +19,7 @@ import numpy as np
 from ..arguments import public
 from ..base.arrays import Array
 from ..declare.description import Description, density_of
-from ..declare.held import ENDS, Ends, ends_of
+from ..declare.end_conditions import ENDS, Ends, ends_of
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..strength.member import Member
@@ -72,15 +72,15 @@ class Vibration:
         """Result in a sentence."""
         if math.isinf(self.frequency):
             return "no bending frequency of its own, for it has no mass"
-        told = f"first bending frequency {self.frequency:.5g} Hz, {' and '.join(self.ends)}"
+        text = f"first bending frequency {self.frequency:.5g} Hz, {' and '.join(self.ends)}"
         if self.cycle is None or self.harmonic is None or self.excess is None:
-            return f"{told}; {self.untold}"
-        told += f", {self.frequency / self.cycle:.4g} times that of the cycle"
+            return f"{text}; {self.untold}"
+        text += f", {self.frequency / self.cycle:.4g} times that of the cycle"
         off = f"{100 * self.excess:.3g} %" if self.excess < 10 else "many times"
         if self.enough:
-            return f"{told}; resonance changes its bending by {off} at most"
+            return f"{text}; resonance changes its bending by {off} at most"
         which = f"harmonic {self.harmonic}, {self.harmonic * self.cycle:.5g} Hz"
-        return f"{told}; rigid links are not enough: {which}, changes its bending by {off}"
+        return f"{text}; rigid links are not enough: {which}, changes its bending by {off}"
 
 
 @public

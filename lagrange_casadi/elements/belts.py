@@ -109,10 +109,10 @@ def belt(
         )
     distance, reach = length(away), r1 + r2 if crossed else ca.fabs(ca.SX(r1 - r2))
     if not numbers.of(distance) > numbers.of(reach):
-        told = "the sum" if crossed else "the difference"
+        which = "the sum" if crossed else "the difference"
         raise DeclarationError(
             f"{what}: its centres are {numbers.of(distance):.6g} m apart; expected more than"
-            f" {told} of its radii, {numbers.of(reach):.6g} m"
+            f" {which} of its radii, {numbers.of(reach):.6g} m"
         )
     fits.append(
         Fit(

@@ -102,13 +102,13 @@ def courses_on(
     if not both:
         where = f"'{carrier.name}'" if carrier is not None else "one body"
         names = [", ".join(f"'{name}'" for name in one) or "nothing" for one in found]
-        told = "; ".join(
+        axes = "; ".join(
             f"'{point.body.name}' turns on {on}"
             for point, on in zip((first, second), names, strict=True)
         )
         raise DeclarationError(
             f"{what}: expected the centres of two bodies that turn on {where} by revolute joints"
-            f" through these; {told}"
+            f" through these; {axes}"
         )
     nearest = min(both, key=lambda name: sum(len(one[name].joints) for one in found))
     return found[0][nearest], found[1][nearest]

@@ -38,7 +38,7 @@ from .follower import STEEL, largest_pressure, rise_of, stiffness_of
 _SAME = 1e-9
 """A cosine, or a share of a size, that is smaller is zero."""
 
-_LOOKED_AT = 721
+_SAMPLED = 721
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,13 +241,14 @@ def _groove(
 
 def _round(what: str, mechanism: Mechanism, design: Groove, roller: Expression) -> Expression:
     """The radius of the roller, for which the groove's flanks must have room in its bends."""
-    angles = np.linspace(0.0, math.tau, _LOOKED_AT)
-    told = ca.Function(
+    angles = np.linspace(0.0, math.tau, _SAMPLED)
+    bend_functions = ca.Function(
         "bends", [design.angle, mechanism.symbols], [ca.SX(design.bend), ca.SX(roller)]
     )
     values = list(mechanism.values().values())
     bends, radius = (
-        np.broadcast_to(row.full().ravel(), angles.shape) for row in told(angles[None], values)
+        np.broadcast_to(row.full().ravel(), angles.shape)
+        for row in bend_functions(angles[None], values)
     )
     if radius[0] <= 0.0:
         raise DeclarationError(f"{what}: roller must be positive, got {radius[0]:g} m")
@@ -275,9 +276,9 @@ def _check(what: str, mechanism: Mechanism, design: Groove, rise: Any, follower:
         ca.vertcat(*map(ca.SX, minus(seat, times(dot(seat, design.axis), design.axis))))
     )
     angles = np.linspace(0.0, math.tau, 181)
-    told = ca.Function("told", [x, p], [ca.SX(cosine), *ends, rise, radius])
+    checks = ca.Function("told", [x, p], [ca.SX(cosine), *ends, rise, radius])
     lean, first, last, way, reach = (
-        np.broadcast_to(row.full().ravel(), angles.shape) for row in told(angles[None], values)
+        np.broadcast_to(row.full().ravel(), angles.shape) for row in checks(angles[None], values)
     )
     slides = follower.kind == "prismatic"
     if abs(abs(lean[0]) - (1.0 if slides else 0.0)) > _SAME:

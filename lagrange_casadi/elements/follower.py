@@ -13,12 +13,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.expressions import sound, told
+from ..declare.expressions import error_text, sound
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression
 from ..errors import DeclarationError
 
-_LOOKED_AT = 37
+_SAMPLED = 37
 
 
 def rise_of(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], angle: ca.SX) -> ca.SX:
@@ -32,10 +32,10 @@ def rise_of(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], angle: 
     except Exception as error:  # whatever a user's function raises
         raise DeclarationError(
             f"{what}: lift must be a function of the cam's angle, of CasADi's expressions:"
-            f" {told(error)}"
+            f" {error_text(error)}"
         ) from None
     defaults = [parameter.default for parameter in mechanism.parameters.values()]
-    angles = np.linspace(0.0, math.tau, _LOOKED_AT)
+    angles = np.linspace(0.0, math.tau, _SAMPLED)
     values = (
         ca.Function("lift", [angle, mechanism.symbols], [ca.densify(rise)])(angles[None], defaults)
         .full()

@@ -125,8 +125,8 @@ def gears(
     if not many:
         raise DeclarationError(f"{what}: expected a second gear")
     found = [courses_on(mechanism, what, centre, one, carrier) for one in many]
-    numbers, fits, rubs = Numbers(mechanism), [], efficiency is not None or mu is not None
-    told, more = _teeth(
+    numbers, fits, lossy = Numbers(mechanism), [], efficiency is not None or mu is not None
+    toothing, more = _teeth(
         what,
         mechanism,
         found[0],
@@ -137,22 +137,24 @@ def gears(
         hand == "right",
     )
     fits += more
-    pitches = [pitch_of(what, numbers, *pair, told) for pair in found]
+    pitches = [pitch_of(what, numbers, *pair, toothing) for pair in found]
     meshes = []
     for pair, pitch, point in zip(found, pitches, many, strict=True):
         if pitch.kind == "crossed" and (teeth is None or radii is None):
             raise DeclarationError(f"{what}: crossed axes need both numbers of teeth and radii")
         mesh = _mesh(mechanism, centre, point, *pair, pitch)
-        meshes.append(replace(mesh, braking=braking_of(pitch)) if rubs else mesh)
+        meshes.append(replace(mesh, braking=braking_of(pitch)) if lossy else mesh)
         fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
     ways = [course.way(mechanism) for course in found[0]]
     ahead = own.expression(f"{what}: offset", offset, "m")
     constraint = mechanism.constraint(
-        name, told.radii[0] * ways[0] + pitches[0].other * ways[1] - ahead
+        name, toothing.radii[0] * ways[0] + pitches[0].other * ways[1] - ahead
     )
     loss = None
-    if rubs:
-        loss, more = loss_of(what, mechanism, name, found[0][0], pitches[0], told, efficiency, mu)
+    if lossy:
+        loss, more = loss_of(
+            what, mechanism, name, found[0][0], pitches[0], toothing, efficiency, mu
+        )
         fits += more
     varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
     constraint = replace(
@@ -164,7 +166,7 @@ def gears(
         mechanism.output(
             f"{name}_loss", len(meshes) * lost(mechanism, constraint, loss, pitches[0]), unit="W"
         )
-    return Gears(constraint, pitches[0].kind, -(told.radii[0] / pitches[0].other))
+    return Gears(constraint, pitches[0].kind, -(toothing.radii[0] / pitches[0].other))
 
 
 def _teeth(

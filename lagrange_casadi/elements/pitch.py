@@ -91,9 +91,11 @@ def _parallel(what: str, numbers: Numbers, first: Course, second: Course, teeth:
     sides = {1: r1 + r2, -1: r2 - r1, -2: r1 - r2}
     side = min(sides, key=lambda one: abs(between - numbers.of(sides[one])))
     inner = abs(numbers.of(r1 - r2))
-    told = f"{numbers.of(r1 + r2):.9g} m by the radii, or {inner:.9g} m for a gear in a ring"
+    distances = f"{numbers.of(r1 + r2):.9g} m by the radii, or {inner:.9g} m for a gear in a ring"
     if abs(between - numbers.of(sides[side])) > FITTING * numbers.of(r1 + r2) or between == 0.0:
-        raise DeclarationError(f"{what}: its centres are {between:.9g} m apart; expected {told}")
+        raise DeclarationError(
+            f"{what}: its centres are {between:.9g} m apart; expected {distances}"
+        )
     words = "its centres are {got} m apart; expected {meant} m by the radii"
     fits = [Fit(words, distance, sides[side], r1 + r2)]
     _refuse_beside(what, numbers, beside, r1 + r2)

@@ -129,15 +129,17 @@ def planetary(
         found.append(planet)
         pins.append(mechanism.revolute(f"{name}_pin_{k + 1}", spot, planet))
     body = middle.body
-    told = {
+    options = {
         "module": size,
         "pressure_angle": pressure_angle,
         "efficiency": efficiency,
         "carrier": body,
     }
-    inner = gears(mechanism, f"{name}_sun", sun, found, teeth=(of_sun, of_planet), **told)
+    inner = gears(mechanism, f"{name}_sun", sun, found, teeth=(of_sun, of_planet), **options)
     outer = tuple(
-        gears(mechanism, f"{name}_ring_{k + 1}", planet, ring, teeth=(of_planet, of_ring), **told)
+        gears(
+            mechanism, f"{name}_ring_{k + 1}", planet, ring, teeth=(of_planet, of_ring), **options
+        )
         for k, planet in enumerate(found)
     )
     return Planetary(tuple(found), tuple(pins), inner, outer, centres)

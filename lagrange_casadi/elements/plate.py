@@ -80,12 +80,12 @@ def plate(
     area, x, y, second = area_of(places)
     if isinstance(area, float) and area == 0.0:
         raise DeclarationError(f"{what}: its corners lie on a line")
-    told: Any = (
+    plate_mass: Any = (
         mechanism.own.expression(what, mass, "kg")
         if per_area is None
         else mechanism.own.expression(what, per_area)
     )
-    whole = told if per_area is None else ca.fabs(ca.SX(area)) * told
+    whole = plate_mass if per_area is None else ca.fabs(ca.SX(area)) * plate_mass
     farthest = ca.SX(0)
     for corner in places:
         farthest = ca.fmax(farthest, ca.sqrt(ca.SX(corner[0]) ** 2 + ca.SX(corner[1]) ** 2))

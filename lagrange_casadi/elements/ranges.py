@@ -17,30 +17,30 @@ LEAST = 1e-12
 """Least number that counts as positive."""
 
 
-def whole(what: str, told: str, value: Expression) -> list[Fit]:
+def whole(what: str, name: str, value: Expression) -> list[Fit]:
     """Check that a number is whole, and 1 or more."""
     if isinstance(value, ca.SX):
         nearest = ca.fmax(ca.floor(value + 0.5), 1.0)
-        return [Fit(f"{told} must be whole, and 1 or more, got {{got}}", value, nearest, 1.0)]
+        return [Fit(f"{name} must be whole, and 1 or more, got {{got}}", value, nearest, 1.0)]
     if value < 1.0 or abs(value - round(value)) > FITTING:
         raise DeclarationError(
-            f"{what}: {told} must be whole, and 1 or more, got {readable(value)}"
+            f"{what}: {name} must be whole, and 1 or more, got {readable(value)}"
         )
     return []
 
 
-def positive(what: str, told: str, value: Expression) -> list[Fit]:
+def positive(what: str, name: str, value: Expression) -> list[Fit]:
     """Check that a length is positive."""
     if isinstance(value, ca.SX):
-        return [Fit(f"{told} must be positive, got {{got}} m", value, ca.fmax(value, LEAST), LEAST)]
+        return [Fit(f"{name} must be positive, got {{got}} m", value, ca.fmax(value, LEAST), LEAST)]
     if value <= 0.0:
-        raise DeclarationError(f"{what}: {told} must be positive, got {readable(value)} m")
+        raise DeclarationError(f"{what}: {name} must be positive, got {readable(value)} m")
     return []
 
 
-def within(what: str, told: str, angle: Expression, low: float, high: float) -> list[Fit]:
+def within(what: str, name: str, angle: Expression, low: float, high: float) -> list[Fit]:
     """Check that an angle [rad] is between two others."""
-    bounds = f"{told} must be from {math.degrees(low):.6g} to {math.degrees(high):.6g} deg"
+    bounds = f"{name} must be from {math.degrees(low):.6g} to {math.degrees(high):.6g} deg"
     if isinstance(angle, ca.SX):
         return [Fit(f"{bounds}, got {{got}} rad", angle, ca.fmin(ca.fmax(angle, low), high), 1.0)]
     if not low <= angle <= high:
@@ -48,12 +48,12 @@ def within(what: str, told: str, angle: Expression, low: float, high: float) -> 
     return []
 
 
-def at_least(what: str, words: str, value: Expression, low: float, told: Expression) -> list[Fit]:
+def at_least(what: str, words: str, value: Expression, low: float, shown: Expression) -> list[Fit]:
     """Check that a number is not below another; an error names ``told``."""
     if isinstance(value, ca.SX):
-        return [Fit(f"{words}, got {{got}}", told, told + ca.fmax(low - value, 0.0), LEAST)]
+        return [Fit(f"{words}, got {{got}}", shown, shown + ca.fmax(low - value, 0.0), LEAST)]
     if value < low:
-        raise DeclarationError(f"{what}: {words}, got {told:g}")
+        raise DeclarationError(f"{what}: {words}, got {shown:g}")
     return []
 
 

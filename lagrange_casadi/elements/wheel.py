@@ -58,10 +58,12 @@ def wheel(
             f"{what}: its bore must be smaller than its radius, got {inner:g} m in {outer:g} m"
         )
     thick = 0.0 if width is None else own.expression(f"{what}: width", width, "m")
-    told = own.expression(f"{what}: mass", mass, "kg") if mass is not None else None
+    weight = own.expression(f"{what}: mass", mass, "kg") if mass is not None else None
     density = own.expression(f"{what}: density", density)
     turned = number(turned, "rad")
-    whole = density * math.pi * (outer * outer - inner * inner) * thick if told is None else told
+    whole = (
+        density * math.pi * (outer * outer - inner * inner) * thick if weight is None else weight
+    )
     polar = whole * (outer * outer + inner * inner) / 2
     if isinstance(mechanism, SpatialMechanism):
         across = polar / 2 + whole * thick * thick / 12

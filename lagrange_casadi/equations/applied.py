@@ -12,7 +12,7 @@ from ..declare.parts import Force, Friction, LineLoad, Link, Load, Point, Spring
 from ..geometry.frames import Velocities
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, nil, plus, times
 from .growing import Grown
-from .joints import carried, gap_motion, reaction
+from .joints import carried, reaction, residual_motion
 from .multibody import Applied, LoopEquations, RowGraph
 from .pressing import way_of
 
@@ -84,21 +84,27 @@ def held_by(
 
 
 def work(
-    felt: Grown, applied: Iterable[Applied], loops: Iterable[LoopEquations], velocities: Velocities
+    accelerated: Grown,
+    applied: Iterable[Applied],
+    loops: Iterable[LoopEquations],
+    velocities: Velocities,
 ) -> None:
     """Let loads and multipliers do work: along the velocities of points, and of what a closing
     joint holds together.
     """
     for part in applied:
-        frame = felt.frames[part.point.body.name]
+        frame = accelerated.frames[part.point.body.name]
         _bear(velocities, frame.motion_of(part.point.place), part.force)
         _bear(velocities, (frame.rate, frame.angular), part.couple)
     for loop in loops:
-        if loop.bar is not None:
-            frame = felt.frames[loop.bar.link.name]
+        if loop.two_force_link is not None:
+            frame = accelerated.frames[loop.two_force_link.link.name]
             (speed, acceleration), (last_speed, last_acceleration) = (
                 frame.motion_of((place, 0.0, 0.0))
-                for place in (loop.bar.start, loop.bar.start + loop.bar.length)
+                for place in (
+                    loop.two_force_link.start,
+                    loop.two_force_link.start + loop.two_force_link.length,
+                )
             )
             along = times(loop.multipliers, frame.rotation.x)
             _bear(
@@ -107,9 +113,9 @@ def work(
                 along,
             )
         if loop.joint is not None:
-            parent, child = felt.ends(loop.joint)
+            parent, child = accelerated.ends(loop.joint)
             force, moment = reaction(loop.joint, parent, child, loop.multipliers)
-            _bear(velocities, gap_motion(loop.joint, parent, child), force)
+            _bear(velocities, residual_motion(loop.joint, parent, child), force)
             _bear(
                 velocities,
                 (minus(child.rate, parent.rate), minus(child.angular, parent.angular)),
@@ -117,12 +123,16 @@ def work(
             )
 
 
-def push(felt: Grown, joint: Joint, axis: Axis, effort: Any, velocities: Velocities) -> None:
+def push(accelerated: Grown, joint: Joint, axis: Axis, effort: Any, velocities: Velocities) -> None:
     """Let an effort do work along a joint's coordinate."""
-    parent, child = felt.ends(joint)
-    along = times(effort, felt.along(joint, axis))
+    parent, child = accelerated.ends(joint)
+    along = times(effort, accelerated.along(joint, axis))
     turning = (minus(child.rate, parent.rate), minus(child.angular, parent.angular))
-    _bear(velocities, turning if axis.kind == "angle" else gap_motion(joint, parent, child), along)
+    _bear(
+        velocities,
+        turning if axis.kind == "angle" else residual_motion(joint, parent, child),
+        along,
+    )
 
 
 def _bear(velocities: Velocities, motion: tuple[Vector, Vector], force: Vector) -> None:
@@ -146,10 +156,10 @@ def _along(load: LineLoad, resting: Grown) -> Applied:
     to 1 tell force and couple.
     """
     rotation, reach = resting.frames[load.link.name].rotation, load.reach
-    told = [_vector(resting, (x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)]
-    own = told if load.turning else [rotation.resolve(one) for one in told]
+    forces = [_vector(resting, (x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)]
+    own = forces if load.turning else [rotation.resolve(one) for one in forces]
     whole, couple = ZERO, ZERO
-    for power, (there, here) in enumerate(zip(told, own, strict=True)):
+    for power, (there, here) in enumerate(zip(forces, own, strict=True)):
         whole = plus(whole, times(reach / (power + 1), there))
         turning = cross(AXES[0], here) if power else ZERO
         couple = plus(

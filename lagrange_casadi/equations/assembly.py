@@ -19,19 +19,19 @@ from ..base.arrays import Expression
 from ..declare.corners import smooth_constraint
 from ..declare.density import Density
 from ..declare.joints import Axis, Joint
-from ..declare.matter import second_moments
+from ..declare.mass_properties import second_moments
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Link, PointMass, RigidMass, Vector
 from ..errors import DeclarationError
 from ..geometry.frames import Carried, Frame, Velocities
 from ..geometry.vectors import AXES, ZERO, minus, nil, times
 from .applied import applied_by, held_by, push, work
-from .bars import BarFrame
 from .growing import Grown, coordinates_of
-from .joints import closing_gaps
+from .joints import loop_residuals
 from .meshes import meshed_by
 from .multibody import Applied, LoopEquations, Multibody, RowGraph, change, column
 from .tree import Tree
+from .two_force_links import TwoForceFrame
 
 
 def assemble(
@@ -62,32 +62,41 @@ def assemble(
         if mechanism.space
         else Frame(acceleration=upward)
     )
-    resting, felt = Grown(mechanism, carried, Frame()), Grown(mechanism, carried, weighed)
+    resting, accelerated = Grown(mechanism, carried, Frame()), Grown(mechanism, carried, weighed)
     for branch in tree.branches:
         resting.hang(branch, displace=False)
         # What acts where loops close is in ground axes.
-        felt.hang(
-            branch, displace=branch.joint.name in reactions, along=not (tree.closing or tree.bars)
+        accelerated.hang(
+            branch,
+            displace=branch.joint.name in reactions,
+            along=not (tree.closing or tree.two_force_links),
         )
     loops = [
-        _loop_equations(joint.name, joint, *closing_gaps(joint, *resting.ends(joint)))
+        _loop_equations(joint.name, joint, *loop_residuals(joint, *resting.ends(joint)))
         for joint in tree.closing
     ]
     loops += [
-        _loop_equations(bar.link.name, None, *map(ca.SX, resting.span(bar, displace=())))
-        for bar in tree.bars
+        _loop_equations(
+            two_force_link.link.name, None, *map(ca.SX, resting.span(two_force_link, displace=()))
+        )
+        for two_force_link in tree.two_force_links
     ]
     loops[len(tree.closing) :] = [
-        replace(loop, bar=bar)
-        for loop, bar in zip(loops[len(tree.closing) :], tree.bars, strict=True)
+        replace(loop, two_force_link=two_force_link)
+        for loop, two_force_link in zip(
+            loops[len(tree.closing) :], tree.two_force_links, strict=True
+        )
     ]
-    for bar in tree.bars:
-        felt.span(bar, displace=[joint.name for joint in bar.joints if joint.name in reactions])
+    for two_force_link in tree.two_force_links:
+        accelerated.span(
+            two_force_link,
+            displace=[joint.name for joint in two_force_link.joints if joint.name in reactions],
+        )
     for constraint in mechanism.constraints.values():
-        gap = resting.counted(constraint.phi)
-        rate = change(gap, resting.coordinates, mechanism.time)
+        residual = resting.counted(constraint.phi)
+        rate = change(residual, resting.coordinates, mechanism.time)
         equations = _loop_equations(
-            constraint.name, None, gap, rate, change(rate, resting.coordinates, mechanism.time)
+            constraint.name, None, residual, rate, change(rate, resting.coordinates, mechanism.time)
         )
         smooth = smooth_constraint(mechanism, constraint)
         loops.append(
@@ -105,8 +114,8 @@ def assemble(
     ]
     held += [
         part
-        for graph in rows
-        for part in held_by(resting, graph.row.name, graph.row.expression, graph)
+        for program in rows
+        for part in held_by(resting, program.row.name, program.row.expression, program)
     ]
     velocities = Velocities()
     spun = {
@@ -118,7 +127,7 @@ def assemble(
     energies = [
         kinetic_energy(
             body,
-            felt.frames[body.name],
+            accelerated.frames[body.name],
             velocities,
             space=mechanism.space,
             spun=body in spun and body.oriented,
@@ -127,34 +136,34 @@ def assemble(
         for body in mechanism.moving
     ]
     kinetic = sum(energies, ca.SX(0))
-    work(felt, (*applied, *held), loops, velocities)
+    work(accelerated, (*applied, *held), loops, velocities)
     # Where a joint with three turns closes a loop, its angles are not measured.
     open_ = [joint for joint in tree.closing if joint.turns > 2] + [
-        joint for bar in tree.bars for joint in bar.joints
+        joint for two_force_link in tree.two_force_links for joint in two_force_link.joints
     ]
-    balls = [c.name for c in resting.coordinates if c.ball is not None]
+    sphericals = [c.name for c in resting.coordinates if c.spherical is not None]
     outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in own}
     efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
     for name, effort in efforts.items():
         _refuse_unmeasured(name, *mechanism.coordinates[name], tree, open_)
-        push(felt, *mechanism.coordinates[name], effort, velocities)
+        push(accelerated, *mechanism.coordinates[name], effort, velocities)
     return Multibody(
         mechanism=mechanism,
         tree=tree,
         coordinates=resting.coordinates,
         loop_equations=tuple(loops),
         rows=rows,
-        mobilities=felt.mobilities,
-        own_axes=frozenset(felt.own_axes),
+        mobilities=accelerated.mobilities,
+        own_axes=frozenset(accelerated.own_axes),
         frames=resting.frames,
-        felt=felt.frames,
+        accelerated=accelerated.frames,
         applied=applied,
         held=tuple(held),
         efforts=efforts,
         along={
             name: resting.along(joint, axis)
             for name, (joint, axis) in mechanism.coordinates.items()
-            if joint not in open_ and name not in balls
+            if joint not in open_ and name not in sphericals
         },
         axes=resting.turning,
         own=outputs,
@@ -177,20 +186,24 @@ def _refuse_unmeasured(
     """Raise :class:`DeclarationError` for a drive along a turn that has no angle."""
     if axis.kind != "angle" or joint not in unmeasured:
         return
-    bars = [bar.link.name for bar in tree.bars if joint in bar.joints]
+    two_force_links = [
+        two_force_link.link.name
+        for two_force_link in tree.two_force_links
+        if joint in two_force_link.joints
+    ]
     why = (
-        f"the spin of two-force link '{bars[0]}' about its own axis moves nothing"
-        if bars
+        f"the spin of two-force link '{two_force_links[0]}' about its own axis moves nothing"
+        if two_force_links
         else "the joint closes a loop, where its rotations are not evaluated"
     )
     raise DeclarationError(f"drive '{name}': {why}; drive another joint")
 
 
 def _loop_equations(
-    name: str, joint: Joint | None, gap: ca.SX, rate: ca.SX, acceleration: ca.SX
+    name: str, joint: Joint | None, residual: ca.SX, rate: ca.SX, acceleration: ca.SX
 ) -> LoopEquations:
     return LoopEquations(
-        name, joint, gap, rate, acceleration, ca.SX.sym(f"lambda_{name}", gap.numel())
+        name, joint, residual, rate, acceleration, ca.SX.sym(f"lambda_{name}", residual.numel())
     )
 
 
@@ -242,26 +255,28 @@ def kinetic_energy(
 
 
 def _rigid(
-    matter: Any, frame: Frame, velocities: Velocities, *, space: bool, spun: bool
+    mass_properties: Any, frame: Frame, velocities: Velocities, *, space: bool, spun: bool
 ) -> Expression:
     """A rigid body, or a point mass."""
-    if not isinstance(matter, RigidMass):
+    if not isinstance(mass_properties, RigidMass):
         return (
-            matter * ca.sumsqr(velocities.vector(frame.shortest.motion_of(frame.anchor))) / 2
+            mass_properties
+            * ca.sumsqr(velocities.vector(frame.shortest.motion_of(frame.anchor)))
+            / 2
             if space
-            else _flat([(matter, ZERO)], 0.0, frame, velocities, spun=False)
+            else _flat([(mass_properties, ZERO)], 0.0, frame, velocities, spun=False)
         )
     if not space:
         return _flat(
-            [(matter.mass, (matter.centre[0], matter.centre[1], 0.0))],
-            matter.inertia,
+            [(mass_properties.mass, (mass_properties.centre[0], mass_properties.centre[1], 0.0))],
+            mass_properties.inertia,
             frame,
             velocities,
             spun=spun,
         )
-    (x, y, z), frame = matter.centre, frame.shortest
-    energy = matter.mass * ca.sumsqr(velocities.vector(frame.motion_of((x, y, z)))) / 2
-    moments = second_moments(matter.inertia)
+    (x, y, z), frame = mass_properties.centre, frame.shortest
+    energy = mass_properties.mass * ca.sumsqr(velocities.vector(frame.motion_of((x, y, z)))) / 2
+    moments = second_moments(mass_properties.inertia)
     axes = {
         i: velocities.vector(_direction(frame, AXES[i]))
         for i in range(3)
@@ -290,7 +305,7 @@ def _slender(
     held = x if nil(y) and nil(z) and not slid else 0.0
     base = velocities.vector(frame.motion_of((held, 0.0, 0.0)))
     axis = velocities.vector(
-        frame.course if isinstance(frame, BarFrame) else _direction(frame, AXES[0])
+        frame.course if isinstance(frame, TwoForceFrame) else _direction(frame, AXES[0])
     )
     first, second = ca.SX(0), ca.SX(inertia)
     for mass, place in points:

@@ -21,13 +21,13 @@ from ..base.arrays import Array
 from ..declare.joints import Joint
 from ..errors import MobilityError
 from ..geometry.vectors import cross, dot
-from .bars import idle_spins
-from .freed import Freed, rank_of
-from .gaps import extent, units
 from .legs import in_fewest, solve_leg
 from .loops import ClosedForm, solve_in_turn, solve_loop, solves
 from .multibody import Coordinate, LoopEquations, Multibody, column
+from .released_loops import ReleasedLoops, rank_of
+from .residuals import extent, units
 from .sampling import drawn
+from .two_force_links import idle_spins
 
 _ABSENT = 1e-13
 """Relative slope of an equation below which a variable stands in it by rounding alone."""
@@ -42,9 +42,9 @@ class Equation:
     loop: LoopEquations
     row: int
     present: frozenset[Coordinate]
-    gap: Any
-    gap_rate: Any
-    gap_acceleration: Any
+    residual: Any
+    residual_rate: Any
+    residual_acceleration: Any
 
     @property
     def aligns(self) -> bool:
@@ -52,7 +52,7 @@ class Equation:
         too.
         """
         joint = self.loop.joint
-        return joint is not None and joint.aligns and self.row == self.loop.gap.numel() - 1
+        return joint is not None and joint.aligns and self.row == self.loop.residual.numel() - 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,19 +68,19 @@ class Block:
     forms: tuple[ClosedForm, ...]
 
     @property
-    def gap(self) -> Any:
+    def residual(self) -> Any:
         """The equations, one column."""
-        return column(equation.gap for equation in self.equations)
+        return column(equation.residual for equation in self.equations)
 
     @property
-    def gap_rate(self) -> Any:
+    def residual_rate(self) -> Any:
         """Total time derivative of the residuals."""
-        return column(equation.gap_rate for equation in self.equations)
+        return column(equation.residual_rate for equation in self.equations)
 
     @property
-    def gap_acceleration(self) -> Any:
+    def residual_acceleration(self) -> Any:
         """Second total time derivative of the residuals."""
-        return column(equation.gap_acceleration for equation in self.equations)
+        return column(equation.residual_acceleration for equation in self.equations)
 
     @property
     def multipliers(self) -> Any:
@@ -105,7 +105,7 @@ class Block:
     @property
     def jacobian(self) -> Any:
         """Phi_z, in symbols: how Phi' goes with the rates."""
-        return ca.jacobian(self.gap_rate, column(c.rate for c in self.unknown))
+        return ca.jacobian(self.residual_rate, column(c.rate for c in self.unknown))
 
 
 Part = tuple[list[Equation], list[Coordinate]]
@@ -137,7 +137,7 @@ def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block
                 {c: k for k, c in enumerate(multibody.coordinates)},
             )
             parts = [piece for part in parts for piece in _peeled(part, slopes, *at)]
-    counted = column(loop.gap for loop in multibody.loop_equations if loop.declared)
+    counted = column(loop.residual for loop in multibody.loop_equations if loop.declared)
     ordered = _in_order(parts, multibody.loop_equations)
     return tuple(
         Block(tuple(rows), tuple(columns), _forms(multibody, rows, columns, counted))
@@ -150,7 +150,7 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
     loops = multibody.loop_equations
     motion = [
         column(getattr(loop, name) for loop in loops)
-        for name in ("gap", "gap_rate", "gap_acceleration")
+        for name in ("residual", "residual_rate", "residual_acceleration")
     ]
     slopes = ca.jacobian(motion[1], column(c.rate for c in unknown))
     entries = drawn(ca.vertcat(ca.SX(0, 1), *slopes.nonzeros()), multibody.coordinates)
@@ -159,7 +159,9 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         sizes[row][unknown[k]] = float(np.where(np.isnan(values), np.inf, values).max())
     found, mechanism = [], multibody.mechanism
     whole = mechanism.own.at_defaults(extent(mechanism)) if mechanism.space else 1.0
-    for k, (loop, row) in enumerate((own, row) for own in loops for row in range(own.gap.numel())):
+    for k, (loop, row) in enumerate(
+        (own, row) for own in loops for row in range(own.residual.numel())
+    ):
         # What has no value at such points may be anything.
         least = _ABSENT * max(
             (size for size in sizes[k].values() if np.isfinite(size)), default=0.0
@@ -173,8 +175,8 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
             if size > max(least, beside / (whole if c.kind == "slide" else 1.0))
         }
         # The three of a ball share their variables.
-        balls = {c.ball for c in there if c.ball is not None}
-        present = frozenset(c for c in unknown if c in there or c.ball in balls)
+        sphericals = {c.spherical for c in there if c.spherical is not None}
+        present = frozenset(c for c in unknown if c in there or c.spherical in sphericals)
         parts = ca.vertcat(*(expressions[k] for expressions in motion))
         written = {symbol.element_hash() for symbol in ca.symvar(parts)}
         absent = [c for c in unknown if c not in present and not written.isdisjoint(c.keys)]
@@ -249,13 +251,13 @@ def _peeled(
             loops.values(),
             key=lambda own: len(frozenset().union(*(e.present for e in own)).intersection(columns)),
         ):
-            told = [c for c in columns if any(c in equation.present for equation in own)]
-            block = slopes[np.ix_([row[e] for e in own], [of[c] for c in told])]
-            if told and len(own) < len(rows) and rank_of(block) == len(told):
-                found.append((own, told))
+            covered = [c for c in columns if any(c in equation.present for equation in own)]
+            block = slopes[np.ix_([row[e] for e in own], [of[c] for c in covered])]
+            if covered and len(own) < len(rows) and rank_of(block) == len(covered):
+                found.append((own, covered))
                 rows, columns = (
                     [e for e in rows if e not in own],
-                    [c for c in columns if c not in told],
+                    [c for c in columns if c not in covered],
                 )
                 break
         else:
@@ -295,13 +297,13 @@ def _forms(
     multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any
 ) -> tuple[ClosedForm, ...]:
     """The closed forms that solve a part one after another, where there are any."""
-    if any(c.ball is not None for c in unknown):
+    if any(c.spherical is not None for c in unknown):
         return ()
-    bar, phi = (
-        all(equation.loop.bar is not None for equation in rows),
-        column(equation.gap for equation in rows),
+    two_force_link, phi = (
+        all(equation.loop.two_force_link is not None for equation in rows),
+        column(equation.residual for equation in rows),
     )
-    form = solve_loop(phi, unknown, multibody.coordinates, bar=bar)
+    form = solve_loop(phi, unknown, multibody.coordinates, two_force_link=two_force_link)
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
     if (
         not forms
@@ -329,7 +331,7 @@ def _require_freedom(
     equations: int,
     parts: Sequence[Part],
     slopes: Array | None,
-    told: Collection[Coordinate],
+    given: Collection[Coordinate],
 ) -> Array:
     """The slopes; raise :class:`MobilityError` unless the drives are as many as the freedoms, and
     no part is loose.
@@ -354,7 +356,7 @@ def _require_freedom(
         if freedom > 0
         else "remove a joint, a constraint or a link"
     )
-    lacking = [c.told_as for c in multibody.coordinates if c not in told]
+    lacking = [c.posture_key for c in multibody.coordinates if c not in given]
     if slopes is None and lacking:
         advice = f"also give a rough posture of {', '.join(lacking)}"
     elif freedom == driven:
@@ -379,9 +381,9 @@ def _slopes(multibody: Multibody, start: Mapping[str, Any]) -> Array | None:
     where no posture is found.
     """
     # Drives are free to give way in it, for there may be too many.
-    return Freed.of(multibody, start["posture"], start["inputs"], start["values"], ()).slopes(
-        start["values"]
-    )
+    return ReleasedLoops.of(
+        multibody, start["posture"], start["inputs"], start["values"], ()
+    ).slopes(start["values"])
 
 
 def solve_line(
@@ -399,7 +401,7 @@ def solve_line(
     None where it does not close a loop along a line, where what is unknown does not turn in a plane
     with it, or none were verified.
     """
-    if joint.directions is None or sum(freedom.move == "slide" for freedom in joint.lets) != 1:
+    if joint.directions is None or sum(freedom.move == "slide" for freedom in joint.freedoms) != 1:
         return ()
     turn = next((c.name for c in unknown if c.name in multibody.axes), None)
     pairs = [(k, k + 1) for k in rows if k % 2 == 0]

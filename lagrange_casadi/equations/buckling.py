@@ -89,9 +89,15 @@ def used(column: Column, compression: Array, moments: Sequence[Array]) -> Array:
     if len(bent) > 1:
         # From the left, where it is convex and falls, Newton's method rises to the solution.
         for _ in range(_ROUNDS):
-            gaps = [larger(found - euler, _TINY * found) for euler in shares]
-            over = share / found + sum(b / gap for b, gap in zip(bent, gaps, strict=True)) - 1.0
-            slope = share / found**2 + sum(b / gap**2 for b, gap in zip(bent, gaps, strict=True))
+            residuals = [larger(found - euler, _TINY * found) for euler in shares]
+            over = (
+                share / found
+                + sum(b / residual for b, residual in zip(bent, residuals, strict=True))
+                - 1.0
+            )
+            slope = share / found**2 + sum(
+                b / residual**2 for b, residual in zip(bent, residuals, strict=True)
+            )
             found = found + larger(over / slope, 0.0)
     return chosen(share, SLIGHT, found, 0.0)
 

@@ -41,8 +41,8 @@ class Check:
     """A column that is no output.
 
     Whether there is a result, ``closure`` (see :mod:`.loops`), ``gap`` and ``misfit`` (see
-    :mod:`.gaps`) of the joint or constraint that closes a loop tell, ``gimbal`` of a joint how far
-    its three turns are from losing one, ``roll`` of a bar how far it is from lying along the
+    :mod:`.residuals`) of the joint or constraint that closes a loop tell, ``gimbal`` of a joint how
+    far its three turns are from losing one, ``roll`` of a bar how far it is from lying along the
     direction that was declared for its y axis, ``hold`` of drives whether they can make the motion
     (see :mod:`.drives`), ``row`` and ``rowsize`` of a non-holonomic row, and ``turned`` of a joint,
     how far an angle swings that is seen with its turns (see :mod:`.turns`), and ``beyond`` of a

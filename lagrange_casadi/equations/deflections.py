@@ -23,7 +23,7 @@ from ..declare.mechanism import Mechanism
 from .checks import Column
 from .multibody import column
 from .strains import Moduli, moduli_of, strains
-from .strength import Loaded, Part, looked, most
+from .strength import Loaded, Part, most, sampled
 
 _MORE = 6
 """More nodes where the cross-section changes."""
@@ -46,7 +46,7 @@ def deflections(
         [
             value
             for pieces in along
-            for value in looked(partial(_size, pieces), len(pieces) * pieces[0].degree)
+            for value in sampled(partial(_size, pieces), len(pieces) * pieces[0].degree)
         ]
     )
     if link.space:

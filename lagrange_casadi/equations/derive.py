@@ -20,31 +20,31 @@ from ..base.symbolic import symbolic
 from ..base.tables import Table, table_of
 from ..declare.density import Density
 from ..declare.description import describe
-from ..declare.held import effective_lengths, ends_of
-from ..declare.limits import END, told_parameters
+from ..declare.end_conditions import effective_lengths, ends_of
+from ..declare.limits import END, parameters_note
 from ..declare.parts import Link
 from ..declare.results import Asked
 from ..declare.scene import STRENGTH, Scene, Wanted
 from ..declare.wanted_names import among
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
-from .bars import bars_of, unaimed
 from .checks import Check, Column
 from .deflections import deflections
 from .drives import closure
 from .fingerprint import fingerprint
+from .indeterminate import Forces
 from .kinematics import Kinematics
 from .least_energy import Completion, LeastEnergy, feeling, least_energy
+from .load_points import gathered
 from .mobility import internal_forces
 from .model_data import ModelData
 from .moving import Moving
 from .multibody import Multibody, column
-from .open_forces import Forces
 from .program import Program
 from .reciprocals import share_reciprocals
 from .rounding import nearest
 from .section_function import Place, Section
-from .stations import gathered
 from .strength import stresses, utilisation
+from .two_force_links import find_two_force_links, unaimed
 
 _FITS = 2e-14
 """Largest residual of redundant equations that count as consistent, relative to the links'
@@ -99,7 +99,7 @@ def compile_scene(
         error.scene = scene
         raise
     if isinstance(found, _Derived):
-        return found.graph
+        return found.program
     raise type(found)(str(found))
 
 
@@ -132,7 +132,7 @@ def assembled(
     Raises what :func:`compile_scene` does, where they can be assembled with neither.
     """
     try:
-        graph = compile_scene(scene, wanted)
+        program = compile_scene(scene, wanted)
     except (AssemblyError, MobilityError):
         if values == scene.mechanism.values(scene.assembly):
             raise
@@ -142,11 +142,11 @@ def assembled(
     if (
         scene.mechanism.space
         and scene.rounding
-        and _misses(graph, values, iterated=False) > _SERVES
+        and _misses(program, values, iterated=False) > _SERVES
     ):
         with suppress(AssemblyError, MobilityError):
             there = _at(scene, tuple(values.items()))
-            if compile_scene(there, wanted).data.rounding or graph.data.rounding:
+            if compile_scene(there, wanted).data.rounding or program.data.rounding:
                 return there
     return scene
 
@@ -167,7 +167,7 @@ class _Derived:
     not close as declared.
     """
 
-    graph: Program
+    program: Program
     scene: Scene
 
 
@@ -177,53 +177,55 @@ def _kept(scene: Scene, want: Wanted) -> _Derived | AssemblyError | MobilityErro
     identity = fingerprint(scene, want)
     text = cache.read(f"{identity}.graph") if identity else None
     if text is not None:
-        graph = Program.loads(text)
+        program = Program.loads(text)
         # Scenes of one name may differ in what follows from nothing that is derived.
-        return _Derived(replace(graph, data=graph.data.asked_by(scene)), scene)
+        return _Derived(replace(program, data=program.data.asked_by(scene)), scene)
     try:
-        graph = replace(_derive(scene, want), identity=identity)
+        program = replace(_derive(scene, want), identity=identity)
     except (AssemblyError, MobilityError) as error:
         near = _nearest(scene)
         found = None if near is None else _kept(near, want)
         if isinstance(found, _Derived):
-            return replace(found, graph=replace(found.graph, identity=identity))
+            return replace(found, program=replace(found.program, identity=identity))
         if isinstance(error, AssemblyError):
-            return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
+            return AssemblyError(f"{error}{parameters_note(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
     if (
-        _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS
+        _misses(program, scene.mechanism.values(scene.assembly), iterated=True) > _FITS
         and (near := _nearest(scene)) is not None
     ):
         found = _kept(near, want)
         if isinstance(found, _Derived):
-            return replace(found, graph=replace(found.graph, identity=identity))
+            return replace(found, program=replace(found.program, identity=identity))
     if identity:
-        cache.write(f"{identity}.graph", graph.dumps())
-    return _Derived(graph, scene)
+        cache.write(f"{identity}.graph", program.dumps())
+    return _Derived(program, scene)
 
 
-def _misses(graph: Program, values: Mapping[str, float], *, iterated: bool) -> float:
+def _misses(program: Program, values: Mapping[str, float], *, iterated: bool) -> float:
     """Residual of loops with redundant equations at the start, relative to the links' length: of
     all of them, or those ``iterated``.
     """
     rows = [
-        row for name, row in graph.checks("misfit").items() if graph.iterates(name) or not iterated
+        row
+        for name, row in program.checks("misfit").items()
+        if program.iterates(name) or not iterated
     ]
     if not rows:
         return 0.0
-    t, p, newton = graph.data.span[0], list(values.values()), graph.newton
-    motion, z = graph.motion(t, p), ca.DM(newton.guess if newton else [])
+    t, p, newton = program.data.span[0], list(values.values()), program.newton
+    motion, z = program.motion(t, p), ca.DM(newton.guess if newton else [])
     for _ in range(_STEPS):
         correction, size = newton.step(z, t, motion[0], p) if newton else (0.0, 0.0)
         z += correction
         if float(size) < _FITS:
             break
-    out = graph.instant(t, *motion, z, p)
+    out = program.instant(t, *motion, z, p)
     return max(float(out[row]) for row in rows)
 
 
 @dataclass(frozen=True, eq=False)
-class _Borne:
+class _JointForces:
     """Forces over the inputs; ``free`` are symbols of what equilibrium leaves open in them,
     ``frictions`` those of frictions.
     """
@@ -233,7 +235,7 @@ class _Borne:
     frictions: Mapping[str, Any]
 
     @classmethod
-    def of(cls, moving: Moving, columns: Mapping[Column, Expression]) -> _Borne:
+    def of(cls, moving: Moving, columns: Mapping[Column, Expression]) -> _JointForces:
         """The forces that are wanted, and those of ``columns`` that friction goes into."""
         want, links, coordinates = (
             moving.want,
@@ -242,13 +244,13 @@ class _Borne:
         )
         forces = internal_forces(moving.body, moving.solved, want, moving.scene.weights)
         rubbed = forces.rubbed
-        told = {
+        dependent = {
             key: value
             for key, value in columns.items()
             if rubbed.symbols.numel() and ca.depends_on(ca.SX(value), rubbed.symbols)
         }
-        placed = ca.substitute(column(told.values()), rubbed.symbols, rubbed.values)
-        pressed = dict(zip(told, ca.vertsplit(placed) if told else (), strict=True))
+        placed = ca.substitute(column(dependent.values()), rubbed.symbols, rubbed.values)
+        pressed = dict(zip(dependent, ca.vertsplit(placed) if dependent else (), strict=True))
         acting = gathered(forces.columns, forces.free, links, coordinates) | pressed
         # Beside the start of the motion, for a drive through a gear moves little of what it drives,
         # and holds it all the same.
@@ -264,19 +266,25 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
     want = feeling(mechanism, asked) if scene.elastic and asked.forces else asked
     moving = Moving.of(scene, want)
     columns, loop_angles = moving.columns()
-    borne = _Borne.of(moving, columns) if want.forces else _Borne({}, ca.SX(0, 1), {})
-    columns = {key: value for key, value in columns.items() if key not in borne.columns}
-    acting = borne.columns | own_outputs(moving.body, moving.solved, columns | borne.columns)
-    least = _least_energy(scene, acting, borne) if scene.elastic else None
-    forces = (
-        Forces.over(acting, borne.free) if least is None else least.completed(acting, borne.free)
+    joint_forces = (
+        _JointForces.of(moving, columns) if want.forces else _JointForces({}, ca.SX(0, 1), {})
     )
-    forces = forces.with_those_of(lambda told: _strength(scene, asked, {**columns, **told}))
+    columns = {key: value for key, value in columns.items() if key not in joint_forces.columns}
+    acting = joint_forces.columns | user_outputs(
+        moving.body, moving.solved, columns | joint_forces.columns
+    )
+    least = _least_energy(scene, acting, joint_forces) if scene.elastic else None
+    forces = (
+        Forces.over(acting, joint_forces.free)
+        if least is None
+        else least.completed(acting, joint_forces.free)
+    )
+    forces = forces.with_those_of(lambda found: _strength(scene, asked, {**columns, **found}))
     columns |= forces.columns
     columns = (
         columns
         if want is asked
-        else {key: value for key, value in columns.items() if not _felt_alone(key, asked)}
+        else {key: value for key, value in columns.items() if not _for_strain_alone(key, asked)}
     )
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
@@ -294,20 +302,26 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
     )
 
 
-def _least_energy(scene: Scene, acting: Mapping[Column, Any], borne: _Borne) -> LeastEnergy | None:
+def _least_energy(
+    scene: Scene, acting: Mapping[Column, Any], joint_forces: _JointForces
+) -> LeastEnergy | None:
     """Choose by least strain energy what equilibrium leaves open; None where this is nothing.
 
     Raises :class:`.DeclarationError` where frictions follow it: what rubs is not linear in what
     presses on it.
     """
-    for name, value in borne.frictions.items():
-        if ca.depends_on(ca.SX(value), borne.free):
+    for name, value in joint_forces.frictions.items():
+        if ca.depends_on(ca.SX(value), joint_forces.free):
             raise DeclarationError(
                 f"elastic: cannot be combined with friction '{name}', whose reaction is statically"
                 " indeterminate; leave one of them out"
             )
-    open_ = any(ca.depends_on(ca.SX(value), borne.free) for value in acting.values())
-    return least_energy(scene.mechanism, scene.elastic, acting, borne.free) if open_ else None
+    indeterminate = any(ca.depends_on(ca.SX(value), joint_forces.free) for value in acting.values())
+    return (
+        least_energy(scene.mechanism, scene.elastic, acting, joint_forces.free)
+        if indeterminate
+        else None
+    )
 
 
 def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
@@ -315,10 +329,15 @@ def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
     no direction for it.
     """
     named = [name for name in names if name != "all"]
-    for bar in bars_of(scene.guided, scene.laws) if named else ():
-        asked = any(among(kind, [bar.link.name], named) for kind in STRENGTH)
-        if asked and not bar.aimed and bar.link.beam is not None and not bar.link.beam.round:
-            raise DeclarationError(unaimed(bar.link.name))
+    for two_force_link in find_two_force_links(scene.guided, scene.laws) if named else ():
+        asked = any(among(kind, [two_force_link.link.name], named) for kind in STRENGTH)
+        if (
+            asked
+            and not two_force_link.aimed
+            and two_force_link.link.beam is not None
+            and not two_force_link.link.beam.round
+        ):
+            raise DeclarationError(unaimed(two_force_link.link.name))
 
 
 def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, ca.SX]) -> dict[Column, Any]:
@@ -327,21 +346,21 @@ def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, ca.SX]) -> di
     for name in want.stressed:
         found |= stresses(scene.mechanism, name, columns)
     if want.used or want.bent:
-        told = describe(scene.mechanism, scene.mechanism.values(scene.assembly), scene.laws)
+        description = describe(scene.mechanism, scene.mechanism.values(scene.assembly), scene.laws)
         for name in want.used:
             beam = scene.mechanism.links[name].beam
             assert beam is not None
             found |= utilisation(
-                scene.mechanism, name, columns, beam.columns or effective_lengths(told, name)
+                scene.mechanism, name, columns, beam.columns or effective_lengths(description, name)
             )
         for name in want.bent:
             found |= deflections(
-                scene.mechanism, name, columns, ends="free" not in ends_of(told, name)
+                scene.mechanism, name, columns, ends="free" not in ends_of(description, name)
             )
     return found
 
 
-def _felt_alone(key: Column, asked: Wanted) -> bool:
+def _for_strain_alone(key: Column, asked: Wanted) -> bool:
     """Return whether a column is there for strain energy alone."""
     output = key.part if isinstance(key, Check) else key
     if not isinstance(output, Output):
@@ -351,7 +370,7 @@ def _felt_alone(key: Column, asked: Wanted) -> bool:
     )
 
 
-def own_outputs(
+def user_outputs(
     body: Multibody, solved: Kinematics, found: Mapping[Column, ca.SX]
 ) -> dict[Column, ca.SX]:
     """The user's outputs as expressions of an instant, where ``found`` are the columns that they

@@ -33,7 +33,7 @@ class Efforts:
 
     symbols: Any
     values: Any
-    hold: Any
+    authority: Any
 
 
 def pushed(moved: Sequence[str], drives: Mapping[str, Any] | None) -> tuple[str, ...]:
@@ -68,15 +68,15 @@ def solve_efforts(
         @ effect
         @ ca.diag(column(units[name] for name in needs))
     )
-    hold = system.volume * system.volume
+    authority = system.volume * system.volume
     for j in range(len(needs)):
-        hold *= ca.sumsqr(moved[:, j])
-    return Efforts(symbols, values, hold)
+        authority *= ca.sumsqr(moved[:, j])
+    return Efforts(symbols, values, authority)
 
 
-def closure(hold: Any, usual: float) -> Any:
+def closure(authority: Any, usual: float) -> Any:
     """A ``hold`` as loops tell how far they are from a dead centre, from 0 to 1: beside what it is
     where the motion starts.
     """
     beside = usual if _ROUNDING < usual < math.inf else 1.0
-    return hold / (hold + beside)
+    return authority / (authority + beside)

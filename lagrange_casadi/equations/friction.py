@@ -29,7 +29,7 @@ from ..base.arrays import Expression, Operand
 from ..declare.meshes import Loss, Transmission
 from .checks import Check, Column
 from .multibody import column
-from .pressing import Contact, Rubbing, both_edges
+from .pressing import Contact, FrictionContact, both_edges
 
 STEPS = 4
 """Newton's steps: the error goes as the 4th, 10th, 22nd, 46th power of how much of itself a
@@ -52,19 +52,27 @@ class Solved:
     lost: Mapping[str, Any]
 
 
-def solve(found: Sequence[Rubbing], open_: ca.SX, signs: Mapping[str, Any] | None = None) -> Solved:
+def solve(
+    found: Sequence[FrictionContact], indeterminate: ca.SX, signs: Mapping[str, Any] | None = None
+) -> Solved:
     """The forces of frictions, along their coordinates, from what presses on them, which is linear
     in the symbols of all.
 
-    It is linear too in the symbols ``open_`` of what equilibrium leaves open: frictions are solved
-    where these are zero, and change with them by what they can change most. At rest frictions are
-    at their limits, with the ``signs`` that are given by name; without, they are no number.
+    It is linear too in the symbols ``indeterminate`` of what equilibrium leaves open: frictions are
+    solved where these are zero, and change with them by what they can change most. At rest
+    frictions are at their limits, with the ``signs`` that are given by name; without, they are no
+    number.
     """
     symbols = column(one.friction.symbol for one in found)
     n = len(found)
     pressing = column(x for one in found for contact in one.contacts for x in contact.pressing)
-    slopes, doubts = ca.jacobian(pressing, symbols), ca.jacobian(pressing, open_)
-    free = ca.substitute(pressing, ca.vertcat(symbols, open_), ca.SX.zeros(n + open_.numel()))
+    slopes, indeterminate_slopes = (
+        ca.jacobian(pressing, symbols),
+        ca.jacobian(pressing, indeterminate),
+    )
+    free = ca.substitute(
+        pressing, ca.vertcat(symbols, indeterminate), ca.SX.zeros(n + indeterminate.numel())
+    )
     laws: list[_Law] = []
     first = 0
     for one in found:
@@ -90,8 +98,8 @@ def solve(found: Sequence[Rubbing], open_: ca.SX, signs: Mapping[str, Any] | Non
         checks |= {
             Check("bend", law.name): bend for law in laws if (bend := _bend(law, laws)) is not None
         }
-    if doubts.nnz():
-        values = _doubted(laws, values, ca.fabs(doubts) @ open_)
+    if indeterminate_slopes.nnz():
+        values = _doubted(laws, values, ca.fabs(indeterminate_slopes) @ indeterminate)
     lost = {one.friction.name: -value * one.rate for one, value in zip(found, values, strict=True)}
     forces = {one.friction.name: value for one, value in zip(found, values, strict=True)}
     return Solved(symbols, ca.densify(column(values)), checks, forces, lost)
@@ -150,7 +158,7 @@ class _Law:
     still: bool = False
 
     @classmethod
-    def of(cls, one: Rubbing, pressed: list[_Pressed], sign: Any = None) -> _Law:
+    def of(cls, one: FrictionContact, pressed: list[_Pressed], sign: Any = None) -> _Law:
         friction, v = one.friction, one.rate
         if isinstance(friction, Transmission):
             return cls(friction.name, pressed, 1.0, -1.0, None, None)
@@ -212,7 +220,9 @@ class _Law:
         return not self.still and any(part.seen(k) is not None for part in self.pressed)
 
 
-def _way(one: Rubbing, sign: Any, lever: Operand = 1.0) -> tuple[Expression, Expression, bool]:
+def _way(
+    one: FrictionContact, sign: Any, lever: Operand = 1.0
+) -> tuple[Expression, Expression, bool]:
     """The sign of what slides, or its share of where it slides along two coordinates; whether it
     rests; and whether it always does, and has no ``sign`` given for that.
     """
@@ -289,11 +299,11 @@ def _solve_block(
     return {Check("jam", name): _least_pivot(laws, block), Check("slip", name): missed / size}
 
 
-def _doubted(laws: Sequence[_Law], values: Sequence[Any], doubts: Any) -> list[Any]:
-    """Values with what they change at most where what presses on them changes by ``doubts``, row by
-    row.
+def _doubted(laws: Sequence[_Law], values: Sequence[Any], indeterminate_slopes: Any) -> list[Any]:
+    """Values with what they change at most where what presses on them changes by
+    ``indeterminate_slopes``, row by row.
     """
-    rows = iter(ca.vertsplit(doubts))
+    rows = iter(ca.vertsplit(indeterminate_slopes))
     own = [
         law.mu
         * sum((part.contact.arm * next(rows) for part in law.pressed for _ in part.free), ca.SX(0))
@@ -373,7 +383,9 @@ def _blocks(laws: Sequence[_Law]) -> list[list[int]]:
     return [list(block) for block in sorted(found, key=lambda block: (found[block], block))]
 
 
-def needed(forces: ca.SX, found: Mapping[str, Rubbing], wanted: Collection[str]) -> list[str]:
+def needed(
+    forces: ca.SX, found: Mapping[str, FrictionContact], wanted: Collection[str]
+) -> list[str]:
     """The frictions on which forces depend, or which are ``wanted``, and those on which these
     depend.
     """

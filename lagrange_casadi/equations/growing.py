@@ -17,11 +17,11 @@ from ..declare.parts import Link, Point, Vector
 from ..geometry.frames import Carried, Frame
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, plus, times
-from .balls import Ball
-from .bars import Bar, bar_frame
 from .joints import orientation, turning_axes
 from .multibody import Coordinate, Turned, column, own_coordinate, place_along, rates_along
+from .spherical import SphericalCoordinates
 from .tree import Branch, Tree
+from .two_force_links import TwoForceLink, two_force_frame
 
 
 class Grown:
@@ -74,13 +74,17 @@ class Grown:
                 frame = frame.displaced(translation, turning)
         self.frames[branch.far.body.name] = frame
 
-    def span(self, bar: Bar, *, displace: Collection[str]) -> tuple[ca.SX, ca.SX, ca.SX]:
+    def span(
+        self, two_force_link: TwoForceLink, *, displace: Collection[str]
+    ) -> tuple[ca.SX, ca.SX, ca.SX]:
         """Place a bar between its ends, with the mobilities of the named joints, and return the
         equation of its length.
         """
         self.mobilities |= {name: ca.SX.sym(f"ed_{name}", 3) for name in displace}
-        self.frames[bar.link.name], gap = bar_frame(bar, self.frames, self.mobilities)
-        return gap
+        self.frames[two_force_link.link.name], residual = two_force_frame(
+            two_force_link, self.frames, self.mobilities
+        )
+        return residual
 
     def counted(self, expression: ca.SX) -> ca.SX:
         """An expression of what the user measures in the tree's own variables, angles counted by
@@ -174,7 +178,7 @@ class Grown:
         )
         if not isinstance(base, Carried):
             return Frame(*motion)
-        if free := [coordinate for coordinate in coordinates if coordinate.ball is not None]:
+        if free := [coordinate for coordinate in coordinates if coordinate.spherical is not None]:
             speed, acceleration = (
                 rotation.resolve(moved.speed),
                 rotation.resolve(moved.acceleration),
@@ -217,9 +221,9 @@ class Grown:
                 plus(rate, spin),
                 plus(angular, change),
             )
-        if free := [c for c in coordinates if c.ball is not None]:
-            assert free[0].ball is not None
-            rotation = free[0].ball.rotation
+        if free := [c for c in coordinates if c.spherical is not None]:
+            assert free[0].spherical is not None
+            rotation = free[0].spherical.rotation
             return rotation, rotation.apply(_rates(free)), rotation.apply(_accelerations(free))
         zero = orientation(joint)
         rotation = base.rotation.then(zero.inverse) if branch.reverse else base.rotation
@@ -261,7 +265,7 @@ class Grown:
 
 
 def coordinates_of(
-    mechanism: Mechanism, tree: Tree, driven: Collection[str], told: Collection[str]
+    mechanism: Mechanism, tree: Tree, driven: Collection[str], given: Collection[str]
 ) -> dict[str, tuple[Coordinate, ...]]:
     """The coordinates of every branch, by its joint; none where a branch leaves no freedom.
 
@@ -278,9 +282,9 @@ def coordinates_of(
             turned[far.name] = (turned[near][0] + branch.sign * joint.angle, turned[near][1])
         own: list[Coordinate] = []
         turns = [axis.coordinate for axis in joint.axes_of(far) if axis.kind == "angle"]
-        ball = None
-        if len(turns) == 3 and not {*turns} & {*driven, *told}:
-            ball = Ball.of(joint, near, reverse=branch.reverse)
+        spherical = None
+        if len(turns) == 3 and not {*turns} & {*driven, *given}:
+            spherical = SphericalCoordinates.of(joint, near, reverse=branch.reverse)
         for axis in joint.axes_of(far):
             name, drives = axis.coordinate, axis.coordinate in driven
             q, rate, acceleration = (
@@ -289,7 +293,7 @@ def coordinates_of(
             if axis.kind == "slide":
                 own.append(Coordinate(name, far.name, axis, drives, q, rate, rate, acceleration))
                 continue
-            if ball is not None:
+            if spherical is not None:
                 continue
             turn, spin = q, rate
             if drives and near in turned:
@@ -315,31 +319,33 @@ def coordinates_of(
                     relative=relative,
                 )
             )
-        if ball is not None:
-            own += _of_ball(
-                ball, far.name, [axis for axis in joint.axes_of(far) if axis.kind == "angle"]
+        if spherical is not None:
+            own += _of_spherical(
+                spherical, far.name, [axis for axis in joint.axes_of(far) if axis.kind == "angle"]
             )
         found[joint.name] = tuple(own)
     return found
 
 
-def _of_ball(ball: Ball, body: str, axes: Sequence[Axis]) -> list[Coordinate]:
+def _of_spherical(
+    spherical: SphericalCoordinates, body: str, axes: Sequence[Axis]
+) -> list[Coordinate]:
     """The three coordinates of a ball."""
     rates, accelerations = (
         [ca.SX.sym(f"{axis.coordinate}_{what}") for axis in axes] for what in ("spin", "spin_rate")
     )
-    changes = ball.changes(rates)
+    changes = spherical.changes(rates)
     return [
         Coordinate(
             axis.coordinate,
             body,
             axis,
             False,
-            ball.axes[3 * k : 3 * k + 3],
+            spherical.axes[3 * k : 3 * k + 3],
             changes[k],
             rates[k],
             accelerations[k],
-            ball=ball,
+            spherical=spherical,
         )
         for k, axis in enumerate(axes)
     ]

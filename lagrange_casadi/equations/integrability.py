@@ -85,15 +85,15 @@ def no_rates(
         mobilities.
         """
         *sides, _ = (x.full() for x in identity(weighted, at, fixed, np.zeros(resting.numel())))
-        gap, across_gap = (
+        residual, across_residual = (
             np.abs(a - b).max(axis=1, initial=0.0) for a, b in (sides[:2], sides[2:])
         )
         largest, across_largest = (
             np.maximum(np.abs(a), np.abs(b)).max(initial=0.0) for a, b in (sides[:2], sides[2:])
         )
         return [
-            bool(gap.max(initial=0.0) > _SAME * (1.0 + largest)),
-            *(across_gap > _SAME * (1.0 + across_largest)),
+            bool(residual.max(initial=0.0) > _SAME * (1.0 + largest)),
+            *(across_residual > _SAME * (1.0 + across_largest)),
         ]
 
     generator, circles = np.random.default_rng(0), _circles(course)

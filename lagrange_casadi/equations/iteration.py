@@ -10,9 +10,9 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Expression
-from .balls import Ball, axes_of, quaternion_of, turn
 from .linear import LinearSystem
 from .multibody import Coordinate, Multibody, column
+from .spherical import SphericalCoordinates, axes_of, quaternion_of, turn
 from .substitution import Numbers
 
 LARGEST_STEP = 0.3
@@ -51,17 +51,17 @@ class Iterated:
     scales: list[Any] = field(default_factory=list)
     guess: list[float] = field(default_factory=list)
     turning: list[bool] = field(default_factory=list)
-    balls: dict[int, Ball] = field(default_factory=dict)
+    sphericals: dict[int, SphericalCoordinates] = field(default_factory=dict)
 
     def number(self, name: str, scale: Any, guess: float, *, turning: bool) -> Any:
         """The symbol of a number, whose ``scale`` is what a correction is large beside."""
         return self._add(ca.SX.sym(f"z_{name}"), [scale], [guess], turning=turning)
 
-    def ball(self, ball: Ball, guess: Sequence[float]) -> Any:
+    def spherical(self, spherical: SphericalCoordinates, guess: Sequence[float]) -> Any:
         """The axes of a ball, as they follow from its four symbols."""
-        self.balls[len(self.parts)] = ball
+        self.sphericals[len(self.parts)] = spherical
         return axes_of(
-            self._add(ca.SX.sym(f"z_{ball.joint.name}", 4), [1, 1, 1], guess, turning=False)
+            self._add(ca.SX.sym(f"z_{spherical.joint.name}", 4), [1, 1, 1], guess, turning=False)
         )
 
     def _add(
@@ -80,70 +80,75 @@ class Iterated:
 
     def placed(self, expression: ca.SX) -> ca.SX:
         """An expression in axes of balls as one in the symbols."""
-        if not self.balls:
+        if not self.sphericals:
             return expression
-        axes = column(ball.axes for ball in self.balls.values())
+        axes = column(spherical.axes for spherical in self.sphericals.values())
         return ca.substitute(
-            ca.SX(expression), axes, column(axes_of(self.parts[k]) for k in self.balls)
+            ca.SX(expression), axes, column(axes_of(self.parts[k]) for k in self.sphericals)
         )
 
-    def step(self, gaps: Any) -> tuple[Any, Any]:
+    def step(self, residuals: Any) -> tuple[Any, Any]:
         """Newton correction of the symbols, and its size; a large one is shortened."""
         slope = ca.jacobian(
-            gaps,
+            residuals,
             column(
-                self.balls[k].axes if k in self.balls else part for k, part in enumerate(self.parts)
+                self.sphericals[k].axes if k in self.sphericals else part
+                for k, part in enumerate(self.parts)
             ),
         )
-        if self.balls:
+        if self.sphericals:
             unit = ca.SX.eye(3)
             turned = {
                 k: ca.horzcat(*(ca.vertcat(*b.changes(ca.vertsplit(unit[:, i]))) for i in range(3)))
-                for k, b in self.balls.items()
+                for k, b in self.sphericals.items()
             }
             slope = self.placed(
                 slope @ ca.diagcat(*(turned.get(k, ca.SX(1)) for k in range(len(self.parts))))
             )
-        correction = -LinearSystem.of(slope).solve(self.placed(gaps))
+        correction = -LinearSystem.of(slope).solve(self.placed(residuals))
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
         # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times
         # infinity.
         bounded = correction * (LARGEST_STEP / ca.fmax(relative, LARGEST_STEP))
-        return self._moved(bounded) if self.balls else bounded, relative
+        return self._moved(bounded) if self.sphericals else bounded, relative
 
     def _moved(self, correction: Any) -> Any:
         """Change of the symbols by a correction of numbers, and by small rotations."""
         added, start = [], 0
         for k, part in enumerate(self.parts):
-            size = 3 if k in self.balls else 1
+            size = 3 if k in self.sphericals else 1
             own = correction[start : start + size]
-            added.append(turn(part, own) - part if k in self.balls else own)
+            added.append(turn(part, own) - part if k in self.sphericals else own)
             start += size
         return column(added)
 
 
 def place_roughly(
     multibody: Multibody,
-    told: Mapping[Coordinate, float],
+    posture: Mapping[Coordinate, float],
     numbers: Numbers,
     but: Mapping[Coordinate, Any],
 ) -> Any:
     """Let ``numbers`` hold where coordinates are by what is ``told`` of them, but for some; and
     give the quaternions of balls.
     """
-    found: dict[Ball, list[float]] = {}
+    found: dict[SphericalCoordinates, list[float]] = {}
     for coordinate in multibody.coordinates:
-        ball = coordinate.ball
-        if coordinate in but or ball in found:
+        spherical = coordinate.spherical
+        if coordinate in but or spherical in found:
             continue
-        if ball is None:
+        if spherical is None:
             numbers.note(
                 coordinate.variables,
-                numbers.of(coordinate.placed(coordinate.value, ca.SX(told.get(coordinate, 0.0)))),
+                numbers.of(
+                    coordinate.placed(coordinate.value, ca.SX(posture.get(coordinate, 0.0)))
+                ),
             )
             continue
-        turns = [told.get(c, 0.0) for c in multibody.coordinates if c.ball is ball]
-        axes = np.array(numbers.of(ball.turned_by(turns, multibody.frames[ball.near].rotation)))
-        numbers.note(ball.axes, axes.tolist())
-        found[ball] = quaternion_of(axes.reshape(3, 3))
+        turns = [posture.get(c, 0.0) for c in multibody.coordinates if c.spherical is spherical]
+        axes = np.array(
+            numbers.of(spherical.turned_by(turns, multibody.frames[spherical.near].rotation))
+        )
+        numbers.note(spherical.axes, axes.tolist())
+        found[spherical] = quaternion_of(axes.reshape(3, 3))
     return found

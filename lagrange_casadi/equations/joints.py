@@ -17,7 +17,7 @@ from ..geometry.frames import Frame
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import AXES, cross, dot, minus, nil, plus, times
 
-Gap = tuple[Expression, Expression, Expression]
+Residual = tuple[Expression, Expression, Expression]
 """Phi, Phi' and Phi''."""
 
 
@@ -31,7 +31,7 @@ def apart(joint: Joint, parent: Frame, child: Frame) -> Vector:
     return minus(parent.local(child.place_of(joint.child.place)), joint.parent.place)
 
 
-def gap_motion(joint: Joint, parent: Frame, child: Frame) -> tuple[Vector, Vector]:
+def residual_motion(joint: Joint, parent: Frame, child: Frame) -> tuple[Vector, Vector]:
     """Velocity and acceleration of a joint's point on the child, less those of the parent's point
     that it is at, in ground axes.
     """
@@ -52,7 +52,7 @@ def slide(joint: Joint, parent: Frame, child: Frame, along: Vector) -> Expressio
 def carried(joint: Joint, parent: Frame, child: Frame) -> Vector:
     """The place of the parent where a joint's child is at the moment, in the parent's axes."""
     place = joint.parent.place
-    for freedom in joint.lets:
+    for freedom in joint.freedoms:
         if freedom.move != "turn":
             direction = joint.triad[freedom.direction]
             place = plus(place, times(slide(joint, parent, child, direction), direction))
@@ -64,9 +64,9 @@ def slide_motion(
 ) -> tuple[Expression, Expression]:
     """Rate and acceleration of :func:`slide`, while nothing moves but along the joint's slides."""
     axis = parent.rotation.apply(along)
-    speed, acceleration = gap_motion(joint, parent, child)
+    speed, acceleration = residual_motion(joint, parent, child)
     rate, change = dot(speed, axis), dot(acceleration, axis)
-    if sum(freedom.move == "slide" for freedom in joint.lets) > 1:
+    if sum(freedom.move == "slide" for freedom in joint.freedoms) > 1:
         change -= 2 * dot(cross(parent.rate, speed), axis)
     return rate, change
 
@@ -96,15 +96,18 @@ def turning(
     return dot(rate, axis), dot(angular, axis) + dot(rate, cross(carrier.rate, axis))
 
 
-def closing_gaps(joint: Joint, parent: Frame, child: Frame) -> tuple[ca.SX, ca.SX, ca.SX]:
+def loop_residuals(joint: Joint, parent: Frame, child: Frame) -> tuple[ca.SX, ca.SX, ca.SX]:
     """Phi of a joint that closes a loop (paper eq. 5) with Phi' and Phi''.
 
     Phi are gaps in ground axes or across slides, and of directions where they are held; its
     multipliers are the action of the parent on the child along these gaps.
     """
-    gaps = [*_gaps_of_place(joint, parent, child), *_gaps_of_direction(joint, parent, child)]
+    residuals = [
+        *_residuals_of_place(joint, parent, child),
+        *_residuals_of_direction(joint, parent, child),
+    ]
     phi, phi_rate, phi_acceleration = (
-        ca.vertcat(ca.SX(0, 1), *(gap[k] for gap in gaps)) for k in range(3)
+        ca.vertcat(ca.SX(0, 1), *(residual[k] for residual in residuals)) for k in range(3)
     )
     return phi, phi_rate, phi_acceleration
 
@@ -128,7 +131,7 @@ def reaction(
     return force, moment
 
 
-def borne(
+def supported(
     joint: Joint, parent: Frame, child: Frame, force: Vector, moment: Vector
 ) -> tuple[Vector, Vector]:
     """Reaction of a joint to a force and a moment in ground axes: nothing along its slides, nothing
@@ -138,7 +141,7 @@ def borne(
     both do no work.
     """
     slides = [
-        parent.rotation.apply(joint.triad[f.direction]) for f in joint.lets if f.move == "slide"
+        parent.rotation.apply(joint.triad[f.direction]) for f in joint.freedoms if f.move == "slide"
     ]
     if len(slides) == 1 and joint.turned is None:
         normal = cross(AXES[2], slides[0])
@@ -159,7 +162,9 @@ def turning_axes(joint: Joint, parent: Frame, child: Frame) -> list[Vector]:
     """The axes in ground axes about which a joint that bears a moment lets its child turn, at right
     angles to each other.
     """
-    turns = [joint.triad[freedom.direction] for freedom in joint.lets if freedom.move != "slide"]
+    turns = [
+        joint.triad[freedom.direction] for freedom in joint.freedoms if freedom.move != "slide"
+    ]
     own = [_at_zero(joint, direction) for direction in turns[1:]]
     return [*map(parent.rotation.apply, turns[:1]), *map(child.rotation.apply, own[:1])]
 
@@ -168,7 +173,7 @@ def off(joint: Joint, parent: Frame, child: Frame) -> Expression | None:
     """One less the cosine of what the directions that a joint holds are off; None where half a turn
     off is as good.
     """
-    turns = [f for f in joint.lets if f.move != "slide"]
+    turns = [f for f in joint.freedoms if f.move != "slide"]
     seen = misalignment(joint, parent, child)
     if not turns:
         # Of a plane the trace is 1 + 2 cos.
@@ -193,7 +198,7 @@ def _across(joint: Joint, parent: Frame) -> list[tuple[Vector, Vector]]:
     slides, and in ground axes.
     """
     plane = joint.directions is None
-    slides = sum(freedom.move == "slide" for freedom in joint.lets)
+    slides = sum(freedom.move == "slide" for freedom in joint.freedoms)
     if not slides:
         return [(axis, axis) for axis in (AXES[:2] if plane else AXES)]
     u, v, w = joint.triad
@@ -227,10 +232,10 @@ def _held(joint: Joint) -> tuple[tuple[Vector, Vector], ...]:
     )[joint.turns]
 
 
-def _gaps_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[Gap]:
+def _residuals_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[Residual]:
     """Gaps between points."""
-    speed, acceleration = gap_motion(joint, parent, child)
-    slides = sum(freedom.move == "slide" for freedom in joint.lets)
+    speed, acceleration = residual_motion(joint, parent, child)
+    slides = sum(freedom.move == "slide" for freedom in joint.freedoms)
     if not slides:
         distance, many = (
             minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place)),
@@ -250,7 +255,7 @@ def _gaps_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[Gap]:
         yield dot(distance, along), dot(speed, across), dot(acceleration, across) - turned
 
 
-def _gaps_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[Gap]:
+def _residuals_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[Residual]:
     """Gaps of directions that are held."""
     held = _held(joint)
     if not held:
@@ -268,7 +273,7 @@ def _gaps_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[Ga
 
 def _triad(joint: Joint) -> tuple[Vector, Vector, Vector]:
     """The joint's directions, from that of its first turn on."""
-    first = next((freedom.direction for freedom in joint.lets if freedom.move != "slide"), 0)
+    first = next((freedom.direction for freedom in joint.freedoms if freedom.move != "slide"), 0)
     u, v, w = (joint.triad[(first + k) % 3] for k in range(3))
     return u, v, w
 

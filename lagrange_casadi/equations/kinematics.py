@@ -21,16 +21,16 @@ import casadi as ca
 from ..declare.directions import most_across
 from ..errors import AssemblyError
 from ..geometry.vectors import AXES
-from .balls import Ball
 from .blocks import Block, solving_order
-from .gaps import left, misfit, reach
 from .iteration import Iterated, NewtonLoop, place_roughly
 from .linear import LinearSystem
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody, column
 from .postures import Undecided, directions, measured, turns
+from .residuals import loop_residual, reach, redundancy_residual
+from .spherical import SphericalCoordinates
 from .substitution import Expressions, Numbers
-from .winding import wound
+from .winding import wound_angles
 
 _WAYS = 32
 """Largest number of ways to close open loops that are tried if the first does not close the
@@ -57,10 +57,10 @@ class Kinematics:
 
     ``found`` has the expression of every variable, rate and acceleration of a :class:`.Multibody`;
     ``systems`` are the factorized Phi_z of ``blocks``. ``closures`` say by joint how far each loop
-    is from a dead centre, ``gaps`` [m] what is left of the equations of a block, ``misfits`` how
-    far the equations that are too many are from holding. ``loose`` names the joints whose angles
-    are known up to whole turns, ``swings`` how far those of screws are from what counts their
-    turns.
+    is from a dead centre, ``gaps`` [m] what is left of the equations of a block,
+    ``redundancy_residuals`` how far the equations that are too many are from holding. ``loose``
+    names the joints whose angles are known up to whole turns, ``swings`` how far those of screws
+    are from what counts their turns.
     """
 
     driven: Any
@@ -71,11 +71,11 @@ class Kinematics:
     blocks: tuple[Block, ...]
     systems: tuple[LinearSystem, ...]
     closures: dict[str, Any]
-    gaps: dict[str, Any]
-    misfits: dict[str, Any]
+    residuals: dict[str, Any]
+    redundancy_residuals: dict[str, Any]
     newton: NewtonLoop | None
-    loose: frozenset[str]
-    swings: dict[str, Any]
+    wrapped: frozenset[str]
+    deviations: dict[str, Any]
 
     def evaluate(self, expression: ca.SX) -> ca.SX:
         """An expression in the multibody's symbols, as one in t, d, d',
@@ -139,8 +139,8 @@ class _Solver:
         self.iterated = Iterated()
         self.residuals: list[Block] = []
         self.closures: dict[str, tuple[Any, bool]] = {}
-        self.loose: set[str] = set()
-        self.swings: dict[str, Any] = {}
+        self.wrapped: set[str] = set()
+        self.deviations: dict[str, Any] = {}
         self.undecided = Undecided()
         self.length = reach(multibody.mechanism)
         self.found = Expressions()
@@ -159,10 +159,10 @@ class _Solver:
         inputs with their values at the start.
         """
         mechanism = self.multibody.mechanism
-        told = self._rough([c for c in self.multibody.coordinates if not c.driven], needed=False)
-        told |= dict(zip(self.known, self.start.driven, strict=True))
+        rough = self._rough([c for c in self.multibody.coordinates if not c.driven], needed=False)
+        rough |= dict(zip(self.known, self.start.driven, strict=True))
         return {
-            "posture": told,
+            "posture": rough,
             "inputs": [mechanism.time, mechanism.symbols],
             "values": [self.start.t, self.start.parameters],
         }
@@ -185,11 +185,13 @@ class _Solver:
         closures = [self._solved(block, form) for form in block.forms]
         for form, closure in zip(block.forms, closures, strict=True):
             if form.branches:
-                self.loose |= {
-                    c.name for c in form.unknown if c.kind == "angle" and c.name not in self.swings
+                self.wrapped |= {
+                    c.name
+                    for c in form.unknown
+                    if c.kind == "angle" and c.name not in self.deviations
                 }
             if closure is not None:
-                self._judge(block, closure)
+                self._note_closure(block, closure)
 
     def _solved(self, block: Block, form: ClosedForm) -> ca.SX | None:
         """Take note of what one closed form of a block solves, on the branch that is nearest to the
@@ -198,26 +200,26 @@ class _Solver:
         closure, variables = form.closure, form.variables
         if form.branches:
             signs = ca.SX(ca.DM(self._signs(block, form)))
-            told = [
+            solved = [
                 ca.substitute(value, column(form.branches), signs)
                 for value in (closure, *variables)
             ]
-            closure, variables = told[0], tuple(told[1:])
+            closure, variables = solved[0], tuple(solved[1:])
         if closure is not None:
             closure = self.found.put_into(closure)
         for coordinate, value in zip(form.unknown, variables, strict=True):
             if coordinate.axis.move == "screw" and form.branches:
-                value, swing = wound(coordinate, value, self._counting(), self.numbers)
-                self.swings[coordinate.name] = self.found.put_into(swing)
+                value, deviation = wound_angles(coordinate, value, self._counting(), self.numbers)
+                self.deviations[coordinate.name] = self.found.put_into(deviation)
             self.numbers.note(coordinate.variables, self.numbers.of(value))
             self._know(coordinate, self.found.put_into(value))
         return closure
 
     def _counting(self) -> list[Coordinate]:
         """The coordinates known so far whose angles count turns."""
-        return [c for c in self.known if c.kind == "angle" and c.name not in self.loose]
+        return [c for c in self.known if c.kind == "angle" and c.name not in self.wrapped]
 
-    def _judge(self, block: Block, closure: ca.SX) -> None:
+    def _note_closure(self, block: Block, closure: ca.SX) -> None:
         """Note how far a block is from a dead centre: of blocks that one joint closes, the one that
         is nearest.
         """
@@ -234,9 +236,9 @@ class _Solver:
 
     def _signs(self, block: Block, form: ClosedForm) -> tuple[int, ...]:
         """The signs of the branches with which a form is nearest to the posture."""
-        told, branches = column([form.closure, *form.variables]), column(form.branches)
+        form_values, branches = column([form.closure, *form.variables]), column(form.branches)
         every = {
-            signs: self.numbers.of(ca.substitute(told, branches, ca.SX(ca.DM(signs))))
+            signs: self.numbers.of(ca.substitute(form_values, branches, ca.SX(ca.DM(signs))))
             for signs in itertools.product((1, -1), repeat=len(form.branches))
         }
         values = {signs: found for signs, (closure, *found) in every.items() if closure > 0.0}
@@ -252,7 +254,11 @@ class _Solver:
             )
         distance = {signs: self._distance(form, found) for signs, found in values.items()}
         least = min(distance.values())
-        near = [signs for signs, gap in distance.items() if gap - least <= 1e-6 * (1.0 + least)]
+        near = [
+            signs
+            for signs, residual in distance.items()
+            if residual - least <= 1e-6 * (1.0 + least)
+        ]
         if len(near) > 1:
             # Taken for now, so that the loops after it are looked at too.
             number = len(self.undecided.ways)
@@ -260,7 +266,7 @@ class _Solver:
             near = near[first:] + near[:first]
             ways = [_numbers(form.unknown, values[signs]) for signs in near]
             words = [
-                " with ".join(describe_coordinate(c.told_as, c.kind, x) for c, x in way.items())
+                " with ".join(describe_coordinate(c.posture_key, c.kind, x) for c, x in way.items())
                 for way in ways
             ]
             self.undecided.note_ways(block, ways, words, self.numbers.of(self.length)[0])
@@ -273,11 +279,11 @@ class _Solver:
         self.numbers.note(column(c.variables for c in form.unknown), values)
         for name, (place, of) in self._told_of.items():
             if of & set(form.unknown) and of <= placed:
-                gap = self.numbers.of(place)[0] - self.posture[name]
+                residual = self.numbers.of(place)[0] - self.posture[name]
                 total += (
-                    abs(math.remainder(gap, 2.0 * math.pi))
+                    abs(math.remainder(residual, 2.0 * math.pi))
                     if turns(self.multibody, name)
-                    else abs(gap) / size
+                    else abs(residual) / size
                 )
         return total
 
@@ -294,7 +300,9 @@ class _Solver:
         Where it is not ``needed``, joints that hold directions are not looked through, for that
         takes time.
         """
-        found = {c: self.posture[c.told_as] for c in coordinates if c.told_as in self.posture}
+        found = {
+            c: self.posture[c.posture_key] for c in coordinates if c.posture_key in self.posture
+        }
         angles = [c for c in coordinates if c.kind == "angle" and not c.relative and c not in found]
         if angles and (
             needed
@@ -302,22 +310,25 @@ class _Solver:
                 n not in self.multibody.frames and turns(self.multibody, n) for n in self.posture
             )
         ):
-            told = directions(self.multibody, self.posture, self.numbers, self.known)
-            found |= {c: told[c.body] for c in angles if c.body in told}
+            rough = directions(self.multibody, self.posture, self.numbers, self.known)
+            found |= {c: rough[c.body] for c in angles if c.body in rough}
         return found
 
     def _iterate(self, block: Block, guess: Mapping[Coordinate, float]) -> None:
-        balls = list(dict.fromkeys(c.ball for c in block.unknown if c.ball is not None))
-        if balls:
-            told = {c: self.posture.get(c.told_as, 0.0) for c in self.multibody.coordinates}
+        sphericals = list(
+            dict.fromkeys(c.spherical for c in block.unknown if c.spherical is not None)
+        )
+        if sphericals:
+            rough = {c: self.posture.get(c.posture_key, 0.0) for c in self.multibody.coordinates}
             quaternions = place_roughly(
-                self.multibody, told | dict(guess), self.numbers, self.known
+                self.multibody, rough | dict(guess), self.numbers, self.known
             )
         for coordinate in block.unknown:
-            if coordinate.ball is not None:
+            if coordinate.spherical is not None:
                 continue
             counted = any(
-                ca.depends_on(loop.gap, coordinate.value) for loop in self.multibody.loop_equations
+                ca.depends_on(loop.residual, coordinate.value)
+                for loop in self.multibody.loop_equations
             )
             turning = coordinate.kind == "angle" and not counted
             scale = 1 if coordinate.kind == "angle" else self.length
@@ -326,10 +337,12 @@ class _Solver:
             )
             self._know(coordinate, coordinate.placed(coordinate.value, symbol))
             if turning:
-                self.loose.add(coordinate.name)
-        for ball in balls:
-            axes = self.iterated.ball(ball, quaternions[ball])
-            for number, coordinate in enumerate(c for c in block.unknown if c.ball is ball):
+                self.wrapped.add(coordinate.name)
+        for spherical in sphericals:
+            axes = self.iterated.spherical(spherical, quaternions[spherical])
+            for number, coordinate in enumerate(
+                c for c in block.unknown if c.spherical is spherical
+            ):
                 self.known[coordinate] = axes[3 * number : 3 * number + 3]
         self.residuals.append(block)
         self._settle()
@@ -363,22 +376,26 @@ class _Solver:
     def finish(self, blocks: tuple[Block, ...]) -> Kinematics:
         """Rates and accelerations, block by block, and the substitution of everything."""
         body, newton, found = self.multibody, self.newton(), self.found
-        if body.balls:
+        if body.sphericals:
             found = found.with_values(self.iterated.placed)
-        for bar in (bar for bar in body.tree.bars if not bar.aimed):
-            along = self.numbers.of(column(body.frames[bar.link.name].rotation.x))
-            found.note(column(bar.aside), column(AXES[most_across(along)]))
-        for ball in body.balls:
-            found.note(ball.side, ca.SX(self._side(ball)))
-            found.note(ball.axes, self.iterated.placed(ball.axes))
+        for two_force_link in (
+            two_force_link
+            for two_force_link in body.tree.two_force_links
+            if not two_force_link.aimed
+        ):
+            along = self.numbers.of(column(body.frames[two_force_link.link.name].rotation.x))
+            found.note(column(two_force_link.aside), column(AXES[most_across(along)]))
+        for spherical in body.sphericals:
+            found.note(spherical.side, ca.SX(self._side(spherical)))
+            found.note(spherical.axes, self.iterated.placed(spherical.axes))
         driven = (
             column(c.rate for c in body.coordinates if c.driven),
             column(c.acceleration for c in body.coordinates if c.driven),
         )
         found.note(ca.vertcat(*driven), ca.vertcat(self.dd, self.ddd))
         systems: list[LinearSystem] = []
-        gaps: dict[str, Any] = {}
-        misfits: dict[str, Any] = {}
+        residuals: dict[str, Any] = {}
+        redundancy_residuals: dict[str, Any] = {}
         for block in blocks:
             rates, accelerations = (
                 column(c.rate for c in block.unknown),
@@ -387,24 +404,27 @@ class _Solver:
             still = ca.SX.zeros(len(block.unknown))
             system = LinearSystem.of(found.put_into(block.jacobian))
             found.note(
-                rates, system.solve(-found.put_into(ca.substitute(block.gap_rate, rates, still)))
+                rates,
+                system.solve(-found.put_into(ca.substitute(block.residual_rate, rates, still))),
             )
             found.note(
                 accelerations,
                 system.solve(
-                    -found.put_into(ca.substitute(block.gap_acceleration, accelerations, still))
+                    -found.put_into(
+                        ca.substitute(block.residual_acceleration, accelerations, still)
+                    )
                 ),
             )
             systems.append(system)
             if block in self.residuals:
                 side = math.copysign(1.0, self.numbers.of(system.volume)[0])
                 volume = ca.fabs(system.volume) if system.free else side * system.volume
-                self._judge(block, volume)
+                self._note_closure(block, volume)
             if system.free:
-                misfits[block.name] = found.put_into(misfit(body, block))
+                redundancy_residuals[block.name] = found.put_into(redundancy_residual(body, block))
             else:
-                gaps[block.name] = gaps.get(block.name, 0) + found.put_into(
-                    left(body, block, self.length)
+                residuals[block.name] = residuals.get(block.name, 0) + found.put_into(
+                    loop_residual(body, block, self.length)
                 )
         return Kinematics(
             driven=self.d,
@@ -417,23 +437,29 @@ class _Solver:
             closures={
                 name: self.iterated.placed(closure) for name, (closure, _) in self.closures.items()
             },
-            gaps=gaps,
-            misfits=misfits,
+            residuals=residuals,
+            redundancy_residuals=redundancy_residuals,
             newton=newton,
-            loose=frozenset(self.loose),
-            swings=self.swings,
+            wrapped=frozenset(self.wrapped),
+            deviations=self.deviations,
         )
 
-    def _side(self, ball: Ball) -> int:
+    def _side(self, spherical: SphericalCoordinates) -> int:
         """The sign of the cosine of a ball's second turn with which its turns at the start are
         nearest to the posture.
         """
-        told = [self.posture.get(c.name, 0.0) for c in self.multibody.coordinates if c.ball is ball]
-        turns = ca.vertcat(*self.multibody.turns_of(ball).angles)
-        ways = {side: self.numbers.of(ca.substitute(turns, ball.side, side)) for side in (1, -1)}
+        rough = [
+            self.posture.get(c.name, 0.0)
+            for c in self.multibody.coordinates
+            if c.spherical is spherical
+        ]
+        turns = ca.vertcat(*self.multibody.turns_of(spherical).angles)
+        ways = {
+            side: self.numbers.of(ca.substitute(turns, spherical.side, side)) for side in (1, -1)
+        }
         apart = {
             side: sum(
-                abs(math.remainder(a - b, math.tau)) for a, b in zip(told, ways[side], strict=True)
+                abs(math.remainder(a - b, math.tau)) for a, b in zip(rough, ways[side], strict=True)
             )
             for side in ways
         }
@@ -443,8 +469,8 @@ class _Solver:
         """The iteration of all blocks without a closed form, together."""
         if not self.residuals:
             return None
-        gaps = self.found.put_into(column(block.gap for block in self.residuals))
-        correction, relative = self.iterated.step(gaps)
+        residuals = self.found.put_into(column(block.residual for block in self.residuals))
+        correction, relative = self.iterated.step(residuals)
         inputs = [
             self.iterated.symbols,
             self.multibody.mechanism.time,

@@ -28,17 +28,17 @@ import numpy as np
 
 from ..base.quantities import Output, force_members
 from ..base.tables import table_of
+from ..declare.compliant import Elastic
 from ..declare.density import Density
-from ..declare.giving import Elastic
 from ..declare.limits import END
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
 from ..declare.scene import Wanted
 from ..errors import DeclarationError, one_line
 from .checks import Column
-from .gaps import extent
+from .indeterminate import Forces
 from .multibody import column
-from .open_forces import Forces
+from .residuals import extent
 from .section_function import Place, Section
 from .strains import Moduli, moduli_of, resultants
 from .strength import Loaded

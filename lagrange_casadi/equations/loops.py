@@ -65,14 +65,14 @@ def solve_loop(
     unknown: Sequence[Coordinate],
     coordinates: Sequence[Coordinate],
     *,
-    bar: bool = False,
+    two_force_link: bool = False,
 ) -> ClosedForm | None:
     """The closed form of Phi = 0 for some unknown ones of all coordinates, or None where there is
     none that was verified.
 
     Phi of a ``bar`` is half of a square, and may be one of the unknown.
     """
-    form = _spanned(phi, unknown, coordinates) if bar and len(unknown) == 1 else None
+    form = _spanned(phi, unknown, coordinates) if two_force_link and len(unknown) == 1 else None
     form = form or _matching(phi, unknown, coordinates)
     if form is None:
         return None

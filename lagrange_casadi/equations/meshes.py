@@ -20,7 +20,7 @@ from ..declare.parts import Point, Vector
 from ..geometry.vectors import cross, nil, plus, times
 from .growing import Grown
 from .multibody import Applied, Multibody, rates_along
-from .pressing import Contact, Rubbing, slowest_of
+from .pressing import Contact, FrictionContact, slowest_of
 
 
 def meshed_by(resting: Grown, transmission: Transmission, multiplier: ca.SX) -> Iterator[Applied]:
@@ -53,20 +53,22 @@ def transmissions_of(mechanism: Mechanism) -> dict[str, Transmission]:
     return {name: transmission for name, transmission in found if transmission is not None}
 
 
-def pressing_apart(transmission: Transmission, multiplier: Expression) -> Rubbing:
+def pressing_apart(transmission: Transmission, multiplier: Expression) -> FrictionContact:
     """Separating force of a transmission, by its multiplier."""
     contacts = tuple(Contact(factor, (multiplier + slack,)) for factor, slack in transmission.parts)
-    return Rubbing(transmission, contacts, ca.SX(0), ca.SX(0), (ca.SX(0), ca.SX(0)))
+    return FrictionContact(transmission, contacts, ca.SX(0), ca.SX(0), (ca.SX(0), ca.SX(0)))
 
 
-def braking(multibody: Multibody, loss: Loss, multiplier: Any) -> Rubbing:
+def braking(multibody: Multibody, loss: Loss, multiplier: Any) -> FrictionContact:
     """Friction loss of a transmission, by its multiplier."""
     rate, acceleration = ca.SX(0), ca.SX(0)
     for sign, joint in loss.turns:
         one, change = rates_along(joint, joint.axes[0], multibody.frames, multibody.coordinates)
         rate, acceleration = rate + sign * one, acceleration + sign * change
     contact = Contact(loss.arm, (multiplier,), loss.lean)
-    return Rubbing(loss, (contact,), rate, acceleration, slowest_of(multibody, slides=False))
+    return FrictionContact(
+        loss, (contact,), rate, acceleration, slowest_of(multibody, slides=False)
+    )
 
 
 def _summed(transmission: Transmission, mesh: Mesh, multiplier: ca.SX) -> tuple[Vector, Vector]:

@@ -13,7 +13,7 @@ Lagrange terms by the moments (paper eq. 20): n2 and f2 are the square of the li
 its change. They repeat in bending because d(bending)/d(xi) = -shear, the equilibrium of an element.
 n0, f0, m0 are what acts on the tip: the reactions, efforts and loads there. What acts at a station
 between base and tip is seen by the sections on its base side. What acts along the link has terms of
-its own (:mod:`.spreads`).
+its own (:mod:`.distributed_loads`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from typing import Any
 import casadi as ca
 
 from ..base.arrays import Expression
-from ..base.quantities import Output, force_members, law_members, own_members, station_members
+from ..base.quantities import Output, force_members, law_members, load_point_members, local_members
 from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.limits import at_end
@@ -38,17 +38,17 @@ from ..geometry.frames import Frame, Velocities
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import ZERO, cross, dot, plus, times
 from .checks import Check, Column
+from .distributed_loads import distributed_loads, rotary
 from .drives import solve_efforts
 from .friction import Solved, needed, solve
-from .gaps import reach
-from .joints import borne, carried, orientation, reaction
+from .joints import carried, orientation, reaction, supported
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .meshes import braking, pressing_apart, transmissions_of
 from .multibody import Multibody, column, own_coordinate
 from .multipliers import multipliers_of
-from .pressing import frictions_of, rubbing
-from .spreads import rotary, spreads
+from .pressing import frictions_of, joint_friction
+from .residuals import reach
 from .tree import Branch
 
 
@@ -100,7 +100,7 @@ def internal_forces(
     along = kinematics.evaluate(along)
     unknowns, values, free = multipliers_of(multibody, kinematics, along)
 
-    unaided = {graph.row.replaces for graph in multibody.rows}
+    unaided = {program.row.replaces for program in multibody.rows}
     drives: dict[str, Any] = {
         c.name: along[i]
         for i, c in enumerate(multibody.coordinates)
@@ -125,14 +125,14 @@ def internal_forces(
         drives = {name: multibody.efforts.get(name, drives.get(name)) for name in weights}
         values = ca.substitute(values, efforts.symbols, efforts.values)
         unknowns, values = ca.vertcat(unknowns, efforts.symbols), ca.vertcat(values, efforts.values)
-        held = {Check("hold", ", ".join(weights)): efforts.hold}
+        held = {Check("hold", ", ".join(weights)): efforts.authority}
     starts = itertools.accumulate(
         (rates.numel() for rates in multibody.mobilities.values()), initial=0
     )
     by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
     joints = multibody.mechanism.joints
-    borne_by = needed_reactions(multibody.mechanism, want.reactions, want.sections)
-    found = {name: _reaction(multibody, joints[name], by_joint) for name in borne_by}
+    supporting = needed_reactions(multibody.mechanism, want.reactions, want.sections)
+    found = {name: _reaction(multibody, joints[name], by_joint) for name in supporting}
     columns: dict[Column, Any] = (
         {Output("effort", joint): force for joint, force in drives.items()} if want.effort else {}
     )
@@ -143,9 +143,9 @@ def internal_forces(
             for member in members
         }
         if multibody.mechanism.space:
-            columns |= _on_own_axes(joints[name], found[name].own)
+            columns |= _on_joint_axes(joints[name], found[name].own)
     tying = {c.name: c.multipliers for c in multibody.loop_equations if c.declared}
-    tying |= {graph.row.name: graph.multiplier for graph in multibody.rows}
+    tying |= {program.row.name: program.multiplier for program in multibody.rows}
     columns |= {Output("multiplier", name): tying[name] for name in want.multipliers}
     if want.reactions:
         columns |= {
@@ -159,8 +159,10 @@ def internal_forces(
     rates = multibody.mobility_rates
     rubbed = {}
     for name, friction in frictions_of(multibody.mechanism).items():
-        borne_there = found[friction.joint.name].ground
-        rubbed[name] = rubbing(multibody, friction, borne_there.force, borne_there.couple)
+        supported_there = found[friction.joint.name].ground
+        rubbed[name] = joint_friction(
+            multibody, friction, supported_there.force, supported_there.couple
+        )
     for name, transmission in transmissions_of(multibody.mechanism).items():
         if transmission.presses:
             rubbed[name] = pressing_apart(transmission, tying[name])
@@ -227,7 +229,7 @@ def _section_law(
     link, space = multibody.mechanism.links[name], multibody.mechanism.space
     slopes = _material(multibody, name)
     tip = Action()
-    stations: dict[Column, Any] = {}
+    load_points: dict[Column, Any] = {}
     for source, place, action in _loads_on(multibody, link, found, drives):
         # About the link's axis, beside which it may act.
         acting = Action(action.force, plus(action.couple, cross((0.0, *place[1:]), action.force)))
@@ -235,9 +237,9 @@ def _section_law(
             tip += acting
             continue
         members = (*_by_plane(acting, space), place[0] / link.length)
-        stations |= {
+        load_points |= {
             Output("station", name, member, source): value
-            for member, value in zip(station_members(space), members, strict=True)
+            for member, value in zip(load_point_members(space), members, strict=True)
         }
     by_mass, by_moment = ([-slopes[k, column] for k in range(slopes.size1())] for column in (0, 1))
     at_tip, about = list(tip.force), tip.couple
@@ -257,11 +259,11 @@ def _section_law(
         Output("law", name, member): ca.SX(value)
         for member, value in zip(law_members(space), law, strict=True)
     }
-    frame = multibody.felt[name].along_axis()
+    frame = multibody.accelerated[name].along_axis()
     return (
         own
-        | stations
-        | spreads(multibody, link)
+        | load_points
+        | distributed_loads(multibody, link)
         | rotary(multibody, link, frame.rate, frame.angular)
     )
 
@@ -295,7 +297,7 @@ def _material(multibody: Multibody, name: str) -> Expression:
     rest it is written in, and in these the first moment's forces are the rate squared and its
     change, to the last bit.
     """
-    frame, space = multibody.felt[name].along_axis(), multibody.mechanism.space
+    frame, space = multibody.accelerated[name].along_axis(), multibody.mechanism.space
     slopes, symbols = _of_any_link(space)
     motion = (frame.speed, frame.acceleration, frame.rate, frame.angular)
     return ca.substitute(slopes, symbols, column(value for vector in motion for value in vector))
@@ -373,7 +375,7 @@ def _loads_on(
     m = multibody.mechanism
     acting = {*m.joints, *m.loads, *m.constraints, *m.rows}
     for part in (*multibody.applied, *multibody.held):
-        if part.point.body is link and part.spread is None and not _at_base(part.point):
+        if part.point.body is link and part.distributed is None and not _at_base(part.point):
             x = None if part.point.end == "tip" else at_end(part.point)
             name = part.source
             while seen.setdefault(part.source, 0) and name in acting:
@@ -407,12 +409,19 @@ def _in_ground_axes(
     for loop in multibody.loop_equations:
         if loop.joint is joint:
             return Action(*reaction(joint, parent, child, loop.multipliers))
-    bar = next((bar for bar in multibody.tree.bars if joint in bar.joints), None)
-    if bar is not None:
+    two_force_link = next(
+        (
+            two_force_link
+            for two_force_link in multibody.tree.two_force_links
+            if joint in two_force_link.joints
+        ),
+        None,
+    )
+    if two_force_link is not None:
         x, y, z = ca.vertsplit(actions[joint.name])
         force = Action((x, y, z))
-        return force if joint.child.body is bar.link else -force
-    return Action(*borne(joint, parent, child, *_on_child(multibody, joint, actions)))
+        return force if joint.child.body is two_force_link.link else -force
+    return Action(*supported(joint, parent, child, *_on_child(multibody, joint, actions)))
 
 
 def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Action:
@@ -430,7 +439,7 @@ def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -
         for rotation in reversed(turned):
             force, moment = rotation.apply(force), rotation.apply(moment)
     child = functools.reduce(Rotation.then, turned)
-    return Action(*borne(joint, Frame(), Frame(rotation=child), force, moment))
+    return Action(*supported(joint, Frame(), Frame(rotation=child), force, moment))
 
 
 def _branch(multibody: Multibody, joint: Joint) -> Branch:
@@ -450,23 +459,23 @@ def _on_child(
     return (action[0], action[1], 0.0), (0.0, 0.0, action[2]) if joint.bears_moment else ZERO
 
 
-def _on_own_axes(joint: Joint, own: Action) -> dict[Column, Expression]:
+def _on_joint_axes(joint: Joint, own: Action) -> dict[Column, Expression]:
     """A reaction on the axes of a joint's triad, which its parent carries: what ideal joints leave
     open lies along one of these.
     """
     values = [dot(one, vector) for vector in (own.force, own.couple) for one in joint.triad]
-    names = own_members(moment=joint.bears_moment)
+    names = local_members(moment=joint.bears_moment)
     return {
         Output("reaction", joint.name, name): ca.SX(value)
         for name, value in zip(names, values, strict=False)
     }
 
 
-def stations_of(outputs: Iterable[Output], link: str) -> tuple[str, ...]:
+def load_points_of(outputs: Iterable[Output], link: str) -> tuple[str, ...]:
     """The stations of a link that outputs name, in their order."""
     return tuple(
         dict.fromkeys(
-            output.station
+            output.load_point
             for output in outputs
             if output.group == "station" and output.part == link
         )

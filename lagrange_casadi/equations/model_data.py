@@ -34,13 +34,13 @@ from ..declare.description import (
 from ..declare.laws import Laws
 from ..declare.masses import ALL, masses_of
 from ..declare.parts import LineLoad, Link, Parameter
-from ..declare.possible import Margins
 from ..declare.scene import Scene
 from ..declare.stated import Stated
 from ..declare.times import Timing
+from ..declare.validity import Margins
 from ..errors import UnknownNameError
 from .checks import Column
-from .gaps import extent
+from .residuals import extent
 from .section_function import Section
 from .tree import span
 
@@ -66,8 +66,8 @@ def beam_at(described: Template, link: str, p: Any) -> Beam:
 def template(scene: Scene) -> Template:
     """The description of a scene's mechanism but for its numbers.
 
-    In space it names the ``bars``, links whose spin about their own axis is idle and taken to be
-    none, and the coordinates that are ``unmeasured``.
+    In space it names the ``two_force_links``, links whose spin about their own axis is idle and
+    taken to be none, and the coordinates that are ``unmeasured``.
     """
     mechanism = scene.mechanism
     found = template_of(
@@ -84,7 +84,10 @@ def template(scene: Scene) -> Template:
     return replace(
         found,
         content=found.content
-        | {"bars": [bar.link.name for bar in tree.bars], "unmeasured": unmeasured},
+        | {
+            "bars": [two_force_link.link.name for two_force_link in tree.two_force_links],
+            "unmeasured": unmeasured,
+        },
     )
 
 
@@ -222,7 +225,7 @@ class ModelData(Graphs):
         return materials_of(self.template.content)
 
     @symbolic
-    def matter(self, link: str, p: ca.SX) -> tuple[ca.SX, Density]:
+    def mass_properties(self, link: str, p: ca.SX) -> tuple[ca.SX, Density]:
         """The length of a link [m] and its density, per unit of xi/l, as expressions of parameters
         ``p``.
         """
@@ -233,11 +236,11 @@ class ModelData(Graphs):
     @symbolic
     def link(self, name: str, p: Any) -> Link:
         """A link that has sections and a beam, its numbers as expressions of parameters ``p``."""
-        return Link(name, *self.matter(name, p), beam_at(self.template, name, p))
+        return Link(name, *self.mass_properties(name, p), beam_at(self.template, name, p))
 
     def section(self, link: str, columns: Mapping[Column, Any], p: Any) -> Section:
         """The section forces of a link, of columns and parameters ``p`` that are expressions."""
-        return Section(link, table_of(self.space), columns, *self.matter(link, p))
+        return Section(link, table_of(self.space), columns, *self.mass_properties(link, p))
 
     def closing(self, part: str) -> str:
         """Describe the part that closes a loop."""

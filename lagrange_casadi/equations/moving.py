@@ -23,15 +23,15 @@ from ..declare.spatial import reference_posture
 from ..geometry.vectors import ZERO, dot
 from . import kinematics
 from .assembly import assemble
-from .bars import across_bar
 from .checks import Check, Column
 from .drives import pushed
 from .kinematics import Start
 from .mobility import needed_reactions
 from .model_data import template
 from .multibody import Coordinate, Multibody, column, own_coordinate
+from .revolutions import count_revolutions
 from .tree import span
-from .turns import count_turns
+from .two_force_links import across_link
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,18 +48,18 @@ class Moving:
     laws: Laws
     start: Start
     solved: kinematics.Kinematics
-    swings: Mapping[str, Any]
+    deviations: Mapping[str, Any]
 
     @classmethod
     def of(cls, scene: Scene, want: Wanted) -> Moving:
         """Assemble the mechanism, and solve its loops."""
         mechanism, tree = scene.mechanism, span(scene.guided, scene.laws)
-        borne = needed_reactions(mechanism, want.reactions, want.sections)
+        needed = needed_reactions(mechanism, want.reactions, want.sections)
         body = assemble(
             scene.guided,
             tree,
             scene.laws,
-            borne,
+            needed,
             pushed(scene.needs_drives, scene.weights),
             want.own,
         )
@@ -69,8 +69,10 @@ class Moving:
         first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
         start = Start(scene.span[0], first, values)
         solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
-        solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
-        return cls(scene, want, body, laws, start, solved, swings)
+        solved, deviations = count_revolutions(
+            body, solved, motion, scene.span, start, _seeing(body, want)
+        )
+        return cls(scene, want, body, laws, start, solved, deviations)
 
     @property
     def inputs(self) -> list[Expression]:
@@ -102,8 +104,8 @@ class Moving:
         """
         columns, loop_angles = self._checks(), dict[Output, dict[Column, int]]()
         if self.want.motion:
-            told, loop_angles = self._motions()
-            columns |= told
+            motions, loop_angles = self._motions()
+            columns |= motions
         for part in reversed(self.body.applied):
             if part.source in self.want.loads:
                 members = force_members(self.scene.mechanism.space)
@@ -130,15 +132,19 @@ class Moving:
         columns |= _locks(self.scene.mechanism, body, forces=self.want.forces)
         columns |= _rolls(body, self.want)
         columns |= {Check("closure", name): closure for name, closure in solved.closures.items()}
-        columns |= {Check("gap", name): gap for name, gap in solved.gaps.items()}
-        columns |= {Check("misfit", name): misfit for name, misfit in solved.misfits.items()}
-        for graph in body.rows:
+        columns |= {Check("gap", name): residual for name, residual in solved.residuals.items()}
+        columns |= {
+            Check("misfit", name): redundancy_residual
+            for name, redundancy_residual in solved.redundancy_residuals.items()
+        }
+        for program in body.rows:
             columns |= {
-                Check("row", graph.row.name): graph.residual,
-                Check("rowsize", graph.row.name): graph.size,
+                Check("row", program.row.name): program.residual,
+                Check("rowsize", program.row.name): program.size,
             }
         return columns | {
-            Check("turned", name): swing for name, swing in {**solved.swings, **self.swings}.items()
+            Check("turned", name): deviation
+            for name, deviation in {**solved.deviations, **self.deviations}.items()
         }
 
     def _motions(self) -> tuple[dict[Column, Expression], dict[Output, dict[Column, int]]]:
@@ -149,20 +155,24 @@ class Moving:
         motions = _motion_columns(mechanism, body, solved, self.laws.joints)
         kinds = kinds_of_described(template(self.scene).content)
         angles = [c for c in body.coordinates if c.kind == "angle"]
-        loose: dict[Column, Any] = {_known_by(c): c.value for c in angles if c.name in solved.loose}
-        counted: dict[Column, Any] = {
-            Check("turns", c.name): c.value for c in angles if c.name not in solved.loose
+        wrapped: dict[Column, Any] = {
+            _known_by(c): c.value for c in angles if c.name in solved.wrapped
         }
-        told = {
+        counted: dict[Column, Any] = {
+            Check("turns", c.name): c.value for c in angles if c.name not in solved.wrapped
+        }
+        reported = {
             output: value
             for output, value in motions.items()
             if output.member in ("", "angle") and output.unit(kinds) == ANGLE
         }
-        loop_angles = {output: _turns(value, loose | counted) for output, value in told.items()}
+        loop_angles = {
+            output: _turns(value, wrapped | counted) for output, value in reported.items()
+        }
         loop_angles = {
             output: turns
             for output, turns in loop_angles.items()
-            if not loose.keys().isdisjoint(turns)
+            if not wrapped.keys().isdisjoint(turns)
         }
         loop_angles |= {output: {output: 1} for output in _within_a_turn(mechanism, body, motions)}
         whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
@@ -185,7 +195,8 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:
         part for part in (*body.applied, *body.held) if want.forces or part.source in want.loads
     ]
     found = {
-        f"row '{graph.row.name}'": ca.vertcat(graph.residual, graph.size) for graph in body.rows
+        f"row '{program.row.name}'": ca.vertcat(program.residual, program.size)
+        for program in body.rows
     }
     found |= {f"output '{name}'": expression for name, expression in body.own.items()}
     for part in parts:
@@ -205,7 +216,9 @@ def _beyond(body: Multibody, seeing: Mapping[str, Expression]) -> dict[Column, A
     """Distance of curves' arguments beyond their ends, by the constraint, load or row that uses the
     curve.
     """
-    found = {f"constraint '{loop.name}'": loop.gap for loop in body.loop_equations if loop.declared}
+    found = {
+        f"constraint '{loop.name}'": loop.residual for loop in body.loop_equations if loop.declared
+    }
     columns: dict[Column, Any] = {}
     for name, expression in (found | dict(seeing)).items():
         far = enumerate(beyond_ends(expression), 1)
@@ -240,11 +253,16 @@ def _rolls(body: Multibody, want: Wanted) -> dict[Column, Any]:
     Of those whose cross-section is not round, and whose sections are wanted.
     """
     found: dict[Column, Any] = {}
-    for bar in body.tree.bars:
-        beam = bar.link.beam
-        if bar.aimed and beam is not None and not beam.round and bar.link.name in want.sections:
-            part = across_bar(bar, body.frames[bar.link.name].rotation.x)
-            found[Check("roll", bar.link.name)] = dot(part, part)
+    for two_force_link in body.tree.two_force_links:
+        beam = two_force_link.link.beam
+        if (
+            two_force_link.aimed
+            and beam is not None
+            and not beam.round
+            and two_force_link.link.name in want.sections
+        ):
+            part = across_link(two_force_link, body.frames[two_force_link.link.name].rotation.x)
+            found[Check("roll", two_force_link.link.name)] = dot(part, part)
     return found
 
 
@@ -253,9 +271,9 @@ def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Any]:
     is defined there.
     """
     columns: dict[Column, Any] = {}
-    for ball in body.balls:
-        turns = [axis.coordinate for axis in ball.joint.axes if axis.kind == "angle"]
-        locked = body.turns_of(ball).locked
+    for spherical in body.sphericals:
+        turns = [axis.coordinate for axis in spherical.joint.axes if axis.kind == "angle"]
+        locked = body.turns_of(spherical).locked
         outputs = (
             Output("motion", name, member)
             for name in turns

@@ -23,12 +23,12 @@ from ..declare.parts import Point, Row, Vector
 from ..errors import DeclarationError
 from ..geometry.frames import Frame, Velocities
 from ..geometry.vectors import AXES, ZERO
-from .balls import Ball
-from .bars import Bar
 from .joints import slide, slide_motion, turned, turning
 from .lagrange import LagrangeSystem
-from .three_turns import ThreeTurns
+from .spherical import SphericalCoordinates
+from .three_rotations import ThreeRotations
 from .tree import Tree
+from .two_force_links import TwoForceLink
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,21 +55,21 @@ class Coordinate:
     acceleration: Any
     turn: Any = None
     relative: bool = False
-    ball: Ball | None = None
+    spherical: SphericalCoordinates | None = None
 
     @property
     def kind(self) -> Literal["angle", "slide", "ball"]:
         """Kind of the coordinate."""
-        return "ball" if self.ball is not None else self.axis.kind
+        return "ball" if self.spherical is not None else self.axis.kind
 
     @property
     def resting(self) -> tuple[float, ...]:
         """Variables at zero."""
-        if self.ball is not None:
+        if self.spherical is not None:
             return AXES[
-                [axis.coordinate for axis in self.ball.joint.axes if axis.kind == "angle"].index(
-                    self.name
-                )
+                [
+                    axis.coordinate for axis in self.spherical.joint.axes if axis.kind == "angle"
+                ].index(self.name)
             ]
         return (1.0, 0.0, 0.0) if self.kind == "angle" else (0.0,)
 
@@ -79,7 +79,7 @@ class Coordinate:
         return self.variables[-1]
 
     @property
-    def told_as(self) -> str:
+    def posture_key(self) -> str:
         """Name in a posture if it is not driven: the link whose direction it is, or its own."""
         return self.body if self.kind == "angle" and not self.relative else self.name
 
@@ -113,22 +113,22 @@ class LoopEquations:
 
     name: str
     joint: Joint | None
-    gap: Any
-    gap_rate: Any
-    gap_acceleration: Any
+    residual: Any
+    residual_rate: Any
+    residual_acceleration: Any
     multipliers: Any
-    bar: Bar | None = None
+    two_force_link: TwoForceLink | None = None
     seen: Any = None
 
     @property
     def kind(self) -> str:
         """Kind of the part, in a word."""
-        return "joint" if self.joint else "bar" if self.bar else "constraint"
+        return "joint" if self.joint else "bar" if self.two_force_link else "constraint"
 
     @property
     def declared(self) -> bool:
         """True if it is a constraint of the user's."""
-        return self.joint is None and self.bar is None
+        return self.joint is None and self.two_force_link is None
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +145,7 @@ class Applied:
     point: Point
     force: Vector = ZERO
     couple: Vector = ZERO
-    spread: tuple[Vector, ...] | None = None
+    distributed: tuple[Vector, ...] | None = None
 
     @property
     def members(self) -> dict[str, Expression]:
@@ -192,12 +192,12 @@ class Multibody:
     time.
 
     The mobilities are in ground axes, those of the joints in ``own_axes`` in the axes of the body
-    that hangs on the joint. ``frames`` are without mobilities; ``felt`` are with them, and their
-    accelerations are less that of gravity, as matter feels them. ``efforts`` are the symbols of
-    efforts along other coordinates than those whose motion is given, and ``along`` what a unit of
-    effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the directions
-    in ground axes about which turns relative to a body turn, by coordinate; ``own`` are the user's
-    outputs, in symbols of results too.
+    that hangs on the joint. ``frames`` are without mobilities; ``accelerated`` are with them, and
+    their accelerations are less that of gravity, as matter feels them. ``efforts`` are the symbols
+    of efforts along other coordinates than those whose motion is given, and ``along`` what a unit
+    of effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the
+    directions in ground axes about which turns relative to a body turn, by coordinate; ``own`` are
+    the user's outputs, in symbols of results too.
     """
 
     mechanism: Mechanism
@@ -208,7 +208,7 @@ class Multibody:
     mobilities: dict[str, Any]
     own_axes: frozenset[str]
     frames: dict[str, Frame]
-    felt: dict[str, Frame]
+    accelerated: dict[str, Frame]
     applied: tuple[Applied, ...]
     held: tuple[Applied, ...]
     turned: tuple[Turned, ...]
@@ -220,14 +220,16 @@ class Multibody:
     velocities: Velocities
 
     @property
-    def balls(self) -> tuple[Ball, ...]:
+    def sphericals(self) -> tuple[SphericalCoordinates, ...]:
         """The balls among the coordinates."""
-        return tuple(dict.fromkeys(c.ball for c in self.coordinates if c.ball is not None))
+        return tuple(
+            dict.fromkeys(c.spherical for c in self.coordinates if c.spherical is not None)
+        )
 
-    def turns_of(self, ball: Ball) -> ThreeTurns:
+    def turns_of(self, spherical: SphericalCoordinates) -> ThreeRotations:
         """The three turns of a ball's joint."""
-        parent, child = (self.frames[body.name] for body in ball.joint.bodies)
-        return ThreeTurns(ball.joint, parent, child, ball.side)
+        parent, child = (self.frames[body.name] for body in spherical.joint.bodies)
+        return ThreeRotations(spherical.joint, parent, child, spherical.side)
 
     @property
     def variables(self) -> Expression:
@@ -260,7 +262,7 @@ class Multibody:
         moving = self.variables if self.mechanism.space else still
         # The axes of a ball change with rates that are those of nothing, and stand still here as
         # all that moves in space does.
-        integrable = [c for c in self.coordinates if c.ball is None]
+        integrable = [c for c in self.coordinates if c.spherical is None]
         system = LagrangeSystem(
             kinetic=self.kinetic,
             force_function=ca.SX(0),
@@ -300,8 +302,8 @@ def place_along(
     parent, child = (frames[body.name] for body in joint.bodies)
     if axis.kind == "slide":
         return ca.SX(slide(joint, parent, child, axis.direction))
-    if ball := _ball(axis, coordinates):
-        return ThreeTurns(joint, parent, child, ball.side).angles[_number(joint, axis)]
+    if spherical := _spherical(axis, coordinates):
+        return ThreeRotations(joint, parent, child, spherical.side).angles[_number(joint, axis)]
     _refuse_three(joint)
     return ca.SX(turned(joint, _number(joint, axis), parent, child))
 
@@ -317,8 +319,8 @@ def rates_along(
     if axis.kind == "slide":
         rate, acceleration = slide_motion(joint, parent, child, axis.direction)
         return ca.SX(rate), ca.SX(acceleration)
-    if ball := _ball(axis, coordinates):
-        turns, number = ThreeTurns(joint, parent, child, ball.side), _number(joint, axis)
+    if spherical := _spherical(axis, coordinates):
+        turns, number = ThreeRotations(joint, parent, child, spherical.side), _number(joint, axis)
         return turns.rates[number], turns.accelerations[number]
     _refuse_three(joint)
     rate, acceleration = turning(joint, _number(joint, axis), parent, child)
@@ -333,10 +335,11 @@ def _refuse_three(joint: Joint) -> None:
         )
 
 
-def _ball(axis: Axis, coordinates: tuple[Coordinate, ...]) -> Ball | None:
+def _spherical(axis: Axis, coordinates: tuple[Coordinate, ...]) -> SphericalCoordinates | None:
     """The ball one of whose turns an axis is."""
     return next(
-        (c.ball for c in coordinates if c.ball is not None and c.name == axis.coordinate), None
+        (c.spherical for c in coordinates if c.spherical is not None and c.name == axis.coordinate),
+        None,
     )
 
 

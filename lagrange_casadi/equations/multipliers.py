@@ -42,9 +42,9 @@ def multipliers_of(
             )
         symbols, values = ca.vertcat(own, symbols), ca.vertcat(found, values)
     if multibody.rows:
-        mu = column(graph.multiplier for graph in multibody.rows)
+        mu = column(program.multiplier for program in multibody.rows)
         replaced = [
-            next(c for c in rows if c.name == graph.row.replaces) for graph in multibody.rows
+            next(c for c in rows if c.name == program.row.replaces) for program in multibody.rows
         ]
         unaided = ca.substitute(column(rows[c] for c in replaced), symbols, values)
         solved = ca.solve(

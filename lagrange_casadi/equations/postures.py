@@ -29,7 +29,7 @@ def measured(
 ) -> dict[str, tuple[ca.SX, set[Coordinate]]]:
     """Expressions of the posture's names, and the coordinates of each."""
     owner = {key: c for c in multibody.coordinates for key in c.keys}
-    told: dict[str, tuple[Any, set[Coordinate]]] = {}
+    known: dict[str, tuple[Any, set[Coordinate]]] = {}
     for name in names:
         if name in multibody.frames:
             turn = multibody.frames[name].rotation
@@ -40,8 +40,8 @@ def measured(
                 continue
             expression = ca.SX(place_along(joint, axis, multibody.frames, multibody.coordinates))
         of = (owner.get(symbol.element_hash()) for symbol in ca.symvar(expression))
-        told[name] = expression, {c for c in of if c is not None}
-    return told
+        known[name] = expression, {c for c in of if c is not None}
+    return known
 
 
 def directions(
@@ -106,21 +106,21 @@ class Undecided:
         """
 
         def apart(coordinate: Coordinate) -> float:
-            gaps = (
+            residuals = (
                 one[coordinate] - other[coordinate]
                 for one, other in itertools.combinations(ways, 2)
             )
             return min(
                 (
-                    abs(math.remainder(gap, math.tau))
+                    abs(math.remainder(residual, math.tau))
                     if coordinate.kind == "angle"
-                    else abs(gap) / length
+                    else abs(residual) / length
                 )
-                for gap in gaps
+                for residual in residuals
             )
 
         chosen = max(ways[0], key=apart)
-        self.ways.append((block.joints, tuple({chosen.told_as: way[chosen]} for way in ways)))
+        self.ways.append((block.joints, tuple({chosen.posture_key: way[chosen]} for way in ways)))
         many = "two" if len(ways) == 2 else "several"
         self.words.append(
             f"the loop closed by {block.joints} can be assembled in {many} ways at the start of the"
@@ -129,8 +129,8 @@ class Undecided:
 
     def note_lacking(self, block: Block, missing: Sequence[Coordinate]) -> None:
         """Note that an iteration needs rough values of coordinates to begin with."""
-        names = [c.told_as for c in missing]
-        self.lacking.append((block.joints, [(c.told_as, c.kind != "slide") for c in missing]))
+        names = [c.posture_key for c in missing]
+        self.lacking.append((block.joints, [(c.posture_key, c.kind != "slide") for c in missing]))
         self.words.append(
             f"the loops closed by {block.joints} have no closed form; also give a rough posture of"
             f" {', '.join(names)}"
@@ -141,22 +141,22 @@ class Undecided:
         kinds = {name for _, ways in self.ways for name in ways[0] if turns(multibody, name)}
         lines = []
         for k in range(len(self.ways[0][1])) if len(self.ways) == 1 and not self.lacking else (0,):
-            told = {}
+            entries = {}
             for _, ways in self.ways:
                 for name, value in ways[k].items():
                     values = [value, *(way[name] for way in ways)]
-                    told[name] = (
+                    entries[name] = (
                         f"'{readable(*map(math.degrees, values))} deg'"
                         if name in kinds
                         else readable(*values)
                     )
-            told |= {
+            entries |= {
                 name: "'... deg'" if angular else "..."
                 for _, names in self.lacking
                 for name, angular in names
             }
             lines.append(
-                "posture={" + ", ".join(f"'{name}': {text}" for name, text in told.items()) + "}"
+                "posture={" + ", ".join(f"'{name}': {text}" for name, text in entries.items()) + "}"
             )
         say = f"choose one by {' or '.join(lines)}" if self.ways else lines[0]
         after = (

@@ -15,9 +15,9 @@ from ..declare.meshes import Loss, Transmission
 from ..declare.parts import Friction, Vector
 from ..geometry.frames import Frame
 from ..geometry.vectors import dot, minus, times
-from .gaps import reach
 from .growing import Grown
 from .multibody import Multibody, rates_along
+from .residuals import reach
 
 _REST = 1e-12
 """Fraction of the fastest motion in the mechanism below which a rate is that of rest."""
@@ -60,7 +60,7 @@ def both_edges(components: Sequence[Any]) -> tuple[Any, Any]:
 
 
 @dataclass(frozen=True, eq=False)
-class Rubbing:
+class FrictionContact:
     """A friction as expressions of an instant: its contacts, and rate and acceleration of its
     coordinate.
 
@@ -90,14 +90,16 @@ class Rubbing:
             *self.beside,
         ]
 
-    def of_rows(self, rows: Sequence[Expression]) -> Rubbing:
+    def of_rows(self, rows: Sequence[Expression]) -> FrictionContact:
         """Contact with other expressions."""
         left = iter(rows)
         contacts = tuple(
             replace(c, pressing=tuple(next(left) for _ in c.pressing)) for c in self.contacts
         )
         rate, acceleration, rests, goes_on, *beside = left
-        return Rubbing(self.friction, contacts, rate, acceleration, (rests, goes_on), tuple(beside))
+        return FrictionContact(
+            self.friction, contacts, rate, acceleration, (rests, goes_on), tuple(beside)
+        )
 
 
 def frictions_of(mechanism: Mechanism) -> dict[str, Friction]:
@@ -105,7 +107,9 @@ def frictions_of(mechanism: Mechanism) -> dict[str, Friction]:
     return {name: load for name, load in mechanism.loads.items() if isinstance(load, Friction)}
 
 
-def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> Rubbing:
+def joint_friction(
+    multibody: Multibody, friction: Friction, force: Vector, couple: Vector
+) -> FrictionContact:
     """A friction in a joint whose parent does this to its child, in ground axes, the couple about
     the child's point.
     """
@@ -133,7 +137,7 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
             lever * x for x in rates_along(joint, friction.beside, multibody.frames, coordinates)
         )
     slowest = slowest_of(multibody, slides=friction.axis.kind != "angle")
-    return Rubbing(friction, contacts, rate, acceleration, slowest, beside)
+    return FrictionContact(friction, contacts, rate, acceleration, slowest, beside)
 
 
 def turning(joint: Joint, frames: Mapping[str, Frame]) -> tuple[Vector, Vector]:

@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array
-from ..base.quantities import Output, law_members, station_members
+from ..base.quantities import Output, law_members, load_point_members
 from ..base.symbolic import Graphs, symbolic
 from ..declare.laws import Laws
 from ..declare.scene import Wanted
@@ -20,7 +20,7 @@ from ..errors import PickleError
 from .checks import Check, Column, Kind, column_of
 from .iteration import NewtonLoop
 from .least_energy import Completion
-from .mobility import stations_of
+from .mobility import load_points_of
 from .model_data import ModelData
 from .status import Bound, Rule, beside_of, bounds_of, rules_of, status_of
 
@@ -135,9 +135,9 @@ class Program(Graphs):
             link: (
                 [Output("law", link, member) for member in law_members(space)]
                 + [
-                    Output("station", link, member, station)
-                    for station in stations_of(self.outputs, link)
-                    for member in station_members(space)
+                    Output("station", link, member, load_point)
+                    for load_point in load_points_of(self.outputs, link)
+                    for member in load_point_members(space)
                 ]
             )
             for link in self.wanted.sections
@@ -149,7 +149,7 @@ class Program(Graphs):
         )
 
     @cached_property
-    def doubtful(self) -> dict[Output, int]:
+    def indeterminate(self) -> dict[Output, int]:
         """The outputs that equilibrium may leave open, and the columns that tell where it does."""
         checks = ((column, k) for k, column in enumerate(self.columns) if isinstance(column, Check))
         return {check.part: k for check, k in checks if isinstance(check.part, Output)}
@@ -220,11 +220,11 @@ class Program(Graphs):
         }
         completion = Completion.loads(kept["completion"]) if "completion" in kept else None
         data = ModelData.loads(kept["data"])
-        told: dict[str, Any] = {
+        content: dict[str, Any] = {
             name: tuple(own) if isinstance(own, list) else own
             for name, own in kept["wanted"].items()
         }
-        wanted = Wanted(**told)
+        wanted = Wanted(**content)
         return cls(
             data, wanted, instant, newton, columns, loop_angles, completion, kept["identity"]
         )

@@ -35,9 +35,9 @@ from ..declare.spatial import reference_posture
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import Vector, cross, dot, minus, nil, plus, times
 from .assembly import assemble
-from .freed import Freed, Posture
-from .gaps import extent, units
 from .multibody import Multibody
+from .released_loops import Posture, ReleasedLoops
+from .residuals import extent, units
 from .tree import span
 
 _POSTURES = 24
@@ -115,12 +115,14 @@ def _moves(
     }
     found = {}
     for name, joint in changed.items():
-        gaps = [
+        residuals = [
             ca.norm_2(ca.vertcat(*minus(one, other)))
             for one, other in zip(_where(joint), _where(declared.joints[name]), strict=True)
         ]
         *angles, near, far = np.ravel(
-            ca.Function("gaps", [declared.symbols], [ca.vertcat(*gaps)])([*values.values()]).full()
+            ca.Function("gaps", [declared.symbols], [ca.vertcat(*residuals)])(
+                [*values.values()]
+            ).full()
         )
         found[name] = max(angles), max(near, far)
     return {
@@ -138,9 +140,11 @@ def _moved_loads(
     for name, load in mechanism.loads.items():
         if load is not declared.loads[name] and not isinstance(load, Friction):
             pairs = zip(load.points, declared.loads[name].points, strict=True)
-            gaps = [ca.norm_2(ca.vertcat(*minus(one.place, other.place))) for one, other in pairs]
+            residuals = [
+                ca.norm_2(ca.vertcat(*minus(one.place, other.place))) for one, other in pairs
+            ]
             far = np.ravel(
-                ca.Function("gaps", [declared.symbols], [ca.vertcat(*gaps)])(
+                ca.Function("gaps", [declared.symbols], [ca.vertcat(*residuals)])(
                     [*values.values()]
                 ).full()
             )
@@ -335,7 +339,7 @@ class _Search:
     """Looks for corrections of a mechanism whose joints have symbols of them."""
 
     body: Multibody
-    freed: Freed
+    released: ReleasedLoops
     values: Sequence[Any]
     others: Sequence[Sequence[Any]]
     rows: Array
@@ -350,10 +354,12 @@ class _Search:
         driven = [c for c in body.coordinates if c.driven]
         motion = scene.prescribed.only([c.name for c in driven]).motion
         posture = reference_posture(scene.mechanism) | dict(scene.posture)
-        told = {c: posture[c.told_as] for c in body.coordinates if c.told_as in posture}
-        told |= dict(zip(driven, ca.DM(motion(t, values)[0]).full().ravel(), strict=True))
+        rough = {c: posture[c.posture_key] for c in body.coordinates if c.posture_key in posture}
+        rough |= dict(zip(driven, ca.DM(motion(t, values)[0]).full().ravel(), strict=True))
         inputs = [mechanism.time, mechanism.symbols, symbols]
-        freed = Freed.of(body, told, inputs, [t, values, np.zeros(symbols.numel())], [symbols])
+        released = ReleasedLoops.of(
+            body, rough, inputs, [t, values, np.zeros(symbols.numel())], [symbols]
+        )
         generator = np.random.default_rng(0)
         others = []
         for _ in range(2 if values else 0):
@@ -362,7 +368,7 @@ class _Search:
             others.append([t, [min(max(float(x), p.low), p.high) for p, x in each]])
         rows = np.concatenate([units(loop, size) for loop in body.loop_equations] or [np.zeros(0)])
         columns = np.array([size if c.axis.move == "slide" else 1.0 for c in body.coordinates])
-        return cls(body, freed, [t, values], others, rows, columns, scene.rounding)
+        return cls(body, released, [t, values], others, rows, columns, scene.rounding)
 
     def corrections(self) -> Array | None:
         """The least ones with which loops close, for other parameters too if these can; None where
@@ -375,7 +381,7 @@ class _Search:
         return None
 
     def _corrections(self, cases: Sequence[Sequence[Any]]) -> Array | None:
-        x = np.zeros(self.freed.gaps.size1_in(4))
+        x = np.zeros(self.released.residuals.size1_in(4))
         seen = [(case, posture) for case in cases for posture in self._walk(case, x)]
         for _ in range(_ROUNDS):
             parts = [
@@ -395,7 +401,7 @@ class _Search:
 
     def _walk(self, case: Sequence[Any], x: Array) -> Iterator[Posture]:
         """Postures of the mechanism with all its freedoms, at random."""
-        generator, posture = np.random.default_rng(0), self._closed(self.freed.first, case, x)
+        generator, posture = np.random.default_rng(0), self._closed(self.released.first, case, x)
         for _ in range(_POSTURES):
             if posture is None:
                 return
@@ -404,19 +410,21 @@ class _Search:
             ways = np.linalg.svd(slope)[2][self._rank(slope) :]
             step = generator.normal(size=len(ways)) @ ways
             step *= _STRIDE * self.columns / max(float(np.max(np.abs(step), initial=0.0)), 1e-300)
-            posture = self._closed(self.freed.moved(posture, step), case, x) or self._closed(
-                self.freed.first, case, x
+            posture = self._closed(self.released.moved(posture, step), case, x) or self._closed(
+                self.released.first, case, x
             )
 
     def _closed(self, posture: Posture, case: Sequence[Any], x: Array) -> Posture | None:
         """Posture in which loops close within rounding."""
         for _ in range(_CLOSING_STEPS):
-            gap, slope, _ = self._scaled(posture, case, x)
-            step = -self.columns * (np.linalg.pinv(slope, rcond=self._singular) @ gap)
-            posture = self.freed.moved(posture, step)
+            residual, slope, _ = self._scaled(posture, case, x)
+            step = -self.columns * (np.linalg.pinv(slope, rcond=self._singular) @ residual)
+            posture = self.released.moved(posture, step)
             if np.max(np.abs(step / self.columns), initial=0.0) < 1e-13:
                 return (
-                    posture if np.max(np.abs(gap), initial=0.0) < _APART * self.rounding else None
+                    posture
+                    if np.max(np.abs(residual), initial=0.0) < _APART * self.rounding
+                    else None
                 )
         return None
 
@@ -429,9 +437,9 @@ class _Search:
         closed = self._closed(posture, case, x)
         if closed is None:
             return None
-        gap, slope, by = self._scaled(closed, case, x)
+        residual, slope, by = self._scaled(closed, case, x)
         left = np.linalg.svd(slope)[0][:, self._rank(slope) :].T
-        return left @ gap, left @ by
+        return left @ residual, left @ by
 
     @property
     def _singular(self) -> float:
@@ -444,5 +452,9 @@ class _Search:
         self, posture: Posture, case: Sequence[Any], x: Array
     ) -> tuple[Array, Array, Array]:
         """Gaps and their derivatives, in radians and beside the mechanism's size."""
-        gap, slope, by = self.freed.at(posture, [*case, x])
-        return gap / self.rows, slope * self.columns / self.rows[:, None], by / self.rows[:, None]
+        residual, slope, by = self.released.at(posture, [*case, x])
+        return (
+            residual / self.rows,
+            slope * self.columns / self.rows[:, None],
+            by / self.rows[:, None],
+        )

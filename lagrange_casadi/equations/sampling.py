@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
 from ..base.arrays import Expression
-from .balls import Ball, axes_of
 from .multibody import Coordinate, column
+from .spherical import SphericalCoordinates, axes_of
 
 COUNT = 64
 _FEWEST = 8
@@ -39,23 +39,23 @@ def drawn(expression: ca.SX, coordinates: Iterable[Coordinate]) -> Values:
     symbols = ca.symvar(ca.SX(expression))
     generator = np.random.default_rng(0)
     values = {symbol.element_hash(): generator.uniform(0.5, 1.5, COUNT) for symbol in symbols}
-    turned: dict[Ball, list[Any]] = {}
+    turned: dict[SphericalCoordinates, list[Any]] = {}
     for coordinate in coordinates:
         if coordinate.kind == "angle" and not values.keys().isdisjoint(coordinate.keys):
             angle = generator.uniform(-np.pi, np.pi, COUNT)
             values |= dict(
                 zip(coordinate.keys, (np.cos(angle), np.sin(angle), angle), strict=False)
             )
-        elif coordinate.ball is not None and not values.keys().isdisjoint(coordinate.keys):
-            if coordinate.ball not in turned:
-                turned[coordinate.ball] = [
+        elif coordinate.spherical is not None and not values.keys().isdisjoint(coordinate.keys):
+            if coordinate.spherical not in turned:
+                turned[coordinate.spherical] = [
                     np.asarray(row) for row in _turned(generator.normal(size=(4, COUNT)))
                 ]
             number = int(np.argmax(coordinate.resting))
             values |= dict(
                 zip(
                     coordinate.keys,
-                    turned[coordinate.ball][3 * number : 3 * number + 3],
+                    turned[coordinate.spherical][3 * number : 3 * number + 3],
                     strict=False,
                 )
             )
@@ -90,8 +90,10 @@ def vanish(
         return True
     found = drawn(ca.vertcat(ca.vec(expressions), ca.vec(ca.SX(beside))), coordinates)
     found = np.abs(found[:, np.isfinite(found).all(axis=0)])
-    gaps, sizes = found[: expressions.numel()], found[expressions.numel() :]
-    return bool(found.shape[1] >= _FEWEST and (gaps.max(axis=0) <= _ZERO * sizes.max(axis=0)).all())
+    residuals, sizes = found[: expressions.numel()], found[expressions.numel() :]
+    return bool(
+        found.shape[1] >= _FEWEST and (residuals.max(axis=0) <= _ZERO * sizes.max(axis=0)).all()
+    )
 
 
 _KNOWN = numpy_arithmetic()

@@ -16,7 +16,7 @@ from ..declare.scene import Scene
 from ..declare.spatial import reference_posture
 from .kinematics import describe_coordinate
 
-_LONG, _LOOKS, _MOST_JUMPS = 200, 1001, 8
+_LONG, _SAMPLES, _MOST_JUMPS = 200, 1001, 8
 
 
 def scene_lines(scene: Scene) -> Iterator[str]:
@@ -70,14 +70,14 @@ def scene_lines(scene: Scene) -> Iterator[str]:
 
 
 def _constraint(constraint: Constraint) -> str:
-    told = _short(constraint.phi)
+    text = _short(constraint.phi)
     if constraint.transmission is None:
-        return told
+        return text
     pairs = ", ".join(
         f"{mesh.first.body.name} and {mesh.second.body.name}"
         for mesh in constraint.transmission.meshes
     )
-    return f"{told}; it acts at the contacts: {pairs}"
+    return f"{text}; it acts at the contacts: {pairs}"
 
 
 def _law(law: Motion, symbol: ca.SX) -> str:
@@ -123,7 +123,9 @@ def _course(scene: Scene, joint: str) -> str:
     motion = motion_function({joint: scene.laws[joint]}, mechanism.symbols)
     values = list(mechanism.values(scene.assembly).values())
     way = (
-        motion(ca.DM(np.linspace(start, stop, _LOOKS)).T, ca.repmat(ca.DM(values), 1, _LOOKS))[0]
+        motion(ca.DM(np.linspace(start, stop, _SAMPLES)).T, ca.repmat(ca.DM(values), 1, _SAMPLES))[
+            0
+        ]
         .full()
         .ravel()
     )
@@ -143,13 +145,13 @@ def _load(load: Load, *, space: bool) -> str:
         return f"force on {first}, {_components(load, 'N', space)}"
     if isinstance(load, LineLoad):
         axes = f"in the axes of {first}" if load.turning else "in ground axes"
-        told = [f"{x} = {_along(getattr(load, x))}" for x in ("xyz" if space else "xy")]
+        parts = [f"{x} = {_along(getattr(load, x))}" for x in ("xyz" if space else "xy")]
         part = (
             ""
             if load.whole
             else f" between {_short(load.between[0])} and {_short(load.between[1])} m"
         )
-        return f"line load on {first}{part}, {', '.join(told)}, {axes}"
+        return f"line load on {first}{part}, {', '.join(parts)}, {axes}"
     second = load.points[1].body.name
     if isinstance(load, Friction):
         words = ", ".join(f"{word} {_short(number)}" for word, number in load.numbers.items())
@@ -180,12 +182,12 @@ def _along(powers: Sequence[Any]) -> str:
 
 def _components(load: Force | Torque, unit: str, space: bool) -> str:
     """The components of a load, and in which axes they are."""
-    told = [
+    parts = [
         f"{x} = {_short(value)} {unit}"
         for x, value in zip("xyz" if space else "xy", load.components, strict=False)
     ]
     return (
-        f"{', '.join(told)}, in"
+        f"{', '.join(parts)}, in"
         f" {f'the axes of {load.point.body.name}' if load.turning else 'ground axes'}"
     )
 

@@ -3,8 +3,8 @@
 ``law`` are the coefficients of the link's law, in the order of :attr:`.Table.law`. ``acting`` is
 what acts on it: of each load point the members of :attr:`.Table.place_first`, then of each load
 along it ``width``, ``end`` and, power by power, its coefficients. ``matter`` is what parameters say
-of the link (:meth:`.ModelData.matter`): its length, and the coefficients of its density per unit of
-the ratio. The result are the forces of :attr:`.Table.forces`, resultants last.
+of the link (:meth:`.ModelData.mass_properties`): its length, and the coefficients of its density
+per unit of the ratio. The result are the forces of :attr:`.Table.forces`, resultants last.
 
 A section feels what acts beyond its :func:`edge`. Own outputs, derivatives, stresses, exported C
 and the functions along a link that grids are filled from (:mod:`..instants.basis`) all come from
@@ -28,8 +28,8 @@ from ..base.tables import PLANE, Table, Terms, table_of
 from ..beams.properties import larger, smaller
 from ..declare.density import Density
 from .checks import Column
-from .mobility import stations_of
-from .spreads import felt_along, spreads_of
+from .distributed_loads import distributed_force, distributed_loads_of
+from .mobility import load_points_of
 
 Side = Literal["base", "tip"]
 SIDES: tuple[Side, ...] = ("tip", "base")
@@ -54,7 +54,7 @@ class Place:
     """
 
     ratio: Any
-    station: str = ""
+    load_point: str = ""
     side: Side = "tip"
 
 
@@ -71,9 +71,9 @@ class Section:
     density: Density
 
     @cached_property
-    def stations(self) -> tuple[str, ...]:
+    def load_points(self) -> tuple[str, ...]:
         """Load points of the link."""
-        return stations_of(self._outputs, self.link)
+        return load_points_of(self._outputs, self.link)
 
     @cached_property
     def marks(self) -> list[Place]:
@@ -82,18 +82,18 @@ class Section:
         """
         found = [
             Place(self._of("station", "station", name), name, side)
-            for name in self.stations
+            for name in self.load_points
             for side in SIDES
         ]
-        for name in self.spreads:
+        for name in self.distributed_loads:
             width, end = (self._of("spread", member, name) for member in ("width", "end"))
             found += [Place(end), Place(end - width)]
         return found
 
     @cached_property
-    def spreads(self) -> dict[str, int]:
+    def distributed_loads(self) -> dict[str, int]:
         """The loads along it, and how many powers each has."""
-        return spreads_of(self._outputs, self.link)
+        return distributed_loads_of(self._outputs, self.link)
 
     def at(self, name: str, place: Place, slack: float) -> Expression:
         """A section force at a place."""
@@ -111,8 +111,10 @@ class Section:
             (column * row for column, row in zip(law, self._rows(terms, ratio), strict=True)),
             ca.SX(0),
         )
-        total += sum(self._acting(terms, station, ratio, beyond) for station in self.stations)
-        return sum(felt_along(self.columns, self.link, self.length, terms, ratio), total)
+        total += sum(
+            self._acting(terms, load_point, ratio, beyond) for load_point in self.load_points
+        )
+        return sum(distributed_force(self.columns, self.link, self.length, terms, ratio), total)
 
     def _rows(self, terms: Terms, u: ca.SX) -> list[Expression]:
         """The functions along the link that go with the coefficients of a force."""
@@ -122,29 +124,29 @@ class Section:
             return [1, *(terms.arm * row for row in (l * (1 - u), l * t1, l * l * (u * t1 + t2)))]
         return [1, t0, l * (u * t0 + t1)][: len(terms.coefficients)]
 
-    def _acting(self, terms: Terms, station: str, ratio: Any, beyond: Any) -> Any:
+    def _acting(self, terms: Terms, load_point: str, ratio: Any, beyond: Any) -> Any:
         """Action of a load point, if it is beyond a ratio."""
         place, value = (
-            self._of("station", member, station) for member in ("station", terms.acting)
+            self._of("station", member, load_point) for member in ("station", terms.acting)
         )
         if terms.arm:
-            across = self._of("station", self.table.sections[terms.shear].acting, station)
+            across = self._of("station", self.table.sections[terms.shear].acting, load_point)
             value = value + across * (terms.arm * (self.length * (place - ratio)))
-        felt = ca.SX(beyond) < place
+        accelerated = ca.SX(beyond) < place
         return (
             ca.SX(value)
-            if felt.is_one()
+            if accelerated.is_one()
             else ca.SX(0)
-            if felt.is_zero()
-            else ca.if_else(felt, value, 0)
+            if accelerated.is_zero()
+            else ca.if_else(accelerated, value, 0)
         )
 
     @property
     def _outputs(self) -> Iterator[Output]:
         return (column for column in self.columns if isinstance(column, Output))
 
-    def _of(self, group: str, member: str, station: str = "") -> Expression:
-        return self.columns[Output(group, self.link, member, station)]
+    def _of(self, group: str, member: str, load_point: str = "") -> Expression:
+        return self.columns[Output(group, self.link, member, load_point)]
 
 
 @dataclass(frozen=True)
@@ -163,15 +165,15 @@ class SectionInputs:
         table = table_of(Output("law", link, "mx0") in own)
         acting = [
             Output("station", link, member, name)
-            for name in stations_of(own, link)
+            for name in load_points_of(own, link)
             for member in table.place_first
         ]
-        for name, powers in spreads_of(own, link).items():
+        for name, powers in distributed_loads_of(own, link).items():
             acting += [Output("spread", link, member, name) for member in ("width", "end")]
             members = dict.fromkeys(
                 output.member
                 for output in own
-                if output.station == name and output.power is not None
+                if output.load_point == name and output.power is not None
             )
             acting += [
                 Output("spread", link, member, name, power)
@@ -196,7 +198,7 @@ class SectionInputs:
                     one.group,
                     "",
                     one.member,
-                    numbers.setdefault(one.station, str(len(numbers))),
+                    numbers.setdefault(one.load_point, str(len(numbers))),
                     one.power,
                 )
                 for one in outputs
@@ -221,11 +223,11 @@ def section(
     ``name``.
     """
     law, acting = ca.SX.sym("law", len(inputs.law)), ca.SX.sym("acting", len(inputs.acting))
-    matter, xi = ca.SX.sym("matter", 1 + sum(sizes)), ca.SX.sym("xi")
+    mass_properties, xi = ca.SX.sym("matter", 1 + sum(sizes)), ca.SX.sym("xi")
     columns: dict[Column, Any] = dict(
         zip((*inputs.law, *inputs.acting), (*ca.vertsplit(law), *ca.vertsplit(acting)), strict=True)
     )
-    length, *terms = ca.vertsplit(matter)
+    length, *terms = ca.vertsplit(mass_properties)
     coefficients = iter(terms)
     density = Density(
         tuple(breaks),
@@ -236,7 +238,7 @@ def section(
     forces = ca.vertcat(
         *(link.at(force, Place(xi, side=side), slack) for force in inputs.table.forces)
     )
-    given, names = [law, acting, matter, xi], ["law", "acting", "matter", "xi"]
+    given, names = [law, acting, mass_properties, xi], ["law", "acting", "matter", "xi"]
     return ca.Function(name, given, [ca.densify(forces)], names, ["forces"], {"cse": True})
 
 
@@ -269,14 +271,16 @@ def along(
         sizes,
         0.0,
     )
-    law, loads, matter, xi = function.sx_in()
+    law, loads, mass_properties, xi = function.sx_in()
     terms = PLANE.sections["bending" if bends else "axial"].coefficients
     spans = [k for k, output in enumerate(acting) if output.power is None]
     given = [
         *(law[PLANE.law.index(term)] for term in terms),
         *(loads[k] for k in range(len(acting)) if k not in spans),
     ]
-    force = function(law, loads, matter, xi)[PLANE.forces.index("bending" if bends else "axial")]
+    force = function(law, loads, mass_properties, xi)[
+        PLANE.forces.index("bending" if bends else "axial")
+    ]
     rows = ca.densify(ca.jacobian(force, ca.vertcat(*given)))
-    inputs = [matter, ca.vertcat(ca.SX(0, 1), *(loads[k] for k in spans)), xi]
+    inputs = [mass_properties, ca.vertcat(ca.SX(0, 1), *(loads[k] for k in spans)), xi]
     return ca.Function("along", inputs, [rows], ["matter", "spans", "xi"], ["rows"], {"cse": True})

@@ -23,7 +23,7 @@ from ..base.symbolic import symbolic
 from ..base.tables import MOMENT
 from .checks import Check
 from .checks import Kind as CheckKind
-from .turns import LEAP
+from .revolutions import LEAP
 
 NEAR = 0.3
 """Sines of the transmission angle below which a loop may pass a dead centre."""
@@ -244,7 +244,7 @@ def _tests(program: Program) -> list[tuple[Rule, _Fails]]:
         len(between),
     )
 
-    def told(some: Iterable[tuple[int, Bound]]) -> list[tuple[Rule, _Fails]]:
+    def rules_of(some: Iterable[tuple[int, Bound]]) -> list[tuple[Rule, _Fails]]:
         return [
             (Rule(status, k), fails) for k, bound in some for status, fails in _TESTS[bound.kind]
         ]
@@ -254,14 +254,21 @@ def _tests(program: Program) -> list[tuple[Rule, _Fails]]:
         if program.newton is not None
         else []
     )
-    ends = told(one for one in numbered if one[1].kind in first)
-    rest = told(
+    ends = rules_of(one for one in numbered if one[1].kind in first)
+    rest = rules_of(
         sorted(
             (one for one in numbered if one[1].kind in last),
             key=lambda one: last.index(one[1].kind),
         )
     )
-    return [*ends, *found[:1], *told(between[:count]), *found[1:], *told(between[count:]), *rest]
+    return [
+        *ends,
+        *found[:1],
+        *rules_of(between[:count]),
+        *found[1:],
+        *rules_of(between[count:]),
+        *rest,
+    ]
 
 
 def _is(status: Status) -> _Fails:

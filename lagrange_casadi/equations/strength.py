@@ -32,7 +32,7 @@ from .checks import Column
 from .section_function import Place, Section, Side, edge
 from .stress import KINDS, CrossSections, squared
 
-_LOOKS, _SUMMITS, _NEARER = 9, 2, 8.0
+_SAMPLES, _MAXIMA, _NEARER = 9, 2, 8.0
 """Places at which a part is looked at, how many of its summits are followed, and how much nearer
 places come.
 """
@@ -77,12 +77,12 @@ class Loaded:
         self.marks += [ca.SX(b) for b in link.mass.breaks[1:-1]]
         self.degree = max(
             max(map(len, link.mass.cells)) + 2,
-            *(many + 1 for many in self.section.spreads.values()),
+            *(many + 1 for many in self.section.distributed_loads.values()),
             0,
         )
 
     @property
-    def told(self) -> bool:
+    def has_formula(self) -> bool:
         """True if stresses have a formula: in space torsion must have one."""
         return not self.space or all(
             shape.properties().torsion is not None for shape in self.course.shapes()
@@ -141,7 +141,7 @@ class Loaded:
 def stresses(mechanism: Mechanism, name: str, columns: Mapping[Column, Any]) -> dict[Column, Any]:
     """Von Mises' stress that is largest along a link [Pa]; nothing where there is no formula."""
     link = Loaded(mechanism.space, mechanism.links[name], columns)
-    if not link.told:
+    if not link.has_formula:
         return {}
     return {Output("stress", name, "von_mises"): ca.sqrt(_largest(link, link.square))}
 
@@ -189,15 +189,15 @@ def _largest(link: Loaded, value: Callable[[Part, Any], Any]) -> Any:
     found: list[Any] = []
     for part in link.parts:
         first, last = link.course.cells[part.cell]
-        found += looked(partial(value, part), link.degree + (0 if first is last else _MORE))
+        found += sampled(partial(value, part), link.degree + (0 if first is last else _MORE))
     return most(found)
 
 
-def looked(value: Callable[[Any], Any], degree: int) -> list[Any]:
+def sampled(value: Callable[[Any], Any], degree: int) -> list[Any]:
     """The values of a function of a degree at both ends of a part, between them, and beside its
     summits.
     """
-    count = max(_LOOKS, degree + 4)
+    count = max(_SAMPLES, degree + 4)
     places = [(1.0 - math.cos(math.pi * k / (count - 1))) / 2 for k in range(count)]
     found = [ca.SX(value(x)) for x in places]
     best: list[tuple[Any, Any]] = []
@@ -205,9 +205,9 @@ def looked(value: Callable[[Any], Any], degree: int) -> list[Any]:
         before, here, after = found[k - 1 : k + 2]
         bend = 2.0 * here - before - after
         gain = (after - before) ** 2 / (8.0 * ca.if_else(bend > 0.0, bend, 1.0))
-        summit = ca.logic_and(here >= before, here >= after)
+        maximum = ca.logic_and(here >= before, here >= after)
         # Beside what is higher there is more than a summit that is lower than both.
-        best = _ranked(best, ca.if_else(summit, here + gain, ca.fmin(before, after)), places[k])
+        best = _ranked(best, ca.if_else(maximum, here + gain, ca.fmin(before, after)), places[k])
     for _, place in best:
         reach = 1.0 / (2 * (count - 1))
         for _ in range(2):
@@ -229,7 +229,7 @@ def _ranked(best: list[tuple[Any, Any]], top: Any, place: Any) -> list[tuple[Any
         higher = top > kept
         found.append((ca.if_else(higher, top, kept), ca.if_else(higher, place, at)))
         top, place = ca.if_else(higher, kept, top), ca.if_else(higher, at, place)
-    return [*found, (top, place)][:_SUMMITS]
+    return [*found, (top, place)][:_MAXIMA]
 
 
 def _in_order(marks: Sequence[Any]) -> list[Any]:

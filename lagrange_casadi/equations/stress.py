@@ -34,7 +34,7 @@ _PLACES = {False: (0, 1, 5), True: (0, 1, 2, 3, 4, 5)}
 KINDS = {"normal": (1.0, 0.0), "shear": (0.0, 1.0), "von_mises": (1.0, 3.0), "tresca": (1.0, 4.0)}
 """Weights of s^2 and t^2 in the square of each kind of stress."""
 
-_LOOKED_AT = 65
+_SAMPLED = 65
 """Places at which the thinnest cross-section is sought where it changes."""
 
 _Row = tuple[list[Any], list[Any]]
@@ -156,7 +156,7 @@ class CrossSections:
         for cell, ((first, last), (low, high)) in enumerate(
             zip(self.beam.course.cells, itertools.pairwise(self.beam.course.breaks), strict=True)
         ):
-            for u in [low] if first is last else np.linspace(low, high, _LOOKED_AT).tolist():
+            for u in [low] if first is last else np.linspace(low, high, _SAMPLED).tolist():
                 p = self.properties(cell, u)
                 straight = p.iyz.is_zero() if isinstance(p.iyz, ca.SX) else not p.iyz
                 half = (p.iz + p.iy) / 2

@@ -19,7 +19,7 @@ from ..declare.parts import Body, Point
 from ..declare.spatial import SpatialMechanism
 from ..errors import DeclarationError
 from ..geometry.vectors import AXES
-from .bars import Bar, bars_of
+from .two_force_links import TwoForceLink, find_two_force_links
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,12 +50,12 @@ class Tree:
     """``branches`` in an order in which each hangs on the ground or on an earlier one; ``closing``
     joints close the loops.
 
-    ``bars`` lie between bodies of the tree, and close loops as well.
+    ``two_force_links`` lie between bodies of the tree, and close loops as well.
     """
 
     branches: tuple[Branch, ...]
     closing: tuple[Joint, ...]
-    bars: tuple[Bar, ...] = ()
+    two_force_links: tuple[TwoForceLink, ...] = ()
 
     def measures(self, joint: Joint, axis: Axis) -> bool:
         """Return whether the motion of a joint along an axis is an output: not the angles of one
@@ -77,8 +77,8 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
     """
     depth: dict[Body, int] = {mechanism.ground: 0}
     branches: list[Branch] = []
-    bars = bars_of(mechanism, driven)
-    barred = {joint for bar in bars for joint in bar.joints}
+    two_force_links = find_two_force_links(mechanism, driven)
+    barred = {joint for two_force_link in two_force_links for joint in two_force_link.joints}
     waiting = [joint for joint in mechanism.joints.values() if joint not in barred]
     given, driven = (
         driven,
@@ -108,8 +108,8 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
         depth[best.far.body] = depth[best.near.body] + 1
         branches.append(best)
         waiting.remove(best.joint)
-    _refuse_unplaced(mechanism, depth, bars)
-    _refuse_unused(mechanism, bars)
+    _refuse_unplaced(mechanism, depth, two_force_links)
+    _refuse_unused(mechanism, two_force_links)
     for joint in waiting:
         if joint.name in driven:
             _refuse_driven(mechanism, joint, branches, given)
@@ -120,14 +120,16 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
                 " from drives and other screws; drive the screw itself, or replace it by a"
                 " constraint between their coordinates"
             )
-    return Tree(tuple(branches), tuple(waiting), bars)
+    return Tree(tuple(branches), tuple(waiting), two_force_links)
 
 
-def _refuse_unplaced(mechanism: Mechanism, placed: Collection[Body], bars: Sequence[Bar]) -> None:
+def _refuse_unplaced(
+    mechanism: Mechanism, placed: Collection[Body], two_force_links: Sequence[TwoForceLink]
+) -> None:
     """Raise :class:`DeclarationError` for a body that neither the tree nor a bar
     has a place for.
     """
-    lying = {bar.link for bar in bars}
+    lying = {two_force_link.link for two_force_link in two_force_links}
     for body in mechanism.moving:
         if body in placed or body in lying:
             continue
@@ -142,7 +144,7 @@ def _refuse_unplaced(mechanism: Mechanism, placed: Collection[Body], bars: Seque
         )
 
 
-def _refuse_unused(mechanism: Mechanism, bars: Sequence[Bar]) -> None:
+def _refuse_unused(mechanism: Mechanism, two_force_links: Sequence[TwoForceLink]) -> None:
     """Raise :class:`DeclarationError` for a link whose ``between`` or ``beside`` nothing takes.
 
     A bar takes ``beside``, and so does a joint that is told in the reference posture; ``turned``
@@ -156,7 +158,7 @@ def _refuse_unused(mechanism: Mechanism, bars: Sequence[Bar]) -> None:
         if joint.name in mechanism.hard
         for body in joint.bodies
     }
-    taken |= {bar.link for bar in bars}
+    taken |= {two_force_link.link for two_force_link in two_force_links}
     turned = {
         body for joint in mechanism.joints.values() if _is_turned(joint) for body in joint.bodies
     }
@@ -167,14 +169,14 @@ def _refuse_unused(mechanism: Mechanism, bars: Sequence[Bar]) -> None:
             or (link.beside is None and link in turned)
         ):
             continue
-        told = (
+        reason = (
             "beside= gives its y axis"
             if link.beside is not None
             else ("between= gives its position")
         )
         way_out = "leave beside out" if link.beside is not None else "give its length"
         raise DeclarationError(
-            f"link '{link.name}': {told} in the reference posture, but none of its joints has a"
+            f"link '{link.name}': {reason} in the reference posture, but none of its joints has a"
             f" position there; give one of them at=, its position, or {way_out} and give turned=,"
             " the orientation of the link"
         )
@@ -186,8 +188,8 @@ def _is_turned(joint: Joint) -> bool:
         return False
     pairs = [
         pair
-        for told, own in zip(joint.turned, AXES[:2], strict=True)
-        for pair in zip(told, own, strict=True)
+        for turned, own in zip(joint.turned, AXES[:2], strict=True)
+        for pair in zip(turned, own, strict=True)
     ]
     return any(not isinstance(one, float) or one != other for one, other in pairs)
 
@@ -250,5 +252,5 @@ def _rank(joint: Joint, driven: Collection[str]) -> int:
         return 2
     if joint.directions is not None:
         # What lets more free is rather cut: fewer equations close it.
-        return 1 - len(joint.lets)
+        return 1 - len(joint.freedoms)
     return 0 if joint.slides else 1

@@ -19,7 +19,7 @@ from .substitution import Numbers
 _STEPS, _DIGITS = 256, 2
 
 
-def wound(
+def wound_angles(
     screw: Coordinate, variables: ca.SX, counting: Sequence[Coordinate], numbers: Numbers
 ) -> tuple[ca.SX, ca.SX]:
     """The variables of a screw's angle with its turns, of those that a loop tells; and how far it
@@ -36,8 +36,10 @@ def wound(
             beside -= turns * numbers.of(other.value)[0]
     # In few digits, lest the last ones of some library's sines be told in the graph.
     about += round(beside, _DIGITS)
-    swing = ca.atan2(s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about))
-    return ca.vertcat(c, s, about + swing), swing
+    deviation = ca.atan2(
+        s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about)
+    )
+    return ca.vertcat(c, s, about + deviation), deviation
 
 
 def _turns(angle: ca.SX, other: Coordinate, numbers: Numbers) -> int:

@@ -33,7 +33,10 @@ def companions(source: Source) -> dict[str, str]:
     rest = f", {literal(c.precision)(0.0)}" if c.rests else ""
     null = ", 0" if c.settings else ""
     mid = _example_section(c) if link else ""
-    (start, stop), count = source.program.graph.data.span, source.program.graph.data.timing.count
+    (start, stop), count = (
+        source.exported.program.data.span,
+        source.exported.program.data.timing.count,
+    )
     steps = max(1, round((count - 1) / _ROWS)) if source.iterated else 1
     number = literal(c.precision)
     return (

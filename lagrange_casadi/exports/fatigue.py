@@ -18,10 +18,10 @@ def counting(source: Source) -> dict[str, str]:
     """The header by its name; nothing where no link is wanted whose material has an endurance limit
     and an ultimate strength.
     """
-    graph = source.program.graph
-    materials = graph.data.materials
+    program = source.exported.program
+    materials = program.data.materials
     found = {}
-    for name in dict.fromkeys((*graph.wanted.stressed, *graph.wanted.used)):
+    for name in dict.fromkeys((*program.wanted.stressed, *program.wanted.used)):
         material = materials.get(name)
         if (
             material is not None

@@ -71,7 +71,7 @@ def wrapper(description: Description) -> str:
     carried = (
         ["memcpy(model.loops, state->model.loops, sizeof model.loops);"] if source.iterated else []
     )
-    carried += ["model.closed = state->model.closed;"] if source.program.newton is not None else []
+    carried += ["model.closed = state->model.closed;"] if source.exported.newton is not None else []
     values = [(m.path, m.default) for m in c.settings] + [
         (m.path, description.start[m.source]) for m in inputs
     ]
@@ -85,7 +85,7 @@ def wrapper(description: Description) -> str:
         timed=int(c.timed),
         start=",\n".join(f"  {wide(value)} /* {name} */" for name, value in values),
         turning=",\n".join(f"  {int(m.wrapped)} /* {m.path} */" for m in c.outputs),
-        start_time=wide(source.program.graph.data.span[0]),
+        start_time=wide(source.exported.program.data.span[0]),
         limits=_limits(description),
         given=f"  {c.prefix}_parameters parameters;\n" if c.settings else "",
         set="".join(
@@ -184,11 +184,11 @@ def _check_loads(library: Path, compiler: Compiler) -> None:
     try:
         version = ctypes.CDLL(str(library)).fmi2GetVersion
         version.restype = ctypes.c_char_p
-        told = version()
+        found = version()
     except (OSError, AttributeError) as error:
         raise broken(compiler, error) from None
-    if told != b"2.0":
-        raise broken(compiler, ValueError(f"fmi2GetVersion says {told!r}"))
+    if found != b"2.0":
+        raise broken(compiler, ValueError(f"fmi2GetVersion says {found!r}"))
 
 
 def _archive(files: Mapping[str, bytes]) -> bytes:

@@ -63,14 +63,15 @@ class Description:
     @cached_property
     def start(self) -> dict[str, float]:
         """Start values of inputs: the scene's motion at its first instant."""
-        graph = self.source.program.graph
+        program = self.source.exported.program
         rows = [
-            np.atleast_1d(row.full().ravel()) for row in graph.motion(graph.data.span[0], self.p)
+            np.atleast_1d(row.full().ravel())
+            for row in program.motion(program.data.span[0], self.p)
         ]
         names = [
             str(Output("motion", joint, member))
             for member in ("", "rate", "acceleration")
-            for joint in graph.driven
+            for joint in program.driven
         ]
         return dict(zip(names, np.concatenate(rows).tolist(), strict=True))
 
@@ -126,8 +127,8 @@ class Description:
         for name, meaning in LOGGED.items():
             _add(logged, "Category", name=name, description=meaning)
         (start, stop), count = (
-            self.source.program.graph.data.span,
-            self.source.program.graph.data.timing.count,
+            self.source.exported.program.data.span,
+            self.source.exported.program.data.timing.count,
         )
         span = {"startTime": _number(start)}
         if stop > start:
@@ -184,7 +185,9 @@ class Description:
 
     def _structure(self, parent: ElementTree.Element) -> None:
         reach = (
-            None if self.source.program.cycle is not None else reached(self.source.program.graph)
+            None
+            if self.source.exported.cycle is not None
+            else reached(self.source.exported.program)
         )
         for kind, fixed in (("Outputs", False), ("InitialUnknowns", True)):
             group = _add(parent, kind)
@@ -207,31 +210,31 @@ _KINDS = {
 }
 
 
-def reached(graph: Program) -> dict[str, frozenset[str]]:
+def reached(program: Program) -> dict[str, frozenset[str]]:
     """Dependencies of each column of a graph, by its structure: ``time``, ``motion:...`` and
     ``parameter:NAME``.
     """
     named = [
         ["time"],
         *(
-            [str(Output("motion", joint, member)) for joint in graph.driven]
+            [str(Output("motion", joint, member)) for joint in program.driven]
             for member in ("", "rate", "acceleration")
         ),
-        [f"parameter:{name}" for name in graph.data.parameters],
+        [f"parameter:{name}" for name in program.data.parameters],
     ]
     _, coordinate, rate, acceleration, z, p = range(6)
     loops: set[str] = set()
-    if graph.newton is not None:
+    if program.newton is not None:
         # What closes the loops closes all of them.
         for place, names in ((1, named[0]), (2, named[1]), (3, named[4])):
-            loops |= {names[column] for _, column in _entries(graph.newton.step, place)}
-    found: list[set[str]] = [set() for _ in graph.columns]
+            loops |= {names[column] for _, column in _entries(program.newton.step, place)}
+    found: list[set[str]] = [set() for _ in program.columns]
     for place, names in zip((0, coordinate, rate, acceleration, p), named, strict=True):
-        for row, column in _entries(graph.instant, place):
+        for row, column in _entries(program.instant, place):
             found[row].add(names[column])
-    for row, _ in _entries(graph.instant, z):
+    for row, _ in _entries(program.instant, z):
         found[row] |= loops
-    return {name: frozenset(names) for name, names in zip(graph.names, found, strict=True)}
+    return {name: frozenset(names) for name, names in zip(program.names, found, strict=True)}
 
 
 def _entries(function: ca.Function, place: int) -> list[tuple[int, int]]:

@@ -16,7 +16,7 @@ from ..base.publish import check_writable
 from ..base.vocabulary import Precision
 from ..declare.scene import Scene
 from ..errors import PathError
-from ..instants.rung import Rung
+from ..instants.evaluation_method import EvaluationMethod
 from ..portable.contract import Contract
 from ..portable.data import LARGEST
 from ..portable.header import header
@@ -68,7 +68,7 @@ def export(
     wanted
         Output names; default: the scene's.
     precision, newton, table
-        How it is evaluated there: see :class:`.Rung`.
+        How it is evaluated there: see :class:`.EvaluationMethod`.
     largest
         Bytes that a table may take; default: 16 MB, in single precision 64 kB.
     force
@@ -87,7 +87,7 @@ def export(
     raises.
     """
     folder = Path(out)
-    rung = Rung("auto", precision, newton, table)
+    method = EvaluationMethod("auto", precision, newton, table)
     check_writable(folder, folder=True)
     if fmu:
         check_tools()
@@ -98,7 +98,7 @@ def export(
         name or "",
         parameters,
         wanted,
-        rung,
+        method,
         LARGEST[precision] if largest is None else largest,
     )
     agreed = source.contract
@@ -108,10 +108,10 @@ def export(
     if wasm:
         files |= for_pages(source)
     unit = f"{agreed.prefix}.fmu"
-    told = MANIFEST.known(folder)
+    known = MANIFEST.known(folder)
     allowed: dict[str, Any] = {"beside": force, "changed": force, "apart": _BUILD}
     MANIFEST.check(folder, [*files, *([unit] if fmu else [])], **allowed)
-    if told and f"{agreed.prefix}.h" not in told and not force:
+    if known and f"{agreed.prefix}.h" not in known and not force:
         raise PathError(
             f"cannot export into {folder}: it holds an export of another name; {MANIFEST.way_out}"
         )

@@ -40,7 +40,7 @@ def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]
     }
     words |= {"output": output.name, "output_unit": octave(output.unit)}
     words |= {"coordinate_field": _field(coordinate), "output_field": _field(output)}
-    start, stop = source.program.graph.data.span
+    start, stop = source.exported.program.data.span
     number = literal("double")
     return {
         f"{c.prefix}_mex.c": template(

@@ -29,12 +29,12 @@ def draw_deflection(
     """
     from matplotlib.figure import Figure
 
-    found, swings = solution.deflection(link), vibration(solution, link)
-    figure = Figure(figsize=(8.0, 7.0 if swings.harmonics else 3.8), layout="constrained")
-    panels = list(figure.subplots(2 if swings.harmonics else 1, 1, squeeze=False).flat)
-    _map(figure, panels[0], found, along, label, *_UNITS[si])
-    if swings.harmonics:
-        _spectrum(panels[1], swings)
+    found, response = solution.deflection(link), vibration(solution, link)
+    figure = Figure(figsize=(8.0, 7.0 if response.harmonics else 3.8), layout="constrained")
+    subplots = list(figure.subplots(2 if response.harmonics else 1, 1, squeeze=False).flat)
+    _map(figure, subplots[0], found, along, label, *_UNITS[si])
+    if response.harmonics:
+        _spectrum(subplots[1], response)
     figure.suptitle(
         f"{solution.case}: deflection of {link} from {_FROM[found.against]}", fontsize=11
     )
@@ -70,12 +70,12 @@ def _map(
     figure.colorbar(picture, ax=axes, label=f"deflection across the link [{unit}]")
 
 
-def _spectrum(axes: Any, swings: Vibration) -> None:
+def _spectrum(axes: Any, response: Vibration) -> None:
     from matplotlib.ticker import NullFormatter
 
-    assert swings.cycle is not None
-    shares = np.array(swings.harmonics)
-    frequencies = swings.cycle * np.arange(shares.size)
+    assert response.cycle is not None
+    shares = np.array(response.harmonics)
+    frequencies = response.cycle * np.arange(shares.size)
     shown = (shares > _FLOOR) & (frequencies > 0.0)
     if shown.any():
         axes.vlines(
@@ -87,9 +87,9 @@ def _spectrum(axes: Any, swings: Vibration) -> None:
             label="harmonics of its bending",
         )
     axes.axvline(
-        swings.frequency,
+        response.frequency,
         color="#b2182b",
-        label=f"first bending frequency, {' and '.join(swings.ends)}",
+        label=f"first bending frequency, {' and '.join(response.ends)}",
     )
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -99,10 +99,10 @@ def _spectrum(axes: Any, swings: Vibration) -> None:
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("share of the largest bending")
     off = (
-        f"{100 * swings.excess:.3g} %"
-        if swings.excess is not None and swings.excess < 10.0
+        f"{100 * response.excess:.3g} %"
+        if response.excess is not None and response.excess < 10.0
         else "many times"
     )
-    verdict = "enough" if swings.enough else "NOT enough"
+    verdict = "enough" if response.enough else "NOT enough"
     axes.set_title(f"by swinging, bending is off by {off}: rigid links are {verdict}", fontsize=10)
     axes.legend(frameon=False, fontsize=9)

@@ -14,7 +14,7 @@ from ..shapes.places import drawn_spots, placed
 from ..shapes.readable import scale_for
 from ..shapes.shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
 from ..shapes.solid import COLOURS, PATH
-from .labels import apart, tell_bodies
+from .labels import apart, label_bodies
 from .labels import placed as labelled
 from .stills import stills
 
@@ -62,8 +62,8 @@ def draw_mechanism(
         titles = [words if len(chosen) > 1 else first]
     columns = 1 if overlay else min(len(chosen), 2 if wide > 0.7 * high else 4)
     rows = 1 if overlay else -(-len(chosen) // columns)
-    room = _LARGE if rows * columns == 1 else _TALL
-    scale = min(room / wide, room / high, (_PAGE - 0.6 * rows) / (rows * high))
+    capacity = _LARGE if rows * columns == 1 else _TALL
+    scale = min(capacity / wide, capacity / high, (_PAGE - 0.6 * rows) / (rows * high))
     broad = max(
         scale * wide + 0.25,
         0.1 + max(_extent_of(line, 10.0) for title in titles for line in title.split("\n")) / 72.0,
@@ -113,7 +113,7 @@ def draw_into(axes: Any, solution: Solution) -> None:
     _draw_instant(axes, solution, 0, size)
     _frame(axes, box, False)
     axes.set(xlabel=f"x [{scale_for('m', size).unit}]", ylabel=f"y [{scale_for('m', size).unit}]")
-    tell_bodies(axes.figure, *axes.get_legend_handles_labels())
+    label_bodies(axes.figure, *axes.get_legend_handles_labels())
     axes.figure.draw_without_rendering()
     _name(axes, solution, 0, size)
 
@@ -172,7 +172,7 @@ def _draw_instant(
     """
     now = solution.during(slice(i, i + 1))
     description = solution.description
-    look = {"alpha": 1.0 if strong else _FAINT, "zorder": 3 if strong else 2}
+    style = {"alpha": 1.0 if strong else _FAINT, "zorder": 3 if strong else 2}
 
     def at(spot: Spot) -> Array:
         place: Array = placed(now, spot)[0, :2]
@@ -184,14 +184,14 @@ def _draw_instant(
             shape,
             at,
             COLOURS[number % len(COLOURS)],
-            look,
+            style,
             label=shape.name if strong else "_",
         )
     for load in load_shapes(description):
         if load.kind == "spring":
             x, y = np.transpose([at(spot) for spot in load.spots])
             axes.plot(
-                x, y, **look | {"color": "0.4", "linewidth": 1.4, "linestyle": ":", "label": "_"}
+                x, y, **style | {"color": "0.4", "linewidth": 1.4, "linestyle": ":", "label": "_"}
             )
     for joint in joint_shapes(description):
         x, y = at(joint.child)
@@ -204,19 +204,21 @@ def _draw_instant(
                 "markersize": width,
                 "markerfacecolor": fill,
                 "markeredgecolor": "black",
-                "zorder": look["zorder"] + 1,
+                "zorder": style["zorder"] + 1,
             }
-            axes.plot(x, y, mark, **look | own)
+            axes.plot(x, y, mark, **style | own)
         if strong and not slides and "ground" in (joint.parent.body, joint.child.body):
             axes.plot(x, y - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
     for spot in path_spots(description).values():
         if strong:
             axes.plot(*placed(solution, spot)[:, :2].T, color=PATH, linewidth=1.4, zorder=2)
-        axes.plot(*at(spot), "D", markersize=5, color=PATH, **look | {"zorder": look["zorder"] + 2})
+        axes.plot(
+            *at(spot), "D", markersize=5, color=PATH, **style | {"zorder": style["zorder"] + 2}
+        )
 
 
 def _draw_body(
-    axes: Any, shape: Shape, at: Any, colour: str, look: Mapping[str, float], label: str
+    axes: Any, shape: Shape, at: Any, colour: str, style: Mapping[str, float], label: str
 ) -> None:
     """A link's axis, plates, and arms to what is beside it; of a rotor its disc, with a spoke by
     which one sees it turn.
@@ -224,7 +226,7 @@ def _draw_body(
 
     def line(ends: Sequence[Any], width: float, label: str) -> None:
         x, y = np.transpose([at(Spot(shape.name, end)) for end in ends])
-        axes.plot(x, y, color=colour, linewidth=width, solid_capstyle="round", label=label, **look)
+        axes.plot(x, y, color=colour, linewidth=width, solid_capstyle="round", label=label, **style)
 
     if shape.kind == "point":
         axes.plot(
@@ -233,7 +235,7 @@ def _draw_body(
             color=colour,
             markersize=11,
             label=label,
-            **look,
+            **style,
         )
         return
     for ends in (
@@ -245,7 +247,7 @@ def _draw_body(
             label = "_"
     for points in (*shape.plates, *([tuple(_circle(shape))] if shape.disc else ())):
         corners = np.array([at(Spot(shape.name, point)) for point in points])
-        face = {"facecolor": colour, "linewidth": 0.0, **look, "alpha": 0.25 * look["alpha"]}
+        face = {"facecolor": colour, "linewidth": 0.0, **style, "alpha": 0.25 * style["alpha"]}
         axes.fill(*corners.T, **face)
         axes.plot(
             *np.vstack([corners, corners[:1]]).T,
@@ -253,7 +255,7 @@ def _draw_body(
             linewidth=1.2,
             solid_joinstyle="round",
             label=label,
-            **look,
+            **style,
         )
         label = "_"
     if shape.spoke and shape.centre:

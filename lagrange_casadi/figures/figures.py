@@ -158,11 +158,11 @@ def _time(spec: TimePlot, solution: Solution, si: bool) -> Figure:
     units: dict[str, list[str]] = {}
     for name in spec.quantities:
         units.setdefault(solution.unit(name), []).append(name)
-    figure, panels = _figure(len(units))
-    for axes, names in zip(panels, units.values(), strict=True):
+    figure, subplots = _figure(len(units))
+    for axes, names in zip(subplots, units.values(), strict=True):
         for name in names:
             _draw_time(spec, axes, solution, name)
-        first, last = axes is panels[0], axes is panels[-1]
+        first, last = axes is subplots[0], axes is subplots[-1]
         title = (spec.title or spec.quantities[0]) if first else ""
         _finish(
             figure,
@@ -314,12 +314,14 @@ def _place_of(peak: Peak, solution: Solution) -> tuple[float, str]:
     return float(solution.over.drawn(peak.over)), solution.over.shown(peak.over)
 
 
-def _figure(panels: int = 1) -> tuple[Figure, list[Any]]:
+def _figure(subplots: int = 1) -> tuple[Figure, list[Any]]:
     """A figure, and its axes, one above the other."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.0, 4.2 if panels == 1 else 2.8 * panels + 0.6), layout="constrained")
-    return figure, list(figure.subplots(panels, 1, sharex=True, squeeze=False).flat)
+    figure = Figure(
+        figsize=(7.0, 4.2 if subplots == 1 else 2.8 * subplots + 0.6), layout="constrained"
+    )
+    return figure, list(figure.subplots(subplots, 1, sharex=True, squeeze=False).flat)
 
 
 def _finish(

@@ -87,7 +87,7 @@ def _cost(
     )
 
 
-def tell_bodies(figure: Any, handles: Sequence[Any], names: Sequence[str]) -> None:
+def label_bodies(figure: Any, handles: Sequence[Any], names: Sequence[str]) -> None:
     """Draw the legend of bodies and colours, once below all drawings of a figure whose layout is
     constrained.
     """

@@ -32,8 +32,8 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
             axes,
             evaluate(scene, parameters=values, wanted=["motion"], backend="vm", certificate=False),
         )
-        told = ", ".join(f"{name} = {values[name]:.5g}" for name in optimum.values)
-        axes.set_title(f"{title}: {told}", fontsize=10)
+        values_text = ", ".join(f"{name} = {values[name]:.5g}" for name in optimum.values)
+        axes.set_title(f"{title}: {values_text}", fontsize=10)
     axes = figure.add_subplot(grid[1, 0])
     history = optimum.history
     for number in np.unique(history[:, 0]):

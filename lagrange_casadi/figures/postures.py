@@ -37,11 +37,11 @@ def draw_postures(scene: Scene, file: BinaryIO) -> int:
     columns = min(len(found), 2)
     rows = -(-len(found) // columns)
     figure = Figure(figsize=(5.6 * columns, 4.4 * rows), layout="constrained")
-    panels = list(figure.subplots(rows, columns, squeeze=False).flat)
-    for axes, (posture, solution) in zip(panels, found, strict=False):
+    subplots = list(figure.subplots(rows, columns, squeeze=False).flat)
+    for axes, (posture, solution) in zip(subplots, found, strict=False):
         draw_into(axes, solution)
         axes.set_title(f"posture={{{posture}}}", fontsize=9)
-    for axes in panels[len(found) :]:
+    for axes in subplots[len(found) :]:
         axes.set_axis_off()
     figure.suptitle(f"{found[0][1].case} at t = {scene.t[0]:g} s", fontsize=11)
     save(figure, file, dpi=110)

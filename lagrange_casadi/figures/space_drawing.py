@@ -30,7 +30,7 @@ from ..shapes.solid import (
     plates_of,
 )
 from ..shapes.views import AZIMUTH, ELEVATION, View, page, upright, view, views
-from .labels import apart, placed, tell_bodies
+from .labels import apart, label_bodies, placed
 from .stills import stills
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def draw_in_space(
     entries = _entries(solution)
     widest = max(0.62 + 0.075 * len(name) for name, _ in entries)
     columns = max(1, min(len(entries), int(9.5 / widest)))
-    told = textwrap.wrap(
+    lines = textwrap.wrap(
         f"{solution.case}: {_instants(solution, chosen)}; orthographic, all views to one scale", 110
     )
     foot = 0.1 + _ROW * -(-len(entries) // columns)
@@ -89,7 +89,7 @@ def draw_in_space(
         four,
         cloud,
         (0.1 * size, 0.16 * size, 0.1 * size, 0.1 * size),
-        0.15 + _ROW * len(told),
+        0.15 + _ROW * len(lines),
         foot,
     )
     figure = Figure(figsize=sheet.size)
@@ -103,7 +103,7 @@ def draw_in_space(
             )
         _draw_paths(axes, one, thin)
         if one is four[1]:
-            _tell(axes, one, solution.during(slice(0, 1)), thin, size, box, 72.0 * sheet.scale)
+            _label(axes, one, solution.during(slice(0, 1)), thin, size, box, 72.0 * sheet.scale)
     handles, names = [handle for _, handle in entries], [name for name, _ in entries]
     figure.legend(
         handles,
@@ -114,7 +114,7 @@ def draw_in_space(
         fontsize=9,
         labelspacing=0.35,
     )
-    figure.suptitle("\n".join(told), fontsize=11, y=1.0 - 0.12 / sheet.size[1], va="top")
+    figure.suptitle("\n".join(lines), fontsize=11, y=1.0 - 0.12 / sheet.size[1], va="top")
     return figure
 
 
@@ -132,13 +132,13 @@ def draw_into(axes: Any, solution: Solution) -> None:
     # How large the axes will be is not known yet: as if they were as large as they are drawn in a
     # column of two.
     scale = 72.0 * min(4.6 / (box[1] - box[0]), 3.4 / (box[3] - box[2]))
-    _tell(axes, one, now, solution, size, box, scale)
+    _label(axes, one, now, solution, size, box, scale)
     named = [
         (name, handle)
         for name, handle in _entries(solution)
         if name in solution.description["bodies"]
     ]
-    tell_bodies(axes.figure, [handle for _, handle in named], [name for name, _ in named])
+    label_bodies(axes.figure, [handle for _, handle in named], [name for name, _ in named])
 
 
 def _size(cloud: Array) -> float:
@@ -146,12 +146,12 @@ def _size(cloud: Array) -> float:
 
 
 def _instants(solution: Solution, chosen: list[int]) -> str:
-    told = [
+    times = [
         f"{solution.t[i]:.4g} s"
         + (f" ({solution.over.shown(solution.over.values[i])})" if solution.over else "")
         for i in chosen
     ]
-    return f"t = {told[0]}" + (f", and faint {', '.join(told[1:])}" if told[1:] else "")
+    return f"t = {times[0]}" + (f", and faint {', '.join(times[1:])}" if times[1:] else "")
 
 
 def _frame(axes: Any, one: View, box: Box, size: Sequence[float], scale: Scale) -> None:
@@ -171,7 +171,7 @@ def _frame(axes: Any, one: View, box: Box, size: Sequence[float], scale: Scale) 
         axis.set_major_locator(MaxNLocator(max(1, min(6, int(most)))))
         axis.set_label_text(f"{name[-1]} [{scale.unit}]")
         if name.startswith("-"):
-            axis.set_major_formatter(FuncFormatter(lambda value, _: scale.tell(0.0 - value)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: scale.label(0.0 - value)))
         else:
             scale.put(axis)
     axes.tick_params(labelsize=8)
@@ -243,7 +243,7 @@ def _draw_paths(axes: Any, one: View, thin: Solution) -> None:
         axes.plot(x, y, color=PATH, linewidth=1.4, zorder=2, label="_")
 
 
-def _tell(
+def _label(
     axes: Any, one: View, now: Solution, thin: Solution, size: float, box: Box, scale: float
 ) -> None:
     """The directions of the ground's axes, and the names of joints and declared points at a

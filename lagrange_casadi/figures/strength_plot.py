@@ -36,12 +36,12 @@ def draw_strength(
         and stress.member.beam.material.ultimate is not None
     )
     figure = Figure(figsize=(8.0, 7.6 if fatigue else 3.8), layout="constrained")
-    panels = list(figure.subplots(2 if fatigue else 1, 1, squeeze=False).flat)
+    subplots = list(figure.subplots(2 if fatigue else 1, 1, squeeze=False).flat)
     # What is drawn is in MPa.
     unit = Scale(_MEGA, "Pa") if si else Scale(1.0, "MPa")
-    _map(figure, panels[0], stress, along, label, unit)
+    _map(figure, subplots[0], stress, along, label, unit)
     if fatigue:
-        _goodman(panels[1], stress, unit)
+        _goodman(subplots[1], stress, unit)
     figure.suptitle(
         f"{solution.case}: strength of {link}, {stress.member.beam.material.name}", fontsize=11
     )
@@ -105,10 +105,10 @@ def _goodman(axes: Any, stress: Stress, unit: Scale) -> None:
         strength / _MEGA
         for strength in material.needs("Goodman's diagram", "endurance", "ultimate")
     )
-    swings: dict[str, list[Loaded]] = {"swings, every fibre": [], "in notches": []}
+    cycles: dict[str, list[Loaded]] = {"swings, every fibre": [], "in notches": []}
     for place in places(stress):
         values = stress.at(place.xi, place.side, place.notch)
-        swings["in notches" if place.notch else "swings, every fibre"] += [
+        cycles["in notches" if place.notch else "swings, every fibre"] += [
             loaded(values[:, k]) for k in range(values.shape[1])
         ]
     (least,), place, fibre, most = worst(stress, factor_score(material, "goodman"))
@@ -117,7 +117,7 @@ def _goodman(axes: Any, stress: Stress, unit: Scale) -> None:
         strength = material.yield_strength / _MEGA
         axes.plot([0.0, strength], [strength, 0.0], color="0.6", linestyle="--", label="yield")
     top = endurance
-    for (label, found), color in zip(swings.items(), ("#2166ac", "#e08214"), strict=True):
+    for (label, found), color in zip(cycles.items(), ("#2166ac", "#e08214"), strict=True):
         if found:
             means, amplitudes = (
                 np.concatenate([getattr(one, name) for one in found]) / _MEGA

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from .. import codegen
 from ..arithmetic.compensated import DTYPES
 from ..base.arrays import Array
-from ..base.room import cores
+from ..base.space import cores
 from ..base.status import Status
 from ..base.vocabulary import Backend
 from ..codegen.emit import NEWTON_STEPS, newton_rule
@@ -29,7 +29,7 @@ from ..errors import CompilerError, warn
 from ..version import __version__
 from . import grids
 from .cycle_table import CycleTable
-from .rung import Rung
+from .evaluation_method import EvaluationMethod
 from .solution import Provenance
 
 _LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {
@@ -75,10 +75,10 @@ class Evaluated:
 
 
 def run(
-    graph: Program,
+    program: Program,
     t: Array,
     p: Array,
-    rung: Rung | None = None,
+    method: EvaluationMethod | None = None,
     threads: int | None = None,
     *,
     into: Evaluated | None = None,
@@ -88,53 +88,55 @@ def run(
     ``into`` is what an earlier run gave on the same rung and as many instants, to be filled anew.
     Raises :class:`CompilerError` where the backend needs a compiler and there is none, or it fails.
     """
-    rung = rung or Rung()
-    stages = stages_for(graph, rung.precision, t, p)
-    found = _compiled(graph, stages, rung)
-    evaluated = into or unevaluated(graph, stages, t.size)
-    begin = _begin(graph, rung.newton is not None, t[0], tuple(p))
+    method = method or EvaluationMethod()
+    stages = stages_for(program, method.precision, t, p)
+    found = _compiled(program, stages, method)
+    evaluated = into or unevaluated(program, stages, t.size)
+    begin = _begin(program, method.newton is not None, t[0], tuple(p))
     if found is None:
-        _interpret(graph, t, p, evaluated, begin, rung.newton)
-        return evaluated, provenance("vm", "", "", rung)
+        _interpret(program, t, p, evaluated, begin, method.newton)
+        return evaluated, provenance("vm", "", "", method)
     compiler, library = found
-    dtype = DTYPES[rung.precision]
+    dtype = DTYPES[method.precision]
     guess = np.array(begin, dtype)
-    if rung.precision == "single":
+    if method.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
     library.follow(t, p, guess, evaluated.iterated, evaluated.status)
     library.evaluate(t, p, evaluated.iterated, evaluated.out, evaluated.status, threads or cores())
     used = "lanes" if compiler.language == "c++" else "c"
-    return evaluated, provenance(used, compiler.version, " ".join(library.flags), rung)
+    return evaluated, provenance(used, compiler.version, " ".join(library.flags), method)
 
 
-def begun(graph: Program, t: float, p: Array) -> tuple[float, ...]:
+def begun(program: Program, t: float, p: Array) -> tuple[float, ...]:
     """The iterated coordinates at a time, closed, as the motion leads there from the scene's own
     start; none without loops.
     """
-    return _begin(graph, False, t, tuple(p.tolist()))
+    return _begin(program, False, t, tuple(p.tolist()))
 
 
 @functools.lru_cache(maxsize=256)
-def _begin(graph: Program, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
+def _begin(program: Program, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
     """The iterated coordinates that the first instant begins from: closed there where steps are
     ``counted``.
 
     The motion is followed from the scene's own start, as far from which another branch may be
     nearer; by many steps, unless they were too many.
     """
-    if graph.newton is None:
+    if program.newton is None:
         return ()
-    (start, stop), count = graph.data.span, graph.data.timing.count
+    (start, stop), count = program.data.span, program.data.timing.count
     if t == start and not counted:
-        return graph.newton.guess
+        return program.newton.guess
     wanted = (
         max(abs(t - start) / (stop - start) * (count - 1), _FEWEST_STEPS)
         if stop > start
         else math.inf
     )
     steps = math.ceil(wanted) if t != start and wanted <= _MOST_STEPS else 1
-    z, status = follow(graph, np.linspace(start, t, steps + 1)[1:], np.array(p))
-    return tuple(z[:, -1]) if counted or status[-1] != Status.NOT_CONVERGED else graph.newton.guess
+    z, status = follow(program, np.linspace(start, t, steps + 1)[1:], np.array(p))
+    return (
+        tuple(z[:, -1]) if counted or status[-1] != Status.NOT_CONVERGED else program.newton.guess
+    )
 
 
 def _paired(values: Array, out: Array) -> Array:
@@ -146,21 +148,21 @@ def _paired(values: Array, out: Array) -> Array:
 
 
 def _compiled(
-    graph: Program, stages: Stages, rung: Rung
+    program: Program, stages: Stages, method: EvaluationMethod
 ) -> tuple[codegen.Compiler, codegen.Library] | None:
     """The library that a backend takes, and what built it; None for the virtual machine."""
     return compiled(
-        rung, lambda compiler: _library(graph, stages, rung.newton, rung.flags, compiler)
+        method, lambda compiler: _library(program, stages, method.newton, method.flags, compiler)
     )
 
 
 def compiled(
-    rung: Rung, build: Callable[[codegen.Compiler], Built]
+    method: EvaluationMethod, build: Callable[[codegen.Compiler], Built]
 ) -> tuple[codegen.Compiler, Built] | None:
     """Result of ``build`` with the compiler of a rung's backend, and that compiler; None for the
     virtual machine.
     """
-    backend = rung.backend
+    backend = method.backend
     for language in _LANGUAGES[backend]:
         compiler = codegen.find_compiler(language)
         if compiler is None:
@@ -173,7 +175,7 @@ def compiled(
             warn(f"{error}; using scalar C")
     if backend in _NEEDS:
         raise CompilerError(_NEEDS[backend])
-    if rung.precision == "single":
+    if method.precision == "single":
         raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} is there")
     if backend == "auto":
         warn(
@@ -196,21 +198,21 @@ def searching(backend: str) -> codegen.Search | None:
 
 @functools.lru_cache(maxsize=32)
 def _library(
-    graph: Program, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler
+    program: Program, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler
 ) -> codegen.Library:
     return codegen.load(
-        codegen.emit(graph, stages, newton),
+        codegen.emit(program, stages, newton),
         compiler,
         tuple(shlex.split(flags)),
         newton or NEWTON_STEPS,
     )
 
 
-def unevaluated(graph: Program, stages: Stages, size: int) -> Evaluated:
+def unevaluated(program: Program, stages: Stages, size: int) -> Evaluated:
     """Empty arrays of an evaluation."""
     dtype = DTYPES[stages.precision]
     out, iterated = (
-        rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z"))
+        rows(count, size, dtype) for count in (len(program.columns), program.instant.size1_in("z"))
     )
     return Evaluated(out, np.full(size, Status.OK, dtype=np.int32), iterated, stages)
 
@@ -224,7 +226,7 @@ def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
     return grids.empty("the outputs over time", (count, stride), dtype)[:, :size]
 
 
-def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenance:
+def provenance(backend: str, compiler: str, flags: str, method: EvaluationMethod) -> Provenance:
     """Provenance of numbers, with the versions of the programs involved."""
     import h5py  # which takes its time, and is needed for files alone
 
@@ -235,11 +237,11 @@ def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenanc
         "h5py": h5py.__version__,
         "hdf5": h5py.version.hdf5_version,
     }
-    return Provenance(backend, rung.precision, compiler, flags, rung.options, versions)
+    return Provenance(backend, method.precision, compiler, flags, method.options, versions)
 
 
 def _interpret(
-    graph: Program,
+    program: Program,
     t: Array,
     p: Array,
     evaluated: Evaluated,
@@ -250,7 +252,7 @@ def _interpret(
     stages = evaluated.stages
     guess = np.array(begin)
     evaluated.iterated[:], evaluated.status[:] = follow(
-        graph, t, p, guess, stages=stages, newton=newton
+        program, t, p, guess, stages=stages, newton=newton
     )
     for start in range(0, t.size, _VM_BLOCK):
         block = slice(start, min(start + _VM_BLOCK, t.size))
@@ -263,7 +265,7 @@ def _interpret(
 
 
 def follow(
-    graph: Program,
+    program: Program,
     t: Array,
     p: Array,
     guess: Array | None = None,
@@ -274,13 +276,13 @@ def follow(
     """Iterated coordinates (z, t), each instant from the one before, the first from ``guess`` or
     the graph's own; and statuses.
 
-    By CasADi's virtual machine; ``newton`` as in :class:`.Rung`.
+    By CasADi's virtual machine; ``newton`` as in :class:`.EvaluationMethod`.
     """
-    stages = stages or plain(graph)
-    if graph.newton is None or stages.loops is None:
+    stages = stages or plain(program)
+    if program.newton is None or stages.loops is None:
         return np.zeros((0, t.size)), np.full(t.size, Status.OK, dtype=np.int32)
     last, rule = (
-        np.array(graph.newton.guess) if guess is None else guess,
+        np.array(program.newton.guess) if guess is None else guess,
         newton_rule("double", newton),
     )
     z, status = rows(last.size, t.size), np.full(t.size, Status.OK, dtype=np.int32)
@@ -288,20 +290,20 @@ def follow(
     for start in range(0, t.size, _VM_BLOCK):
         counted = np.atleast_2d(stages.drive(t[None, start : start + _VM_BLOCK], p)[0].full())
         for i, now in enumerate(counted.T, start):
-            z[:, i], status[i] = _iterate(graph, stages.loops, last, ca.DM(now), fixed, rule)
+            z[:, i], status[i] = _iterate(program, stages.loops, last, ca.DM(now), fixed, rule)
             last = last if status[i] == Status.NOT_CONVERGED else z[:, i]
     return z, status
 
 
 def _iterate(
-    graph: Program,
+    program: Program,
     loops: ca.Function,
     guess: Array,
     counted: ca.DM,
     p: ca.DM,
     rule: dict[str, float],
 ) -> tuple[Array, int]:
-    assert graph.newton is not None
+    assert program.newton is not None
     z, size, before, step = guess, 1.0, 1.0, 0
     while step < rule["steps"] and not size < rule["done"]:
         before, step = size, step + 1
@@ -312,6 +314,6 @@ def _iterate(
         z = z + correction
     if not size < rule["lost"]:
         return guess, Status.NOT_CONVERGED
-    turns = np.where(graph.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
+    turns = np.where(program.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
     slow = rule["done"] > 0.0 and size > rule["rate"] * before and size > rule["rounding"]
     return z - math.tau * turns, Status.SLOW if slow else Status.OK

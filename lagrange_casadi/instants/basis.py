@@ -13,7 +13,7 @@ from ..base.arrays import Array
 from ..base.tables import Terms
 from ..declare.density import NumericDensity
 from ..equations.section_function import along
-from .loads import SpreadLoad
+from .loads import DistributedLoad
 
 _NUMPY = numpy_arithmetic()
 
@@ -30,7 +30,7 @@ class Basis:
     u: Array
     length: Array | float
     density: NumericDensity
-    spreads: Sequence[SpreadLoad]
+    distributed_loads: Sequence[DistributedLoad]
 
     @cached_property
     def force(self) -> Array:
@@ -47,21 +47,23 @@ class Basis:
         function = along(
             self.density.breaks,
             tuple(map(len, cells)),
-            tuple(load.powers for load in self.spreads),
+            tuple(load.powers for load in self.distributed_loads),
             bends=bends,
         )
-        matter = [self.length, *(coefficient for cell in cells for coefficient in cell)]
+        mass_properties = [self.length, *(coefficient for cell in cells for coefficient in cell)]
         # Width and end are those of the first instant; of n laws, which have (n, t), ratios give
         # (n, u).
-        spans = [values[..., :1] for load in self.spreads for values in (load.width, load.end)]
-        (rows,) = interpret(function, [matter, spans, [self.u]], _NUMPY)
+        spans = [
+            values[..., :1] for load in self.distributed_loads for values in (load.width, load.end)
+        ]
+        (rows,) = interpret(function, [mass_properties, spans, [self.u]], _NUMPY)
         found = np.empty((len(rows), *np.broadcast(self.length, self.u).shape))
         for row, values in zip(found, rows, strict=True):
             row[...] = values
         return found
 
     def of(
-        self, terms: Terms, law: Sequence[Array], spreads: Sequence[SpreadLoad]
+        self, terms: Terms, law: Sequence[Array], distributed_loads: Sequence[DistributedLoad]
     ) -> tuple[list[Array], Array]:
         """Columns and rows of a force, by the coefficients of its ``law`` and of what acts along
         the link.
@@ -71,13 +73,13 @@ class Basis:
         """
         sign, plain, own = (terms.arm, self.bending, 4) if terms.arm else (1, self.force, 3)
         columns = [*law[:1], *(-column for column in law[1:])] if sign < 0 else list(law)
-        if not spreads:
+        if not distributed_loads:
             return columns, plain[: len(law)]
         rows, first = [*plain[: len(law)]], 0
-        for load in spreads:
+        for load in distributed_loads:
             for values, there in (
                 (
-                    [sign * value for value in load.terms.get(terms.spread, ())],
+                    [sign * value for value in load.terms.get(terms.distributed, ())],
                     plain[own + first :],
                 ),
                 (

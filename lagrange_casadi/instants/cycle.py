@@ -87,7 +87,7 @@ class Cycle:
         values = self.drive.terms_at(
             angles, self.drive.settle(angles, self.course.places_near(angles))
         )
-        self.drive.unwind(values[0], self.course.turns_of(angles, values[0, self.drive.loose]))
+        self.drive.unwind(values[0], self.course.turns_of(angles, values[0, self.drive.wrapped]))
         values[0] -= self.drift[:, None] * angles
         return np.roll(values, first, axis=-1)
 
@@ -100,7 +100,7 @@ class Course:
 
     angles: Array
     places: Array
-    loose: Array
+    wrapped: Array
 
     def places_near(self, angles: Array) -> Array:
         """Iterated coordinates to begin with."""
@@ -108,13 +108,13 @@ class Course:
         nearest = np.rint((angles - self.angles[0]) / step).astype(int)
         return self.places[:, np.clip(nearest, 0, self.angles.size - 1)]
 
-    def turns_of(self, angles: Array, loose: Array) -> Array:
+    def turns_of(self, angles: Array, wrapped: Array) -> Array:
         """Multiples of 2 pi that make angles continuous with those of the course, (m, n)."""
         rising = slice(None, None, 1 if self.angles[1] > self.angles[0] else -1)
-        found = np.zeros_like(loose)
-        for k, row in enumerate(self.loose):
+        found = np.zeros_like(wrapped)
+        for k, row in enumerate(self.wrapped):
             found[k] = math.tau * np.rint(
-                (np.interp(angles, self.angles[rising], row[rising]) - loose[k]) / math.tau
+                (np.interp(angles, self.angles[rising], row[rising]) - wrapped[k]) / math.tau
             )
         return found
 
@@ -125,7 +125,7 @@ class Drive:
     goes, and the terms by its angle.
     """
 
-    graph: Program
+    program: Program
     p: Array
     joint: str
     start: float
@@ -134,16 +134,18 @@ class Drive:
 
     @classmethod
     @symbolic
-    def of(cls, graph: Program, p: Array) -> Drive:
+    def of(cls, program: Program, p: Array) -> Drive:
         """Raises :class:`DeclarationError` where there is not one drive that turns, or where
         columns depend on time itself.
         """
-        joint = the_drive(graph)
-        t, d, rate, acceleration, z, parameters = graph.instant.sx_in()
-        out = graph.instant(t, d, rate, acceleration, z, parameters)
-        timed = [graph.columns[k] for k in ca.jacobian_sparsity(out, t).row()]
-        if graph.newton is not None and ca.depends_on(graph.newton.step(z, t, d, parameters)[0], t):
-            timed += [Check("closure", name) for name in graph.newton.names]
+        joint = the_drive(program)
+        t, d, rate, acceleration, z, parameters = program.instant.sx_in()
+        out = program.instant(t, d, rate, acceleration, z, parameters)
+        timed = [program.columns[k] for k in ca.jacobian_sparsity(out, t).row()]
+        if program.newton is not None and ca.depends_on(
+            program.newton.step(z, t, d, parameters)[0], t
+        ):
+            timed += [Check("closure", name) for name in program.newton.names]
         if timed:
             raise DeclarationError(
                 f"table: expected columns that the angle of joint '{joint}' decides, but time"
@@ -154,21 +156,21 @@ class Drive:
         moving = ca.vertcat(t, rate, acceleration)
         at_rest = [ca.densify(ca.substitute(row, moving, ca.SX.zeros(3))) for row in rows]
         terms = ca.Function("terms", [d, z, parameters], at_rest, {"cse": True})
-        start, stop = (float(graph.motion(moment, p)[0]) for moment in graph.data.span)
-        return cls(graph, p, joint, start, -1 if stop < start else 1, terms)
+        start, stop = (float(program.motion(moment, p)[0]) for moment in program.data.span)
+        return cls(program, p, joint, start, -1 if stop < start else 1, terms)
 
     @property
-    def loose(self) -> list[int]:
+    def wrapped(self) -> list[int]:
         """The rows of the angles that are known up to whole turns only."""
-        parts = {part for signs in self.graph.loop_angles.values() for part in signs}
-        return [k for output, k in self.graph.outputs.items() if output in parts]
+        parts = {part for signs in self.program.loop_angles.values() for part in signs}
+        return [k for output, k in self.program.outputs.items() if output in parts]
 
     def terms_at(self, angles: Array, places: Array) -> Array:
         """The terms at angles, as they come, (factors, columns, n).
 
         Raises :class:`DeclarationError` where a loop does not close, or a term is not finite.
         """
-        values = np.empty((4, len(self.graph.columns), angles.size))
+        values = np.empty((4, len(self.program.columns), angles.size))
         for start in range(0, angles.size, _BLOCK):
             cut = slice(start, start + _BLOCK)
             for row, found in zip(
@@ -181,7 +183,7 @@ class Drive:
     def columns_at(self, angles: Array, places: Array, rate: float, acceleration: float) -> Array:
         """The columns themselves at angles, (columns, n)."""
         return np.asarray(
-            self.graph.instant(0.0, angles[None], rate, acceleration, places, self.p).full()
+            self.program.instant(0.0, angles[None], rate, acceleration, places, self.p).full()
         )
 
     def settle(self, angles: Array, places: Array) -> Array:
@@ -189,18 +191,19 @@ class Drive:
 
         Raises :class:`DeclarationError` where there are none.
         """
-        if self.graph.newton is None:
+        if self.program.newton is None:
             return places
         for _ in range(_NEWTON_STEPS):
             correction, size = (
-                found.full() for found in self.graph.newton.step(places, 0.0, angles[None], self.p)
+                found.full()
+                for found in self.program.newton.step(places, 0.0, angles[None], self.p)
             )
             places = places + correction
             if np.all(size < _NEWTON_DONE):
                 return places
         bad = angles[int(np.argmax(~(size[0] < _NEWTON_DONE)))]
         raise DeclarationError(
-            f"table: the loops closed by {self.graph.newton.joints} did not"
+            f"table: the loops closed by {self.program.newton.joints} did not"
             f" converge{self._not_round(bad)}"
         )
 
@@ -210,11 +213,11 @@ class Drive:
 
         Whole turns that columns count are then in the angles, and the columns are zero.
         """
-        own = {self.graph.columns[k]: turn for k, turn in zip(self.loose, turns, strict=True)}
-        whole = list(self.graph.checks("turns").values())
-        own |= {self.graph.columns[k]: math.tau * columns[k] for k in whole}
-        for angle, k in self.graph.outputs.items():
-            for part, sign in self.graph.loop_angles.get(angle, {}).items():
+        own = {self.program.columns[k]: turn for k, turn in zip(self.wrapped, turns, strict=True)}
+        whole = list(self.program.checks("turns").values())
+        own |= {self.program.columns[k]: math.tau * columns[k] for k in whole}
+        for angle, k in self.program.outputs.items():
+            for part, sign in self.program.loop_angles.get(angle, {}).items():
                 columns[k] += sign * own[part]
         columns[whole] = 0.0
 
@@ -226,23 +229,23 @@ class Drive:
         """
         steps = np.arange(turns * _STEPS).astype(np.float64) + _OFFSET
         angles = self.start + self.way * math.tau / _STEPS * steps
-        here = np.array(self.graph.newton.guess if self.graph.newton else ())[:, None]
+        here = np.array(self.program.newton.guess if self.program.newton else ())[:, None]
         places = np.empty((here.size, angles.size))
-        for i in range(angles.size if self.graph.newton else 0):
+        for i in range(angles.size if self.program.newton else 0):
             here = self.settle(angles[i : i + 1], here)
             places[:, i] = here[:, 0]
         values = self.terms_at(angles, places)
-        columns = (bound.column for bound in self.graph.bounds)
-        found = dict(zip(columns, beside(self.graph, values[0], 0.0), strict=True))
+        columns = (bound.column for bound in self.program.bounds)
+        found = dict(zip(columns, beside(self.program, values[0], 0.0), strict=True))
         for name, passes in self._closures(found):
             if passes.any():
                 near = describe_coordinate(self.joint, "angle", angles[int(np.argmax(passes))])
                 raise DeclarationError(
                     f"{name} is at a dead centre, or about a degree from one, near {near}"
                 )
-        loose = values[0, self.loose].copy()
-        course = Course(angles, places, np.unwrap(loose))
-        self.unwind(values[0], course.loose - loose)
+        wrapped = values[0, self.wrapped].copy()
+        course = Course(angles, places, np.unwrap(wrapped))
+        self.unwind(values[0], course.wrapped - wrapped)
         return course, values
 
     def _refuse(self, angles: Array, values: Array) -> None:
@@ -250,8 +253,8 @@ class Drive:
             if not (closure > 0.0).all():
                 bad = angles[int(np.argmax(~(closure > 0.0)))]
                 raise DeclarationError(f"{name} cannot be closed{self._not_round(bad)}")
-        limit = _GAP * self.graph.extent(self.p)
-        for closing, k in self.graph.checks("gap").items():
+        limit = _GAP * self.program.extent(self.p)
+        for closing, k in self.program.checks("gap").items():
             near = np.abs(values[0, k]) <= limit
             if not near.all():
                 bad = angles[int(np.argmax(~near))]
@@ -261,12 +264,12 @@ class Drive:
         if found.size:
             k, i = found[0]
             at = where([(self.joint, "angle", angles[i])])
-            raise DeclarationError(f"table: '{self.graph.names[k]}' is not finite at rest{at}")
+            raise DeclarationError(f"table: '{self.program.names[k]}' is not finite at rest{at}")
 
     def _closures(self, columns: Array | Mapping[int, Array]) -> Iterator[tuple[str, Array]]:
         """The closures among the columns, with the beginning of a message."""
-        for closing, k in self.graph.checks("closure").items():
-            yield f"table: the loop closed by {self.graph.data.closing(closing)}", columns[k]
+        for closing, k in self.program.checks("closure").items():
+            yield f"table: the loop closed by {self.program.data.closing(closing)}", columns[k]
 
     def _not_round(self, angle: float) -> str:
         return (
@@ -275,18 +278,18 @@ class Drive:
         )
 
 
-def the_drive(graph: Program) -> str:
+def the_drive(program: Program) -> str:
     """The one driven joint of a scene.
 
     Raises :class:`DeclarationError` where there is not one, or where it slides.
     """
-    if len(graph.driven) != 1:
-        named = ", ".join(f"'{name}'" for name in graph.driven) or "none"
+    if len(program.driven) != 1:
+        named = ", ".join(f"'{name}'" for name in program.driven) or "none"
         raise DeclarationError(
             f"table: expected one driven joint, whose angle decides all, got {named}"
         )
-    (joint,) = graph.driven
-    if graph.data.kinds.coordinates[joint] != "angle":
+    (joint,) = program.driven
+    if program.data.kinds.coordinates[joint] != "angle":
         raise DeclarationError(
             f"table: the driven joint '{joint}' slides; expected one that turns, for only an angle"
             " repeats"
@@ -294,20 +297,20 @@ def the_drive(graph: Program) -> str:
     return joint
 
 
-def cycle_of(graph: Program, p: Array, rates: tuple[float, float]) -> Cycle:
+def cycle_of(program: Program, p: Array, rates: tuple[float, float]) -> Cycle:
     """The cycle of a scene for parameters ``p`` and motions up to a rate and an acceleration.
 
     Raises :class:`DeclarationError`, with the reason, where there is none.
     """
-    drive = Drive.of(graph, p)
-    if rubbing := graph.checks("rest"):
+    drive = Drive.of(program, p)
+    if sliding := program.checks("rest"):
         raise DeclarationError(
             f"table: expected columns quadratic in the rate of joint '{drive.joint}', but its sign"
-            " decides friction " + ", ".join(f"'{name}'" for name in rubbing)
+            " decides friction " + ", ".join(f"'{name}'" for name in sliding)
         )
     for turns in range(1, TURNS + 1):
         course, values = drive.follow(2 * turns)
-        sizes = _sizes(graph, p, np.abs(values).max(axis=-1))
+        sizes = _sizes(program, p, np.abs(values).max(axis=-1))
         if turns == 1:
             _refuse_other_powers(drive, course, sizes, rates)
         half = course.angles.size // 2
@@ -324,9 +327,9 @@ def cycle_of(graph: Program, p: Array, rates: tuple[float, float]) -> Cycle:
             whole = np.rint(gain)
             drift = np.where((whole != 0.0) & (np.abs(gain - whole) < _SAME), whole, gain) / turns
             return Cycle(drive, course, turns, drift, _ROUNDING * sizes + 2.0 * noise)
-    names = [name for name, does in zip(graph.columns, moved, strict=True) if does]
-    wound = bool(graph.checks("turned"))
-    why = "; a load that depends on a number of revolutions may not repeat" if wound else ""
+    names = [name for name, does in zip(program.columns, moved, strict=True) if does]
+    wound_angles = bool(program.checks("turned"))
+    why = "; a load that depends on a number of revolutions may not repeat" if wound_angles else ""
     raise DeclarationError(
         f"table: expected columns that repeat after at most {TURNS} turns of joint"
         f" '{drive.joint}', but {_listed(names)} do not repeat{why}"
@@ -339,7 +342,7 @@ def _refuse_other_powers(
     """Derivatives at rest see nothing of a load by the rate's sign, or its size: so the columns
     themselves are looked at.
     """
-    columns = drive.graph.columns
+    columns = drive.program.columns
     some = slice(0, _STEPS, 7)
     angles, places = course.angles[some], course.places[:, some]
     own = drive.terms_at(angles, places)
@@ -358,16 +361,16 @@ def _refuse_other_powers(
         )
 
 
-def _sizes(graph: Program, p: Array, peaks: Array) -> Array:
+def _sizes(program: Program, p: Array, peaks: Array) -> Array:
     """The largest terms of the same unit, (factors, columns), of a misfit one; the rate's square
     and the acceleration have one.
     """
-    kinds = [_kind(graph, column) for column in graph.columns]
+    kinds = [_kind(program, column) for column in program.columns]
     alike = np.stack((peaks[0], peaks[1], *[np.maximum(peaks[2], peaks[3])] * 2))
     largest = {kind: alike[:, [k == kind for k in kinds]].max(axis=-1) for kind in set(kinds)}
-    _raise_to_other_units(largest, graph.extent(p))
+    _raise_to_other_units(largest, program.extent(p))
     sizes: Array = np.array([largest[kind] for kind in kinds]).reshape(len(kinds), 4).T
-    sizes[0, [k for kind in FRACTIONS for k in graph.checks(kind).values()]] = 1.0
+    sizes[0, [k for kind in FRACTIONS for k in program.checks(kind).values()]] = 1.0
     return sizes
 
 
@@ -391,13 +394,13 @@ def _raise_to_other_units(largest: dict[str | Column, Array], extent: float) -> 
         )
 
 
-def _kind(graph: Program, column: Column) -> str | Column:
+def _kind(program: Program, column: Column) -> str | Column:
     """Key by which columns are compared: their unit, or, if that says nothing, themselves;
     directions with each other.
     """
     if isinstance(column, Check):
         return ANGLE if column.kind == "turns" else column
-    unit = column.unit(graph.data.kinds)
+    unit = column.unit(program.data.kinds)
     return (
         column.group if column.group == "pose" and unit == "1" else column if unit == "1" else unit
     )

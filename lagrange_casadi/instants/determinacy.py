@@ -23,31 +23,40 @@ from ..equations.checks import Check, Column
 from ..equations.program import Program
 from .backends import Evaluated, run
 from .elasticity import Elasticity
+from .evaluation_method import EvaluationMethod
 from .rules import open_limit
-from .rung import Rung
 
 
-def undetermined(graph: Program, out: Array, p: Array, rung: Rung) -> tuple[Output, ...]:
+def undetermined(
+    program: Program, out: Array, p: Array, method: EvaluationMethod
+) -> tuple[Output, ...]:
     """The outputs that equilibrium leaves open at any of some instants, by the columns there,
     (columns, t).
     """
-    return _beyond(graph, {output: out[k] for output, k in graph.doubtful.items()}, p, rung)
+    return _beyond(
+        program, {output: out[k] for output, k in program.indeterminate.items()}, p, method
+    )
 
 
 def completed(
-    graph: Program, found: Evaluated, t: Array, p: Array, left_open: Sequence[Output]
+    program: Program, found: Evaluated, t: Array, p: Array, left_open: Sequence[Output]
 ) -> tuple[Elasticity, dict[str, Array]]:
     """Report what least strain energy told at instants ``t``, why some are ``left_open``, and its
     residual for a certificate.
     """
-    completion, known = graph.completion, np.isfinite(found.out).all(axis=0)
+    completion, known = program.completion, np.isfinite(found.out).all(axis=0)
     if completion is None or not known.any():
         return Elasticity(), {}
-    driven, iterated = graph.motion(t[None, known], p), np.asarray(found.iterated, float)[:, known]
+    driven, iterated = (
+        program.motion(t[None, known], p),
+        np.asarray(found.iterated, float)[:, known],
+    )
     rows = completion.function(t[None, known], *driven, iterated, p).full()
     changes, (*through, idle, chosen, unbalanced) = np.split(rows, [len(completion.doubted)])
-    doubted = _beyond(graph, dict(zip(completion.doubted, changes, strict=True)), p, Rung())
-    told = tuple(output for output in doubted if output not in left_open)
+    doubted = _beyond(
+        program, dict(zip(completion.doubted, changes, strict=True)), p, EvaluationMethod()
+    )
+    completed_outputs = tuple(output for output in doubted if output not in left_open)
     reasons = (
         completion.reasons([bool(row.any()) for row in through], idle=bool(idle.any()))
         if left_open
@@ -55,18 +64,18 @@ def completed(
     )
     residual = np.zeros(t.size)
     residual[known] = unbalanced
-    return Elasticity(told, reasons), {"elasticity": residual} if chosen.any() else {}
+    return Elasticity(completed_outputs, reasons), {"elasticity": residual} if chosen.any() else {}
 
 
 def _beyond(
-    graph: Program, changes: Mapping[Output, Array], p: Array, rung: Rung
+    program: Program, changes: Mapping[Output, Array], p: Array, method: EvaluationMethod
 ) -> tuple[Output, ...]:
     """The outputs that change at any of some instants by more than what is none."""
     if not changes:
         return ()
-    extent, limit = graph.extent(p), open_limit(graph, rung.precision, rung.newton)
+    extent, limit = program.extent(p), open_limit(program, method.precision, method.newton)
     units = {
-        output: extent if output.unit(graph.data.kinds) == MOMENT else 1.0 for output in changes
+        output: extent if output.unit(program.data.kinds) == MOMENT else 1.0 for output in changes
     }
     return tuple(
         output for output, sizes in changes.items() if np.any(sizes > limit * units[output])
@@ -74,31 +83,40 @@ def _beyond(
 
 
 def determinate(
-    graph: Program, t: Array, p: Array, *, telling: bool = False
+    program: Program, t: Array, p: Array, *, telling: bool = False
 ) -> tuple[Program, tuple[Output, ...]]:
     """The graph without the outputs that are open at some of the instants, for parameters ``p``;
     and these outputs.
 
     With ``telling`` it goes on to tell, for other parameters and instants, where others are open.
     """
-    if not graph.doubtful:
-        return graph, ()
-    table, _ = run(graph, t, p, Rung("vm"))
-    left_open = undetermined(graph, table.out[:, table.status == Status.OK], p, Rung())
+    if not program.indeterminate:
+        return program, ()
+    table, _ = run(program, t, p, EvaluationMethod("vm"))
+    left_open = undetermined(
+        program, table.out[:, table.status == Status.OK], p, EvaluationMethod()
+    )
     others = (
-        () if telling else tuple(output for output in graph.doubtful if output not in left_open)
+        ()
+        if telling
+        else tuple(output for output in program.indeterminate if output not in left_open)
     )
     return _without(
-        graph, (*left_open, *(Check("open", output) for output in (*left_open, *others)))
+        program, (*left_open, *(Check("open", output) for output in (*left_open, *others)))
     ), left_open
 
 
 @functools.lru_cache(maxsize=32)
-def _without(graph: Program, columns: tuple[Column, ...]) -> Program:
-    kept = [k for k, column in enumerate(graph.columns) if column not in columns]
-    inputs = graph.instant.sx_in()
-    names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]
+def _without(program: Program, columns: tuple[Column, ...]) -> Program:
+    kept = [k for k, column in enumerate(program.columns) if column not in columns]
+    inputs = program.instant.sx_in()
+    names = [program.instant.name_in(i) for i in range(program.instant.n_in())]
     instant = ca.Function(
-        "instant", inputs, [ca.densify(graph.instant(*inputs)[kept])], names, ["out"], {"cse": True}
+        "instant",
+        inputs,
+        [ca.densify(program.instant(*inputs)[kept])],
+        names,
+        ["out"],
+        {"cse": True},
     )
-    return replace(graph, instant=instant, columns=tuple(graph.columns[k] for k in kept))
+    return replace(program, instant=instant, columns=tuple(program.columns[k] for k in kept))

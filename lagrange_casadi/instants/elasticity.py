@@ -19,7 +19,7 @@ class Elasticity:
     @property
     def notes(self) -> tuple[str, ...]:
         """Results in lines."""
-        told = (
+        lines = (
             [
                 (
                     f"{len(self.told)} statically indeterminate series are determined by least"
@@ -30,6 +30,6 @@ class Elasticity:
             else []
         )
         return (
-            *told,
+            *lines,
             *(f"elasticity does not determine some forces: {reason}" for reason in self.reasons),
         )

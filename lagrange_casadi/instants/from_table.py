@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array
-from ..base.room import cores
+from ..base.space import cores
 from ..base.status import Status
 from ..base.symbolic import symbolic
 from ..equations.checks import Check
@@ -21,7 +21,7 @@ from ..equations.program import Program
 from .backends import Evaluated, run, unevaluated
 from .cycle import TURNS, the_drive
 from .cycle_table import CycleTable
-from .rung import Rung
+from .evaluation_method import EvaluationMethod
 from .solution import Provenance
 from .tabulate import still, tabulate
 
@@ -30,10 +30,10 @@ _MARGIN = 1.01
 
 
 def columns(
-    graph: Program,
+    program: Program,
     t: Array,
     p: Array,
-    rung: Rung,
+    method: EvaluationMethod,
     threads: int | None = None,
     *,
     into: Evaluated | None = None,
@@ -45,14 +45,14 @@ def columns(
     anew. Raises :class:`DeclarationError`, with the reason, where the scene cannot be tabulated,
     and what :func:`.run` raises.
     """
-    if rung.table is None:
-        return run(graph, t, p, rung, threads, into=into)
-    the_drive(graph)
-    drive, provenance = run(drive_of(graph), t, p, replace(rung, table=None), threads)
+    if method.table is None:
+        return run(program, t, p, method, threads, into=into)
+    the_drive(program)
+    drive, provenance = run(drive_of(program), t, p, replace(method, table=None), threads)
     angle, rate, acceleration, *within = drive.out
-    cycle = _serving(graph, p, rung, rate, acceleration)
+    cycle = _serving(program, p, method, rate, acceleration)
     phase = within[cycle.turns - 1]
-    found = into or replace(unevaluated(graph, drive.stages, t.size), cycle=cycle)
+    found = into or replace(unevaluated(program, drive.stages, t.size), cycle=cycle)
     found.iterated[:] = np.nan
     found.status[:] = drive.status
 
@@ -69,38 +69,40 @@ def columns(
             list(pool.map(fill, range(0, t.size, size)))
     for k in np.flatnonzero(cycle.drift):
         found.out[k] += cycle.drift[k] * (angle - phase)
-    for output, place in still(graph, tuple(p.tolist())).items():
-        found.out[graph.outputs[output]] = place
+    for output, place in still(program, tuple(p.tolist())).items():
+        found.out[program.outputs[output]] = place
     found.status[~np.isfinite(found.out.sum(axis=0)) & (found.status == Status.OK)] = (
         Status.NOT_FINITE
     )
-    return found, replace(provenance, rung=rung.options)
+    return found, replace(provenance, rung=method.options)
 
 
-def table_of(graph: Program, t: Array, p: Array, rung: Rung) -> CycleTable:
+def table_of(program: Program, t: Array, p: Array, method: EvaluationMethod) -> CycleTable:
     """The table that :func:`columns` reads.
 
     Raises :class:`DeclarationError` where the scene cannot be tabulated.
     """
-    the_drive(graph)
-    _, rate, acceleration, *_ = run(drive_of(graph), t, p, Rung("vm"))[0].out
-    return _serving(graph, p, rung, rate, acceleration)
+    the_drive(program)
+    _, rate, acceleration, *_ = run(drive_of(program), t, p, EvaluationMethod("vm"))[0].out
+    return _serving(program, p, method, rate, acceleration)
 
 
-def _serving(graph: Program, p: Array, rung: Rung, rate: Array, acceleration: Array) -> CycleTable:
-    assert rung.table is not None
-    cycle = cycle_table(graph, tuple(p), rung.table, (_above(rate), _above(acceleration)))
-    return _single(cycle) if rung.precision == "single" else cycle
+def _serving(
+    program: Program, p: Array, method: EvaluationMethod, rate: Array, acceleration: Array
+) -> CycleTable:
+    assert method.table is not None
+    cycle = cycle_table(program, tuple(p), method.table, (_above(rate), _above(acceleration)))
+    return _single(cycle) if method.precision == "single" else cycle
 
 
 @functools.lru_cache(maxsize=32)
 def cycle_table(
-    graph: Program, p: tuple[float, ...], table: float, rates: tuple[float, float]
+    program: Program, p: tuple[float, ...], table: float, rates: tuple[float, float]
 ) -> CycleTable:
     """The table of a scene for parameters ``p``, kept while the process lasts; see
     :func:`.tabulate`.
     """
-    return tabulate(graph, np.array(p), table, rates)
+    return tabulate(program, np.array(p), table, rates)
 
 
 _single = functools.lru_cache(maxsize=32)(CycleTable.single)
@@ -108,17 +110,17 @@ _single = functools.lru_cache(maxsize=32)(CycleTable.single)
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def drive_of(graph: Program) -> Program:
+def drive_of(program: Program) -> Program:
     """The graph of the one drive alone: its angle, rate and acceleration, and the angle within one
     turn, two, and so on.
     """
-    t, d, rate, acceleration, _, p = graph.instant.sx_in()
+    t, d, rate, acceleration, _, p = program.instant.sx_in()
     within = [
         d - math.tau * (turns * ca.floor(d * (1 / (turns * math.tau))))
         for turns in range(1, TURNS + 1)
     ]
     out = ca.densify(ca.vertcat(d, rate, acceleration, *within))
-    names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]
+    names = [program.instant.name_in(i) for i in range(program.instant.n_in())]
     instant = ca.Function(
         "instant", [t, d, rate, acceleration, ca.SX(0, 1), p], [out], names, ["out"], {"cse": True}
     )
@@ -129,7 +131,7 @@ def drive_of(graph: Program) -> Program:
         *(f"within_{turns}" for turns in range(1, TURNS + 1)),
     )
     return replace(
-        graph,
+        program,
         instant=instant,
         newton=None,
         columns=tuple(Check("drive", name) for name in columns),

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Array
-from ..base.room import require
+from ..base.space import require
 from ..codegen import find_compiler
 from ..codegen.calls import Call
 from ..codegen.compiler import loaded
@@ -182,9 +182,9 @@ def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:
     require(what, shape)
     count = math.prod(shape)
     line = 8 * _LINE // np.dtype(dtype).itemsize
-    room = np.empty(count + line, dtype)
-    first = -room.ctypes.data // room.itemsize % line
-    return room[first : first + count].reshape(shape)
+    capacity = np.empty(count + line, dtype)
+    first = -capacity.ctypes.data // capacity.itemsize % line
+    return capacity[first : first + count].reshape(shape)
 
 
 def _flat(columns: Sequence[Array], loads: Sequence[Load]) -> list[Array]:
@@ -245,8 +245,8 @@ def _fill_in_blocks(
 
 
 def _cut(load: Load, block: slice) -> Load:
-    station, constant, slope = load
-    return station[block], constant[block], slope[block]
+    load_point, constant, slope = load
+    return load_point[block], constant[block], slope[block]
 
 
 def _sum_up(
@@ -260,8 +260,8 @@ def _sum_up(
     np.multiply(columns[0][:, None], basis[0], out=rows)
     for column, function in zip(columns[1:], basis[1:], strict=True):
         rows += column[:, None] * function
-    for station, constant, slope in loads:
-        at = station[:, None]
+    for load_point, constant, slope in loads:
+        at = load_point[:, None]
         rows += np.where(edge(u, slack) < at, constant[:, None] + slope[:, None] * (at - u), 0.0)
 
 

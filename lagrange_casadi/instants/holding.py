@@ -35,9 +35,9 @@ from ..equations.derive import as_derived, compile_scene
 from ..equations.held_efforts import HeldEfforts, held_efforts
 from ..equations.program import Program
 from .backends import run
+from .evaluation_method import EvaluationMethod
 from .held import Holding
 from .rules import OPEN, SLIP
-from .rung import Rung
 from .solution import Solution
 
 _MOST = 10
@@ -58,17 +58,17 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
         for output, values in solution.outputs.items()
         if output.group == "effort"
     }
-    open_ = {name: solution.resting & np.isnan(values) for name, values in efforts.items()}
-    at = np.flatnonzero(np.any([*open_.values()], axis=0)) if efforts else np.zeros(0, int)
+    indeterminate = {name: solution.resting & np.isnan(values) for name, values in efforts.items()}
+    at = np.flatnonzero(np.any([*indeterminate.values()], axis=0)) if efforts else np.zeros(0, int)
     if not at.size:
         return {
             name: Holding(values, values, solution.unit(Output("effort", name)))
             for name, values in efforts.items()
         }
     values = values_of(solution.description)
-    graph = compile_scene(scene, ["effort"], parameters=values)
+    program = compile_scene(scene, ["effort"], parameters=values)
     held = held_efforts(as_derived(scene, ["effort"], values))
-    tried, why = _tried(held, _inputs(graph, solution.t, np.array([*values.values()]), at))
+    tried, why = _tried(held, _inputs(program, solution.t, np.array([*values.values()]), at))
     ranges = {}
     for name, effort in efforts.items():
         output, reasons = Output("effort", name), list(why)
@@ -81,12 +81,12 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
                 )
             )
         reasons.append((~np.isfinite(found).all(axis=0), "it is not finite"))
-        told = ~np.any([wrong for wrong, _ in reasons], axis=0)
-        there = open_[name][at]
+        known = ~np.any([wrong for wrong, _ in reasons], axis=0)
+        there = indeterminate[name][at]
         ends = []
         for end in (found.min(axis=0), found.max(axis=0)):
             ends.append(effort.copy())
-            ends[-1][at[there]] = np.where(told, end, np.nan)[there]
+            ends[-1][at[there]] = np.where(known, end, np.nan)[there]
         untold = next((words for wrong, words in reasons if wrong[there].any()), "")
         ranges[name] = Holding(ends[0], ends[1], solution.unit(output), untold)
     return ranges
@@ -96,14 +96,14 @@ _Reasons = list[tuple[Any, str]]
 """Instants (t,) at which a range is not available, and the reasons."""
 
 
-def _inputs(graph: Program, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[Any]:
+def _inputs(program: Program, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[Any]:
     """Arguments of a scene's columns, for some of the instants ``t``."""
     z = (
         np.zeros((0, at.size))
-        if graph.newton is None
-        else run(graph, t, p, Rung("vm"))[0].iterated[:, at]
+        if program.newton is None
+        else run(program, t, p, EvaluationMethod("vm"))[0].iterated[:, at]
     )
-    moved = graph.motion(ca.DM(t[at]).T, ca.DM(p))
+    moved = program.motion(ca.DM(t[at]).T, ca.DM(p))
     return [ca.DM(t[at]).T, *moved, ca.DM(z), ca.DM(p)]
 
 

@@ -9,7 +9,7 @@ from ..base.quantities import Output
 from ..base.tables import PLANE, Table
 from ..declare.density import NumericDensity
 from ..declare.limits import END
-from .loads import spread_load, station_load
+from .loads import distributed_load, point_load
 from .section_law import SectionLaw
 
 
@@ -26,7 +26,7 @@ def law_of(
     Raises ``ValueError`` where a load along the link is not whole.
     """
     law: dict[str, Array] = {}
-    stations: dict[str, dict[str, Array]] = {}
+    load_points: dict[str, dict[str, Array]] = {}
     ends: dict[str, dict[str, Array]] = {}
     terms: dict[str, dict[str, dict[int, Array]]] = {}
     for output, values in outputs.items():
@@ -35,17 +35,24 @@ def law_of(
         if output.group == "law":
             law[output.member] = values
         elif output.group == "station":
-            stations.setdefault(output.station, {})[output.member] = values
+            load_points.setdefault(output.load_point, {})[output.member] = values
         elif output.power is None:
-            ends.setdefault(output.station, {})[output.member] = values
+            ends.setdefault(output.load_point, {})[output.member] = values
         else:
-            terms.setdefault(output.station, {}).setdefault(output.member, {})[output.power] = (
+            terms.setdefault(output.load_point, {}).setdefault(output.member, {})[output.power] = (
                 values
             )
-    loads = tuple(station_load(name, members) for name, members in stations.items())
-    spreads = tuple(spread_load(name, ends.get(name, {}), found) for name, found in terms.items())
+    loads = tuple(point_load(name, members) for name, members in load_points.items())
+    distributed_loads = tuple(
+        distributed_load(name, ends.get(name, {}), found) for name, found in terms.items()
+    )
     return SectionLaw(
-        length, density, law, loads, spreads, END["single" if precision == "single" else "double"]
+        length,
+        density,
+        law,
+        loads,
+        distributed_loads,
+        END["single" if precision == "single" else "double"],
     )
 
 
@@ -60,5 +67,7 @@ def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLA
     }
     own = (output for output in outputs if output.along and output.part == link)
     return [
-        output for output in own if output.member in (members if output.station else coefficients)
+        output
+        for output in own
+        if output.member in (members if output.load_point else coefficients)
     ]

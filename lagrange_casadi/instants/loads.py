@@ -1,7 +1,7 @@
 """Loads of a link as numbers: what acts at stations, and along it, with the functions that go with
 its coefficients.
 
-See :mod:`..equations.spreads`.
+See :mod:`..equations.distributed_loads`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..base.quantities import Output
 
 
 @dataclass(frozen=True, eq=False)
-class SpreadLoad:
+class DistributedLoad:
     """A load along a link up to ``end``, a ratio xi/l, on ``width`` of the link, both (t,) and the
     same at all instants.
 
@@ -50,7 +50,7 @@ class SpreadLoad:
             if ((place > 0.0) & (place < 1.0)).any()
         ]
 
-    def during(self, instants: slice) -> SpreadLoad:
+    def during(self, instants: slice) -> DistributedLoad:
         """Load at some of the instants."""
         terms = {
             member: tuple(values[instants] for values in rows)
@@ -58,7 +58,7 @@ class SpreadLoad:
         }
         return replace(self, width=self.width[instants], end=self.end[instants], terms=terms)
 
-    def of(self, link: str, outputs: Mapping[Output, Array]) -> SpreadLoad:
+    def of(self, link: str, outputs: Mapping[Output, Array]) -> DistributedLoad:
         """Load of a link with other numbers, (..., t)."""
 
         def value(member: str, power: int | None = None) -> Array:
@@ -67,7 +67,7 @@ class SpreadLoad:
         terms = {
             member: tuple(value(member, j) for j in range(self.powers)) for member in self.terms
         }
-        return SpreadLoad(self.name, value("width"), value("end"), terms)
+        return DistributedLoad(self.name, value("width"), value("end"), terms)
 
     def bound(self, direction: str, length: float, *, arm: bool) -> Array | float:
         """The largest size of what any section feels of it where its coefficients have any sign,
@@ -83,13 +83,13 @@ class SpreadLoad:
         )
 
     def moved(
-        self, direction: str, change: SpreadLoad, u: Array, length: float, *, arm: bool
+        self, direction: str, change: DistributedLoad, u: Array, length: float, *, arm: bool
     ) -> Array:
         """Change of a force or moment at ratios ``u`` (t, n) with width and end, whose changes are
         (..., t).
         """
         width, end = self.width[..., :1], self.end[..., :1]
-        # x, L and a of equations/spreads.py.
+        # x, L and a of equations/distributed_loads.py.
         x, reach, lever = (
             np.clip((end - u) / width, 0.0, 1.0),
             length * width,
@@ -130,9 +130,9 @@ class SpreadLoad:
         return np.where((end - width < middle) & (middle < end), value, 0.0)
 
 
-def spread_load(
+def distributed_load(
     name: str, members: Mapping[str, Array], terms: Mapping[str, Mapping[int, Array]]
-) -> SpreadLoad:
+) -> DistributedLoad:
     """A load along a link, by the names of its members, and of its terms by direction and power.
 
     Raises ``ValueError`` where one of these is missing.
@@ -144,7 +144,7 @@ def spread_load(
     many = {len(rows) for rows in (*powers.values(), *terms.values())}
     if set(members) != {"width", "end"} or len(many) != 1:
         raise ValueError(f"the load along the link '{name}' is not whole")
-    return SpreadLoad(name, members["width"], members["end"], powers)
+    return DistributedLoad(name, members["width"], members["end"], powers)
 
 
 _Load = TypeVar("_Load", bound="_AtStation")
@@ -166,7 +166,7 @@ class _AtStation:
 
 
 @dataclass(frozen=True, eq=False)
-class StationLoad(_AtStation):
+class PointLoad(_AtStation):
     """Action in the plane: force along ``n`` and across ``f`` the link's axis [N], moment ``m``
     [N m], each (t,).
     """
@@ -177,7 +177,7 @@ class StationLoad(_AtStation):
 
 
 @dataclass(frozen=True, eq=False)
-class SpatialStationLoad(_AtStation):
+class SpatialPointLoad(_AtStation):
     """Action in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments
     ``mx``, ``my``, ``mz`` [N m].
     """
@@ -190,11 +190,11 @@ class SpatialStationLoad(_AtStation):
     mz: Array
 
 
-AnyStationLoad = StationLoad | SpatialStationLoad
+AnyPointLoad = PointLoad | SpatialPointLoad
 
 
-def station_load(name: str, members: Mapping[str, Array]) -> AnyStationLoad:
+def point_load(name: str, members: Mapping[str, Array]) -> AnyPointLoad:
     """Make the action at a load point by the names of its members: those of the plane or those of
     space.
     """
-    return StationLoad(name, **members) if "f" in members else SpatialStationLoad(name, **members)
+    return PointLoad(name, **members) if "f" in members else SpatialPointLoad(name, **members)

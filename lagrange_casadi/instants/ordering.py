@@ -43,7 +43,7 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
             group,
             parts.index(part),
             axis,
-            output.station,
+            output.load_point,
             rows.index(output.meant(table)),
             output.power or 0,
         )
@@ -54,7 +54,7 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
 _GROUPS = ("effort", "reaction", "friction", "section", *LARGEST, "output")
 
 
-def told(solution: Solution) -> Iterator[Output]:
+def ordered(solution: Solution) -> Iterator[Output]:
     """Efforts, reactions with their resultants, section forces, what is largest along links, and
     own outputs.
     """

@@ -20,13 +20,13 @@ from ..equations.program import Program
 _TURN = np.longdouble("6.283185307179586476925286766559005768")
 
 
-def phases(graph: Program, out: Array, t: Array, p: Array) -> dict[Output, Array]:
+def phases(program: Program, out: Array, t: Array, p: Array) -> dict[Output, Array]:
     """The angles of drives from their laws of motion, and of loops from the columns ``out``
     (columns, t).
     """
-    laws, coordinates = graph.laws, graph.data.kinds.coordinates
-    rows = {angle: out[graph.outputs[angle]] for angle in graph.loop_angles}
-    driven = [np.longdouble(row) for row in np.atleast_2d(graph.motion(t[None], p)[0].full())]
+    laws, coordinates = program.laws, program.data.kinds.coordinates
+    rows = {angle: out[program.outputs[angle]] for angle in program.loop_angles}
+    driven = [np.longdouble(row) for row in np.atleast_2d(program.motion(t[None], p)[0].full())]
     if followable(laws.motion):
         known = numpy_arithmetic()
         # A turn is meant, not the double that is nearest to it.
@@ -36,8 +36,8 @@ def phases(graph: Program, out: Array, t: Array, p: Array) -> dict[Output, Array
         driven = list(
             interpret(laws.motion, [[np.longdouble(t)], [np.longdouble(x) for x in p]], exact)[0]
         )
-    for name, angle in zip(graph.driven, driven, strict=True):
-        if coordinates[name] == "angle" and Output("motion", name) in graph.outputs:
+    for name, angle in zip(program.driven, driven, strict=True):
+        if coordinates[name] == "angle" and Output("motion", name) in program.outputs:
             whole = np.broadcast_to(
                 np.asarray(angle - _TURN * np.rint(angle / _TURN), float), t.shape
             )

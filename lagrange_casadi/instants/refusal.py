@@ -25,8 +25,8 @@ from ..equations.program import Program
 from ..equations.status import Bound, Rule, outside
 from ..errors import AssemblyError
 from .backends import Evaluated, run
+from .evaluation_method import EvaluationMethod
 from .rules import beside, limits
-from .rung import Rung
 
 _JAM = (
     "friction has no unique solution there (jamming); reduce mu, lengthen the guide, or push"
@@ -45,95 +45,119 @@ class Refusal:
     message: str
 
 
-def refuse(graph: Program, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> None:
+def refuse(
+    program: Program, evaluated: Evaluated, t: Array, p: Array, method: EvaluationMethod
+) -> None:
     """Raise :class:`AssemblyError` for the first instant that has no result."""
-    found = refusal(graph, evaluated, t, p, rung)
+    found = refusal(program, evaluated, t, p, method)
     if found is not None:
         raise AssemblyError(found.message)
 
 
-def refusal(graph: Program, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> Refusal | None:
+def refusal(
+    program: Program, evaluated: Evaluated, t: Array, p: Array, method: EvaluationMethod
+) -> Refusal | None:
     """Reason why the first instant without a result has none; None if all have one."""
     precision = evaluated.stages.precision
-    shares = zip(graph.bounds, limits(graph, precision, rung.newton, graph.extent(p)), strict=True)
+    shares = zip(
+        program.bounds, limits(program, precision, method.newton, program.extent(p)), strict=True
+    )
     most = [math.inf if bound.kind.startswith("OPEN") else limit for bound, limit in shares]
-    numbers = _first_broken(graph, evaluated, most, _beside(graph, evaluated.out, most, t, p, rung))
-    statuses = np.array([Status.OK, *(rule.status for rule in graph.rules)])[numbers]
+    numbers = _first_broken(
+        program, evaluated, most, _beside(program, evaluated.out, most, t, p, method)
+    )
+    statuses = np.array([Status.OK, *(rule.status for rule in program.rules)])[numbers]
     finite = (evaluated.status != Status.NOT_FINITE) | (statuses == Status.AT_REST)
     bad = ~(finite & np.isin(statuses, (Status.OK, Status.AT_REST)))
     if not bad.any():
         return None
     i = int(np.argmax(bad))
-    coordinates = graph.data.kinds.coordinates
-    driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
+    coordinates = program.data.kinds.coordinates
+    driven = np.atleast_1d(program.motion(t[i], p)[0].full().ravel())
     at = where(
-        (name, coordinates[name], value) for name, value in zip(graph.driven, driven, strict=True)
+        (name, coordinates[name], value) for name, value in zip(program.driven, driven, strict=True)
     )
     at = f"at t = {t[i]:.6g} s{at}"
     status = Status(int(statuses[i]))
     if status in (Status.OK, Status.AT_REST):
-        refused = Refusal(Status.NOT_FINITE, _not_finite(graph, evaluated.out[:, i], at))
+        refused = Refusal(Status.NOT_FINITE, _not_finite(program, evaluated.out[:, i], at))
     else:
-        left_open = functools.partial(_left_open, graph, evaluated.iterated[:, i], float(t[i]), p)
+        left_open = functools.partial(_left_open, program, evaluated.iterated[:, i], float(t[i]), p)
         refused = Refusal(
             status,
-            _Broken(graph, graph.rules[numbers[i] - 1], evaluated.out[:, i], most, at).words(
+            _Broken(program, program.rules[numbers[i] - 1], evaluated.out[:, i], most, at).words(
                 left_open
             ),
         )
-    return replace(refused, message=_beyond(graph, p, precision, at) or refused.message)
+    return replace(refused, message=_beyond(program, p, precision, at) or refused.message)
 
 
 def _first_broken(
-    graph: Program, evaluated: Evaluated, most: Sequence[float], beside: Array
+    program: Program, evaluated: Evaluated, most: Sequence[float], beside: Array
 ) -> npt.NDArray[np.intp]:
     """The number of the first rule that each instant breaks (t,), or zero."""
-    checks = [np.asarray(evaluated.out[bound.column], float) for bound in graph.bounds]
+    checks = [np.asarray(evaluated.out[bound.column], float) for bound in program.bounds]
     given = [checks, [*map(np.float64, most)], [*beside], [evaluated.status.astype(float)]]
-    (found,) = interpret(graph.status, given, numpy_arithmetic())
+    (found,) = interpret(program.status, given, numpy_arithmetic())
     return np.broadcast_to(found[0], evaluated.status.shape).astype(np.intp)
 
 
 def _beside(
-    graph: Program, out: Array, most: Sequence[float], t: Array, p: Array, rung: Rung
+    program: Program,
+    out: Array,
+    most: Sequence[float],
+    t: Array,
+    p: Array,
+    method: EvaluationMethod,
 ) -> Array:
     """Values beside the checks of each instant (bounds, t), for :class:`.Bound`.
 
     If a closed form may come to zero before the next instant, the zero is looked for.
     """
-    found = beside(graph, out, outside(graph))
-    for k, (bound, limit) in enumerate(zip(graph.bounds, most, strict=True)):
+    found = beside(program, out, outside(program))
+    for k, (bound, limit) in enumerate(zip(program.bounds, most, strict=True)):
         after = np.flatnonzero(found[k])
-        if bound.kind == "CLOSURE" and graph.newton is None and after.size:
-            found[k, after] = _dead_between(graph, bound, limit, t[after], t[after + 1], p, rung)
+        if bound.kind == "CLOSURE" and program.newton is None and after.size:
+            found[k, after] = _dead_between(
+                program, bound, limit, t[after], t[after + 1], p, method
+            )
     return found
 
 
-def resting(graph: Program, out: Array) -> npt.NDArray[np.bool_]:
+def resting(program: Program, out: Array) -> npt.NDArray[np.bool_]:
     """Instants, from the columns ``out`` (columns, t), at which a joint with friction is at rest:
     forces that depend on its friction are indeterminate.
     """
     found = np.zeros(out.shape[-1], dtype=bool)
-    for row in graph.checks("rest").values():
+    for row in program.checks("rest").values():
         found |= np.asarray(out[row]) > 0.5
     return found
 
 
-def unfinished(graph: Program, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
+def unfinished(program: Program, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
     """Instants (t,) without a result; at rest there is one, except for what depends on friction."""
-    rests = (evaluated.status == Status.NOT_FINITE) & resting(graph, evaluated.out)
+    rests = (evaluated.status == Status.NOT_FINITE) & resting(program, evaluated.out)
     return np.asarray((evaluated.status != Status.OK) & ~rests)
 
 
 def _dead_between(
-    graph: Program, bound: Bound, limit: float, start: Array, stop: Array, p: Array, rung: Rung
+    program: Program,
+    bound: Bound,
+    limit: float,
+    start: Array,
+    stop: Array,
+    p: Array,
+    method: EvaluationMethod,
 ) -> npt.NDArray[np.bool_]:
     """Return whether a closure is zero between instants, sought where it is lowest, ever closer."""
     lowest = np.full(start.size, np.inf)
     for _ in range(ROUNDS):
         inside = np.linspace(start, stop, INSIDE)
         evaluated, _ = run(
-            graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags)
+            program,
+            inside.ravel(),
+            p,
+            EvaluationMethod(method.backend, method.precision, flags=method.flags),
         )
         closure = evaluated.out[bound.column].reshape(inside.shape)
         place = np.argmin(closure, axis=0)[None]
@@ -144,11 +168,11 @@ def _dead_between(
     return ~(lowest > limit)
 
 
-def _beyond(graph: Program, p: Array, precision: Precision, at: str) -> str | None:
+def _beyond(program: Program, p: Array, precision: Precision, at: str) -> str | None:
     """Message if the square of a link's length overflows in a precision."""
     numbers = np.finfo(DTYPES[precision])
     low, high = math.sqrt(numbers.tiny), math.sqrt(numbers.max)
-    for name, body in graph.data.at(p)["bodies"].items():
+    for name, body in program.data.at(p)["bodies"].items():
         length = body["length"]
         if length is not None and not low <= length <= high:
             what = (
@@ -159,29 +183,31 @@ def _beyond(graph: Program, p: Array, precision: Precision, at: str) -> str | No
     return None
 
 
-def _left_open(graph: Program, start: Array, t: float, p: Array) -> str:
+def _left_open(program: Program, start: Array, t: float, p: Array) -> str:
     """Describe the loops that iteration does not close at an instant: those with the largest
     residuals, or all if these are not known.
 
     What it was begun from says nothing of that: it goes on from there, each coordinate by steps of
     its own, so that loops that can be closed are.
     """
-    assert graph.newton is not None
-    motion, z = graph.motion(t, p), start[:, None]
-    largest = LARGEST_STEP * np.where(graph.newton.turning, 1.0, graph.extent(p))[:, None]
+    assert program.newton is not None
+    motion, z = program.motion(t, p), start[:, None]
+    largest = LARGEST_STEP * np.where(program.newton.turning, 1.0, program.extent(p))[:, None]
     for _ in range(_TRIALS):
-        correction, size = (found.full() for found in graph.newton.step(z, t, motion[0], p))
+        correction, size = (found.full() for found in program.newton.step(z, t, motion[0], p))
         z = z + np.clip(correction * max(1.0, float(size[0, 0]) / LARGEST_STEP), -largest, largest)
-    out = graph.instant(t, *motion, z, p).full()[:, 0]
-    gaps = {closing: abs(float(out[k])) for closing, k in graph.checks("gap").items()}
+    out = program.instant(t, *motion, z, p).full()[:, 0]
+    gaps = {closing: abs(float(out[k])) for closing, k in program.checks("gap").items()}
     widest = max(gaps.values(), default=math.nan)
-    left = [graph.data.closing(closing) for closing, gap in gaps.items() if gap > _WIDE * widest]
-    return ", ".join(left) if 0 < len(left) < len(gaps) else graph.newton.joints
+    left = [program.data.closing(closing) for closing, gap in gaps.items() if gap > _WIDE * widest]
+    return ", ".join(left) if 0 < len(left) < len(gaps) else program.newton.joints
 
 
-def _not_finite(graph: Program, out: Array, at: str) -> str:
+def _not_finite(program: Program, out: Array, at: str) -> str:
     name = next(
-        column for column, value in zip(graph.columns, out, strict=True) if not math.isfinite(value)
+        column
+        for column, value in zip(program.columns, out, strict=True)
+        if not math.isfinite(value)
     )
     return f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"
 
@@ -190,7 +216,7 @@ def _not_finite(graph: Program, out: Array, at: str) -> str:
 class _Broken:
     """A rule that an instant breaks, whose columns are ``out``; ``at`` says in words when it is."""
 
-    graph: Program
+    program: Program
     rule: Rule
     out: Array
     most: Sequence[float]
@@ -198,7 +224,7 @@ class _Broken:
 
     def words(self, still_open: Callable[[], str]) -> str:
         """Message of a refusal; ``still_open`` names the loops that iteration did not close."""
-        newton, at, k = self.graph.newton, self.at, self.rule.bound
+        newton, at, k = self.program.newton, self.at, self.rule.bound
         if k is None:
             assert newton is not None
             if self.rule.status == Status.SLOW:
@@ -206,7 +232,7 @@ class _Broken:
                 return f"the loops closed by {newton.joints} converge slowly {at}: {cause}"
             cause = "their links do not reach, or the instant before is too far off"
             return f"the loops closed by {still_open()} did not converge {at}: {cause}"
-        bound = self.graph.bounds[k]
+        bound = self.program.bounds[k]
         part, value = str(bound.part), float(self.out[bound.column])
         if bound.kind in ("CLOSURE", "BRANCH"):
             return self._loop(bound)
@@ -215,14 +241,14 @@ class _Broken:
             return f"the {part}: the argument of its curve is outside the curve's range {at}, {far}"
         if bound.kind == "GAP":
             what = (
-                f"the solution of the loop closed by {self.graph.data.closing(part)} does not"
+                f"the solution of the loop closed by {self.program.data.closing(part)} does not"
                 " close it"
             )
             return f"{what} {at}: a gap of {abs(value):.3g} m"
         if bound.kind == "MISFIT":
             gap = f"a gap of {value:.3g} of the links' length"
             return (
-                f"the loops closed by {self.graph.data.closing(part)} are over-constrained and do"
+                f"the loops closed by {self.program.data.closing(part)} are over-constrained and do"
                 f" not fit {at}: {gap}"
             )
         if bound.kind == "TURNED":
@@ -254,7 +280,7 @@ class _Broken:
     def _loop(self, bound: Bound) -> str:
         """Message on a loop, on three turns, or on constraints of drives."""
         status, at, part = self.rule.status, self.at, bound.part
-        closed = self.graph.data.closing(str(part))
+        closed = self.program.data.closing(str(part))
         if status == Status.JUMPED:
             return (
                 f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
@@ -263,14 +289,14 @@ class _Broken:
             return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
         passes = status == Status.PASSES_DEAD_CENTRE
         after = f"after {at.removeprefix('at ')}"
-        if bound.column in self.graph.checks("gimbal").values():
+        if bound.column in self.program.checks("gimbal").values():
             lock = f"passes gimbal lock {after}" if passes else f"is in gimbal lock {at}"
             why = (
                 "its third axis comes to lie along its first; choose axis and second so that turn_2"
                 " keeps away from 90 deg"
             )
             return f"joint '{part}' {lock}: {why}"
-        if bound.column in self.graph.checks("roll").values():
+        if bound.column in self.program.checks("roll").values():
             lies = (
                 f"comes to lie along its beside {after}"
                 if passes
@@ -280,7 +306,7 @@ class _Broken:
                 f"bar '{part}' {lies}, so its y axis is undefined; choose a direction that stays"
                 " across it"
             )
-        if bound.column in self.graph.checks("hold").values():
+        if bound.column in self.program.checks("hold").values():
             where_to = f"cannot produce the motion {after if passes else at}"
             return (
                 f"the drives {part} {where_to}: the mechanism can move there while they are at"
@@ -293,7 +319,7 @@ class _Broken:
             )
         near = (
             "; if it only comes near one, take more instants"
-            if self.graph.newton is not None
+            if self.program.newton is not None
             else ""
         )
         return (

@@ -16,8 +16,8 @@ from ..codegen.emit import NEWTON_LOST
 from ..declare.ends import BEYOND
 from ..equations.checks import Check
 from ..equations.program import Program
+from ..equations.revolutions import REACH
 from ..equations.status import Bound
-from ..equations.turns import REACH
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """Largest residual of redundant equations, relative to the links' length, and of a row, relative to
@@ -41,31 +41,32 @@ EXTENSIVE = ("GAP", "OPEN_MOMENT")
 
 
 def limits(
-    graph: Program, precision: Precision, newton: int | None, extent: Expression
+    program: Program, precision: Precision, newton: int | None, extent: Expression
 ) -> list[Expression]:
     """The limits of a graph's bounds, in their order, for its ``extent``; ``newton`` as in
-    :class:`.Rung`.
+    :class:`.EvaluationMethod`.
     """
     shares = (
-        (limit(graph, bound, precision, newton), bound.kind in EXTENSIVE) for bound in graph.bounds
+        (limit(program, bound, precision, newton), bound.kind in EXTENSIVE)
+        for bound in program.bounds
     )
     return [share * extent if extensive else share for share, extensive in shares]
 
 
-def limit(graph: Program, bound: Bound, precision: Precision, newton: int | None) -> float:
+def limit(program: Program, bound: Bound, precision: Precision, newton: int | None) -> float:
     """The limit of a bound; of those that are :data:`EXTENSIVE` a share
     of the mechanism's extent.
     """
     exact, kind = newton is None, bound.kind
     if kind in ("OPEN", "OPEN_MOMENT"):
-        return open_limit(graph, precision, newton)
+        return open_limit(program, precision, newton)
     if kind == "BEYOND":
         return BEYOND[precision]
     if kind in ("CLOSURE", "BRANCH"):
-        check = graph.columns[bound.column]
+        check = program.columns[bound.column]
         assert isinstance(check, Check)
         return (
-            dead_centre(graph, precision, str(bound.part))
+            dead_centre(program, precision, str(bound.part))
             if check.kind == "closure"
             else _DEAD * ROUNDING[precision]
         )
@@ -78,37 +79,37 @@ def limit(graph: Program, bound: Bound, precision: Precision, newton: int | None
     return {"JAM": _DEAD * ROUNDING[precision], "REST": 0.5, "TURNED": REACH}[kind]
 
 
-def open_limit(graph: Program, precision: Precision, newton: int | None) -> float:
+def open_limit(program: Program, precision: Precision, newton: int | None) -> float:
     """Limit of how far a determined force may change with what equilibrium leaves open; of a
     moment, a share of the extent.
     """
     return max(
-        OPEN[precision] if newton is None else max(_COUNTED, OPEN[precision]), graph.data.rounding
+        OPEN[precision] if newton is None else max(_COUNTED, OPEN[precision]), program.data.rounding
     )
 
 
-def dead_centre(graph: Program, precision: Precision, closure: str) -> float:
+def dead_centre(program: Program, precision: Precision, closure: str) -> float:
     """Below what a closure says nothing: of a closed form it is the square of a sine, of an
     iterated loop as the sine itself.
     """
     square = _DEAD * ROUNDING[precision]
-    return math.sqrt(square) if graph.iterates(closure) else square
+    return math.sqrt(square) if program.iterates(closure) else square
 
 
-def beside(graph: Program, out: Array, outside: float) -> Array:
+def beside(program: Program, out: Array, outside: float) -> Array:
     """Values beside the checks of each instant of columns ``out`` (columns, t), (bounds, t): see
     :class:`.Bound`. Closures are ``outside`` before the first instant and after the last.
     """
     count = out.shape[-1]
     seen = [
         np.pad(row, (1, 2), constant_values=row[-1] if bound.kind == "TURNED" else outside)
-        for bound in graph.bounds
+        for bound in program.bounds
         for row in [np.asarray(out[bound.column], float)]
     ]
     most = [
         np.fmax.reduce(out[bound.size], initial=0.0) if bound.kind == "ROW" else 0.0
-        for bound in graph.bounds
+        for bound in program.bounds
     ]
     shifted = [[row[k : k + count] for row in seen] for k in range(4)]
-    (found,) = interpret(graph.beside, [*shifted, most], numpy_arithmetic())
+    (found,) = interpret(program.beside, [*shifted, most], numpy_arithmetic())
     return np.array([np.broadcast_to(row, count) for row in found], float).reshape(-1, count)

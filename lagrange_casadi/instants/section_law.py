@@ -21,18 +21,18 @@ import numpy as np
 from ..base.arrays import Array, Operand
 from ..base.brief import Brief
 from ..base.quantities import Output
-from ..base.room import cores, require
+from ..base.space import cores, require
 from ..base.tables import PLANE, SPACE, Table
 from ..declare.density import NumericDensity
 from ..declare.limits import END
 from ..equations.section_function import SIDES, Side, edge
 from . import grids
 from .basis import Basis
-from .loads import AnyStationLoad, SpreadLoad, StationLoad
+from .loads import AnyPointLoad, DistributedLoad, PointLoad
 from .sizes import growth_of_size, size_of, slope_of_size
-from .turning import Turns, turns_between, zeros_of_shear, zeros_of_uniform_shear
+from .turning import StationaryPoints, stationary_points, zeros_of_shear, zeros_of_uniform_shear
 
-__all__ = ["Basis", "SectionLaw", "Side", "StationLoad"]
+__all__ = ["Basis", "SectionLaw", "Side", "PointLoad"]
 
 _BLOCK = 1 << 15
 
@@ -50,8 +50,8 @@ class SectionLaw(Brief):
     length: float
     density: NumericDensity
     coefficients: Mapping[str, Array]
-    loads: tuple[AnyStationLoad, ...] = ()
-    spreads: tuple[SpreadLoad, ...] = ()
+    loads: tuple[AnyPointLoad, ...] = ()
+    distributed_loads: tuple[DistributedLoad, ...] = ()
     slack: float = END["double"]
 
     @cached_property
@@ -67,7 +67,7 @@ class SectionLaw(Brief):
         """The functions along the link at ratios ``xi`` of any shape; they serve every force, and
         the law at any instants.
         """
-        return Basis(np.asarray(xi, dtype=float), self.length, self.density, self.spreads)
+        return Basis(np.asarray(xi, dtype=float), self.length, self.density, self.distributed_loads)
 
     def on_grid(
         self, force: str, xi: Array | Basis, out: Array | None = None, threads: int | None = None
@@ -102,8 +102,12 @@ class SectionLaw(Brief):
         """The law at some of the instants."""
         coefficients = {name: values[instants] for name, values in self.coefficients.items()}
         loads = tuple(load.during(instants) for load in self.loads)
-        spreads = tuple(spread.during(instants) for spread in self.spreads)
-        return replace(self, coefficients=coefficients, loads=loads, spreads=spreads)
+        distributed_loads = tuple(
+            distributed.during(instants) for distributed in self.distributed_loads
+        )
+        return replace(
+            self, coefficients=coefficients, loads=loads, distributed_loads=distributed_loads
+        )
 
     def at(self, force: str, xi: Operand, side: Side = "tip") -> Array:
         """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is
@@ -114,8 +118,8 @@ class SectionLaw(Brief):
             return size_of(self.at(part, u, side) for part in parts)
         values = self._smooth(force, u)
         for load in self.loads:
-            station = _column(load.station, u)
-            values = values + self._beyond(force, load, u, edge(u, self.slack, side) < station)
+            load_point = _column(load.station, u)
+            values = values + self._beyond(force, load, u, edge(u, self.slack, side) < load_point)
         return values
 
     def of(self, link: str, outputs: Mapping[Output, Array]) -> SectionLaw:
@@ -135,7 +139,7 @@ class SectionLaw(Brief):
             self,
             coefficients=coefficients,
             loads=loads,
-            spreads=tuple(s.of(link, outputs) for s in self.spreads),
+            distributed_loads=tuple(s.of(link, outputs) for s in self.distributed_loads),
         )
 
     def changed(self, changes: SectionLaw, xi: Array) -> dict[str, tuple[Array, Array]]:
@@ -147,9 +151,9 @@ class SectionLaw(Brief):
         The sizes are (t, n + stations, sides). A section sees what it saw before the change: that a
         station moves is no change by itself.
         """
-        stations = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
+        load_points = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
         u = np.stack(
-            [*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *stations], axis=-1
+            [*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *load_points], axis=-1
         )
         seen = [
             [edge(u, self.slack, side) < load.station[:, None] for side in SIDES]
@@ -166,21 +170,25 @@ class SectionLaw(Brief):
                 np.abs(column[:, None] * row) for column, row in zip(columns, rows, strict=True)
             )
             terms = self.table.sections[force]
-            for spread, moving in zip(self.spreads, changes.spreads, strict=True):
-                gaps = gaps + (terms.arm or 1) * spread.moved(
-                    terms.spread, moving, u, self.length, arm=bool(terms.arm)
+            for distributed, moving in zip(
+                self.distributed_loads, changes.distributed_loads, strict=True
+            ):
+                gaps = gaps + (terms.arm or 1) * distributed.moved(
+                    terms.distributed, moving, u, self.length, arm=bool(terms.arm)
                 )
-                gaps = gaps + spread.moved(terms.couple, moving, u, self.length, arm=False)
+                gaps = gaps + distributed.moved(terms.couple, moving, u, self.length, arm=False)
             gaps, sizes = (
                 np.repeat(values[..., None], len(SIDES) if self.loads else 1, axis=-1)
                 for values in (gaps, sizes)
             )
             for load, change, there in zip(self.loads, changes.loads, seen, strict=True):
-                station, constant, slope = (values[:, None] for values in self._acting(force, load))
+                load_point, constant, slope = (
+                    values[:, None] for values in self._acting(force, load)
+                )
                 moved, more, steeper = (values[..., None] for values in self._acting(force, change))
                 gap, size = (
-                    more + steeper * (station + moved - u) + slope * moved,
-                    np.abs(constant) + np.abs(slope * (station - u)),
+                    more + steeper * (load_point + moved - u) + slope * moved,
+                    np.abs(constant) + np.abs(slope * (load_point - u)),
                 )
                 for k, visible in enumerate(there):
                     gaps[..., k] += np.where(visible, gap, 0.0)
@@ -222,15 +230,18 @@ class SectionLaw(Brief):
         slope = -self.density.at(u) * (first + self.length * u * second)
         return np.asarray(
             slope
-            - sum(self.length * spread.here(terms.spread, u, middle) for spread in self.spreads)
+            - sum(
+                self.length * distributed.here(terms.distributed, u, middle)
+                for distributed in self.distributed_loads
+            )
         )
 
     def _turned(self, force: str, u: Array, middle: Array) -> Array:
         """The couple per length that the rotary inertia of slices puts into a moment."""
         couple, found = self.table.sections[force].couple, np.zeros(u.shape)
-        for spread in self.spreads:
-            if couple in spread.terms:
-                found = found + spread.here(couple, u, middle)
+        for distributed in self.distributed_loads:
+            if couple in distributed.terms:
+                found = found + distributed.here(couple, u, middle)
         return found
 
     def rate(self, force: str, rates: SectionLaw, xi: Array, side: Side = "tip") -> Array:
@@ -246,21 +257,23 @@ class SectionLaw(Brief):
                 [self.rate(part, rates, u, side) for part in parts],
             )
         # Loads along the link grow where they are.
-        spreads = tuple(
+        distributed_loads = tuple(
             replace(own, terms=change.terms)
-            for own, change in zip(self.spreads, rates.spreads, strict=True)
+            for own, change in zip(self.distributed_loads, rates.distributed_loads, strict=True)
         )
         values, passing = (
-            replace(rates, loads=(), spreads=spreads).at(force, u, side),
+            replace(rates, loads=(), distributed_loads=distributed_loads).at(force, u, side),
             np.zeros(u.shape),
         )
         for load, change in zip(self.loads, rates.loads, strict=True):
-            station, _, slope = (_column(values, u) for values in self._acting(force, load))
+            load_point, _, slope = (_column(values, u) for values in self._acting(force, load))
             going, more, steeper = (_column(values, u) for values in self._acting(force, change))
             # A station that moves takes its force's arm with it.
-            felt = edge(u, self.slack, side) < station
-            values = values + np.where(felt, more + slope * going + steeper * (station - u), 0.0)
-            passing = np.where(u == station, going, passing)
+            beyond = edge(u, self.slack, side) < load_point
+            values = values + np.where(
+                beyond, more + slope * going + steeper * (load_point - u), 0.0
+            )
+            passing = np.where(u == load_point, going, passing)
         return values + passing * self.along(force, u, side) if self.loads else values
 
     def bound(self, force: str, xi: Array) -> float:
@@ -269,18 +282,20 @@ class SectionLaw(Brief):
         """
         if len(parts := self._parts(force)) > 1:
             return math.hypot(*(self.bound(part, xi) for part in parts))
-        bare = replace(self, spreads=())
+        bare = replace(self, distributed_loads=())
         columns, rows = bare._terms(force, bare.basis(xi))
         size = sum(
             np.abs(column)[:, None] * np.abs(row) for column, row in zip(columns, rows, strict=True)
         )
-        for spread in self.spreads:
-            size = size + spread.bound(
-                self.table.sections[force].spread,
+        for distributed in self.distributed_loads:
+            size = size + distributed.bound(
+                self.table.sections[force].distributed,
                 self.length,
                 arm=bool(self.table.sections[force].arm),
             )
-            size = size + spread.bound(self.table.sections[force].couple, self.length, arm=False)
+            size = size + distributed.bound(
+                self.table.sections[force].couple, self.length, arm=False
+            )
         for load in self.loads:
             _, constant, slope = self._acting(force, load)
             size = size + (np.abs(constant) + np.abs(slope))[:, None]
@@ -306,7 +321,7 @@ class SectionLaw(Brief):
 
     def _blocks(self, force: str) -> list[SectionLaw]:
         """The law over few instants after another, so that what is sought at them stays at hand."""
-        many = len(self._parts(force)) > 1 or self.spreads
+        many = len(self._parts(force)) > 1 or self.distributed_loads
         turns = (2 * self._highest + 4) * len(self.density.cells) if many else 1
         height = max(1, _BLOCK // (turns * (len(self._marked) + 1))) if turns > 1 else _BLOCK
         return [
@@ -315,7 +330,7 @@ class SectionLaw(Brief):
         ]
 
     def _reached(self, force: str) -> tuple[Array, Array]:
-        places, values = self._marks(force, all_turns=True)
+        places, values = self._marks(force, all_rotations=True)
         columns = np.stack(
             [
                 np.argmin(values, axis=1),
@@ -342,18 +357,19 @@ class SectionLaw(Brief):
         loads act along the link, stations are also where these begin and end and where the density
         jumps, and every force is looked at as resultants are.
         """
-        return self._marks(force, all_turns=False)
+        return self._marks(force, all_rotations=False)
 
-    def _marks(self, force: str, *, all_turns: bool) -> tuple[Array, Array]:
+    def _marks(self, force: str, *, all_rotations: bool) -> tuple[Array, Array]:
         """The same; or of a resultant wherever it turns, its smallest sizes too."""
         still = np.zeros_like(self.coefficients["n0"])
-        stations = self._marked
+        load_points = self._marked
         places = np.stack(
-            [still, still + 1.0, *(station for station in stations for _ in range(2))], axis=1
+            [still, still + 1.0, *(load_point for load_point in load_points for _ in range(2))],
+            axis=1,
         )
         values = self.at(force, places)
         values[:, 3::2] = self.at(force, places[:, 3::2], side="base")
-        inner = np.sort(np.stack([still, *stations, still + 1.0], axis=1), axis=1)
+        inner = np.sort(np.stack([still, *load_points, still + 1.0], axis=1), axis=1)
         low, high = inner[:, :-1], inner[:, 1:]
         seen = [edge(low, self.slack) < load.station[:, None] for load in self.loads]
 
@@ -368,7 +384,7 @@ class SectionLaw(Brief):
             return np.asarray(self._smooth(name, u) + sum(beyond))
 
         parts = self._parts(force)
-        if len(parts) == 1 and not self.spreads:
+        if len(parts) == 1 and not self.distributed_loads:
             found = self._turning(force, within, low, high)
         elif (
             force in self.table.sections
@@ -380,8 +396,8 @@ class SectionLaw(Brief):
             turns = self._turns_of_size(parts, within, low, high)
             found = (
                 list(np.moveaxis(turns.places, -1, 0))
-                if all_turns
-                else turns.summits(np.abs(within(force, turns.places)))
+                if all_rotations
+                else turns.maxima(np.abs(within(force, turns.places)))
             )
         return np.hstack([places, *found]), np.hstack(
             [values, *(within(force, place) for place in found)]
@@ -394,9 +410,9 @@ class SectionLaw(Brief):
         """
         marks = [
             *(load.station for load in self.loads),
-            *(mark for spread in self.spreads for mark in spread.marks),
+            *(mark for distributed in self.distributed_loads for mark in distributed.marks),
         ]
-        if self.spreads:
+        if self.distributed_loads:
             marks += [np.full_like(self.coefficients["n0"], jump) for jump in self.density.jumps]
         return [np.clip(mark, 0.0, 1.0) for mark in marks]
 
@@ -418,13 +434,15 @@ class SectionLaw(Brief):
     def _thick(self) -> bool:
         """True if slices have rotary inertia."""
         return any(
-            couple in spread.terms for spread in self.spreads for couple in self.table.couples
+            couple in distributed.terms
+            for distributed in self.distributed_loads
+            for couple in self.table.couples
         )
 
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
         terms = self.table.sections[force]
         columns = [self.coefficients[name] for name in terms.coefficients]
-        return basis.of(terms, columns, self.spreads)
+        return basis.of(terms, columns, self.distributed_loads)
 
     def _smooth(self, force: str, u: Array) -> Array:
         columns, rows = self._terms(force, self.basis(u))
@@ -432,7 +450,7 @@ class SectionLaw(Brief):
             sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True))
         )
 
-    def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
+    def _acting(self, force: str, load: AnyPointLoad) -> grids.Load:
         terms = self.table.sections[force]
         constant = getattr(load, terms.acting)
         if not terms.arm:
@@ -443,9 +461,9 @@ class SectionLaw(Brief):
             terms.arm * getattr(load, self.table.sections[terms.shear].acting) * self.length,
         )
 
-    def _beyond(self, force: str, load: AnyStationLoad, u: Array, seen: Operand) -> Array:
-        station, constant, slope = (_column(values, u) for values in self._acting(force, load))
-        return np.where(seen, constant + slope * (station - u), 0.0)
+    def _beyond(self, force: str, load: AnyPointLoad, u: Array, seen: Operand) -> Array:
+        load_point, constant, slope = (_column(values, u) for values in self._acting(force, load))
+        return np.where(seen, constant + slope * (load_point - u), 0.0)
 
     def _turning(
         self, force: str, within: Callable[[str, Array], Array], low: Array, high: Array
@@ -474,7 +492,7 @@ class SectionLaw(Brief):
 
     def _turns_of_size(
         self, parts: tuple[str, ...], within: Callable[[str, Array], Array], low: Array, high: Array
-    ) -> Turns:
+    ) -> StationaryPoints:
         """Extrema of a force, or of the square of a resultant: of a shear force, the zeros of V'.
 
         V' = 0, of a bending one where M . M' = 0.
@@ -490,7 +508,7 @@ class SectionLaw(Brief):
                 return -terms.arm * within(terms.shear, u)
             if bends:
                 return -terms.arm * within(terms.shear, u) - self._turned(part, u, middle)
-            if self.spreads:
+            if self.distributed_loads:
                 return self._falling(part, u, middle)
             first, second = (_column(self.coefficients[name], u) for name in terms.coefficients[1:])
             return np.asarray(-(first + self.length * u * second))
@@ -501,7 +519,7 @@ class SectionLaw(Brief):
                     return slope(parts[0], u)
                 return np.asarray(sum(within(part, u) * slope(part, u) for part in parts))
 
-        return turns_between(
+        return stationary_points(
             change,
             low,
             high,
@@ -520,7 +538,7 @@ class SectionLaw(Brief):
             2 * self._highest + 3
             if bends
             else 2 * self._highest + 1
-            if self.spreads
+            if self.distributed_loads
             else self._highest + 2
         )
 
@@ -530,7 +548,9 @@ class SectionLaw(Brief):
         density.
         """
         return max(
-            *map(len, self.density.cells), *(spread.powers - 1 for spread in self.spreads), 0
+            *map(len, self.density.cells),
+            *(distributed.powers - 1 for distributed in self.distributed_loads),
+            0,
         )
 
 

@@ -21,10 +21,10 @@ from ..codegen.stages import Stages
 from ..declare.density import NumericDensity
 from ..declare.description import Description, density_of, in_space
 from ..equations.program import Program
-from ..summits.between import Flags
-from ..summits.panels import Curves, Listed, Peaks, Samples
-from ..summits.search import peaks
-from ..summits.sharpness import Sharpness, bent
+from ..peak_search.between import Flags
+from ..peak_search.intervals import Curves, Listed, Peaks, Samples
+from ..peak_search.search import peaks
+from ..peak_search.sharpness import Sharpness, bent
 from .backends import follow
 from .laws import law_of
 from .sizes import size_of
@@ -90,12 +90,12 @@ class Signals:
     """Quantities of a graph, in its ``stages``, for parameters ``p`` over instants ``t``, with
     iterated coordinates ``z`` there.
 
-    ``newton`` is as in :class:`.Rung`. ``turned`` are, by the number of an angle that loops set,
-    its values at the instants, which tell its turns. ``rounding`` (watched, 1) is how far from zero
-    each of the watched counts as zero.
+    ``newton`` is as in :class:`.EvaluationMethod`. ``turned`` are, by the number of an angle that
+    loops set, its values at the instants, which tell its turns. ``rounding`` (watched, 1) is how
+    far from zero each of the watched counts as zero.
     """
 
-    graph: Program
+    program: Program
     stages: Stages
     sharpness: Sharpness
     quantities: Sequence[Quantity]
@@ -134,7 +134,7 @@ class Signals:
                 curves,
                 self.t,
                 samples,
-                bent(self.graph, self.sharpness, self.t, self.p),
+                bent(self.program, self.sharpness, self.t, self.p),
                 listed,
             )
 
@@ -156,9 +156,9 @@ class Signals:
         """
         z = np.zeros((self.z.shape[0], t.size))
         failed = np.zeros(t.size, dtype=bool)
-        for k in range(t.size if self.graph.newton else 0):
+        for k in range(t.size if self.program.newton else 0):
             at, status = follow(
-                self.graph,
+                self.program,
                 t[k : k + 1],
                 self.p,
                 self.z[:, near[k]],
@@ -186,7 +186,7 @@ class Signals:
 
     def inputs(self, t: Array, z: Array) -> tuple[Operand, ...]:
         """Arguments of the graph's columns at times."""
-        return t[None], *self.graph.motion(t[None], self.p), z, self.p
+        return t[None], *self.program.motion(t[None], self.p), z, self.p
 
     def columns(self, t: Array, z: Array) -> Array:
         """The graph's columns at times, (columns, t), where the iterated coordinates are told."""

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 class Provenance:
     """Origin of the numbers.
 
-    Holds no clock, no user and no path; ``rung`` are the options of the :class:`.Rung`.
+    Holds no clock, no user and no path; ``rung`` are the options of the :class:`.EvaluationMethod`.
     """
 
     backend: str
@@ -315,12 +315,12 @@ class Solution:
     @property
     def by_equilibrium(self) -> Solution:
         """Solution without the results from elasticity: these are indeterminate, and NaN."""
-        told = self.elasticity.told
-        nothing = {output: np.full_like(self.t, np.nan) for output in told}
+        completed = self.elasticity.told
+        nothing = {output: np.full_like(self.t, np.nan) for output in completed}
         return replace(
             self,
             outputs={**self.outputs, **nothing},
-            left_open=(*self.left_open, *told),
+            left_open=(*self.left_open, *completed),
             elasticity=Elasticity(),
         )
 

@@ -32,7 +32,7 @@ _HALFWAY = np.array([float(weight) for weight in weights(np.array(0.5))])
 
 
 def tabulate(
-    graph: Program, p: Array, table: int | float, rates: tuple[float, float]
+    program: Program, p: Array, table: int | float, rates: tuple[float, float]
 ) -> CycleTable:
     """The table of a scene's cycle for parameters ``p`` (in the mechanism's order), which serves
     any motion of its one drive.
@@ -54,14 +54,14 @@ def tabulate(
     for an accuracy that is not reached, and for mistakes in the arguments.
     """
     accuracy, nodes = _asked(table)
-    for output in graph.outputs:
+    for output in program.outputs:
         if output.group in LARGEST_ALONG:
             raise DeclarationError(
                 f"table: {output} is not a polynomial of the rate; want section:{output.part} in"
                 " place of it, and evaluate strength from the solution"
             )
     largest = _largest(rates)
-    cycle = cycle_of(graph, p, largest)
+    cycle = cycle_of(program, p, largest)
     values, best = cycle.values(nodes), None
     while True:
         between = cycle.values(nodes, halfway=True)
@@ -95,7 +95,7 @@ def tabulate(
 
 
 @functools.lru_cache(maxsize=32)
-def still(graph: Program, p: tuple[float, ...]) -> dict[Output, float]:
+def still(program: Program, p: tuple[float, ...]) -> dict[Output, float]:
     """The stations that do not move, as ratios xi/l for parameters ``p``: a spline would round them
     to either side of a section.
 
@@ -103,12 +103,14 @@ def still(graph: Program, p: tuple[float, ...]) -> dict[Output, float]:
     """
     places = {("station", "station"), ("spread", "width"), ("spread", "end")}
     rows = {
-        output: k for output, k in graph.outputs.items() if (output.group, output.member) in places
+        output: k
+        for output, k in program.outputs.items()
+        if (output.group, output.member) in places
     }
     if not rows:
         return {}
-    t, *moving, parameters = graph.instant.sx_in()
-    found = graph.instant(t, *moving, parameters)[list(rows.values())]
+    t, *moving, parameters = program.instant.sx_in()
+    found = program.instant(t, *moving, parameters)[list(rows.values())]
     depends = ca.jacobian_sparsity(found, ca.vertcat(t, *moving))
     fixed = [k for k in range(len(rows)) if k not in depends.row()]
     places = (
@@ -131,7 +133,7 @@ def _table(
     """The table through values at the nodes, and its errors by those between them, (factors,
     columns, nodes).
     """
-    graph = cycle.drive.graph
+    program = cycle.drive.program
     rate, acceleration = rates
     places = arranged(kept).terms
     coefficients = splines(
@@ -144,7 +146,7 @@ def _table(
         [_reach(part, rate, acceleration).max(axis=-1) for part in (values, between)], axis=0
     )
     peaks += np.abs(cycle.drift) * cycle.period
-    peaks[[k for kind in FRACTIONS for k in graph.checks(kind).values()]] = 1.0
+    peaks[[k for kind in FRACTIONS for k in program.checks(kind).values()]] = 1.0
     # The rate's square and the acceleration have one unit: where there is but one, the other still
     # rounds.
     turning = max(rate**2, acceleration)
@@ -152,7 +154,7 @@ def _table(
     beyond = np.maximum(_reach(gaps, rate, acceleration).max(axis=-1) - rounding, _EPSILON * peaks)
     errors = np.divide(beyond, peaks, out=np.zeros_like(beyond), where=peaks > 0.0)
     return CycleTable(
-        cycle.turns, graph.names, kept, coefficients, cycle.drift, rates, peaks, errors
+        cycle.turns, program.names, kept, coefficients, cycle.drift, rates, peaks, errors
     )
 
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from ..base.arrays import Array
-from ..summits.polynomials import interpolation
+from ..peak_search.polynomials import interpolation
 
 _HALVINGS = 60
 _ROUNDING = 2 * float(np.finfo(float).eps)
@@ -87,7 +87,7 @@ def zeros_of_uniform_shear(
     return [1.0 - np.where(b < 0.0, falling, rising), 1.0 - np.where(b < 0.0, rising, falling)]
 
 
-class Turns(NamedTuple):
+class StationaryPoints(NamedTuple):
     """Candidates of extrema, (t, parts, n): their ``places``, and whether each is a ``summit``.
 
     All zeros of its slope are among the places. The last two are where it rests in a part that has
@@ -95,17 +95,17 @@ class Turns(NamedTuple):
     """
 
     places: Array
-    summit: npt.NDArray[np.bool_]
+    is_maximum: npt.NDArray[np.bool_]
 
-    def summits(self, sizes: Array) -> list[Array]:
+    def maxima(self, sizes: Array) -> list[Array]:
         """Two summits for each part, (t, parts), in order along the link: the largest, by the
         ``sizes`` at all places.
 
         Where there is one, it is both; where there is none, both are the place at rest. So a summit
         that comes and goes by rounding, as where the slope is zero at an end, changes nothing.
         """
-        heights = np.where(self.summit, sizes, -np.inf)
-        none, rests = ~self.summit.any(axis=-1, keepdims=True), sizes.shape[-1] - 2
+        heights = np.where(self.is_maximum, sizes, -np.inf)
+        none, rests = ~self.is_maximum.any(axis=-1, keepdims=True), sizes.shape[-1] - 2
         larger = rests + np.argmax(sizes[..., rests:], axis=-1, keepdims=True)
         first = np.where(none, larger, np.argmax(heights, axis=-1, keepdims=True))
         np.put_along_axis(heights, first, -np.inf, -1)
@@ -118,7 +118,7 @@ class Turns(NamedTuple):
         return [np.minimum(*both), np.maximum(*both)]
 
 
-def turns_between(
+def stationary_points(
     slope: Callable[[Array], Array],
     low: Array,
     high: Array,
@@ -126,7 +126,7 @@ def turns_between(
     degree: int,
     *,
     signed: bool = False,
-) -> Turns:
+) -> StationaryPoints:
     """Extrema between ``low`` and ``high`` of a function whose ``slope`` is a polynomial of a
     ``degree`` between two ``breaks``.
 
@@ -136,17 +136,19 @@ def turns_between(
     slope is smaller, for a summit comes in there.
     """
     nodes, weights = interpolation(degree)
-    found: list[Turns] = []
+    found: list[StationaryPoints] = []
     for a, b in itertools.pairwise(breaks):
         start, stop = np.clip(a, low, high)[..., None], np.clip(b, low, high)[..., None]
         middle, half = (start + stop) / 2, (stop - start) / 2
         values = slope(middle + half * nodes)
         zeros, falls, rises = _zeros(np.moveaxis(values @ weights, -1, 0))
-        summit = falls | rises if signed else falls
-        found.append(Turns(np.clip(middle + half * zeros, start, stop), summit & (half > 0.0)))
+        is_maximum = falls | rises if signed else falls
+        found.append(
+            StationaryPoints(np.clip(middle + half * zeros, start, stop), is_maximum & (half > 0.0))
+        )
     rests = np.stack([_rest(slope, low, high)] * 2 if signed else [low, high], axis=-1)
-    found.append(Turns(rests, np.zeros(rests.shape, bool)))
-    return Turns(*(np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True)))
+    found.append(StationaryPoints(rests, np.zeros(rests.shape, bool)))
+    return StationaryPoints(*(np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True)))
 
 
 def _rest(slope: Callable[[Array], Array], low: Array, high: Array) -> Array:

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from ..base.arrays import Array
 from ..base.brief import Brief
-from ..base.room import require
+from ..base.space import require
 from ..errors import NoComponentError, UnknownNameError
 from .section_law import Basis, SectionLaw
 from .sizes import size_of
@@ -71,8 +71,10 @@ class Reaction(Brief):
     @property
     def moment(self) -> Array | None:
         """The size of the moment (t,) [N m], or None where the joint bears none."""
-        borne = [values for values in (*(self.across or ())[1:], self.mz) if values is not None]
-        return size_of(borne) if borne else None
+        components = [
+            values for values in (*(self.across or ())[1:], self.mz) if values is not None
+        ]
+        return size_of(components) if components else None
 
 
 @dataclass(frozen=True, eq=False, repr=False)

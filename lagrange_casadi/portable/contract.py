@@ -160,7 +160,7 @@ def _short(source: str, kind: str = "") -> str:
 
 
 def contract(
-    graph: Program,
+    program: Program,
     name: str,
     precision: Precision,
     solution: Solution,
@@ -172,18 +172,18 @@ def contract(
     parameter open.
     """
     values = solution.description["parameters"]
-    timed = _timed(graph)
-    settings = [] if fixed else [_setting(key, values[key]) for key in graph.data.parameters]
+    timed = _timed(program)
+    settings = [] if fixed else [_setting(key, values[key]) for key in program.data.parameters]
     names = members({setting.source: setting.source for setting in settings})
-    inputs = _inputs(graph, precision, timed)
+    inputs = _inputs(program, precision, timed)
     shown = members({key: _short(key, "input") for key in inputs})
-    given = [output for output in graph.outputs if str(output) not in inputs]
+    given = [output for output in program.outputs if str(output) not in inputs]
     called = members({str(output): _short(str(output)) for output in given})
     largest: dict[str, float] = {}
     for output in given:
-        unit = output.unit(graph.data.kinds)
+        unit = output.unit(program.data.kinds)
         largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.outputs[output]).max()))
-    numbered = constants(f"{prefix(name)}_link", graph.links)
+    numbered = constants(f"{prefix(name)}_link", program.links)
     links = [LinkContract(link, constant) for link, constant in numbered.items()]
     return Contract(
         prefix(name),
@@ -191,9 +191,9 @@ def contract(
         precision,
         tuple(replace(s, name=names[s.source]) for s in settings),
         tuple(replace(m, name=shown[key]) for key, m in inputs.items()),
-        tuple(_output(graph, output, called[str(output)], solution, largest) for output in given),
+        tuple(_output(program, output, called[str(output)], solution, largest) for output in given),
         tuple(links),
-        graph.driven,
+        program.driven,
         timed,
         tuple(map(str, left_open)),
         solution.table,
@@ -201,9 +201,9 @@ def contract(
 
 
 @symbolic
-def _timed(graph: Program) -> bool:
+def _timed(program: Program) -> bool:
     """Return whether anything but the motion depends on the time."""
-    functions = [(graph.instant, 0), *([(graph.newton.step, 1)] if graph.newton else [])]
+    functions = [(program.instant, 0), *([(program.newton.step, 1)] if program.newton else [])]
     called = ((function.sx_in(), function, place) for function, place in functions)
     return any(
         ca.depends_on(ca.veccat(*function.call(symbols)), symbols[place])
@@ -235,7 +235,7 @@ def _bracket(value: float, closed: str, opened: str) -> str:
     return closed if math.isfinite(value) else opened
 
 
-def _inputs(graph: Program, precision: Precision, timed: bool) -> dict[str, Member]:
+def _inputs(program: Program, precision: Precision, timed: bool) -> dict[str, Member]:
     rests = precision == "single"
     found: dict[str, Member] = {}
 
@@ -249,39 +249,39 @@ def _inputs(graph: Program, precision: Precision, timed: bool) -> dict[str, Memb
         add("time", "s", "time, which loads of this mechanism depend on")
         if rests:
             add(f"{REST}time", "s", rest.format("the time"))
-    for joint in graph.driven:
+    for joint in program.driven:
         for member in ("", "rate", "acceleration"):
             output = Output("motion", joint, member)
-            key, unit = str(output), output.unit(graph.data.kinds)
+            key, unit = str(output), output.unit(program.data.kinds)
             add(
                 key,
                 unit,
                 f"{_where(output)}: {_brief(output.quantity.long_name)}",
-                _sign(graph, output),
+                _sign(program, output),
             )
             if rests and not member:
                 add(f"{REST}{key}", unit, rest.format("it"))
     return found
 
 
-def _sign(graph: Program, output: Output) -> str:
-    table = table_of(graph.data.space)
+def _sign(program: Program, output: Output) -> str:
+    table = table_of(program.data.space)
     if output == Output("motion", output.part) and table is PLANE:
         return (
             "counter-clockwise"
-            if graph.data.kinds.coordinates[output.part] == "angle"
+            if program.data.kinds.coordinates[output.part] == "angle"
             else "along the axis"
         )
     return output.meant(table).sign
 
 
 def _output(
-    graph: Program, output: Output, member: str, solution: Solution, largest: Mapping[str, float]
+    program: Program, output: Output, member: str, solution: Solution, largest: Mapping[str, float]
 ) -> Member:
-    unit, wrapped = output.unit(graph.data.kinds), output in graph.loop_angles
+    unit, wrapped = output.unit(program.data.kinds), output in program.loop_angles
     within = "in (-pi, pi]" if wrapped else _range(solution, output, largest[unit])
     meaning = f"{_where(output)}: {_brief(output.meant(solution.table).long_name)}"
-    return Member(member, str(output), unit, meaning, _sign(graph, output), within, wrapped)
+    return Member(member, str(output), unit, meaning, _sign(program, output), within, wrapped)
 
 
 def _where(output: Output) -> str:
@@ -296,10 +296,10 @@ def _where(output: Output) -> str:
     if output.group == "spread":
         return (
             f"link {output.part}, load"
-            f" {output.station}{'' if output.power is None else f', power {output.power}'}"
+            f" {output.load_point}{'' if output.power is None else f', power {output.power}'}"
         )
     found = f"{kinds.get(output.group, output.group)} {output.part}"
-    return f"{found}, station {output.station}" if output.station else found
+    return f"{found}, station {output.load_point}" if output.load_point else found
 
 
 def _brief(meaning: str) -> str:

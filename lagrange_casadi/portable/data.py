@@ -13,7 +13,7 @@ from ..base.arrays import Array
 from ..base.vocabulary import Precision
 from ..codegen.printer import Format, literal
 from ..errors import SizeError
-from .program import ExportedProgram
+from .exported_program import ExportedProgram
 
 LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
@@ -21,25 +21,25 @@ LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 _LINE = 6
 
 
-def table_bytes(program: ExportedProgram) -> dict[str, int]:
+def table_bytes(exported: ExportedProgram) -> dict[str, int]:
     """The size of each table of numbers, by what it is."""
-    size = 4 if program.precision == "single" else 8
+    size = 4 if exported.precision == "single" else 8
     found = {}
     called = {
         inner.name(): lookup(inner)
-        for function in program.functions.values()
+        for function in exported.functions.values()
         for inner in function.find_functions()
     }
     if curves := sum(table.numbers.size for table in called.values() if table is not None):
         found["what curves and motions by samples look up"] = size * curves
-    if program.cycle is not None:
-        found["the table of the cycle"] = program.cycle.coefficients.size * size
+    if exported.cycle is not None:
+        found["the table of the cycle"] = exported.cycle.coefficients.size * size
     return found
 
 
-def check_size(program: ExportedProgram, limit: int) -> None:
+def check_size(exported: ExportedProgram, limit: int) -> None:
     """Raise :class:`SizeError` where a table is larger than ``limit`` bytes."""
-    for what, size in table_bytes(program).items():
+    for what, size in table_bytes(exported).items():
         if size > limit:
             raise SizeError(
                 f"{what} takes {size} bytes of constants, and the limit is {limit}: take fewer"
@@ -47,9 +47,9 @@ def check_size(program: ExportedProgram, limit: int) -> None:
             )
 
 
-def table_text(program: ExportedProgram) -> str:
+def table_text(exported: ExportedProgram) -> str:
     """A table of the cycle, and what reads it."""
-    cycle = program.cycle
+    cycle = exported.cycle
     if cycle is None:
         return ""
     text = (resources.files("lagrange_casadi.codegen") / "interpolate.c").read_text()
@@ -71,9 +71,9 @@ def table_text(program: ExportedProgram) -> str:
     # arithmetic of doubles.
     text = text.replace("long long", "long")
     text = re.sub(r"\breal\b", "casadi_real", text)
-    if program.precision == "single":
+    if exported.precision == "single":
         text = text.replace("floor(", "floorf(")
-    number = literal(program.precision)
+    number = literal(exported.precision)
     layout = cycle.layout
     text += _constants("cell", cycle.cell.astype(float), number)
     text += _constants("slopes", cycle.slopes.astype(float), number)
@@ -82,11 +82,11 @@ def table_text(program: ExportedProgram) -> str:
     return "\n" + text
 
 
-def table_call(program: ExportedProgram) -> Iterable[str]:
+def table_call(exported: ExportedProgram) -> Iterable[str]:
     """Statements that read the columns ``y`` from the table, for what the
     drive's own graph gave.
     """
-    cycle = program.cycle
+    cycle = exported.cycle
     assert cycle is not None
     phase = f"drive[{2 + cycle.turns}]"
     yield (
@@ -94,7 +94,7 @@ def table_call(program: ExportedProgram) -> Iterable[str]:
         f" {cycle.coefficients.shape[1]}, coefficients, {len(cycle.columns)}, order, slopes,"
         f" {len(cycle.layout.runs)}, runs, y);"
     )
-    number = literal(program.precision)
+    number = literal(exported.precision)
     for k in np.flatnonzero(cycle.drift):
         yield f"y[{k}] = y[{k}] + {number(cycle.drift[k])}*(drive[0] - {phase});"
 

@@ -17,9 +17,9 @@ from ..base.vocabulary import Precision
 from ..codegen.stages import compensated
 from ..equations.program import Program
 from ..instants.backends import run
-from ..instants.rung import Rung
+from ..instants.evaluation_method import EvaluationMethod
 from ..instants.solution import Solution
-from ..judge.accuracy import estimate
+from ..verification.accuracy import estimate
 from .contract import FAINT, REST, Contract, Member
 
 INSTANTS = 9
@@ -56,7 +56,7 @@ class Golden:
 
 
 def golden(
-    graph: Program, contract: Contract, solution: Solution, exact: Solution, p: Array
+    program: Program, contract: Contract, solution: Solution, exact: Solution, p: Array
 ) -> Golden:
     """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which
     saves nothing of the graph.
@@ -64,12 +64,12 @@ def golden(
     ``solution`` is what the program's rung makes of it: what that misses is allowed, twice.
     """
     precision = contract.precision
-    least, errors = ALLOWED * ROUNDING[precision], _errors(graph, precision, exact, p)
+    least, errors = ALLOWED * ROUNDING[precision], _errors(program, precision, exact, p)
     count = solution.t.size
     stride = max(1, (count - 1) // (INSTANTS - 1))
     chosen = np.arange(0, count, stride)
     t = solution.t[chosen]
-    inputs = np.stack([_input(graph, m.source, t, p, precision) for m in contract.inputs], axis=1)
+    inputs = np.stack([_input(program, m.source, t, p, precision) for m in contract.inputs], axis=1)
     outputs = np.stack([exact.series[m.source][chosen] for m in contract.outputs], axis=1)
     rounding = np.array([ALLOWED * errors[m.source] for m in contract.outputs])
     saved = np.array([_saved(m, solution, exact) for m in contract.outputs])
@@ -88,12 +88,12 @@ def golden(
             )
             forces_off[i, k] += 2.0 * np.abs(found - true).max()
     inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
-    steps = stride if graph.newton is not None else 1
+    steps = stride if program.newton is not None else 1
     worst = _worst(contract, exact, rounding / ALLOWED + saved)
     return Golden(t, steps, inputs, outputs, forces, inputs_off, off, forces_off, worst)
 
 
-def _errors(graph: Program, precision: Precision, exact: Solution, p: Array) -> dict[str, float]:
+def _errors(program: Program, precision: Precision, exact: Solution, p: Array) -> dict[str, float]:
     """Errors of outputs and section forces in a precision, by their names: larger in proportion to
     its roundings.
 
@@ -105,8 +105,10 @@ def _errors(graph: Program, precision: Precision, exact: Solution, p: Array) -> 
         for name, error in exact.errors.items()
     }
     if precision == "single":
-        evaluated, _ = run(graph, exact.t, p, Rung("vm"))
-        own = estimate(graph, replace(evaluated, stages=compensated(graph, precision)), exact, p)
+        evaluated, _ = run(program, exact.t, p, EvaluationMethod("vm"))
+        own = estimate(
+            program, replace(evaluated, stages=compensated(program, precision)), exact, p
+        )
         errors |= {str(output): max(errors[str(output)], error) for output, error in own.items()}
     return errors
 
@@ -134,7 +136,7 @@ def _saved(member: Member, solution: Solution, exact: Solution) -> float:
     return float(np.abs(gaps).max())
 
 
-def _input(graph: Program, source: str, t: Array, p: Array, precision: Precision) -> Array:
+def _input(program: Program, source: str, t: Array, p: Array, precision: Precision) -> Array:
     """The values of an input over instants; of a rest, what rounding its value to single leaves."""
     name = source.removeprefix(REST)
     if name == "time":
@@ -142,8 +144,8 @@ def _input(graph: Program, source: str, t: Array, p: Array, precision: Precision
     else:
         output = Output.of(name)
         order = ("", "rate", "acceleration").index(output.member)
-        values = np.atleast_2d(graph.motion(ca.DM(t).T, ca.DM(p))[order].full())[
-            graph.driven.index(output.part)
+        values = np.atleast_2d(program.motion(ca.DM(t).T, ca.DM(p))[order].full())[
+            program.driven.index(output.part)
         ]
     if source.startswith(REST):
         return np.asarray(values - values.astype(np.float32))

@@ -89,7 +89,7 @@ _ZERO = (
 
 def _begin(source: Source) -> str:
     """First lines of the header's example."""
-    c, start = source.contract, source.program.graph.data.span[0]
+    c, start = source.contract, source.exported.program.data.span[0]
     if source.iterated:
         return f"status = {c.prefix}_motion(&model, {start:g}{', 0' if c.rests else ''}, &inputs);"
     drive = next(m for m in c.inputs if m.source.startswith("motion:"))
@@ -99,7 +99,10 @@ def _begin(source: Source) -> str:
 def _follows(source: Source) -> str:
     if not source.iterated:
         return ""
-    (start, stop), count = source.program.graph.data.span, source.program.graph.data.timing.count
+    (start, stop), count = (
+        source.exported.program.data.span,
+        source.exported.program.data.timing.count,
+    )
     near = (
         f", as instants {(stop - start) / (count - 1):.2g} s apart are in the scene's motion"
         if count > 1
@@ -115,7 +118,7 @@ def _follows(source: Source) -> str:
 def _gravity(source: Source) -> str:
     return ", ".join(
         f"{component:g}"
-        for component in source.program.graph.data.at([*source.values.values()])["gravity"]
+        for component in source.exported.program.data.at([*source.values.values()])["gravity"]
     )
 
 

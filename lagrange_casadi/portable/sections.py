@@ -7,7 +7,7 @@ from __future__ import annotations
 from ..base.quantities import Output
 from ..base.tables import ON_INBOARD, PLANE, Table
 from .contract import Contract
-from .program import ExportedProgram
+from .exported_program import ExportedProgram
 from .text import template
 
 LAW = """ Those of a section law are for _section, which is all you need.
@@ -41,18 +41,18 @@ def law_in_words(c: Contract) -> str:
     law = LAW if c.table is PLANE else LAW_IN_SPACE
     return (
         law
-        + (LOADED if _acts(c, c.table.spread) else "")
+        + (LOADED if _acts(c, c.table.distributed) else "")
         + (THICK if _acts(c, c.table.couples) else "")
     )
 
 
-def functions(c: Contract, program: ExportedProgram) -> str:
+def functions(c: Contract, exported: ExportedProgram) -> str:
     """The C functions that give the forces inside links."""
     names = {Output.of(m.source): m.name for m in c.outputs}
     links: list[str] = []
-    place = program.sizes["gapped"]
+    place = exported.sizes["gapped"]
     for link in c.links:
-        function, inputs = program.sections[link.name]
+        function, inputs = exported.sections[link.name]
         links.append(f"  case {link.constant}:")
         for vector, outputs in (("law", inputs.law), ("acting", inputs.acting)):
             links += [
@@ -63,8 +63,8 @@ def functions(c: Contract, program: ExportedProgram) -> str:
             f"    {function}(arg, res);",
             "    break;",
         ]
-        place += program.functions[function].size1_in("matter")
-    acting = max(len(inputs.acting) for _, inputs in program.sections.values())
+        place += exported.functions[function].size1_in("matter")
+    acting = max(len(inputs.acting) for _, inputs in exported.sections.values())
     return template(
         "sections.c",
         p=c.prefix,

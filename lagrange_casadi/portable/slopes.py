@@ -16,7 +16,7 @@ from ..base.quantities import Output, quotient
 from ..declare.wanted_names import SENSITIVITY
 from ..equations.program import Program
 from ..errors import DeclarationError
-from ..instants.rung import Rung
+from ..instants.evaluation_method import EvaluationMethod
 from ..sensitivity.jacobian import total
 from ..sensitivity.series import at_instants
 from .contract import Contract, Setting
@@ -46,15 +46,15 @@ class ExportedSlopes:
 
 
 def exported_slopes(
-    graph: Program, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array
+    program: Program, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array
 ) -> ExportedSlopes:
     """Derivatives of a graph by parameters of these names; the self-test's instants are ``chosen``
     among those of the cycle ``t``.
     """
     rows = [Output.of(member.source) for member in contract.outputs]
-    numbers = [list(graph.data.parameters).index(name) for name in by]
-    function = total(graph, [graph.outputs[output] for output in rows], numbers)
-    both = at_instants(graph, rows, t, p, numbers, Rung("vm"))
+    numbers = [list(program.data.parameters).index(name) for name in by]
+    function = total(program, [program.outputs[output] for output in rows], numbers)
+    both = at_instants(program, rows, t, p, numbers, EvaluationMethod("vm"))
     found, largest = both[:, :, 1:], np.abs(both).max(axis=0)
     values, largest = largest[:, :1], largest[:, 1:]
     off = _ROUNDING * largest
@@ -66,9 +66,9 @@ def exported_slopes(
     return ExportedSlopes(settings, function, found[np.searchsorted(t, chosen)], off)
 
 
-def check_rung(rung: Rung) -> None:
+def check_method(method: EvaluationMethod) -> None:
     """Raise :class:`.DeclarationError` for a rung by which exported C computes no derivatives."""
-    if rung.precision == "single" or rung.newton is not None or rung.table is not None:
+    if method.precision == "single" or method.newton is not None or method.table is not None:
         raise DeclarationError(
             f"export: output '{SENSITIVITY}' needs double precision, no Newton steps and no table;"
             " leave it out of wanted"

@@ -17,8 +17,8 @@ from ..declare.ends import BEYOND
 from ..version import __version__
 from .contract import REST, Contract
 from .data import table_call, table_text
+from .exported_program import ExportedProgram
 from .golden import Golden
-from .program import ExportedProgram
 from .sections import functions
 from .slopes import ExportedSlopes
 from .slopes import code as sensitivity
@@ -37,7 +37,7 @@ class Source:
     """
 
     contract: Contract
-    program: ExportedProgram
+    exported: ExportedProgram
     identity: str
     guess: Sequence[float]
     rung: str
@@ -48,15 +48,15 @@ class Source:
     @cached_property
     def code(self) -> str:
         """The source: ``<prefix>.c``."""
-        p, sizes = self.contract.prefix, self.program.sizes
-        sections = functions(self.contract, self.program) if self.contract.links else ""
+        p, sizes = self.contract.prefix, self.exported.sizes
+        sections = functions(self.contract, self.exported) if self.contract.links else ""
         if self.slopes is not None:
             sections += sensitivity(self.contract, self.slopes, sizes["drives"], self.iterated)
         return template(
             "mechanism.c",
             **self.words,
-            includes="\n#include <string.h>" if self.program.cycle is not None else "",
-            graph=self.program.text,
+            includes="\n#include <string.h>" if self.exported.cycle is not None else "",
+            graph=self.exported.text,
             seal=f"0x{self.identity[:8]}u",
             helpers=self._helpers(),
             put="\n".join(
@@ -102,34 +102,34 @@ class Source:
     def story(self) -> str:
         """Description of the evaluation, its accuracy, and its fixed numbers."""
         error, output = self.golden.worst
-        told = f"In {self.contract.precision} precision; options of the export: {self.rung}. "
-        told += (
+        text = f"In {self.contract.precision} precision; options of the export: {self.rung}. "
+        text += (
             f"Its outputs are off by about {error:.0e} of their largest values over the scene's"
             f" motion at most ({output})."
         )
         if self.fixed:
-            told += (
+            text += (
                 " Fixed here: "
                 + ", ".join(f"{name} = {value:.6g}" for name, value in self.fixed.items())
                 + "."
             )
-        return told
+        return text
 
     @property
     def iterated(self) -> bool:
         """True if it follows loops from one instant to the next."""
-        return bool(self.program.sizes["loops"]) and self.program.cycle is None
+        return bool(self.exported.sizes["loops"]) and self.exported.cycle is None
 
     @property
     def model(self) -> list[tuple[str, str, int]]:
         """The members of a model: name, type, where ``real`` is that of the precision, and how many
         of it.
         """
-        sizes = self.program.sizes
+        sizes = self.exported.sizes
         vectors = {"parameters": sizes["p"]} | {
             name: sizes[name] for name in ("constants", "matter", "loops")
         }
-        closed = [("closed", "int", 1)] if self.program.newton is not None else []
+        closed = [("closed", "int", 1)] if self.exported.newton is not None else []
         return [
             ("seal", "unsigned", 1),
             *closed,
@@ -139,14 +139,14 @@ class Source:
     @property
     def span(self) -> tuple[float, float]:
         """The times [s] that all motions cover."""
-        return self.program.graph.laws.span
+        return self.exported.program.laws.span
 
     def _value(self, source: str) -> str:
         output = Output.of(source)
-        if output in self.program.still:
-            return self._number(self.program.still[output])
-        value = f"y[{self.program.columns.index(output)}]"
-        return f"direction({value})" if output in self.program.graph.loop_angles else value
+        if output in self.exported.still:
+            return self._number(self.exported.still[output])
+        value = f"y[{self.exported.columns.index(output)}]"
+        return f"direction({value})" if output in self.exported.program.loop_angles else value
 
     @property
     def _number(self) -> Format:
@@ -154,7 +154,7 @@ class Source:
 
     def _helpers(self) -> str:
         number, found = self._number, ""
-        if self.program.graph.loop_angles:
+        if self.exported.program.loop_angles:
             turn = number(math.tau)
             found += (
                 "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real"
@@ -163,13 +163,13 @@ class Source:
                 f" {number(0.5)});\n}}\n"
             )
         if self.iterated:
-            rule = {key: number(value) for key, value in self.program.rule.items()}
-            newton = self.program.graph.newton
+            rule = {key: number(value) for key, value in self.exported.rule.items()}
+            newton = self.exported.program.newton
             assert newton is not None
             found += template(
                 "loops.c",
                 **self.words,
-                nz=self.program.sizes["loops"],
+                nz=self.exported.sizes["loops"],
                 turning=", ".join(str(int(turning)) for turning in newton.turning),
                 turn=number(math.tau),
                 inverse=number(1.0 / math.tau),
@@ -177,23 +177,25 @@ class Source:
                 floor=function_name("floor", self.contract.precision),
                 rate=rule["rate"],
                 rounding=rule["rounding"],
-                p_values="model->parameters" if self.program.sizes["p"] else "0",
+                p_values="model->parameters" if self.exported.sizes["p"] else "0",
             )
-        if "status" in self.program.functions:
+        if "status" in self.exported.functions:
             names = ", ".join(f"{self._upper}_{name}" for name in self._answers())
             kind = f"static const {self.contract.prefix}_status"
             found += (
                 f"\n/* What a broken rule says, by its number. */\n{kind} broken[] = {{{names}}};\n"
             )
-        return found + table_text(self.program)
+        return found + table_text(self.exported)
 
     def _answers(self) -> Iterator[str]:
         """Answer for each rule that may be broken, by its number."""
-        graph = self.program.graph
+        program = self.exported.program
         yield "OK"
-        for rule in graph.rules:
-            open_ = rule.bound is not None and graph.bounds[rule.bound].kind.startswith("OPEN")
-            yield "UNDETERMINED" if open_ else ANSWERS.get(rule.status, "OK")
+        for rule in program.rules:
+            indeterminate = rule.bound is not None and program.bounds[rule.bound].kind.startswith(
+                "OPEN"
+            )
+            yield "UNDETERMINED" if indeterminate else ANSWERS.get(rule.status, "OK")
 
     def _defaults(self) -> str:
         c, p = self.contract, self.contract.prefix
@@ -203,7 +205,7 @@ class Source:
         return f"\nconst {p}_parameters {p}_defaults = {{\n{rows}\n}};\n"
 
     def _prepare(self) -> Iterable[str]:
-        c, P, sizes, number = self.contract, self._upper, self.program.sizes, self._number
+        c, P, sizes, number = self.contract, self._upper, self.exported.sizes, self._number
         if c.settings:
             yield (
                 f"const {c.prefix}_parameters* values = parameters ? parameters :"
@@ -246,7 +248,7 @@ class Source:
             if sizes[vector]:
                 yield f"res[0] = model->{vector};"
                 yield f"{function}(arg, res);"
-        if self.program.newton is not None:
+        if self.exported.newton is not None:
             yield "model->closed = 0;"
         yield from (f"model->loops[{k}] = {number(value)};" for k, value in enumerate(self.guess))
         if not any(sizes[vector] for vector in ("constants", "matter", "sound")):
@@ -255,11 +257,11 @@ class Source:
 
     @property
     def _p(self) -> str:
-        return "model->parameters" if self.program.sizes["p"] else "0"
+        return "model->parameters" if self.exported.sizes["p"] else "0"
 
     def _motion(self) -> Iterable[str]:
-        c, P, drives = self.contract, self._upper, self.program.sizes["drives"]
-        ends = self.program.functions.get("beyond")
+        c, P, drives = self.contract, self._upper, self.exported.sizes["drives"]
+        ends = self.exported.functions.get("beyond")
         if drives:
             values = 2 * drives if c.rests else drives
             yield (
@@ -323,15 +325,15 @@ class Source:
             yield f"inputs->{c.input_of(f'motion:{drive}_acceleration')} = acceleration[{k}];"
 
     def _instant(self) -> Iterable[str]:
-        c, P, sizes = self.contract, self._upper, self.program.sizes
+        c, P, sizes = self.contract, self._upper, self.exported.sizes
         drives = sizes["drives"]
         yield f"casadi_real moment[{sizes['moment']}], counted[{max(1, sizes['counted'])}];"
         yield f"casadi_real rate[{drives}], acceleration[{drives}];"
-        if self.program.cycle is not None:
+        if self.exported.cycle is not None:
             yield f"casadi_real drive[{sizes['evaluated']}];"
         yield "const casadi_real* arg[5];"
         yield "casadi_real* res[1];"
-        if "status" in self.program.functions:
+        if "status" in self.exported.functions:
             yield "casadi_real iterated = 0, rule;"
         if self.iterated:
             yield f"{c.prefix}_status closed;"
@@ -358,16 +360,16 @@ class Source:
         yield "arg[2] = acceleration;"
         yield f"arg[3] = {'model->loops' if self.iterated else '0'};"
         yield f"arg[4] = {'model->constants' if sizes['constants'] else '0'};"
-        yield f"res[0] = {'y' if self.program.cycle is None else 'drive'};"
+        yield f"res[0] = {'y' if self.exported.cycle is None else 'drive'};"
         yield "instant(arg, res);"
-        if self.program.cycle is not None:
-            yield from table_call(self.program)
+        if self.exported.cycle is not None:
+            yield from table_call(self.exported)
         yield from self._verdict()
 
     def _close(self) -> Iterable[str]:
-        P, rule, number = self._upper, self.program.rule, self._number
+        P, rule, number = self._upper, self.exported.rule, self._number
         done, lost, most = number(rule["done"]), number(rule["lost"]), int(rule["steps"])
-        if self.program.newton is not None:
+        if self.exported.newton is not None:
             full = newton_rule(self.contract.precision, None)
             limits = f"{int(full['steps'])}, {number(full['done'])}, {number(full['lost'])}"
             yield (
@@ -379,17 +381,17 @@ class Source:
             yield "model->closed = 1;"
         yield f"closed = close_loops(model, counted, {most}, {done}, {lost});"
         yield f"if (closed == {P}_NOT_CONVERGED) return closed;"
-        if self.program.newton is None:
+        if self.exported.newton is None:
             yield f"if (closed == {P}_SLOW) iterated = {number(float(Status.SLOW))};"
 
     def _verdict(self) -> Iterable[str]:
         """Answer for a broken rule of the scene's status, and for a value that is not finite."""
-        P, sizes = self._upper, self.program.sizes
-        if "status" in self.program.functions:
+        P, sizes = self._upper, self.exported.sizes
+        if "status" in self.exported.functions:
             yield "arg[0] = y;"
             yield f"arg[1] = {'model->matter' if sizes['gapped'] else '0'};"
             yield "arg[2] = &iterated;"
             yield "res[0] = &rule;"
             yield "status(arg, res);"
             yield "if (rule > 0) return broken[(int) rule];"
-        yield f"if (!all_finite(y, {len(self.program.columns)})) return {P}_NOT_FINITE;"
+        yield f"if (!all_finite(y, {len(self.exported.columns)})) return {P}_NOT_FINITE;"

@@ -21,16 +21,16 @@ from ..equations.derive import as_derived, compile_scene
 from ..equations.fingerprint import declaration
 from ..errors import CertificateError, DeclarationError
 from ..instants.determinacy import determinate
+from ..instants.evaluation_method import EvaluationMethod
 from ..instants.from_table import drive_of, table_of
-from ..instants.rung import Rung
-from ..judge.certificate import failure
 from ..studies.evaluate import evaluate
 from ..studies.solving import checked_span
+from ..verification.certificate import failure
 from .contract import contract
 from .data import check_size
+from .exported_program import exported
 from .golden import golden
-from .program import program
-from .slopes import FUNCTION, check_rung, exported_slopes
+from .slopes import FUNCTION, check_method, exported_slopes
 from .source import Source
 
 
@@ -39,7 +39,7 @@ def sourced(
     name: str,
     parameters: Mapping[str, float] | None,
     wanted: Sequence[str] | None,
-    rung: Rung,
+    method: EvaluationMethod,
     largest: int,
 ) -> Source:
     """The program of a scene, called ``name``, else as its mechanism, with ``parameters`` as its
@@ -59,10 +59,10 @@ def sourced(
     check_line("name", name)
     without_fitted(fitted_of(data.template.content), named, "exports")
     if by:
-        check_rung(rung)
-    precision, newton, table = rung.precision, rung.newton, rung.table
+        check_method(method)
+    precision, newton, table = method.precision, method.newton, method.table
     declared = declaration(as_derived(scene, wanted, values), compiled.wanted) or compiled.dumps()
-    rung.check(compiled)
+    method.check(compiled)
     if not compiled.driven:
         raise DeclarationError(
             f"export: '{data.name}' has no drive, so C would have no inputs; use evaluate"
@@ -88,9 +88,11 @@ def sourced(
             "table": table,
         }
         solution = evaluate(scene, **words, backend="vm", certificate=False)
-    read = None if table is None else (drive_of(compiled), table_of(compiled, solution.t, p, rung))
+    read = (
+        None if table is None else (drive_of(compiled), table_of(compiled, solution.t, p, method))
+    )
     agreed = contract(compiled, name, precision, solution, left_open, fixed=table is not None)
-    emitted = program(compiled, precision, newton, p, read)
+    emitted = exported(compiled, precision, newton, p, read)
     check_size(emitted, largest)
     guess = compiled.newton.guess if compiled.newton is not None and read is None else ()
     vectors = golden(whole, agreed, solution, exact, p)
@@ -98,7 +100,7 @@ def sourced(
     if slopes is not None:
         emitted = replace(emitted, functions={**emitted.functions, FUNCTION: slopes.function})
     return Source(
-        agreed, emitted, _hash(declared, values), guess, rung.options, values, vectors, slopes
+        agreed, emitted, _hash(declared, values), guess, method.options, values, vectors, slopes
     )
 
 

@@ -147,7 +147,7 @@ def _forces(c: Contract) -> tuple[str, ...]:
 def _contract(source: Source) -> str:
     c = source.contract
 
-    def told(m: Member) -> dict[str, Any]:
+    def described(m: Member) -> dict[str, Any]:
         return {"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.comment}
 
     def end(value: float) -> float | None:
@@ -160,11 +160,11 @@ def _contract(source: Source) -> str:
         "precision": c.precision,
         "model": places(source)["end"],
         "parameters": [
-            told(m) | {"default": m.default, "low": end(m.low), "high": end(m.high)}
+            described(m) | {"default": m.default, "low": end(m.low), "high": end(m.high)}
             for m in c.settings
         ],
-        "inputs": [told(m) for m in c.inputs],
-        "outputs": [told(m) for m in c.outputs],
+        "inputs": [described(m) for m in c.inputs],
+        "outputs": [described(m) for m in c.outputs],
         "links": [link.name for link in c.links],
         "forces": [
             {"name": name, "unit": row.unit, "meaning": about(c.table, name)}
@@ -178,7 +178,9 @@ def _types(source: Source) -> str:
     c = source.contract
 
     def members(rows: Sequence[tuple[str, str]]) -> str:
-        return "\n".join(f"  /** {comment(told)} */\n  {name}: number;" for name, told in rows)
+        return "\n".join(
+            f"  /** {comment(described)} */\n  {name}: number;" for name, described in rows
+        )
 
     return template(
         "wasm.d.ts",

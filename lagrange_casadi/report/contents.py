@@ -16,15 +16,15 @@ from ..base.quantities import Output
 from ..declare.description import Description
 from ..instants.derivatives import derivatives
 from ..instants.held import held_outputs
-from ..instants.ordering import error_of, told
+from ..instants.ordering import error_of, ordered
 from ..instants.solution import Solution
 from ..instants.statistics import Extreme
-from ..judge.certificate import failure, summary
 from ..shapes.places import require_poses
 from ..shapes.shapes import joint_shapes, load_shapes, path_spots, shapes
 from ..shapes.solid import COLOURS
 from ..shapes.views import upright
 from ..strength.parts import looked
+from ..verification.certificate import failure, summary
 from .arrays import Arrays, finite
 from .instants import shown_instants
 from .live import Live
@@ -141,13 +141,13 @@ def _bodies(
         pose = solution.pose(shape.name)
         if pose.z is None:
             angle = np.zeros_like(pose.x) if pose.angle is None else pose.angle
-            told_of = [pose.x, pose.y, angle]
+            values = [pose.x, pose.y, angle]
         else:
             axes = _whole_axes(pose.axes, solution.t.size)
-            told_of = [pose.x, pose.y, pose.z, *(axes[:, i, j] for i in range(3) for j in range(3))]
+            values = [pose.x, pose.y, pose.z, *(axes[:, i, j] for i in range(3) for j in range(3))]
         yield asdict(shape) | {
             "colour": COLOURS[k % len(COLOURS)],
-            "pose": [arrays.add(values[chosen]) for values in told_of],
+            "pose": [arrays.add(values[chosen]) for values in values],
         }
 
 
@@ -167,7 +167,7 @@ def _whole_axes(axes: Array | None, count: int) -> Array:
 def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[Series]:
     resultants = (
         output
-        for output in told(solution)
+        for output in ordered(solution)
         if len(output.components(solution.table)) > 1 and output.group == "reaction"
     )
     outputs = [output for output in solution.quantities() if output.group in (*_CHARTED, "section")]
@@ -221,7 +221,7 @@ def _rows(solution: Solution) -> Iterator[Row]:
     def marked(extreme: Extreme) -> Mark:
         return mark(solution, extreme.value, extreme.t, extreme.xi)
 
-    for output in told(solution):
+    for output in ordered(solution):
         words = (
             str(output),
             output.group,
@@ -248,21 +248,21 @@ def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
     """
     for found in looked(solution):
         for verdict in found.verdicts:
-            told_of = {
+            values = {
                 "part": found.link,
                 "against": verdict.against,
                 "where": verdict.where,
                 "open": False,
             }
             used = 1.0 / verdict.factor if verdict.factor else None
-            yield told_of | {
+            yield values | {
                 "factor": finite(verdict.factor),
                 "used": used,
                 "governs": verdict is found.governs,
             }
         for why in found.is_open:
-            told_of = {"part": found.link, "against": "", "where": why, "open": True}
-            yield told_of | {"factor": None, "used": None, "governs": False}
+            values = {"part": found.link, "against": "", "where": why, "open": True}
+            yield values | {"factor": None, "used": None, "governs": False}
 
 
 def _parameters(description: Description) -> Iterator[dict[str, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..instants.ordering import told
+from ..instants.ordering import ordered
 from ..instants.solution import Solution
 
 MOST = 1_000_000
@@ -25,14 +25,14 @@ def shown_instants(solution: Solution) -> npt.NDArray[np.intp]:
     most = max(LEAST, MOST // max(varying + largest, 1))
     if total <= most:
         return np.arange(total)
-    spread = np.unique(np.linspace(0, total - 1, most).astype(np.intp))
-    return np.unique(np.concatenate([spread, np.array(_peaks(solution), np.intp)]))
+    distributed = np.unique(np.linspace(0, total - 1, most).astype(np.intp))
+    return np.unique(np.concatenate([distributed, np.array(_peaks(solution), np.intp)]))
 
 
 def _peaks(solution: Solution) -> list[int]:
     """The instants of all smallest and largest values, and of the peaks."""
     found: list[int] = []
-    for output in told(solution):
+    for output in ordered(solution):
         if solution.determined(output):
             own = solution.statistics(output)
             found += [

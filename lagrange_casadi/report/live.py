@@ -25,7 +25,7 @@ from ..declare.scene import Scene
 from ..declare.times import Timing
 from ..equations.derive import compile_scene
 from ..errors import DeclarationError
-from ..instants.rung import Rung
+from ..instants.evaluation_method import EvaluationMethod
 from ..instants.solution import Solution
 from ..portable.data import LARGEST
 from ..portable.source import Source
@@ -91,7 +91,9 @@ class Live:
             )
         check_zig("a live report")
         return cls(
-            sourced(scene, "", parameters, wanted, Rung("auto", "double"), LARGEST["double"]),
+            sourced(
+                scene, "", parameters, wanted, EvaluationMethod("auto", "double"), LARGEST["double"]
+            ),
             timing,
             command,
         )
@@ -99,7 +101,7 @@ class Live:
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes for whoever changes parameters in the page."""
-        corners = self.source.program.graph.data.corners
+        corners = self.source.exported.program.data.corners
         return (_CORNERS,) if corners.laws or corners.constraints else ()
 
     def entry(
@@ -116,7 +118,7 @@ def _entry(
     live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
 ) -> dict[str, Any]:
     source, timing = live.source, live.timing
-    data = source.program.graph.data
+    data = source.exported.program.data
     described, asked = data.template.content, data.template.numbers(data.symbols)
     start, stop = timing.ends(data.symbols)
     bodies = described["bodies"]
@@ -136,7 +138,7 @@ def _entry(
         "layout": layout(source) | {"more": numbers.numel()},
         "defaults": data.defaults.tolist(),
         "loops": (
-            [places(source)["loops"], source.program.sizes["loops"]] if source.iterated else None
+            [places(source)["loops"], source.exported.sizes["loops"]] if source.iterated else None
         ),
         "wrapped": [k for k, member in enumerate(contract.outputs) if member.wrapped],
         "of": [
@@ -179,12 +181,17 @@ def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) 
     """
     law = solution.section(link).law
     density = law.density
-    spreads = [
+    distributed_loads = [
         [known[str(Output("spread", link, member, load.name))] for member in ("width", "end")]
-        for load in law.spreads
+        for load in law.distributed_loads
     ]
-    degree = max([*map(len, density.cells), *(load.powers for load in law.spreads)]) + 2
-    return {"number": number, "breaks": density.breaks, "degree": degree, "spreads": spreads}
+    degree = max([*map(len, density.cells), *(load.powers for load in law.distributed_loads)]) + 2
+    return {
+        "number": number,
+        "breaks": density.breaks,
+        "degree": degree,
+        "spreads": distributed_loads,
+    }
 
 
 def _picture(described: Description, first: int, masses: Mapping[str, int]) -> dict[str, Any]:
@@ -199,16 +206,16 @@ def _picture(described: Description, first: int, masses: Mapping[str, int]) -> d
     def vector(components: Sequence[float]) -> list[int]:
         return [*map(at, components), *[-1] * (3 - len(components))]
 
-    def joint(told: Description) -> dict[str, Any]:
-        ends = {"parent": place(told["parent"]), "child": place(told["child"])}
-        if "turned" in told:
-            second = told["kind"] == "universal" and len(told["axes"]) > 1
+    def joint(entry: Description) -> dict[str, Any]:
+        ends = {"parent": place(entry["parent"]), "child": place(entry["child"])}
+        if "turned" in entry:
+            second = entry["kind"] == "universal" and len(entry["axes"]) > 1
             return ends | {
-                "axes": [*map(vector, told["axes"])],
-                "turned": [*map(vector, told["turned"])] if second else None,
+                "axes": [*map(vector, entry["axes"])],
+                "turned": [*map(vector, entry["turned"])] if second else None,
             }
         return ends | {
-            "axes": [vector(told["axis"])] if told["kind"] in ("prismatic", "slot") else None,
+            "axes": [vector(entry["axis"])] if entry["kind"] in ("prismatic", "slot") else None,
             "turned": None,
         }
 
@@ -221,7 +228,7 @@ def _picture(described: Description, first: int, masses: Mapping[str, int]) -> d
             }
             for name, body in described["bodies"].items()
         },
-        "joints": [joint(told) for told in described["joints"].values()],
+        "joints": [joint(entry) for entry in described["joints"].values()],
         "loads": [
             [place(point) for point in load["points"]] for load in described["loads"].values()
         ],

@@ -105,8 +105,8 @@ def _ratios() -> Array:
 
 def _instants(solution: Solution, t: float) -> Array:
     total = solution.t.size
-    spread = np.linspace(0, total - 1, min(total, INSTANTS)).astype(np.intp)
-    return np.unique(np.append(spread, int(np.argmax(solution.t == t))))
+    distributed = np.linspace(0, total - 1, min(total, INSTANTS)).astype(np.intp)
+    return np.unique(np.append(distributed, int(np.argmax(solution.t == t))))
 
 
 def _numbers(solution: Solution, chosen: Array, grid: Array, arrays: Arrays) -> dict[str, Any]:

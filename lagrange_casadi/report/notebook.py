@@ -11,7 +11,7 @@ from html import escape
 from ..declare.scene import Scene
 from ..equations.model_data import template
 from ..errors import DeclarationError, LagrangeCasadiError
-from ..instants.ordering import told
+from ..instants.ordering import ordered
 from ..instants.solution import Solution
 from ..shapes.places import require_poses
 from ..studies.evaluate import evaluate
@@ -120,7 +120,7 @@ def _table(solution: Solution) -> str:
     """
     plain = [
         output
-        for output in told(solution)
+        for output in ordered(solution)
         if solution.determined(output)
         and (output.group != "reaction" or output.member in solution.table.reactions)
     ]

@@ -67,11 +67,11 @@ def is_of(sweep: Sweep, scene: Scene) -> bool:
         or json.loads(json.dumps(template(scene).filled(values))) != swept
     ):
         return False
-    told: dict[str, Any] = {}
+    content: dict[str, Any] = {}
     for name, value in sweep.identity["wanted"].items():
         if name != SENSITIVITY:  # of which the graph knows nothing
-            told[name] = tuple(value) if isinstance(value, list) else value
-    known = fingerprint(scene, Wanted(**told))
+            content[name] = tuple(value) if isinstance(value, list) else value
+    known = fingerprint(scene, Wanted(**content))
     return (
         known is None or sweep.identity["sources"] != sources() or known == sweep.identity["scene"]
     )
@@ -92,7 +92,7 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
     pair = next(iter(usual_pair(sweep, {})), tuple(names[:2]))
     front = [design.number for design in best(sweep, minimise=pair)] if len(pair) == 2 else []
     arrays, numbers = Arrays(), _shown(sweep, len(names), front)
-    told: dict[str, Any] = {
+    content: dict[str, Any] = {
         "case": sweep.case,
         "parameters": [
             {"name": name, "title": name, "unit": unit, "sized": False}
@@ -120,19 +120,21 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
         "frame": None if scene is None else _frame(sweep, scene, front, command),
     }
     values = _values(sweep, [*sweep.parameters, *names, STATUS], numbers)
-    for one in (*told["parameters"], *told["columns"]):
+    for one in (*content["parameters"], *content["columns"]):
         one["values"] = arrays.add(values[one["name"]])
-    told["designs"] = {
+    content["designs"] = {
         "shown": int(numbers.size),
         "total": sweep.size,
         "grid": DESIGN not in sweep.dimensions,
         "numbers": arrays.add(numbers.astype(float)),
         "status": arrays.add(values[STATUS].astype(float)),
     }
-    told |= {"arrays": arrays.places, "numbers": arrays.block()}
+    content |= {"arrays": arrays.places, "numbers": arrays.block()}
     others = [live_digest()] if scene is not None else []
     scripts = [script(name) for name in SWEEP_SCRIPTS]
-    return assembled(f"{sweep.case}: a sweep", told, scripts, wasm=scene is not None, others=others)
+    return assembled(
+        f"{sweep.case}: a sweep", content, scripts, wasm=scene is not None, others=others
+    )
 
 
 def _shown(sweep: Sweep, many: int, front: list[int]) -> npt.NDArray[np.int64]:
@@ -195,7 +197,7 @@ def _bounds(asked: list[float]) -> tuple[float, ...]:
     return tuple(asked[:3])
 
 
-def _names(told: dict[str, Any]) -> list[str]:
+def _names(content: dict[str, Any]) -> list[str]:
     """The names of outputs that were wanted."""
     kinds = {
         "reactions": "reaction",
@@ -204,5 +206,5 @@ def _names(told: dict[str, Any]) -> list[str]:
         "sections": "section",
         "own": "output",
     }
-    found = [name for name in ("effort", "motion") if told[name]]
-    return found + [f"{kind}:{part}" for group, kind in kinds.items() for part in told[group]]
+    found = [name for name in ("effort", "motion") if content[name]]
+    return found + [f"{kind}:{part}" for group, kind in kinds.items() for part in content[group]]

@@ -107,7 +107,7 @@ def page(solution: Solution, live: Live | None = None) -> str:
 
 def assembled(
     title: str,
-    told: Mapping[str, Any],
+    content: Mapping[str, Any],
     scripts: Sequence[str],
     *,
     wasm: bool,
@@ -118,7 +118,7 @@ def assembled(
     ``others`` are digests of scripts that pages within it run.
     """
     text = _whole(scripts)
-    data = json.dumps(told, allow_nan=False, separators=(",", ":"), ensure_ascii=True)
+    data = json.dumps(content, allow_nan=False, separators=(",", ":"), ensure_ascii=True)
     run = [f"'sha256-{one}'" for one in (_digest(text), *others)]
     return Template(_asset("page.html")).substitute(
         title=html.escape(title),

@@ -65,11 +65,11 @@ def section_entries(
             {"name": load.name}
             | {
                 member: added(Output("station", link, member, load.name))
-                for member in table.station
+                for member in table.load_point
             }
             for load in law.loads
         ]
-        spread = [
+        distributed = [
             {
                 direction: [
                     added(Output("spread", link, direction, load.name, power))
@@ -77,12 +77,12 @@ def section_entries(
                 ]
                 for direction in load.terms
             }
-            for load in law.spreads
+            for load in law.distributed_loads
         ]
         forces = []
         for name in table.forces:
             output = Output("section", link, name)
-            made = _made(name, table, columns, spread, (of_force, of_moment))
+            made = _made(name, table, columns, distributed, (of_force, of_moment))
             words = what(output, table), solution.unit(output), not solution.determined(output)
             forces.append(asdict(Force(name, *words, **made)))
         yield {
@@ -99,7 +99,7 @@ def _made(
     name: str,
     table: Table,
     columns: Mapping[str, int],
-    spread: Sequence[Mapping[str, Sequence[int]]],
+    distributed: Sequence[Mapping[str, Sequence[int]]],
     rows: tuple[Sequence[int], Sequence[int]],
 ) -> dict[str, Any]:
     """Terms of a force."""
@@ -111,9 +111,9 @@ def _made(
     summed = [*zip(law, plain, [1, *(sign for _ in law[1:])], strict=False)]
     # After those of the law, a row for each power of each load; couples have no arm.
     first = 0
-    for load in spread:
+    for load in distributed:
         for direction, there, way in (
-            (terms.spread, plain[4 if terms.arm else 3 :], sign),
+            (terms.distributed, plain[4 if terms.arm else 3 :], sign),
             (terms.couple, rows[0][3:], 1),
         ):
             summed += [

@@ -25,13 +25,13 @@ def summary(sweep: Sweep) -> str:
         for status, count in sweep.counts().items()
         if count
     ]
-    told = "; ".join(
+    counts_text = "; ".join(
         f"{count} without: {words}" if words else f"{count} with a result"
         for words, count in counts
     )
     head = (
         f"<p><b>{escape(sweep.case)}</b>: {counted(sweep.size)} over"
-        f" {escape(', '.join(sweep.parameters))}: {escape(told)}</p>"
+        f" {escape(', '.join(sweep.parameters))}: {escape(counts_text)}</p>"
     )
     names = [
         name

@@ -26,7 +26,7 @@ from ..equations.model_data import ModelData
 from ..equations.program import Program
 from ..equations.reciprocals import differentiable
 from ..equations.section_function import Place, Section
-from ..summits.sharpness import Kind, Sharpness, Watch
+from ..peak_search.sharpness import Kind, Sharpness, Watch
 
 SAME_PLACE = 1e-9
 """Distance from a load point, as a ratio to the length, within which a peak along a link is at
@@ -50,7 +50,7 @@ class PointFunction(Graphs):
     parameters as for one.
     """
 
-    graph: Program
+    program: Program
     quantities: tuple[Output, ...]
     switches: tuple[Watch, ...]
     function: Any
@@ -58,7 +58,7 @@ class PointFunction(Graphs):
     @classmethod
     @symbolic
     def of(
-        cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness | None = None
+        cls, program: Program, quantities: Sequence[Output], sharpness: Sharpness | None = None
     ) -> PointFunction:
         """Make it for some quantities: columns of a graph, resultants of such, section forces; and
         the functions with kinks and jumps.
@@ -67,21 +67,21 @@ class PointFunction(Graphs):
         """
         watches = () if sharpness is None else sharpness.watches
         sharp = [k for k, watch in enumerate(watches) if watch.kind in _SWITCHES]
-        instant = differentiable(graph.instant)
+        instant = differentiable(program.instant)
         t, _, rate, acceleration, _, p = inputs = instant.sx_in()
         xi, value, moving = (ca.SX.sym(name) for name in ("xi", "value", "moving"))
         chosen = ca.SX.sym("chosen", len(quantities) + len(sharp))
         out = instant(*inputs)
-        columns: dict[Column, Any] = {output: out[k] for output, k in graph.outputs.items()}
-        rows, weights = _rows(graph.data, p, columns, quantities, xi, value, moving, chosen)
+        columns: dict[Column, Any] = {output: out[k] for output, k in program.outputs.items()}
+        rows, weights = _rows(program.data, p, columns, quantities, xi, value, moving, chosen)
         if sharpness is not None and sharp:
             rows += ca.vertsplit(differentiable(sharpness.watched)(*inputs)[sharp])
             weights += ca.vertsplit(chosen[len(quantities) :])
         # The weights choose, and are not differentiated.
         held = ca.SX.sym("held", len(weights))
         adjoint = ca.jtimes(ca.vertcat(*rows), ca.vertcat(*inputs, xi), held, True)
-        by_t, by_drives, by_p = _backwards(graph, inputs, adjoint[:-1, :])
-        by_t += ca.dot(ca.vertcat(rate, acceleration, graph.laws.jerk()(t, p)), by_drives)
+        by_t, by_drives, by_p = _backwards(program, inputs, adjoint[:-1, :])
+        by_t += ca.dot(ca.vertcat(rate, acceleration, program.laws.jerk()(t, p)), by_drives)
         found = ca.vertcat(ca.dot(held, ca.vertcat(*rows)), by_t, adjoint[-1], by_p)
         found = ca.substitute(found, held, ca.vertcat(*weights))
         names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
@@ -91,11 +91,11 @@ class PointFunction(Graphs):
             "at_drives", every, [ca.densify(found)], names, ["found"], {"cse": True}
         )
         given = at_drives.sx_in()
-        given[1:4] = graph.motion.call([given[0], given[5]])
+        given[1:4] = program.motion.call([given[0], given[5]])
         made = at_drives(*given)
         every, names = [given[0], *given[4:]], [names[0], *names[4:]]
         return cls(
-            graph,
+            program,
             tuple(quantities),
             tuple(watches[k] for k in sharp),
             ca.Function("at_once", every, [made], names, ["found"], {"cse": True}),
@@ -113,8 +113,8 @@ class PointFunction(Graphs):
         gradient = self.function(*inputs)[1:]
         way = ca.SX.sym("way", 2 + p.numel())
         of, along = [t, xi, p], [way[0], way[1], way[2:]]
-        if self.graph.newton is not None:
-            step = self.graph.newton.step(z, t, self.graph.motion(t, p)[0], p)[0]
+        if self.program.newton is not None:
+            step = self.program.newton.step(z, t, self.program.motion(t, p)[0], p)[0]
             along.append(ca.jtimes(step, ca.vertcat(t, p), ca.vertcat(way[0], way[2:])))
             of.append(z)
         change = ca.jtimes(gradient, ca.vertcat(*of), ca.vertcat(*along))
@@ -128,25 +128,25 @@ class PointFunction(Graphs):
         )
 
 
-def total(graph: Program, rows: Sequence[int], by: Sequence[int]) -> Any:
+def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> Any:
     """``total(t, d, d_rate, d_acceleration, z, p) -> slopes``: of some ``rows`` of a graph by some
     parameters, by their numbers.
 
     ``slopes`` is (parameters, rows), dense. It is made forward, a sweep a parameter, unless there
     are fewer rows: then backwards, a sweep a row.
     """
-    instant = differentiable(graph.instant)
+    instant = differentiable(program.instant)
     t, d, rate, acceleration, z, p = inputs = instant.sx_in()
     out, of = instant(*inputs)[list(rows)], ca.vertcat(d, rate, acceleration, z, p)
     if len(by) > len(rows):
         adjoint = ca.jtimes(out, ca.vertcat(*inputs), ca.SX.eye(len(rows)), True)
-        slopes = _backwards(graph, inputs, adjoint)[2][list(by), :]
+        slopes = _backwards(program, inputs, adjoint)[2][list(by), :]
     else:
         seeds = _seeds(p.numel(), by)
-        moved = [ca.jtimes(part, p, seeds) for part in graph.motion(t, p)]
+        moved = [ca.jtimes(part, p, seeds) for part in program.motion(t, p)]
         loops = ca.SX(0, len(by))
-        if graph.newton is not None:
-            step = graph.newton.step(z, t, d, p)[0]
+        if program.newton is not None:
+            step = program.newton.step(z, t, d, p)[0]
             loops = ca.jtimes(step, ca.vertcat(d, p), ca.vertcat(moved[0], seeds))
         slopes = ca.jtimes(out, of, ca.vertcat(*moved, loops, seeds)).T
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
@@ -196,19 +196,19 @@ def _weights(parts: Sequence[Any]) -> list[Any]:
     return [part / ca.if_else(size > 0.0, size, 1.0) for part in parts]
 
 
-def _backwards(graph: Program, inputs: Sequence[Any], adjoint: Any) -> tuple[Any, Any, Any]:
+def _backwards(program: Program, inputs: Sequence[Any], adjoint: Any) -> tuple[Any, Any, Any]:
     """The derivatives by time, by the drives' coordinates, rates and accelerations, and in total by
     the parameters, of what has an ``adjoint``, (inputs, n), by the ``inputs`` of an instant.
     """
     t, d, _, _, z, p = inputs
     by_t, by_d, by_rate, by_acceleration, by_z, by_p = ca.vertsplit(adjoint, _ends(inputs))
-    if graph.newton is not None:
-        step = graph.newton.step(z, t, d, p)[0]
+    if program.newton is not None:
+        step = program.newton.step(z, t, d, p)[0]
         more = ca.jtimes(step, ca.vertcat(t, d, p), by_z, True)
         more_t, more_d, more_p = ca.vertsplit(more, _ends([t, d, p]))
         by_t, by_d, by_p = by_t + more_t, by_d + more_d, by_p + more_p
     by_drives = ca.vertcat(by_d, by_rate, by_acceleration)
-    driven = ca.vertcat(*graph.motion(t, p))
+    driven = ca.vertcat(*program.motion(t, p))
     return by_t, by_drives, by_p + ca.jtimes(driven, p, by_drives, True)
 
 
@@ -262,7 +262,7 @@ def _rows(
             twins = [
                 other
                 for other in marks
-                if other.station == place.station and other is not place and place.station
+                if other.load_point == place.load_point and other is not place and place.load_point
             ]
             nearer = ca.SX(1.0)
             for twin in twins:

@@ -20,9 +20,9 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from ..base.vocabulary import Precision
 from ..instants.statistics import counted, shares
-from ..summits.panels import SIDE, SPACING
-from ..summits.search import NOTHING
-from ..summits.sharpness import Kind, Watch
+from ..peak_search.intervals import SIDE, SPACING
+from ..peak_search.search import NOTHING
+from ..peak_search.sharpness import Kind, Watch
 from .ends import Ends, implicit_bends
 from .jacobian import SAME_PLACE
 from .slopes import Bends, Numbers, Slopes, unit_ways
@@ -285,7 +285,7 @@ class MovingPeaks:
         """
         switches, first = self.slopes.points.switches, len(self.slopes.points.quantities)
         times, at, back = np.unique(t, return_index=True, return_inverse=True)
-        knots = np.array([knot for knots in self.slopes.graph.laws.knots for knot in knots])
+        knots = np.array([knot for knots in self.slopes.program.laws.knots for knot in knots])
         found = np.full((times.size, self.p.size), np.nan)
         which = np.full(times.size, -1, np.intc)
         if switches:

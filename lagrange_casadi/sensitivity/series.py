@@ -11,12 +11,12 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..base.room import require
+from ..base.space import require
 from ..base.symbolic import symbolic
 from ..equations.program import Program
 from ..equations.reciprocals import differentiable
+from ..instants.evaluation_method import EvaluationMethod
 from ..instants.laws import made_of
-from ..instants.rung import Rung
 from ..instants.solution import Solution
 from .jacobian import section_slopes, total
 from .slopes import Batch, Loops
@@ -26,7 +26,7 @@ _BLOCK = 1 << 20
 
 
 def series_slopes(
-    graph: Program, solution: Solution, p: Array, by: Sequence[str], rung: Rung
+    program: Program, solution: Solution, p: Array, by: Sequence[str], method: EvaluationMethod
 ) -> dict[str, dict[Output, Array]]:
     """The derivatives by each of some parameters of all that equilibrium determines of a solution
     of a graph, by output.
@@ -36,20 +36,22 @@ def series_slopes(
     they. Raises :class:`.SizeError` where they do not fit into memory.
     """
     series = [o for o in solution.quantities() if o.group != "section" and solution.determined(o)]
-    rows = [o for o in solution.outputs if (o in series or o.along) and o in graph.outputs]
+    rows = [o for o in solution.outputs if (o in series or o.along) and o in program.outputs]
     sections = len(solution.table.forces) * len(solution.links_with_sections)
     require(
         "the sensitivities", (len(by), solution.t.size, len(rows) + sections * solution.xi.size)
     )
-    numbers = [list(graph.data.parameters).index(name) for name in by]
+    numbers = [list(program.data.parameters).index(name) for name in by]
     found: dict[Output, Array] = {}
     for output, column in zip(
-        rows, np.moveaxis(at_instants(graph, rows, solution.t, p, numbers, rung), 1, 0), strict=True
+        rows,
+        np.moveaxis(at_instants(program, rows, solution.t, p, numbers, method), 1, 0),
+        strict=True,
     ):
         found[output] = np.where(np.isnan(solution.outputs[output])[:, None], np.nan, column)
     changes = {output: found[output][:, 1:] for output in series}
     for link in solution.links_with_sections:
-        changes |= dict(_along(graph, solution, link, found, p, numbers, rung))
+        changes |= dict(_along(program, solution, link, found, p, numbers, method))
     return {
         name: {output: np.ascontiguousarray(values[..., k]) for output, values in changes.items()}
         for k, name in enumerate(by)
@@ -58,39 +60,44 @@ def series_slopes(
 
 @symbolic
 def at_instants(
-    graph: Program, rows: Sequence[Output], t: Array, p: Array, by: Sequence[int], rung: Rung
+    program: Program,
+    rows: Sequence[Output],
+    t: Array,
+    p: Array,
+    by: Sequence[int],
+    method: EvaluationMethod,
 ) -> Array:
     """Rows of a graph at instants, and their derivatives, (t, rows, 1 + parameters)."""
-    inner = total(graph, [graph.outputs[output] for output in rows], by)
+    inner = total(program, [program.outputs[output] for output in rows], by)
     time, *driven, z, values = inner.sx_in()
-    own = differentiable(graph.instant)(time, *driven, z, values)[
-        [graph.outputs[output] for output in rows]
+    own = differentiable(program.instant)(time, *driven, z, values)[
+        [program.outputs[output] for output in rows]
     ]
     inner = ca.Function("both", inner.sx_in(), [ca.vertcat(own.T, inner(time, *driven, z, values))])
-    slopes = inner(time, *graph.motion.call([time, values]), z, values)
+    slopes = inner(time, *program.motion.call([time, values]), z, values)
     function = ca.Function(
         "at_once", [time, z, values], [slopes], ["t", "z", "p"], ["found"], {"cse": True}
     )
-    place = Loops.of(graph, rung).at(t, p, t)
+    place = Loops.of(program, method).at(t, p, t)
     given = {"t": (t[:, None], 1), "z": (place, 1), "p": (p[None], 0)}
-    found = Batch.of(function, rung).at(t.size, given)
+    found = Batch.of(function, method).at(t.size, given)
     return found.reshape(t.size, len(rows), 1 + len(by))
 
 
 def _along(
-    graph: Program,
+    program: Program,
     solution: Solution,
     link: str,
     found: Mapping[Output, Array],
     p: Array,
     by: Sequence[int],
-    rung: Rung,
+    method: EvaluationMethod,
 ) -> Iterator[tuple[Output, Array]]:
     """Derivatives of the section forces of a link that are determined, each (t, xi, parameters)."""
     table, left_open = solution.table, solution.left_open
     columns = [output for output in solution.outputs if output.along and output.part == link]
-    function = section_slopes(graph.data, link, columns, by)
-    batch, xi, forces = Batch.of(function, rung), solution.xi, table.forces
+    function = section_slopes(program.data, link, columns, by)
+    batch, xi, forces = Batch.of(function, method), solution.xi, table.forces
     grids = np.empty((solution.t.size, xi.size, len(forces), len(by)))
     unknown = np.full((solution.t.size, 1 + len(by)), np.nan)
     both = np.stack([found.get(column, unknown) for column in columns], axis=1)

@@ -20,8 +20,8 @@ from ..base.symbolic import symbolic_property
 from ..codegen.stages import plain
 from ..equations.program import Program
 from ..instants.backends import begun, compiled, follow
-from ..instants.rung import Rung
-from ..summits.sharpness import Sharpness
+from ..instants.evaluation_method import EvaluationMethod
+from ..peak_search.sharpness import Sharpness
 from .jacobian import PointFunction
 
 Numbers = npt.NDArray[np.intc]
@@ -37,10 +37,10 @@ class Batch:
     library: codegen.BatchLibrary | None = None
 
     @classmethod
-    def of(cls, function: Any, rung: Rung) -> Batch:
+    def of(cls, function: Any, method: EvaluationMethod) -> Batch:
         """Compile it by the compiler of a rung; always in doubles."""
         found = compiled(
-            rung, lambda compiler: codegen.load_batch(function, compiler, _flags(rung))
+            method, lambda compiler: codegen.load_batch(function, compiler, _flags(method))
         )
         return cls(function, None if found is None else found[1])
 
@@ -69,36 +69,36 @@ class Batch:
 class Loops:
     """The iterated coordinates of a graph, if it has any, at places between instants."""
 
-    graph: Program
+    program: Program
     library: codegen.Library | None
 
     @classmethod
-    def of(cls, graph: Program, rung: Rung) -> Loops:
+    def of(cls, program: Program, method: EvaluationMethod) -> Loops:
         """Compile what follows them by the compiler of a rung."""
-        if graph.newton is None:
-            return cls(graph, None)
+        if program.newton is None:
+            return cls(program, None)
         found = compiled(
-            rung,
+            method,
             lambda compiler: codegen.load(
-                codegen.emit(graph, plain(graph)), compiler, _flags(rung)
+                codegen.emit(program, plain(program)), compiler, _flags(method)
             ),
         )
-        return cls(graph, None if found is None else found[1])
+        return cls(program, None if found is None else found[1])
 
     def at(self, t: Array, p: Array, places: Array) -> Array:
         """Iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``, from
         which they are followed.
         """
-        if self.graph.newton is None:
+        if self.program.newton is None:
             return np.zeros((places.size, 0))
-        count = self.graph.instant.size1_in("z")
+        count = self.program.instant.size1_in("z")
         times, back = np.unique(np.concatenate([t, places]), return_inverse=True)
-        guess = np.array(begun(self.graph, float(times[0]), p), float)
+        guess = np.array(begun(self.program, float(times[0]), p), float)
         z = np.zeros((count, times.size))
         if self.library is not None:
             self.library.follow(times, p, guess, z, np.zeros(times.size, np.intc))
         else:
-            z[:] = follow(self.graph, times, p, guess)[0]
+            z[:] = follow(self.program, times, p, guess)[0]
         return np.ascontiguousarray(z[:, back[t.size :]].T)
 
 
@@ -135,24 +135,28 @@ class Slopes:
     """Quantities of a scene and their derivatives by all parameters, at points."""
 
     points: PointFunction
-    rung: Rung
+    method: EvaluationMethod
     first: Batch
     loops: Loops
 
     @classmethod
     def of(
-        cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness, rung: Rung
+        cls,
+        program: Program,
+        quantities: Sequence[Output],
+        sharpness: Sharpness,
+        method: EvaluationMethod,
     ) -> Slopes:
         """Derive and compile those of some quantities, by the compiler of a rung; always in
         doubles.
         """
-        points = PointFunction.of(graph, quantities, sharpness)
-        return cls(points, rung, Batch.of(points.function, rung), Loops.of(graph, rung))
+        points = PointFunction.of(program, quantities, sharpness)
+        return cls(points, method, Batch.of(points.function, method), Loops.of(program, method))
 
     @property
-    def graph(self) -> Program:
+    def program(self) -> Program:
         """Program whose quantities they are."""
-        return self.points.graph
+        return self.points.program
 
     @cached_property
     def numbers(self) -> Mapping[Output, int]:
@@ -213,13 +217,13 @@ class Slopes:
 
     @symbolic_property
     def _second(self) -> Batch:
-        return Batch.of(self.points.further(), self.rung)
+        return Batch.of(self.points.further(), self.method)
 
     def _alone(self, number: int) -> Batch:
         """The function of one quantity alone, which nothing else has a part in."""
         if number not in self._single:
             own = self.points.quantities[number : number + 1]
-            self._single[number] = Batch(PointFunction.of(self.graph, own).function)
+            self._single[number] = Batch(PointFunction.of(self.program, own).function)
         return self._single[number]
 
     @symbolic_property
@@ -249,5 +253,5 @@ def _given(
     }
 
 
-def _flags(rung: Rung) -> tuple[str, ...]:
-    return tuple(shlex.split(rung.flags))
+def _flags(method: EvaluationMethod) -> tuple[str, ...]:
+    return tuple(shlex.split(method.flags))

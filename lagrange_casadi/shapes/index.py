@@ -45,13 +45,13 @@ def write_index(title: str, names: Sequence[str], folder: Path) -> None:
     """Write ``index.html`` beside the pictures of these names, in their order: a list of them, and
     all of them.
     """
-    told = [html.escape(name) for name in names]
-    links = "".join(f'<a href="#{name}">{name.replace("_", " ")}</a>\n' for name in told)
+    escaped = [html.escape(name) for name in names]
+    links = "".join(f'<a href="#{name}">{name.replace("_", " ")}</a>\n' for name in escaped)
     figures = "".join(
         f'<figure id="{name}"><a href="{name}.png"><img src="{name}.png"'
         f' alt="{name.replace("_", " ")}"'
         f' loading="lazy"></a><figcaption>{name}.png</figcaption></figure>\n'
-        for name in told
+        for name in escaped
     )
     text = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'

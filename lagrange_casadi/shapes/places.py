@@ -60,10 +60,10 @@ def require_poses(solution: Solution, what: str = "a report") -> None:
         if Output("pose", body, "x") not in solution.outputs
     ]
     if lacking:
-        told_of = ", ".join(f"'{body}'" for body in lacking[:3]) + (
+        bodies = ", ".join(f"'{body}'" for body in lacking[:3]) + (
             f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
         )
         raise DeclarationError(
             f"{solution.case}: {what} shows the mechanism in motion, and there is no motion of"
-            f" {told_of}; want motion too"
+            f" {bodies}; want motion too"
         )

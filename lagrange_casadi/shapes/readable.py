@@ -35,9 +35,9 @@ class Scale:
         it is.
         """
         if self.factor != 1.0:
-            axis.set_major_formatter(self.tell)
+            axis.set_major_formatter(self.label)
 
-    def tell(self, value: float, _: object = None) -> str:
+    def label(self, value: float, _: object = None) -> str:
         """The number at a tick."""
         return f"{self.factor * value + 0.0:.10g}".replace("-", "\N{MINUS SIGN}")
 

@@ -200,8 +200,8 @@ def _plates(places: Sequence[Place]) -> tuple[tuple[Place, ...], ...]:
     points = np.array(places)
     middle = points - points.mean(axis=0)
     size = float(np.abs(middle).max())
-    _, spread, directions = np.linalg.svd(middle / (size or 1.0))
-    if spread[1] < 1e3 * _FLAT or (spread.size > 2 and spread[2] > 1e3 * _FLAT):
+    _, distributed, directions = np.linalg.svd(middle / (size or 1.0))
+    if distributed[1] < 1e3 * _FLAT or (distributed.size > 2 and distributed[2] > 1e3 * _FLAT):
         return ()
     return (tuple(places[k] for k in _hull(middle @ directions[:2].T / size)),)
 

@@ -68,8 +68,8 @@ def view(axes: Array, azimuth: float, elevation: float, title: str = "") -> View
     """
     (c, s), (ce, se) = (_cosine_and_sine(angle) for angle in (azimuth, elevation))
     right, up = np.array([-s, c, 0.0]) @ axes, np.array([-se * c, -se * s, ce]) @ axes
-    told = f"azimuth {azimuth:g}°, elevation {elevation:g}°, {_named(axes[2])} up"
-    return View(title or told, right, up)
+    text = f"azimuth {azimuth:g}°, elevation {elevation:g}°, {_named(axes[2])} up"
+    return View(title or text, right, up)
 
 
 def views(

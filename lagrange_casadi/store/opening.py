@@ -11,9 +11,9 @@ from contextlib import contextmanager
 import h5py
 import numpy as np
 
-from ..base.seal import Seen, kind_of, verify
+from ..base.seal import VerifiedFile, kind_of, verify
 from ..errors import StoreError
-from .untrusted import told_as
+from .untrusted import reported_as
 
 SCHEMA = "lagrange-casadi"
 _KNOWN = {
@@ -30,7 +30,7 @@ def opened_file(
     versions: range,
     kind: str,
     of: str = "",
-    seen: Seen | None = None,
+    seen: VerifiedFile | None = None,
 ) -> Iterator[h5py.File]:
     """A whole file of one of the ``versions`` of a schema, which messages call ``kind``, its
     versions those ``of`` it.
@@ -43,7 +43,7 @@ def opened_file(
     if not seen or not seen.is_at(path):
         _refuse_other(path, kind_of(path) or schema, schema, kind)
         seen = verify(path)
-    with told_as("damaged", path):
+    with reported_as("damaged", path):
         try:
             file = h5py.File(path, "r")
         except BlockingIOError:
@@ -54,10 +54,10 @@ def opened_file(
             _refuse_other(path, file.attrs.get("schema"), schema, kind)
             written = file.attrs.get("schema_version")
             if not isinstance(written, np.integer) or written not in versions:
-                told = written if isinstance(written, np.integer) else repr(written)
+                stored = written if isinstance(written, np.integer) else repr(written)
                 valid = f"{versions[0]} to {versions[-1]}"
                 raise StoreError(
-                    f"{path}: schema version {told}{of}, this program reads versions {valid}: run"
+                    f"{path}: schema version {stored}{of}, this program reads versions {valid}: run"
                     " it again"
                 )
             if not file.attrs.get("complete", False):

@@ -35,7 +35,7 @@ from ..instants.elasticity import Elasticity
 from ..instants.held import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
-from ..judge.certificate import LOOSE, TOLERANCE, blur, certify
+from ..verification.certificate import COARSE, TOLERANCE, blur, certify
 from .numbers import check_numbers, drive_axis, numbers
 from .opening import SCHEMA, opened_file
 from .scales import LARGE, Scales
@@ -91,7 +91,7 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
         )
     target = Path(path)
     check_target(target)
-    _require_room(solution, target)
+    _require_space(solution, target)
     with replacing(target, hdf5=True) as draft:
         with (
             uninterrupted() as breathe,
@@ -136,7 +136,7 @@ def check_target(target: Path, own: str = SCHEMA) -> None:
         raise PathError(f"cannot write {target}: it is {kind}; choose another name")
 
 
-def _require_room(solution: Solution, target: Path) -> None:
+def _require_space(solution: Solution, target: Path) -> None:
     """Raise :class:`StoreError` where the disk has less room than the grids take."""
     size = (
         8
@@ -193,8 +193,8 @@ def check(path: str | os.PathLike[str]) -> list[str]:
         outputs = dict.fromkeys(
             [*solution.quantities(), *solution.outputs, *held_outputs(solution.held), *certificate]
         )
-        told = map(Output.of, parsed(file.attrs["outputs"], [str]))
-        found = [f"{_place(output)}: missing" for output in told if output not in outputs]
+        listed = map(Output.of, parsed(file.attrs["outputs"], [str]))
+        found = [f"{_place(output)}: missing" for output in listed if output not in outputs]
         if not found:
             found += unlike_conventions(file, solution.table)
             found += _check_axes(file, solution)
@@ -215,11 +215,11 @@ def _check_certificate(file: h5py.File, solution: Solution) -> Iterator[str]:
     for name, value in solution.failed.items():
         yield f"certificate/{name}: {value:.3g} {worse}"
     # Of angles of very many turns not enough digits are reported to compute anything anew.
-    if solution.certificate and blur(solution) < LOOSE:
+    if solution.certificate and blur(solution) < COARSE:
         for name, value in replace(solution, certificate=certify(solution)).failed.items():
             yield f"{name}: {value:.3g}, computed anew, {worse}"
     if (
-        not TOLERANCE <= solution.tolerance <= LOOSE
+        not TOLERANCE <= solution.tolerance <= COARSE
         or bool(file.attrs["certified"]) != solution.certified
     ):
         yield "certificate: the verdict or its tolerance is not what follows from the residuals"
@@ -251,9 +251,9 @@ def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
         if not np.isfinite(values).all():
             yield f"{axis}: holds values that are not finite"
         yield from unlike(file[axis], *_AXES[axis])
-    told = values_of(solution.description)
+    parameter_values = values_of(solution.description)
     if (
-        parsed(file.attrs["parameters"], {str: float}, "parameters") != told
+        parsed(file.attrs["parameters"], {str: float}, "parameters") != parameter_values
         or solution.case != solution.description["name"]
     ):
         yield "case or parameters: differ from those of the mechanism"
@@ -453,10 +453,10 @@ def _read(file: h5py.File) -> Solution:
         **words, versions=parsed(file.attrs["versions"], {str: str}, "versions")
     )
     left_open = tuple(map(Output.of, parsed(file.attrs["undetermined"], [str], "undetermined")))
-    told, reasons = (
+    completed, reasons = (
         parsed(file.attrs.get(key, "[]"), [str], key) for key in ("by_elasticity", "open_because")
     )
-    elastic = Elasticity(tuple(map(Output.of, told)), tuple(reasons))
+    elastic = Elasticity(tuple(map(Output.of, completed)), tuple(reasons))
     certificate = {
         name: numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())
     }
@@ -480,7 +480,7 @@ def _read(file: h5py.File) -> Solution:
     for link in solution.links_with_sections:
         law = solution.section(link).law
         whole = set(law.coefficients) == set(solution.table.law) and all(
-            spread.sound for spread in law.spreads
+            distributed.sound for distributed in law.distributed_loads
         )
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")

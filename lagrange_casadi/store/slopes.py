@@ -51,10 +51,12 @@ def slopes_of(
         )
     if set(group) - solution.description["parameters"].keys():
         raise ValueError("there are sensitivities by what is no parameter")
-    told = {f"{name}/{str(o).replace(':', '/')}": (name, o) for name in group for o in expected}
-    if set(places) != set(told):
+    expected_names = {
+        f"{name}/{str(o).replace(':', '/')}": (name, o) for name in group for o in expected
+    }
+    if set(places) != set(expected_names):
         raise ValueError("the sensitivities are not those of all quantities")
-    for place, (name, output) in told.items():
+    for place, (name, output) in expected_names.items():
         shape = tuple(lengths[axis] for axis in output.quantity.axes)
         found.setdefault(name, {})[output] = numbers(group[place], shape)
     return Derivatives(

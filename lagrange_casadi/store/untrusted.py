@@ -27,7 +27,7 @@ tells the shape by the value."""
 
 
 @contextmanager
-def told_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
+def reported_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
     """Raise :class:`StoreError`, one line with the file and ``what`` it is, for whatever is raised
     and is no error of ours.
     """
@@ -51,7 +51,7 @@ def parsed(text: Any, shape: Shape, what: str = "JSON") -> Any:
 
 def check_shape(value: Any, shape: Shape, what: str) -> None:
     """Raise ``ValueError`` for what came from JSON and has another shape, with the place."""
-    if place := _misfit(value, shape, what):
+    if place := _mismatch(value, shape, what):
         raise ValueError(f"{place} is not of the expected kind")
 
 
@@ -112,12 +112,12 @@ def check_chunks(dataset: h5py.Dataset) -> None:
             raise ValueError(f"{dataset.name} has {count} chunks of {expected}")
 
 
-def _misfit(value: Any, shape: Shape, place: str) -> str:
+def _mismatch(value: Any, shape: Shape, place: str) -> str:
     """The first place where a value has another shape; nothing where none has."""
     if isinstance(shape, FunctionType):
-        return _misfit(value, shape(value), place)
+        return _mismatch(value, shape(value), place)
     if isinstance(shape, tuple):
-        return "" if any(not _misfit(value, one, place) for one in shape) else place
+        return "" if any(not _mismatch(value, one, place) for one in shape) else place
     if isinstance(shape, list):
         if not isinstance(value, list) or len(shape) not in (1, len(value)):
             return place
@@ -126,7 +126,7 @@ def _misfit(value: Any, shape: Shape, place: str) -> str:
             filter(
                 None,
                 (
-                    _misfit(*pair, f"{place}[{k}]")
+                    _mismatch(*pair, f"{place}[{k}]")
                     for k, pair in enumerate(zip(value, each, strict=True))
                 ),
             ),
@@ -141,7 +141,8 @@ def _misfit(value: Any, shape: Shape, place: str) -> str:
         missing = next((f"{place}.{name}" for name in asked if name not in value), "")
         return missing or next(
             filter(
-                None, (_misfit(value[name], one, f"{place}.{name}") for name, one in asked.items())
+                None,
+                (_mismatch(value[name], one, f"{place}.{name}") for name, one in asked.items()),
             ),
             "",
         )

@@ -2,7 +2,7 @@
 and fatigue, and lives.
 """
 
-from ..declare.held import effective_lengths
+from ..declare.end_conditions import effective_lengths
 from ..equations.buckling import Column, critical_stress
 from .bearings import joint_safety
 from .critical_plane import Plane, critical_plane, plane_factor

@@ -21,7 +21,7 @@ from ..arguments import NotNegative, Numeric, Positive, public
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..declare.description import fitted_of
-from ..declare.fitted import Fitted, Pin, Plain, Rolling, parts_told, positive
+from ..declare.fitted import Fitted, Pin, Plain, Rolling, parts_from_numbers, positive
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..instants.statistics import counted
@@ -80,8 +80,8 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
     Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted,
     equilibrium leaves it open, or a number that depends on parameters is not positive.
     """
-    told = solution.description["joints"].get(joint, {}).get("fitted", {})
-    if not told:
+    fitted = solution.description["joints"].get(joint, {}).get("fitted", {})
+    if not fitted:
         having = ", ".join(fitted_of(solution.description))
         raise DeclarationError(
             f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
@@ -108,7 +108,7 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
     rate = solution.outputs.get(Output("motion", _coordinate(solution, joint), "rate"))
     verdicts: list[Verdict] = []
     left: list[str] = []
-    for kind, part in parts_told(told).items():
+    for kind, part in parts_from_numbers(fitted).items():
         _check(joint, kind, part)
         if isinstance(part, Pin):
             verdicts += _pin(part, across, solution.t)
@@ -136,8 +136,8 @@ def _check(joint: str, kind: str, part: Fitted) -> None:
 
 def _coordinate(solution: Solution, joint: str) -> str:
     """The coordinate by which a joint turns."""
-    told = solution.description["joints"][joint]
-    kinds = told.get("coordinates") or {told["coordinate"] and joint: "angle"}
+    joint_entry = solution.description["joints"][joint]
+    kinds = joint_entry.get("coordinates") or {joint_entry["coordinate"] and joint: "angle"}
     return next((name for name, kind in kinds.items() if kind == "angle" and name), joint)
 
 
@@ -156,14 +156,14 @@ def _forces(solution: Solution, joint: str) -> tuple[Array, Array]:
 
 
 def _verdict(
-    against: str, bears: float, size: Array, t: Array, told: str, unit: str, scale: float = 1.0
+    against: str, bears: float, size: Array, t: Array, text: str, unit: str, scale: float = 1.0
 ) -> Verdict:
     k = int(np.argmax(size))
     most = float(size[k])
     return Verdict(
         against,
         bears / most if most else math.inf,
-        f"{told} {most / scale:.4g} {unit} at t = {t[k]:.5g} s",
+        f"{text} {most / scale:.4g} {unit} at t = {t[k]:.5g} s",
     )
 
 
@@ -214,8 +214,8 @@ def _rolling(
     even = equivalent_load(load, shares, bearing.exponent)
     hours = rated_hours(bearing.dynamic, even, rpm, bearing.exponent)
     factor = math.inf if math.isinf(hours) else (hours / bearing.hours) ** (1.0 / bearing.exponent)
-    told = f"P {even:.4g} N, {rpm:.4g} 1/min, L10 {hours:.4g} h of {bearing.hours:.4g} h"
-    yield Verdict("life of bearing", factor, told)
+    text = f"P {even:.4g} N, {rpm:.4g} 1/min, L10 {hours:.4g} h of {bearing.hours:.4g} h"
+    yield Verdict("life of bearing", factor, text)
     if bearing.static is not None:
         yield _verdict("static load", bearing.static, load, t, "load", "N")
 

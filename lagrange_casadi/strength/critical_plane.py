@@ -23,7 +23,7 @@ from ..base.arrays import Array
 from ..beams.material import Material
 from ..errors import DeclarationError, shown
 from .stress import Stress
-from .worst import Place, sought, told
+from .worst import Place, sought, stresses_at
 
 FINDLEY = "findley"
 """The criterion's name."""
@@ -95,8 +95,8 @@ def worst_plane(stress: Stress, share: float = DUCTILE) -> tuple[Plane, Place, s
     """
     found = [(Plane(-1.0, 0.0, 0.0), Place(0.0, "tip", None), "")]
 
-    def look(places: Iterable[Place]) -> Place:
-        for values, fibres in told(stress, places):
+    def assess(places: Iterable[Place]) -> Place:
+        for values, fibres in stresses_at(stress, places):
             bounds = _bounds(values, share)
             for k in np.argsort(-bounds, kind="stable").tolist():
                 if bounds[k] <= found[0][0].value(share):
@@ -106,7 +106,7 @@ def worst_plane(stress: Stress, share: float = DUCTILE) -> tuple[Plane, Place, s
                     found[0] = plane, *fibres[k]
         return found[0][1]
 
-    sought(stress, look)
+    sought(stress, assess)
     return found[0]
 
 

@@ -175,17 +175,17 @@ def loaded(values: Array) -> Loaded:
     first, last = _farthest(vector)
     along = vector[:, last] - vector[:, first]
     size = float(np.linalg.norm(along))
-    swings = rainflow(along @ vector / size, repeating=True) if size else []
-    if not swings:  # none that is more than rounding
+    stress_cycles = rainflow(along @ vector / size, repeating=True) if size else []
+    if not stress_cycles:  # none that is more than rounding
         pairs, counts = [(first, first)], [1.0]
     else:
-        pairs, counts = [(s.first, s.last) for s in swings], [s.times for s in swings]
+        pairs, counts = [(s.first, s.last) for s in stress_cycles], [s.times for s in stress_cycles]
     a, b = (values[:, list(side)] for side in zip(*pairs, strict=True))
-    amplitude, mean = (np.sqrt(square) for square in swing_squares(a, b))
+    amplitude, mean = (np.sqrt(square) for square in cycle_squares(a, b))
     return Loaded(amplitude, mean, np.array(counts), pairs)
 
 
-def swing_squares(first: Operand, last: Operand) -> tuple[Operand, Operand]:
+def cycle_squares(first: Operand, last: Operand) -> tuple[Operand, Operand]:
     """The squares of amplitude and mean of a swing from some stresses, normal and shear along y and
     z, to others.
 
@@ -292,11 +292,14 @@ class Histories:
         if sheared.size:
             square, size = self._sheared()
             high, low = high[:, sheared], low[:, sheared]
-            swing, middle = (high - low) ** 2, np.maximum((high + low) / 2, 0.0)
-            whole = np.sqrt(swing + square) / (2 * endurance) + np.sqrt(middle**2 + size) / strength
+            stress_cycle, middle = (high - low) ** 2, np.maximum((high + low) / 2, 0.0)
+            whole = (
+                np.sqrt(stress_cycle + square) / (2 * endurance)
+                + np.sqrt(middle**2 + size) / strength
+            )
             # A smaller swing has a larger mean. Where shear is most of it, or means count for much,
             # no more is known than this.
-            wide = 2.0 * square if strength >= math.sqrt(2.0) * endurance else swing + square
+            wide = 2.0 * square if strength >= math.sqrt(2.0) * endurance else stress_cycle + square
             other = (
                 np.sqrt(wide) / (2 * endurance)
                 + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
@@ -313,9 +316,10 @@ class Histories:
                 if bound[i, k] <= best[i]:
                     break
                 if k in self.sheared:
-                    swings = loaded(self.at(i, k))
+                    stress_cycles = loaded(self.at(i, k))
                     best[i] = max(
-                        best[i], float(np.max(used(swings.amplitude, swings.mean, material)))
+                        best[i],
+                        float(np.max(used(stress_cycles.amplitude, stress_cycles.mean, material))),
                     )
         return np.asarray(best)
 
@@ -334,14 +338,14 @@ class Histories:
             best = least if found is None else found[0]
             if best is not None and tuple(bound[k].tolist()) > best:
                 break
-            swings = loaded(self.at(0, k))
-            value = score.of(swings)
+            stress_cycles = loaded(self.at(0, k))
+            value = score.of(stress_cycles)
             if (
                 best is None
                 or value < best
                 or (found is not None and value == best and k < found[1])
             ):
-                found = value, k, swings
+                found = value, k, stress_cycles
         return found
 
     def _sheared(self) -> tuple[Array, Array]:
@@ -380,7 +384,9 @@ def factor_score(material: Material, criterion: str) -> Score:
             return np.asarray(1.0 / (most * _ROUNDED))[:, None]
 
     return Score(
-        lambda swings: (float(np.min(factor(swings.amplitude, swings.mean, material, criterion))),),
+        lambda stress_cycles: (
+            float(np.min(factor(stress_cycles.amplitude, stress_cycles.mean, material, criterion))),
+        ),
         bound,
     )
 
@@ -392,10 +398,12 @@ def damage_score(material: Material, criterion: str) -> Score:
     """
     strengths(material, criterion)
 
-    def of(swings: Loaded) -> tuple[float, float]:
-        sizes = reversed_amplitude(swings.amplitude, swings.mean, material, criterion)
+    def of(stress_cycles: Loaded) -> tuple[float, float]:
+        sizes = reversed_amplitude(stress_cycles.amplitude, stress_cycles.mean, material, criterion)
         with np.errstate(divide="ignore"):
-            return -float(np.sum(swings.times / cycles(sizes, material))), -float(np.max(sizes))
+            return -float(np.sum(stress_cycles.times / cycles(sizes, material))), -float(
+                np.max(sizes)
+            )
 
     def bound(histories: Histories) -> Array:
         amplitude, mean = (size[0] * _ROUNDED for size in histories.widest())
@@ -407,7 +415,7 @@ def damage_score(material: Material, criterion: str) -> Score:
     return Score(of, bound)
 
 
-def felt(notch: Notch) -> Notch:
+def notch_factor(notch: Notch) -> Notch:
     """Fatigue stress concentration factor of a notch: K_f = 1 + q (K_t - 1) (Shigley, eq. 6-32)."""
     q = notch.sensitivity
     return Notch(

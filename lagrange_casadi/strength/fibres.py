@@ -22,7 +22,7 @@ from ..equations.model_data import ModelData
 from ..equations.section_function import Side
 from ..equations.strength import Loaded
 from ..equations.stress import concentration
-from .fatigue import Histories, felt
+from .fatigue import Histories, notch_factor
 
 _NEAR = 1e-9
 
@@ -143,4 +143,4 @@ def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Any, Side, Notch | 
         u = ca.fmin(ca.fmax(ca.SX(mark), breaks[cell]), breaks[cell + 1])
         yield cell, u, side, None
     for notch, side in itertools.product(link.beam.notches if link.beam else (), sides):
-        yield cell_of(notch.at, side), notch.at, side, felt(notch)
+        yield cell_of(notch.at, side), notch.at, side, notch_factor(notch)

@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Array
-from ..beams.beam import Beam, beam_told
+from ..beams.beam import Beam, beam_from_numbers
 from ..declare.description import beams_of, in_space
-from ..equations.bars import unaimed
 from ..equations.stress import FORCES, CrossSections
+from ..equations.two_force_links import unaimed
 from ..errors import DeclarationError, check_kind
 from ..instants.section_law import SectionLaw, Side
 from ..instants.solution import Solution
 from ..instants.statistics import counted
-from ..summits.polynomials import interpolation
+from ..peak_search.polynomials import interpolation
 
 _EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
 """Tolerance of a polynomial for the factors of forces, its degrees, and the length of a part of a
@@ -82,18 +82,21 @@ class Member:
                 f"link '{link}' has no beam=; links with a beam: {having or 'none'}"
             )
         space = in_space(solution.description)
-        if open_ := [
+        if indeterminate := [
             force for force in FORCES[space] if not solution.determined(f"section:{link}:{force}")
         ]:
-            names = " and ".join(open_)
+            names = " and ".join(indeterminate)
             raise DeclarationError(
                 f"link '{link}': equilibrium does not determine {names}, so its strength is not"
                 " evaluated"
             )
-        member = cls(link, beam_told(body["beam"]), law, solution.t, solution.xi, space)
+        member = cls(link, beam_from_numbers(body["beam"]), law, solution.t, solution.xi, space)
         member._check_torsion()
-        bars, aimed = solution.description.get("bars", ()), solution.description.get("beside", ())
-        if link in bars and link not in aimed and not (spun or member.beam.round):
+        two_force_links, aimed = (
+            solution.description.get("bars", ()),
+            solution.description.get("beside", ()),
+        )
+        if link in two_force_links and link not in aimed and not (spun or member.beam.round):
             raise DeclarationError(unaimed(link))
         return member
 
@@ -146,7 +149,9 @@ class Member:
     def degree(self) -> int:
         """The degree along the link of its section forces, between two marks."""
         cells = max(map(len, self.law.density.cells)) + 2
-        return max(cells, *(spread.powers + 1 for spread in self.law.spreads), 0)
+        return max(
+            cells, *(distributed.powers + 1 for distributed in self.law.distributed_loads), 0
+        )
 
     @property
     def marks(self) -> list[Array]:
@@ -155,7 +160,7 @@ class Member:
         """
         still = np.zeros_like(self.t)
         found = [load.station for load in self.law.loads] + [
-            mark for spread in self.law.spreads for mark in spread.marks
+            mark for distributed in self.law.distributed_loads for mark in distributed.marks
         ]
         return [
             np.clip(mark, 0.0, 1.0)
@@ -176,10 +181,10 @@ class Member:
             here, there = (
                 self.cross.factors(index, low + (high - low) * (x + 1) / 2) for x in (nodes, finer)
             )
-            told = here @ weights @ np.polynomial.chebyshev.chebvander(finer, degree).T
+            values = here @ weights @ np.polynomial.chebyshev.chebvander(finer, degree).T
             # Of each force its own unit.
             size = np.abs(there).max(axis=(0, 1, 3), keepdims=True)
-            if np.all(np.abs(told - there) <= _EXACT * size) or (
+            if np.all(np.abs(values - there) <= _EXACT * size) or (
                 high - low < _NARROW and degree == _DEGREES[-1]
             ):
                 yield Cell(low, high, self, index, degree)

@@ -55,7 +55,7 @@ def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> li
     found: list[Swing] = []
     stack: list[int] = []
 
-    def swing(first: int, last: int, times: float) -> None:
+    def cycle(first: int, last: int, times: float) -> None:
         a, b = float(values[first]), float(values[last])
         found.append(Swing(abs(b - a), (a + b) / 2, times, first, last))
 
@@ -70,18 +70,18 @@ def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> li
             if newest < before:
                 break
             if len(stack) == 3 and not repeating:
-                swing(stack[0], stack[1], 0.5)
+                cycle(stack[0], stack[1], 0.5)
                 del stack[0]
             elif len(stack) == 3:
                 break
             else:
-                swing(stack[-3], stack[-2], 1.0)
+                cycle(stack[-3], stack[-2], 1.0)
                 del stack[-3:-1]
     if repeating:
         # What is left goes from the largest value down to the smallest and back.
         if len(stack) > 1:
-            swing(stack[0], stack[1], 1.0)
+            cycle(stack[0], stack[1], 1.0)
         return found
     for first, last in itertools.pairwise(stack):
-        swing(first, last, 0.5)
+        cycle(first, last, 0.5)
     return found

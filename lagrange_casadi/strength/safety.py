@@ -12,7 +12,7 @@ import numpy as np
 from ..arguments import public
 from ..beams.material import Material
 from ..declare.description import Description
-from ..declare.held import effective_lengths
+from ..declare.end_conditions import effective_lengths
 from ..equations import buckling as columns
 from ..equations.buckling import Column
 from ..errors import UnknownNameError
@@ -111,12 +111,12 @@ def safety(
     :class:`.UnknownNameError` for a ``criterion`` or a kind of stress that is none.
     """
     member = Member.of(solution, link)
-    return judged(
+    return rated(
         member, as_column(solution.description, member), criterion=criterion, yielding=yielding
     )
 
 
-def judged(
+def rated(
     member: Member,
     of: Column,
     *,
@@ -147,21 +147,21 @@ def tired(stress: Stress, material: Material, criterion: str) -> Verdict:
     if criterion == FINDLEY:
         plane, place, fibre = worst_plane(stress)
         value = plane_factor(plane, material)
-        told = (
+        text = (
             f"{plane.amplitude / 1e6:.4g} MPa in shear and {plane.normal / 1e6:.4g} MPa across, on"
             f" a plane at {math.degrees(plane.angle):.0f} deg to the cross-section, by {criterion}"
         )
     else:
-        (value, *_), place, fibre, swings = worst(stress, factor_score(material, criterion))
-        k = int(np.argmin(factor(swings.amplitude, swings.mean, material, criterion)))
-        told = (
-            f"mean {swings.mean[k] / 1e6:.4g} MPa, amplitude {swings.amplitude[k] / 1e6:.4g} MPa by"
+        (value, *_), place, fibre, cycles = worst(stress, factor_score(material, criterion))
+        k = int(np.argmin(factor(cycles.amplitude, cycles.mean, material, criterion)))
+        text = (
+            f"mean {cycles.mean[k] / 1e6:.4g} MPa, amplitude {cycles.amplitude[k] / 1e6:.4g} MPa by"
             f" {criterion}"
         )
     return Verdict(
         "fatigue",
         value,
-        f"{told} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}",
+        f"{text} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}",
     )
 
 

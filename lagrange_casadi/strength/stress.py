@@ -27,10 +27,10 @@ from ..beams.beam import Notch
 from ..equations.stress import KINDS, concentration, squared
 from ..errors import DeclarationError, UnknownNameError, shown
 from ..instants.section_law import Side
-from ..summits.polynomials import interpolation
+from ..peak_search.polynomials import interpolation
 from .member import Cell, Member
 
-_LOOKS, _GLANCES, _BLOCK = 8, 4, 1 << 21
+_SAMPLES, _GLANCES, _BLOCK = 8, 4, 1 << 21
 _BESIDE, _STEPS = 0.9, 40
 """Fraction of the largest value for which a local maximum may be the largest, and the number of
 steps to it.
@@ -145,10 +145,10 @@ class Stress:
         )
         if moving is self.member:
             return Largest(value, place, tuple(names))
-        found, told = np.full((2, self.member.t.size), np.nan), [""] * self.member.t.size
+        found, place_names = np.full((2, self.member.t.size), np.nan), [""] * self.member.t.size
         for k, at in enumerate(np.searchsorted(self.member.t, moving.t).tolist()):
-            found[:, at], told[at] = (value[k], place[k]), names[k]
-        return Largest(found[0], found[1], tuple(told))
+            found[:, at], place_names[at] = (value[k], place[k]), names[k]
+        return Largest(found[0], found[1], tuple(place_names))
 
     def peak(self, kind: str, *, notches: bool = False) -> StressPeak:
         """The largest over all instants that count; where ``notches`` are asked for, their stresses
@@ -191,9 +191,9 @@ class Stress:
         A coarse look leaves out instants that have it not.
         """
         rows = [part for cell in self.member.cells for part in self._parts(cell)]
-        looked = [part.looked(_weights(kind), _GLANCES) for part in rows]
-        least = np.max([squares.max(axis=(1, 2)) for squares, _ in looked], axis=0)
-        most = np.max([squares.max(axis=(1, 2)) * bound for squares, bound in looked], axis=0)
+        sampled = [part.sampled(_weights(kind), _GLANCES) for part in rows]
+        least = np.max([squares.max(axis=(1, 2)) for squares, _ in sampled], axis=0)
+        most = np.max([squares.max(axis=(1, 2)) * bound for squares, bound in sampled], axis=0)
         chosen = np.flatnonzero((most >= least.max()) & (most >= floor**2))
         if not chosen.size:
             return None
@@ -228,7 +228,8 @@ class Stress:
         """The stresses over few instants after another."""
         member = self.member
         each = sum(
-            (_LOOKS * (member.degree + cell.degree) + 1) * len(cell.names) for cell in member.cells
+            (_SAMPLES * (member.degree + cell.degree) + 1) * len(cell.names)
+            for cell in member.cells
         )
         height = max(1, _BLOCK // (each * (len(member.marks) + 1)))
         for start in range(0, member.t.size, height):
@@ -242,16 +243,16 @@ class Stress:
         """Values, ratios and fibres at every instant."""
         weights, count = _weights(kind), self.member.t.size
         rows = [part for cell in self.member.cells for part in self._parts(cell)]
-        looked = [part.looked(weights, _LOOKS) for part in rows]
-        floor = np.max([squares.max(axis=(1, 2)) for squares, _ in looked], axis=0)
+        sampled = [part.sampled(weights, _SAMPLES) for part in rows]
+        floor = np.max([squares.max(axis=(1, 2)) for squares, _ in sampled], axis=0)
         value, place, fibre = np.full(count, -1.0), np.zeros(count), np.zeros(count, int)
         names: list[tuple[str, ...]] = []
         signs = np.zeros(count)
-        for number, (part, (squares, bound)) in enumerate(zip(rows, looked, strict=True)):
+        for number, (part, (squares, bound)) in enumerate(zip(rows, sampled, strict=True)):
             names.append(part.cell.names)
             t, f = np.nonzero(squares.max(axis=2) * bound >= floor[:, None])
             if t.size:
-                square, u, sign = part.summits(t, f, weights)
+                square, u, sign = part.maxima(t, f, weights)
                 order = np.lexsort((square, t))
                 last = order[np.append(np.diff(t[order]) != 0, True)]
                 better = last[square[last] > value[t[last]]]
@@ -262,8 +263,8 @@ class Stress:
                     sign[better],
                     number * 1000 + f[better],
                 )
-        told = [names[k // 1000][k % 1000] for k in fibre.tolist()]
-        return _signed(kind, value, signs), place, told
+        labels = [names[k // 1000][k % 1000] for k in fibre.tolist()]
+        return _signed(kind, value, signs), place, labels
 
     def _parts(self, cell: Cell) -> Iterator[_Part]:
         """The parts of a cell between two marks."""
@@ -303,34 +304,34 @@ class _Part:
             return self.cell.factors(np.full((1, 1), self.cell.low))
         return self.cell.factors(u if np.ptp(self.low) or np.ptp(self.high) else u[:1])
 
-    def looked(self, weights: tuple[float, float], looks: int) -> tuple[Array, float]:
+    def sampled(self, weights: tuple[float, float], samples: int) -> tuple[Array, float]:
         """The squares (t, fibres, looks), both ends among them, and how many times higher they may
         be in between.
         """
-        places = _places(self.degree, looks)
+        places = _places(self.degree, samples)
         values = self.coefficients @ chebyshev.chebvander(places, self.degree).T
         # A square is not negative: it is bounded about half of what is largest.
         factor = (1.0 + 1.0 / math.cos(math.pi * self.degree / (places.size - 2))) / 2
         return np.moveaxis(squared(values, weights), 0, 1), factor
 
-    def summits(
+    def maxima(
         self, t: Operand, f: Operand, weights: tuple[float, float]
     ) -> tuple[Array, Array, Array]:
         """The largest squares at some instants and fibres, their ratios, and the sign of the normal
         stress there.
         """
-        square, x, sign = summits(self.coefficients[:, f, t], weights)
+        square, x, sign = maxima(self.coefficients[:, f, t], weights)
         return square, self.low[t] + (self.high - self.low)[t] * (x + 1.0) / 2, sign
 
 
-def _places(degree: int, looks: int) -> Array:
+def _places(degree: int, samples: int) -> Array:
     """Places at which squares, of twice the degree, are sampled: so many Chebyshev nodes for each
     degree, and both ends.
     """
-    return np.concatenate([[-1.0], chebyshev.chebpts1(max(looks * degree, 8)), [1.0]])
+    return np.concatenate([[-1.0], chebyshev.chebpts1(max(samples * degree, 8)), [1.0]])
 
 
-def summits(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array]:
+def maxima(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array]:
     """The largest square of stresses from -1 to 1, where it is, and the sign of the normal stress
     there, each (n,).
 
@@ -341,7 +342,7 @@ def summits(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array
     than its neighbours it is followed upward, between these.
     """
     degree = c.shape[-1] - 1
-    places = _places(degree, _LOOKS)
+    places = _places(degree, _SAMPLES)
     squares = squared(c @ chebyshev.chebvander(places, degree).T, weights)
     edge = np.full((len(squares), 1), -1.0)
     higher = (squares >= np.hstack([edge, squares[:, :-1]])) & (
@@ -358,8 +359,8 @@ def summits(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array
         )
 
     x = _uphill(square, places[np.maximum(k - 1, 0)], places[np.minimum(k + 1, places.size - 1)])
-    found, looked = square(x), squares[rows, k]
-    x, found = np.where(found >= looked, x, places[k]), np.maximum(found, looked)
+    found, sampled = square(x), squares[rows, k]
+    x, found = np.where(found >= sampled, x, places[k]), np.maximum(found, sampled)
     order = np.lexsort((found, rows))
     last = order[np.append(np.diff(rows[order]) != 0, True)]
     return found[last], x[last], np.sign(chebyshev.chebval(x[last], own[:, 0, last], tensor=False))

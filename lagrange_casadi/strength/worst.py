@@ -11,7 +11,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..beams.beam import Notch
 from ..instants.section_law import Side
-from .fatigue import Histories, Loaded, Score, felt
+from .fatigue import Histories, Loaded, Score, notch_factor
 from .stress import Stress
 
 FEW = 65
@@ -43,29 +43,29 @@ def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, 
     """
     found: list[tuple[tuple[float, ...], Place, str, Loaded]] = []
 
-    def look(places: Iterable[Place]) -> Place:
-        for values, fibres in told(stress, places):
+    def assess(places: Iterable[Place]) -> Place:
+        for values, fibres in stresses_at(stress, places):
             best = Histories.of(values).worst(score, found[0][0] if found else None)
             if best is not None:
-                value, k, swings = best
-                found[:] = [(value, *fibres[k], swings)]
+                value, k, cycles = best
+                found[:] = [(value, *fibres[k], cycles)]
         return found[0][1]
 
-    sought(stress, look)
+    sought(stress, assess)
     return found[0]
 
 
-def sought(stress: Stress, look: Callable[[Iterable[Place]], Place]) -> None:
+def sought(stress: Stress, assess: Callable[[Iterable[Place]], Place]) -> None:
     """Look at the places of a link, and then around the one that ``look`` says is the worst so far,
     finer and finer.
     """
-    place, step = look(places(stress)), 1.0 / (FEW - 1)
+    place, step = assess(places(stress)), 1.0 / (FEW - 1)
     for _ in range(_ROUNDS):
         if place.notch is not None:
             return
         around = np.linspace(place.xi - step, place.xi + step, _ZOOM).tolist()
         place, step = (
-            look(Place(x, "tip", None) for x in around if 0.0 <= x <= 1.0),
+            assess(Place(x, "tip", None) for x in around if 0.0 <= x <= 1.0),
             step * 2 / (_ZOOM - 1),
         )
 
@@ -80,12 +80,12 @@ def places(stress: Stress) -> Iterator[Place]:
     yield from (Place(x, "tip", None) for x in np.linspace(0.0, 1.0, FEW).tolist())
     yield from (Place(x, side, None) for x, side in itertools.product(sorted(steps), _SIDES))
     yield from (
-        Place(float(notch.at), side, felt(notch))
+        Place(float(notch.at), side, notch_factor(notch))
         for notch, side in itertools.product(member.beam.notches, _SIDES)
     )
 
 
-def told(
+def stresses_at(
     stress: Stress, places: Iterable[Place]
 ) -> Iterator[tuple[Array, list[tuple[Place, str]]]]:
     """The stresses at places, (3, fibres of all of them, t), and the place and the name of each

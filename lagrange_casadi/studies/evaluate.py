@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 from ..arguments import LATER, Outputs, ThreadCount, public
 from ..base.vocabulary import Backend, Precision
+from ..declare.compliant import Elastic
 from ..declare.even_points import EvenPoints
-from ..declare.giving import Elastic
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
-from ..instants.rung import Rung
+from ..instants.evaluation_method import EvaluationMethod
 from .request import Request
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def evaluate(
         Output names; with ``sensitivity`` or ``sensitivity:PARAMETER`` among them the derivatives
         of all others too, by all parameters or by some: see :class:`.Derivatives`.
     backend, precision, newton, table, flags
-        How it is evaluated: see :class:`.Rung`.
+        How it is evaluated: see :class:`.EvaluationMethod`.
     threads
         How many threads share the instants; default: one a core. The result does not depend on it.
     certificate
@@ -70,8 +70,8 @@ def evaluate(
     where the outputs over time do not fit into memory, :class:`CompilerError`, and for mistakes in
     the arguments :class:`UnknownNameError`, :class:`ParameterError` or :class:`DeclarationError`.
     """
-    rung = Rung(backend, precision, newton, table, flags)
-    request = Request(parameters, t, over, xi, wanted, rung)
+    method = EvaluationMethod(backend, precision, newton, table, flags)
+    request = Request(parameters, t, over, xi, wanted, method)
     from .solving import solve
 
     return solve(scene, request, threads=threads, certificate=certificate, elastic=elastic)

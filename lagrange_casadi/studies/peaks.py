@@ -35,8 +35,8 @@ from ..instants.section_law import SectionLaw, Side
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..instants.sizes import size_of
 from ..instants.solution import Peak, Solution
-from ..summits.panels import TOPS, Listed, Peaks
-from ..summits.sharpness import Sharpness
+from ..peak_search.intervals import TOPS, Listed, Peaks
+from ..peak_search.sharpness import Sharpness
 from .evaluate import evaluate
 
 _SAME = 1e-6
@@ -139,7 +139,7 @@ def shortfall(
     if not there.any():
         raise DeclarationError("shortfall: no quantity is there that is determined and not zero")
     missing = [1.0 - peaks[:-1, there] / true[there] for peaks in (sampled, refined)]
-    columns = [spread(rows, axis=1) for rows in missing for spread in (np.max, np.median)]
+    columns = [distributed(rows, axis=1) for rows in missing for distributed in (np.max, np.median)]
     return [
         Shortfall(count, *map(float, row)) for count, *row in zip(counts, *columns, strict=True)
     ]
@@ -170,17 +170,17 @@ def forces(solution: Solution) -> list[str]:
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def rates(graph: Program) -> ca.Function:
+def rates(program: Program) -> ca.Function:
     """The columns of a graph and, where loops are closed, their time derivatives along the motion.
 
     ``rates(tz, p) -> (out, out_rate)``, where ``tz`` is the time above the iterated coordinates.
     """
-    instant, newton = differentiable(graph.instant), graph.newton
+    instant, newton = differentiable(program.instant), program.newton
     tz, p = ca.MX.sym("tz", 1 + instant.size1_in("z")), ca.MX.sym("p", instant.size1_in("p"))
     t, z = tz[0], tz[1:]
     still = ca.DM.zeros(p.numel())
-    d, d_rate, d_acceleration = graph.motion(t, p)
-    d_jerk = graph.laws.jerk()(t, p)
+    d, d_rate, d_acceleration = program.motion(t, p)
+    d_jerk = program.laws.jerk()(t, p)
     z_rate = ca.MX(0, 1)
     if newton is not None:
         # The correction is -Phi_z^-1 Phi, and where Phi = 0 its time derivative at fixed z is z'.
@@ -204,7 +204,7 @@ class ContinuousSolution:
     ``again`` makes that of the same parameters at other instants, for outputs that are wanted.
     """
 
-    graph: Program
+    program: Program
     stages: Stages
     solution: Solution
     p: Array
@@ -227,21 +227,21 @@ class ContinuousSolution:
             or scene.parameters.keys() != solution.description["parameters"].keys()
         ):
             raise other
-        told = scene.values(values_of(solution.description))
+        values = scene.values(values_of(solution.description))
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
-        graph = compile_scene(scene, wanted, parameters=told)
-        p = np.array(list(told.values()))
-        stages = stages_for(graph, "double", solution.t, p)
-        z, _ = follow(graph, solution.t, p, stages=stages)
+        program = compile_scene(scene, wanted, parameters=values)
+        p = np.array(list(values.values()))
+        stages = stages_for(program, "double", solution.t, p)
+        z, _ = follow(program, solution.t, p, stages=stages)
         searched = backend or solution.provenance.backend
 
         def again(t: EvenPoints, names: Sequence[str]) -> ContinuousSolution:
             asked: dict[str, Any] = {"backend": "vm", "certificate": False, "elastic": False}
             return cls.of(
-                scene, evaluate(scene, parameters=told, t=t, wanted=names, **asked), searched
+                scene, evaluate(scene, parameters=values, t=t, wanted=names, **asked), searched
             )
 
-        found = cls(graph, stages, solution, p, z, graph.outputs, again, searched)
+        found = cls(program, stages, solution, p, z, program.outputs, again, searched)
         if not found.agrees():
             raise other
         return found
@@ -254,7 +254,7 @@ class ContinuousSolution:
         outputs = [output for output in solution.outputs if output not in solution.left_open]
         if not all(output in self.rows for output in outputs):
             return False
-        outputs = [output for output in outputs if output not in self.graph.loop_angles]
+        outputs = [output for output in outputs if output not in self.program.loop_angles]
         moving = np.flatnonzero(solution.resting.all() | ~solution.resting)
         some = moving[[0, moving.size // 2, -1]]
         out = self.stages.instant(
@@ -300,8 +300,8 @@ class ContinuousSolution:
 
     def at_the_drive(self, peak: Peak, joint: str) -> Peak:
         """A peak with the coordinate of a drive at its time."""
-        d = self.graph.motion(peak.t, self.p)[0]
-        return replace(peak, over=float(d[self.graph.driven.index(joint)]))
+        d = self.program.motion(peak.t, self.p)[0]
+        return replace(peak, over=float(d[self.program.driven.index(joint)]))
 
     def peaks(self, sampled: Sequence[Peak]) -> list[Peak]:
         """The peaks over all times, of quantities whose peaks over some instants are known."""
@@ -320,7 +320,7 @@ class ContinuousSolution:
         turned = {
             k: solution.outputs[name]
             for k, name in enumerate(sought)
-            if name in self.graph.loop_angles
+            if name in self.program.loop_angles
         }
         signals = self.signals([self.quantity(name) for name in sought], turned)
         units, scales = self.scales(sought)
@@ -333,7 +333,7 @@ class ContinuousSolution:
         for k, output in enumerate(sought):
             peak = found[output]
             along = None if peak.xi is None else float(xi[k])
-            if not searched.told[k]:
+            if not searched.resolved[k]:
                 least = max(abs(peak.value), float(abs(value[k])))
                 found[output] = Peak(peak.name, math.nan, peak.unit, float(t[k]), along, least)
             elif abs(value[k]) > abs(peak.value):
@@ -344,18 +344,18 @@ class ContinuousSolution:
         """Raise :class:`.DeclarationError` where a motion or constraint is other at a place between
         instants than on both sides.
         """
-        corners, t, p = self.graph.data.corners, self.solution.t, self.p.tolist()
+        corners, t, p = self.program.data.corners, self.solution.t, self.p.tolist()
         corners.refuse_isolated_laws(t, p, between=True)
         if corners.constraints:
             out = self.stages.instant(*self.stages.drive(t[None], self.p), self.z, self.p).full()
-            corners.refuse_constraints(lambda name: self.graph.seen(name, out), p, between=True)
+            corners.refuse_constraints(lambda name: self.program.seen(name, out), p, between=True)
 
     def signals(self, quantities: Sequence[Quantity], turned: Mapping[int, Array]) -> Signals:
         """Quantities as curves over time; ``turned`` as in :class:`.Signals`."""
         columns = {k for quantity in quantities for k in _columns(quantity)}
-        sharpness = Sharpness.of(self.graph, sorted(columns))
+        sharpness = Sharpness.of(self.program, sorted(columns))
         signals = Signals(
-            self.graph,
+            self.program,
             self.stages,
             sharpness,
             quantities,
@@ -439,7 +439,7 @@ class ContinuousSolution:
         """
         near = signals.near(t)
         z, _ = signals.closed(t, near)
-        out, out_rate = (x.full() for x in rates(self.graph)(np.vstack([t, z]), self.p))
+        out, out_rate = (x.full() for x in rates(self.program)(np.vstack([t, z]), self.p))
         found = np.full((3, len(names)), np.nan)
         for k, name in enumerate(names):
             columns, changes = out[:, [k]], out_rate[:, [k]]
@@ -457,7 +457,7 @@ class ContinuousSolution:
                 found[:, k] = value, np.nan, columns[rows, 0] @ changes[rows, 0] / (value or 1.0)
             else:
                 value = columns[self.rows[name], 0]
-                if name in self.graph.loop_angles:
+                if name in self.program.loop_angles:
                     value += math.tau * np.round(
                         (self.solution.outputs[name][near[k]] - value) / math.tau
                     )

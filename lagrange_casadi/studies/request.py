@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over, Times
-from ..instants.rung import Rung
+from ..instants.evaluation_method import EvaluationMethod
 
 
 @dataclass(frozen=True)
@@ -19,4 +19,4 @@ class Request:
     over: Over | None = None
     xi: EvenPoints | None = None
     wanted: Sequence[str] | None = None
-    rung: Rung = field(default_factory=Rung)
+    method: EvaluationMethod = field(default_factory=EvaluationMethod)

@@ -16,14 +16,14 @@ from ..base.quantities import Output
 from ..base.vocabulary import Backend
 from ..declare.scene import Scene
 from ..errors import DeclarationError, UnknownNameError
-from ..instants.rung import Rung
+from ..instants.evaluation_method import EvaluationMethod
 from ..instants.solution import Solution
 from ..instants.statistics import shares
+from ..peak_search.intervals import Listed
+from ..peak_search.sharpness import Sharpness
 from ..sensitivity.ends import Ends
 from ..sensitivity.peaks import AS_LARGE, MovingPeaks, PeakKind, faint, mean_slopes
 from ..sensitivity.slopes import Numbers, Slopes
-from ..summits.panels import Listed
-from ..summits.sharpness import Sharpness
 from .peaks import ContinuousSolution, resultants
 
 _BLOCK = 1 << 16
@@ -63,7 +63,7 @@ class Sensitivities:
     @property
     def parameters(self) -> tuple[str, ...]:
         """The names of the parameters."""
-        return tuple(self.slopes.graph.data.parameters)
+        return tuple(self.slopes.program.data.parameters)
 
     def array(self, name: str, parameter: str) -> Array:
         """The derivative of a quantity by a parameter over the instants, (t,), of a section force
@@ -119,7 +119,7 @@ class Sensitivities:
         chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
         nothing = faint(values, np.array([self._largest(peak.unit) for peak in found]))
         moving = MovingPeaks(
-            self.slopes, Ends(self.slopes.graph.laws, None, self.solution.t, self.p)
+            self.slopes, Ends(self.slopes.program.laws, None, self.solution.t, self.p)
         )
         changes = moving.gradient(chosen, (values, t, xi), nothing)
         tied = moving.ties(chosen, values, changes, others) & ~nothing
@@ -217,7 +217,7 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
     """
     solution = solution.by_equilibrium
     continuous = ContinuousSolution.of(scene, solution)
-    program = continuous.graph
+    program = continuous.program
     quantities = [o for o in solution.quantities() if solution.determined(o)]
     quantities += [o for o in map(Output.of, resultants(solution)) if o not in quantities]
     made = {part for o in quantities if o.group != "section" for part in solution.made_of(o)}
@@ -225,5 +225,7 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
         {program.outputs[part] for part in made}
         | {k for o, k in program.outputs.items() if o.along}
     )
-    slopes = Slopes.of(program, quantities, Sharpness.of(program, columns), Rung(backend))
+    slopes = Slopes.of(
+        program, quantities, Sharpness.of(program, columns), EvaluationMethod(backend)
+    )
     return Sensitivities(solution, slopes, continuous.p, continuous)

@@ -15,18 +15,18 @@ from ..arguments import Positive, public
 from ..beams.beam import Beam
 from ..beams.profiles import Profile
 from ..declare.description import Template, beams_of, values_of
-from ..declare.held import ends_of
+from ..declare.end_conditions import ends_of
 from ..declare.parts import Parameter
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..elastic.compliance import Compliance
 from ..elastic.deflection import Against, Deflection
-from ..equations.bars import unaimed
 from ..equations.model_data import beam_at, template
+from ..equations.two_force_links import unaimed
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..instants.solution import Solution
 from ..strength.member import Member
-from ..strength.safety import Safety, Verdict, as_column, judged
+from ..strength.safety import Safety, Verdict, as_column, rated
 from .request import Request
 from .solving import solve
 
@@ -127,7 +127,7 @@ def size(
     enough = _Enough(float(safety), criterion, yielding, deflection)
     search = _Search.of(scene, profiles, links, Request(parameters, t, over), enough)
     choice = search.lightened(search.safe())
-    return search.told(choice)
+    return search.result(choice)
 
 
 @dataclass(frozen=True)
@@ -240,7 +240,7 @@ class _Search:
         other = replace(member, beam=beam_at(self.template, name, list(values.values())))
         criterion, yielding = self.enough.criterion, self.enough.yielding
         enough = 0.0 if whole else self.enough.factor
-        found = judged(
+        found = rated(
             other,
             as_column(solution.description, other),
             criterion=criterion,
@@ -279,14 +279,14 @@ class _Search:
                 while not self.suffices(tried[choice[name]]):
                     changed = True
                     if choice[name] + 1 == len(slot.profiles):
-                        raise NoDesignError(self._told_none(solution, name, tried))
+                        raise NoDesignError(self._report_none(solution, name, tried))
                     choice[name] += 1
                     tried[choice[name]] = self.judge(solution, name, choice[name])
             if not changed:
                 return choice
         raise NoDesignError(f"size: loads and profiles do not converge within {_TURNS} evaluations")
 
-    def _told_none(self, solution: Solution, name: str, tried: Iterable[int]) -> str:
+    def _report_none(self, solution: Solution, name: str, tried: Iterable[int]) -> str:
         whole = {k: self.judge(solution, name, k, whole=True) for k in tried}
         best = max(whole, key=lambda k: whole[k].factor)
         profile, found = self.slots[name].profiles[best].name, whole[best]
@@ -316,7 +316,7 @@ class _Search:
                         break
         return choice
 
-    def told(self, choice: Mapping[str, int]) -> Sizing:
+    def result(self, choice: Mapping[str, int]) -> Sizing:
         """Result of a choice, evaluated anew with its certificate."""
         wanted = [*self.outputs, *self.sections]
         asked = replace(self.request, parameters=self.values(choice), wanted=wanted)

@@ -11,10 +11,10 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..base.room import cores, in_words, require
+from ..base.space import cores, in_words, require
+from ..declare.compliant import Elastic
 from ..declare.ends import BEYOND
 from ..declare.even_points import checked_ratios, points
-from ..declare.giving import Elastic
 from ..declare.laws import Laws
 from ..declare.scene import Scene
 from ..declare.times import Timing, instants_of, span_of
@@ -27,22 +27,22 @@ from ..errors import CertificateWarning, DeclarationError, warn
 from ..instants.backends import Evaluated
 from ..instants.derivatives import Derivatives
 from ..instants.determinacy import completed, determinate, undetermined
+from ..instants.evaluation_method import EvaluationMethod, seconds
 from ..instants.from_table import columns
 from ..instants.holding import holding
 from ..instants.ordering import in_order
 from ..instants.phases import phases
 from ..instants.refusal import refuse
-from ..instants.rung import Rung, seconds
 from ..instants.solution import Solution
-from ..judge.accuracy import estimate, explained
-from ..judge.certificate import certify, failure, tolerance
 from ..sensitivity.series import series_slopes
+from ..verification.accuracy import estimate, explained
+from ..verification.certificate import certify, failure, tolerance
 from .request import Request
 
 _BESIDE, _CHECKED = 8, 2
 """Rows beside the outputs, and how many times both are in memory while they are checked."""
 
-_LOOKED_AT = 4001
+_SAMPLED = 4001
 _LONG = 60.0
 """Seconds of which nothing need be said."""
 
@@ -56,44 +56,46 @@ def solve(
     elastic: Elastic | None = None,
 ) -> Solution:
     """Evaluate a scene: see :func:`.evaluate`."""
-    rung, values = request.rung, scene.values(request.parameters)
+    method, values = request.method, scene.values(request.parameters)
     timing = scene.timing(request.t, request.over)
     scene.checked(values)
     ratios = checked_ratios(scene.xi if request.xi is None else request.xi)
     scene = scene.giving(elastic)
     gives = scene.elastic
-    if gives and rung.table is not None:
+    if gives and method.table is not None:
         raise DeclarationError(
             "elastic: a table cannot hold statically indeterminate forces; evaluate without a table"
         )
     names = scene.wanted if request.wanted is None else request.wanted
-    graph = compile_scene(scene, names, parameters=values)
-    rung.check(graph)
-    checked_laws(graph.data, checked_span(graph.laws, timing, values), tuple(values.values()))
+    program = compile_scene(scene, names, parameters=values)
+    method.check(program)
+    checked_laws(program.data, checked_span(program.laws, timing, values), tuple(values.values()))
     require(
         "the outputs over time",
-        (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count),
+        (_CHECKED if certificate else 1, len(program.columns) + _BESIDE, timing.count),
     )
-    _announce(graph, timing.count, rung, threads or cores())
-    instants, places = instants_of(graph.laws, timing, values), points(ratios)
+    _announce(program, timing.count, method, threads or cores())
+    instants, places = instants_of(program.laws, timing, values), points(ratios)
     times = instants.t
     p = np.array(list(values.values()))
-    graph.data.corners.refuse_isolated_laws(times, p.tolist())
+    program.data.corners.refuse_isolated_laws(times, p.tolist())
     left_open: tuple[Output, ...] = ()
-    if rung.table is not None:
-        graph, left_open = determinate(graph, times, p)
-    found, provenance = columns(graph, times, p, rung, threads)
-    refuse(graph, found, times, p, rung)
+    if method.table is not None:
+        program, left_open = determinate(program, times, p)
+    found, provenance = columns(program, times, p, method, threads)
+    refuse(program, found, times, p, method)
     out = np.asarray(found.out, float)
-    graph.data.corners.refuse_constraints(lambda name: graph.seen(name, out), p.tolist())
-    left_open += undetermined(graph, out, p, rung)
-    description = graph.data.at(p)
-    elasticity, unbalanced = completed(graph, found, times, p, left_open)
-    within = phases(graph, out, times, p) if certificate else {}
-    outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
+    program.data.corners.refuse_constraints(lambda name: program.seen(name, out), p.tolist())
+    left_open += undetermined(program, out, p, method)
+    description = program.data.at(p)
+    elasticity, unbalanced = completed(program, found, times, p, left_open)
+    within = phases(program, out, times, p) if certificate else {}
+    outputs = outputs_of(program, out) | {
+        output: np.full(times.size, np.nan) for output in left_open
+    }
     ordered = in_order(outputs, description)
     solution = Solution(
-        graph.data.name,
+        program.data.name,
         times,
         places,
         ordered,
@@ -102,8 +104,8 @@ def solve(
         left_open,
         over=instants.over,
     )
-    by = by_parameters(graph.data.parameters, names)
-    slopes = Derivatives(series_slopes(graph, solution, p, by, rung) if by else {})
+    by = by_parameters(program.data.parameters, names)
+    slopes = Derivatives(series_slopes(program, solution, p, by, method) if by else {})
     solution = replace(
         solution, tolerance=tolerance(solution), sensitivities=slopes, elasticity=elasticity
     )
@@ -116,27 +118,29 @@ def solve(
         solution = replace(solution, held=open_)
     if certificate:
         residuals = (
-            _closed(graph, out, p) | residuals_of(solution, graph, out, p, within) | unbalanced
+            _closed(program, out, p) | residuals_of(solution, program, out, p, within) | unbalanced
         )
-        errors = explained(solution, residuals, estimate(graph, found, solution, p))
+        errors = explained(solution, residuals, estimate(program, found, solution, p))
         named = {str(output): error for output, error in errors.items()}
-        solution = replace(solution, certificate=residuals | _condition(graph, found), errors=named)
+        solution = replace(
+            solution, certificate=residuals | _condition(program, found), errors=named
+        )
         if solution.failed:
             warn(f"{failure(solution)}; the solution is not certified", CertificateWarning)
     return solution
 
 
-def _announce(graph: Program, count: int, rung: Rung, threads: int) -> None:
+def _announce(program: Program, count: int, method: EvaluationMethod, threads: int) -> None:
     """Warn of what takes long."""
-    if rung.table is not None:
+    if method.table is not None:
         return
     # Iterated loops are followed by one thread.
-    shared = 1 if graph.newton is not None or rung.backend == "vm" else threads
-    takes = seconds(graph, count, rung, interpreted=rung.backend == "vm") / shared
+    shared = 1 if program.newton is not None or method.backend == "vm" else threads
+    takes = seconds(program, count, method, interpreted=method.backend == "vm") / shared
     if takes > _LONG:
         many, each = (
             f"{count:,}".replace(",", " "),
-            "" if rung.newton is None else f" of {rung.newton} Newton steps each",
+            "" if method.newton is None else f" of {method.newton} Newton steps each",
         )
         warn(f"{many} instants{each} take about {in_words(takes)}")
 
@@ -167,7 +171,7 @@ def checked_laws(data: ModelData, span: tuple[float, float], p: tuple[float, ...
     laws = data.laws
     if laws.beyond is None:
         return
-    t = np.linspace(*span, _LOOKED_AT)
+    t = np.linspace(*span, _SAMPLED)
     beyond = np.argwhere(~(laws.beyond(t[None], list(p)).full() <= BEYOND["double"]).T)
     if beyond.size:
         at, joint = beyond[0]
@@ -177,23 +181,23 @@ def checked_laws(data: ModelData, span: tuple[float, float], p: tuple[float, ...
         )
 
 
-def outputs_of(graph: Program, out: Array) -> dict[Output, Array]:
+def outputs_of(program: Program, out: Array) -> dict[Output, Array]:
     """The outputs among the columns ``out`` (columns, ..., t) of a graph; angles go on where they
     would jump by a turn.
 
     They are those columns, not copies: in ``out`` too angles go on after this.
     """
-    found = {output: out[k] for output, k in graph.outputs.items()}
+    found = {output: out[k] for output, k in program.outputs.items()}
     parts = {
-        part: out[graph.columns.index(part)]
-        for signs in graph.loop_angles.values()
+        part: out[program.columns.index(part)]
+        for signs in program.loop_angles.values()
         for part in signs
     }
     turns = {
         part: math.tau * (row - row[..., :1]) if isinstance(part, Check) else np.unwrap(row) - row
         for part, row in parts.items()
     }
-    for angle, signs in graph.loop_angles.items():
+    for angle, signs in program.loop_angles.items():
         for part, sign in signs.items():
             found[angle] += sign * turns[part]
         found[angle] -= math.tau * np.ceil(found[angle][..., :1] / math.tau - 0.5)
@@ -201,7 +205,7 @@ def outputs_of(graph: Program, out: Array) -> dict[Output, Array]:
 
 
 def residuals_of(
-    solution: Solution, graph: Program, out: Array, p: Array, within: Mapping[Output, Array]
+    solution: Solution, program: Program, out: Array, p: Array, within: Mapping[Output, Array]
 ) -> dict[str, Array]:
     """Residuals of :func:`.certify` for a solution that was made of the columns ``out`` (columns,
     t) of a graph, for parameters ``p``.
@@ -210,30 +214,30 @@ def residuals_of(
     the solution was made of it.
     """
     return certify(
-        solution, graph.data.declared(p), _hidden(graph, out, solution.left_open), within
+        solution, program.data.declared(p), _hidden(program, out, solution.left_open), within
     )
 
 
-def _hidden(graph: Program, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:
+def _hidden(program: Program, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:
     """Forces that a solution does not give, and its certificate needs: multipliers that were not
     wanted, and what is open.
     """
     unwanted = {
-        Output("multiplier", name): out[k] for name, k in graph.checks("multiplier").items()
+        Output("multiplier", name): out[k] for name, k in program.checks("multiplier").items()
     }
     return unwanted | {
-        output: out[graph.outputs[output]] for output in left_open if output in graph.outputs
+        output: out[program.outputs[output]] for output in left_open if output in program.outputs
     }
 
 
-def _closed(graph: Program, out: Array, p: Array) -> dict[str, Array]:
+def _closed(program: Program, out: Array, p: Array) -> dict[str, Array]:
     """Residual of the loops' equations, relative to the mechanism's extent."""
-    gaps = [np.abs(out[k]) / graph.extent(p) for k in graph.checks("gap").values()]
-    gaps += [np.abs(out[k]) for k in graph.checks("misfit").values()]
+    gaps = [np.abs(out[k]) / program.extent(p) for k in program.checks("gap").values()]
+    gaps += [np.abs(out[k]) for k in program.checks("misfit").values()]
     return {"closure": np.max(gaps, axis=0)} if gaps else {}
 
 
-def _condition(graph: Program, found: Evaluated) -> dict[str, Array]:
+def _condition(program: Program, found: Evaluated) -> dict[str, Array]:
     """Condition number of the loops, from errors of lengths or drives to those of the solution: the
     worst 1/sin(transmission angle).
 
@@ -243,6 +247,6 @@ def _condition(graph: Program, found: Evaluated) -> dict[str, Array]:
     Edelman, Johnson 1995).
     """
     worst: list[Array] = []
-    for name, k in graph.checks("closure").items():
-        worst.append(2.0 / found.out[k] if graph.iterates(name) else 1.0 / np.sqrt(found.out[k]))
+    for name, k in program.checks("closure").items():
+        worst.append(2.0 / found.out[k] if program.iterates(name) else 1.0 / np.sqrt(found.out[k]))
     return {"condition": np.max(worst, axis=0)} if worst else {}

@@ -63,12 +63,12 @@ def refine_safety(
     Against fatigue it is that of the instants. What could not be searched is open. Raises what
     :func:`refine_stress` does.
     """
-    told = safety(solution, link, criterion=criterion, yielding=yielding)
+    unrefined = safety(solution, link, criterion=criterion, yielding=yielding)
     found = _Searched.of(scene, solution, link)
     if found is None:
-        return told
-    verdicts, left = [], list(told.is_open)
-    for verdict in told.verdicts:
+        return unrefined
+    verdicts, left = [], list(unrefined.is_open)
+    for verdict in unrefined.verdicts:
         refined: Verdict | None = verdict
         if verdict.against == "yield":
             peak = found.stress(yielding, Stress(found.member).peak(yielding))
@@ -129,13 +129,13 @@ class _Searched:
         """Make it for a link; None if nothing is between the instants, or equilibrium alone does
         not determine its forces.
         """
-        told = solution.by_equilibrium
+        determinate = solution.by_equilibrium
         member = Member.of(solution, link)
         if solution.t.size == 1 or any(
-            not told.determined(f"section:{link}:{force}") for force in member.forces
+            not determinate.determined(f"section:{link}:{force}") for force in member.forces
         ):
             return None
-        found = ContinuousSolution.of(scene, told)
+        found = ContinuousSolution.of(scene, determinate)
         return cls(member, found if are_even(solution.t) else found.in_equal_steps())
 
     def stress(self, kind: str, sampled: StressPeak) -> StressPeak:
@@ -154,7 +154,7 @@ class _Searched:
         )
         peak = Stress(self.at(float(found.t[0]))).peak(kind, notches=sampled.notch)
         best = max(sampled, peak, key=lambda one: abs(one.value))
-        return best if found.told[0] else replace(best, value=math.nan, least=abs(best.value))
+        return best if found.resolved[0] else replace(best, value=math.nan, least=abs(best.value))
 
     def buckled(self, sampled: Verdict, of: Column) -> Verdict | None:
         """The factor against buckling, of which that at the instants is known; None where it cannot

@@ -169,10 +169,10 @@ def _spread(
     total = float(variances.sum())
     shares = variances / total if total > 0.0 else np.zeros_like(variances)
     order = sorted(range(len(names)), key=lambda k: -shares[k] if shares[k] == shares[k] else 0.0)
-    told = values.size > 0 and bool(np.isfinite(values).all())
+    finite = values.size > 0 and bool(np.isfinite(values).all())
     mean, deviation, low, high = (
         (float(x) for x in (values.mean(), values.std(), values.min(), values.max()))
-        if told
+        if finite
         else (float("nan"),) * 4
     )
     by_name = {names[k]: float(shares[k]) for k in order}

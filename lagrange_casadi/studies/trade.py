@@ -27,10 +27,10 @@ from ..equations.derive import compile_scene
 from ..equations.program import Program
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
 from ..instants.backends import Evaluated, run
+from ..instants.evaluation_method import EvaluationMethod
 from ..instants.from_table import columns
 from ..instants.refusal import resting, unfinished
-from ..instants.rung import Rung
-from ..judge.reference import reference
+from ..verification.reference import reference
 from .peaks import Shortfall, shortfall
 
 INSTANTS = 10_000
@@ -45,18 +45,26 @@ _NIL = 1e-9
 _LEAST = 2e-3
 
 COMPILED = (
-    *(Rung(backend, precision) for precision in PRECISIONS for backend in ("lanes", "c")),
     *(
-        Rung("c", flags=flags)
+        EvaluationMethod(backend, precision)
+        for precision in PRECISIONS
+        for backend in ("lanes", "c")
+    ),
+    *(
+        EvaluationMethod("c", flags=flags)
         for flags in ("-O1", "-march=native -ffp-contract=fast", "-ffast-math")
     ),
-    Rung("lanes", flags="-ffast-math"),
-    *(Rung(backend, precision, newton=1) for precision in PRECISIONS for backend in ("lanes", "c")),
-    *(Rung(backend, newton=2) for backend in ("lanes", "c")),
-    *(Rung("c", table=accuracy) for accuracy in (1e-3, 1e-6, 1e-9, 1e-12)),
-    *(Rung("c", "single", table=accuracy) for accuracy in (1e-3, 1e-5)),
+    EvaluationMethod("lanes", flags="-ffast-math"),
+    *(
+        EvaluationMethod(backend, precision, newton=1)
+        for precision in PRECISIONS
+        for backend in ("lanes", "c")
+    ),
+    *(EvaluationMethod(backend, newton=2) for backend in ("lanes", "c")),
+    *(EvaluationMethod("c", table=accuracy) for accuracy in (1e-3, 1e-6, 1e-9, 1e-12)),
+    *(EvaluationMethod("c", "single", table=accuracy) for accuracy in (1e-3, 1e-5)),
 )
-RUNGS = (*COMPILED, Rung("vm"))
+METHODS = (*COMPILED, EvaluationMethod("vm"))
 
 
 @dataclass(frozen=True)
@@ -68,7 +76,7 @@ class Measurement:
     how many nodes a table has.
     """
 
-    rung: Rung
+    rung: EvaluationMethod
     seconds: float
     largest: float
     median: float
@@ -130,7 +138,7 @@ class Trade:
 
     def as_dict(self) -> dict[str, Any]:
         """All of it as plain numbers and words, for JSON."""
-        rungs = [
+        methods = [
             asdict(one) | {"options": one.rung.options, "front": one in self.front}
             for one in self.measurements
         ]
@@ -138,7 +146,7 @@ class Trade:
             "case": self.case,
             "instants": self.instants,
             "compared": self.compared,
-            "rungs": rungs,
+            "rungs": methods,
         }
         return found | {"refused": dict(self.refused), "peaks": [asdict(row) for row in self.peaks]}
 
@@ -150,8 +158,8 @@ def trade(
     t: Times | None = None,
     over: Over | None = None,
     wanted: Sequence[str] | None = None,
-    rungs: Sequence[Rung] = RUNGS,
-    progress: Callable[[Rung], None] = lambda rung: None,
+    methods: Sequence[EvaluationMethod] = METHODS,
+    progress: Callable[[EvaluationMethod], None] = lambda method: None,
 ) -> Trade:
     """Measure every rung on a scene, ``t`` or ``over`` as in :func:`.evaluate`; ``progress`` is
     told of each before it is taken.
@@ -160,35 +168,35 @@ def trade(
     graphs that call functions of their own, and what :func:`.evaluate` raises where the scene has
     no result.
     """
-    told = scene.values(parameters)
-    values = np.array(list(told.values()))
-    times = instants_of(scene.prescribed, scene.timing(t, over), told).t
-    program = compile_scene(scene, wanted, parameters=told)
+    parameter_values = scene.values(parameters)
+    values = np.array(list(parameter_values.values()))
+    times = instants_of(scene.prescribed, scene.timing(t, over), parameter_values).t
+    program = compile_scene(scene, wanted, parameters=parameter_values)
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
     truth = _Truth(program, times, compared, values)
     refused: dict[str, str] = {}
-    works: dict[Rung, tuple[Callable[[], Any], int]] = {}
-    found: dict[Rung, tuple[float, float, str, str]] = {}
-    for rung in rungs:
-        progress(rung)
-        if rung.newton is not None and program.newton is None:
+    works: dict[EvaluationMethod, tuple[Callable[[], Any], int]] = {}
+    found: dict[EvaluationMethod, tuple[float, float, str, str]] = {}
+    for method in methods:
+        progress(method)
+        if method.newton is not None and program.newton is None:
             continue
         try:
-            evaluated, _ = columns(program, times, values, rung, 1)
+            evaluated, _ = columns(program, times, values, method, 1)
             if unfinished(program, evaluated).any():
                 raise AssemblyError("some instants have no result")
-            works[rung] = _work(program, times, values, rung)
+            works[method] = _work(program, times, values, method)
         except (AssemblyError, CompilerError, DeclarationError) as error:
-            refused[rung.options] = str(error)
+            refused[method.options] = str(error)
             continue
         nodes = (
             ""
             if evaluated.cycle is None
             else f"{evaluated.cycle.nodes} nodes, {evaluated.cycle.nbytes / 1000:.3g} kB"
         )
-        found[rung] = (*truth.errors(program, evaluated), nodes)
+        found[method] = (*truth.errors(program, evaluated), nodes)
     seconds = _in_turns(works)
-    measured = [Measurement(rung, seconds[rung], *found[rung]) for rung in works]
+    measured = [Measurement(method, seconds[method], *found[method]) for method in works]
     ordered = tuple(sorted(measured, key=lambda one: one.seconds))
     sampled = replace(scene, wanted=scene.wanted if wanted is None else wanted)
     try:
@@ -202,7 +210,7 @@ class _Truth:
     """The reference at some instants, and how far an evaluation is from it."""
 
     def __init__(self, program: Program, t: Array, compared: Array, p: Array) -> None:
-        evaluated, _ = run(program, t, p, Rung("c" if find_compiler() else "vm"), 1)
+        evaluated, _ = run(program, t, p, EvaluationMethod("c" if find_compiler() else "vm"), 1)
         moves = ~resting(program, evaluated.out)  # at rest there is nothing to compare
         compared = compared[moves[compared]] if moves[compared].any() else compared
         self.compared = compared
@@ -263,24 +271,28 @@ def _motions(program: Program, t: Array, p: Array) -> dict[str, float]:
     }
 
 
-def _work(program: Program, t: Array, p: Array, rung: Rung) -> tuple[Callable[[], Any], int]:
+def _work(
+    program: Program, t: Array, p: Array, method: EvaluationMethod
+) -> tuple[Callable[[], Any], int]:
     """Timed work, ready to run, and its instants."""
-    count = INSTANTS // 10 if rung.backend == "vm" else INSTANTS
+    count = INSTANTS // 10 if method.backend == "vm" else INSTANTS
     dense = np.linspace(t[0], t[-1], count)
-    evaluated, _ = columns(program, dense, p, rung, 1)
-    return lambda: columns(program, dense, p, rung, 1, into=evaluated), count
+    evaluated, _ = columns(program, dense, p, method, 1)
+    return lambda: columns(program, dense, p, method, 1, into=evaluated), count
 
 
-def _in_turns(works: Mapping[Rung, tuple[Callable[[], Any], int]]) -> dict[Rung, float]:
+def _in_turns(
+    works: Mapping[EvaluationMethod, tuple[Callable[[], Any], int]],
+) -> dict[EvaluationMethod, float]:
     """Seconds an instant: the median over rounds in which each rung has its turn, long enough to be
     read off a clock.
     """
-    taken: dict[Rung, list[float]] = {rung: [] for rung in works}
+    taken: dict[EvaluationMethod, list[float]] = {method: [] for method in works}
     for _ in range(ROUNDS):
-        for rung, (work, count) in works.items():
+        for method, (work, count) in works.items():
             calls, start = 0, time.perf_counter()
             while (passed := time.perf_counter() - start) < _LEAST or not calls:
                 work()
                 calls += 1
-            taken[rung].append(passed / (calls * count))
-    return {rung: float(np.median(times)) for rung, times in taken.items()}
+            taken[method].append(passed / (calls * count))
+    return {method: float(np.median(times)) for method, times in taken.items()}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lagrange_casadi.errors import LagrangeCasadiError
 
-from .target import RUNGS, exported, missing
+from .target import METHODS, exported, missing
 
 CASES = (
     "slider_crank",
@@ -21,9 +21,9 @@ CASES = (
 )
 
 
-def row(name, rung, optimized, folder):
+def row(name, method, optimized, folder):
     """A line of the table."""
-    found = exported(name, rung, folder, optimized)
+    found = exported(name, method, folder, optimized)
     found.selftest()
     own, whole, n = found.sections(found.object), found.sections(found.whole), found.measured
     library = sum(whole.values()) - sum(own.values())
@@ -39,7 +39,7 @@ def row(name, rung, optimized, folder):
     ]
     return [
         name,
-        rung,
+        method,
         optimized,
         *numbers,
         n["instructions evaluate"],
@@ -70,13 +70,13 @@ def main():
     print("| --- " * 3 + "| --: " * 10 + "|")
     with tempfile.TemporaryDirectory() as work:
         for name in CASES:
-            for number, (rung, optimized) in enumerate(
-                (rung, o) for rung in RUNGS for o in ("-O2", "-Os")
+            for number, (method, optimized) in enumerate(
+                (method, o) for method in METHODS for o in ("-O2", "-Os")
             ):
                 try:
-                    cells = row(name, rung, optimized, Path(work) / f"{name}_{number}")
+                    cells = row(name, method, optimized, Path(work) / f"{name}_{number}")
                 except LagrangeCasadiError as reason:
-                    print(f"| {name} | {rung} | {optimized} | {reason} |")
+                    print(f"| {name} | {method} | {optimized} | {reason} |")
                     continue
                 print("| " + " | ".join(map(str, cells)) + " |", flush=True)
 

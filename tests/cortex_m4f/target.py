@@ -35,7 +35,7 @@ MACHINE = (
     "shift=0",
 )
 SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
-RUNGS = {
+METHODS = {
     "single": {"precision": "single"},
     "double": {},
     "single, effort": {"precision": "single", "wanted": ["effort"]},
@@ -186,8 +186,8 @@ class Target:
         return int(re.search(r"^#define \w+_STACK (\d+)$", header, re.MULTILINE)[1])
 
 
-def exported(name, rung, folder, optimized="-O2"):
+def exported(name, method, folder, optimized="-O2"):
     """A case of the repository, exported into a folder."""
     loaded = load_case(Path(__file__).parents[2] / "cases" / name)
-    agreed = export(loaded.scene, folder, name=loaded.name, **RUNGS[rung])
+    agreed = export(loaded.scene, folder, name=loaded.name, **METHODS[method])
     return Target(folder, agreed, loaded.scene.t[:2], optimized)

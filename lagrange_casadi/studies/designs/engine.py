@@ -20,7 +20,7 @@ import numpy.typing as npt
 from ... import codegen
 from ...base.arrays import Array
 from ...base.quantities import Output, compared
-from ...base.room import cores, require
+from ...base.space import cores, require
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...codegen.stages import Stages
@@ -31,25 +31,25 @@ from ...equations.program import Program
 from ...errors import DeclarationError
 from ...instants.backends import begun, compiled, provenance
 from ...instants.determinacy import undetermined
-from ...instants.rung import Rung, seconds
+from ...instants.evaluation_method import EvaluationMethod, seconds
 from ...instants.solution import Provenance
+from ...peak_search.intervals import TOPS, Listed
+from ...peak_search.sharpness import bent, with_watched
 from ...sensitivity.ends import Ends
 from ...sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
 from ...sensitivity.slopes import Slopes
-from ...summits.panels import TOPS, Listed
-from ...summits.sharpness import bent, with_watched
 from ..solving import checked_span, outputs_of
 from .interpreted import columns_of, outcome
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .reduction import KeptOutputs, stages_of
+from .spot_check import failures
 from .times import DesignTimes
 from .watch import Watch
-from .witness import failures
 
 _PIECE = 1 << 22
 """Number of instants of designs with instants of their own that are kept at once."""
 
-_LOOKS = 32
+_SAMPLES = 32
 """Number of instants at which the peak of a quantity is sought."""
 
 
@@ -62,10 +62,10 @@ class DesignEngine:
     open for a design is NaN there.
     """
 
-    rung: Rung
+    method: EvaluationMethod
     times: DesignTimes
     kept: KeptOutputs
-    graph: Program
+    program: Program
     stages: Stages
     library: codegen.DesignsLibrary | None
     provenance: Provenance
@@ -76,66 +76,66 @@ class DesignEngine:
         scene: Scene,
         wanted: Sequence[str] | None = None,
         t: Times | None = None,
-        rung: Rung | None = None,
+        method: EvaluationMethod | None = None,
         *,
         timing: Timing | None = None,
     ) -> DesignEngine:
         """Derive and compile: ``wanted`` outputs, ``t`` and ``rung`` as in :func:`.evaluate`; a
         ``timing`` in place of ``t``.
         """
-        rung = rung or Rung()
-        if rung.table is not None:
+        method = method or EvaluationMethod()
+        if method.table is not None:
             raise DeclarationError(
                 "designs are not read from a table: each would need a table of its own"
             )
-        graph = compile_scene(scene, wanted)
-        rung.check(graph)
+        program = compile_scene(scene, wanted)
+        method.check(program)
         scene.checked(scene.values())
-        return cls.compiled(graph, timing or scene.timing(t), rung)
+        return cls.compiled(program, timing or scene.timing(t), method)
 
     @classmethod
-    def compiled(cls, graph: Program, timing: Timing, rung: Rung) -> DesignEngine:
+    def compiled(cls, program: Program, timing: Timing, method: EvaluationMethod) -> DesignEngine:
         """Compile a graph for designs at instants that are asked for."""
-        data = graph.data
+        data = program.data
         times, p = DesignTimes(data.laws, data.values(data.defaults), timing), data.defaults
         checked_span(data.laws, timing, times.values)
         instants, even = times.default
-        kept = KeptOutputs.of(graph, rung)
+        kept = KeptOutputs.of(program, method)
         require("the instants of a design", (kept.reduction.rows, instants.size))
-        watched = with_watched(graph, kept.sharpness)
-        stages = stages_of(watched, rung, even, alike=times.common)
+        watched = with_watched(program, kept.sharpness)
+        stages = stages_of(watched, method, even, alike=times.common)
 
         def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
-            source = codegen.emit_designs(watched, stages, rung.newton, kept.reduction)
+            source = codegen.emit_designs(watched, stages, method.newton, kept.reduction)
             guess = (
-                begun(graph, float(even[0]), p)
+                begun(program, float(even[0]), p)
                 if times.timing.joint
-                else graph.newton.guess
-                if graph.newton
+                else program.newton.guess
+                if program.newton
                 else ()
             )
             return codegen.load_designs(
                 source,
                 compiler,
-                tuple(shlex.split(rung.flags)),
+                tuple(shlex.split(method.flags)),
                 kept.reduction,
                 even.size,
                 np.array(guess, float),
-                rung.precision,
+                method.precision,
             )
 
-        found = compiled(rung, build)
+        found = compiled(method, build)
         if found is None:
-            return cls(rung, times, kept, graph, stages, None, provenance("vm", "", "", rung))
+            return cls(method, times, kept, program, stages, None, provenance("vm", "", "", method))
         compiler, library = found
         backend = "lanes" if compiler.language == "c++" else "c"
-        made = provenance(backend, compiler.version, " ".join(library.flags), rung)
-        return cls(rung, times, kept, graph, stages, library, made)
+        made = provenance(backend, compiler.version, " ".join(library.flags), method)
+        return cls(method, times, kept, program, stages, library, made)
 
     @property
     def parameters(self) -> tuple[str, ...]:
         """The names of the parameters."""
-        return tuple(self.graph.data.parameters)
+        return tuple(self.program.data.parameters)
 
     @cached_property
     def quantities(self) -> tuple[str, ...]:
@@ -158,17 +158,19 @@ class DesignEngine:
         return tuple(map(str, self.kept.efforts))
 
     @property
-    def doubtful(self) -> tuple[str, ...]:
+    def indeterminate(self) -> tuple[str, ...]:
         """The names of quantities, and outputs in histories, that equilibrium or friction at rest
         may leave open for designs.
         """
-        doubts = {quantity for _, quantity in self.kept.reduction.doubts}
+        indeterminate_checks = {
+            quantity for _, quantity in self.kept.reduction.indeterminate_checks
+        }
         quantities, outputs = (
-            tuple(self.kept.quantities[k] for k in sorted(doubts)),
-            [*self.graph.doubtful],
+            tuple(self.kept.quantities[k] for k in sorted(indeterminate_checks)),
+            [*self.program.indeterminate],
         )
-        if self.graph.checks("rest"):
-            quantities, outputs = self.kept.quantities, [*self.graph.outputs]
+        if self.program.checks("rest"):
+            quantities, outputs = self.kept.quantities, [*self.program.outputs]
         return tuple(dict.fromkeys(map(str, [*quantities, *outputs])))
 
     @property
@@ -179,7 +181,7 @@ class DesignEngine:
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
         """The outputs that histories have."""
-        return tuple(self.graph.outputs)
+        return tuple(self.program.outputs)
 
     @property
     def t(self) -> Array:
@@ -199,14 +201,14 @@ class DesignEngine:
         measured, the same everywhere.
         """
         return seconds(
-            self.graph,
-            self.count + _LOOKS * len(self.quantities),
-            self.rung,
+            self.program,
+            self.count + _SAMPLES * len(self.quantities),
+            self.method,
             interpreted=self.library is None,
         )
 
     @property
-    def room(self) -> int:
+    def capacity(self) -> int:
         """Bytes of memory that a core takes while it evaluates."""
         return 8 * self.kept.reduction.rows * self.count
 
@@ -223,7 +225,7 @@ class DesignEngine:
             raise DeclarationError(
                 f"designs: expected an array of shape (n, {len(self.parameters)}), got {p.shape}"
             )
-        n, history = len(p), (len(p), len(self.graph.columns), self.count)
+        n, history = len(p), (len(p), len(self.program.columns), self.count)
         require(
             "the peaks of the designs", (n, 3 * len(self.kept.quantities) + 2 * len(self.efforts))
         )
@@ -231,11 +233,11 @@ class DesignEngine:
             require("the histories of the designs", history)
         columns = np.empty(history) if histories else None
         found, times = (
-            self._room(n, columns),
+            self._results(n, columns),
             np.empty((n, self.count)) if histories and not self.shared else None,
         )
         # What all have in common is not cut: it is made once.
-        many = len(self.graph.columns) if self.watch.columns else 1
+        many = len(self.program.columns) if self.watch.columns else 1
         size = n if self.times.common and many == 1 else max(1, _PIECE // (many * self.count))
         for start in range(0, n, max(size, 1)):
             some = slice(start, start + size)
@@ -253,7 +255,7 @@ class DesignEngine:
         for row, out in zip(p, columns, strict=True):
             self._withhold(out, row)
         with np.errstate(invalid="ignore"):
-            series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
+            series = outputs_of(self.program, np.moveaxis(columns, 1, 0))
         return replace(
             outcome, series=np.stack([series[output] for output in self.outputs], axis=1)
         )
@@ -264,10 +266,10 @@ class DesignEngine:
 
         Without, no peaks are sought, so none can be untold.
         """
-        p, columns = p[None], np.empty((1, len(self.graph.columns), self.count))
+        p, columns = p[None], np.empty((1, len(self.program.columns), self.count))
         t = self.times.of(p, asked=listed is None)[listed is None]
-        found = self._room(1, columns) | {
-            "iterated": np.empty((1, self.graph.instant.size1_in("z"), self.count))
+        found = self._results(1, columns) | {
+            "iterated": np.empty((1, self.program.instant.size1_in("z"), self.count))
         }
         tops = np.full((1, len(self.kept.quantities), TOPS, 4), np.nan)
         if listed is None:
@@ -277,12 +279,12 @@ class DesignEngine:
         self._refuse_motions(p, t, found)
         return History(outcome_of(found), t[0], columns[0], found["iterated"][0], tops[0])
 
-    def told(self, out: Array, p: Array) -> dict[Output, Array]:
+    def reported(self, out: Array, p: Array) -> dict[Output, Array]:
         """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is
         open is NaN, angles go on.
         """
         self._withhold(out, p)
-        series = outputs_of(self.graph, out)
+        series = outputs_of(self.program, out)
         return {output: series[output] for output in self.outputs}
 
     def _withhold(self, out: Array, p: Array) -> None:
@@ -290,27 +292,27 @@ class DesignEngine:
         with np.errstate(invalid="ignore"):
             out[
                 [
-                    self.graph.outputs[output]
-                    for output in undetermined(self.graph, out, p, self.rung)
+                    self.program.outputs[output]
+                    for output in undetermined(self.program, out, p, self.method)
                 ]
             ] = np.nan
 
     @property
     def plain(self) -> bool:
-        """True if :meth:`told` changes nothing of the columns."""
-        return not self.graph.loop_angles and not self.graph.doubtful
+        """True if :meth:`reported` changes nothing of the columns."""
+        return not self.program.loop_angles and not self.program.indeterminate
 
     @cached_property
     def watch(self) -> Watch:
         """Conditions on designs between their instants, if there are any."""
-        return Watch(self.graph)
+        return Watch(self.program)
 
     @property
     def shared(self) -> bool:
         """True if all designs have the same instants, defined by times."""
         return self.times.timing.shared
 
-    def _room(self, n: int, columns: Array | None) -> Results:
+    def _results(self, n: int, columns: Array | None) -> Results:
         """Arrays for what is kept of n designs, and the columns that histories are made of."""
         q, e = len(self.kept.quantities), len(self.efforts)
         sizes = {"value": q, "peak_t": q, "xi": q, "mean": e, "rms": e}
@@ -326,7 +328,7 @@ class DesignEngine:
         if times is not None:
             times[:] = asked
         together = series is not None and asked is even
-        shape = (len(p), len(self.graph.columns), self.count)
+        shape = (len(p), len(self.program.columns), self.count)
         columns = series if together else np.empty(shape) if self.watch.columns else None
         own = found | {"history": columns}
         self._evaluate(p, even, own, threads)
@@ -350,7 +352,7 @@ class DesignEngine:
             return
         for i, row in enumerate(p):
             status, design = outcome(
-                self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton, listed
+                self.program, self.kept, t[min(i, len(t) - 1)], row, self.method.newton, listed
             )
             found["status"][i] = status
             for name, array in found.items():
@@ -366,7 +368,7 @@ class DesignEngine:
             return
         for i, row in enumerate(p):
             found["status"][i], table = columns_of(
-                self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton
+                self.program, self.kept, t[min(i, len(t) - 1)], row, self.method.newton
             )
             found["history"][i] = np.nan if table is None else table.out
             if "iterated" in found:
@@ -378,9 +380,9 @@ class DesignEngine:
         """
         if len(t) == 1 or not self.kept.sharpness.knots:
             # Of the defaults: a row of what is found must not depend on the designs beside it.
-            t, p = t[:1], self.graph.data.defaults[None]
+            t, p = t[:1], self.program.data.defaults[None]
         known = [
-            bent(self.graph, self.kept.sharpness, times, row)
+            bent(self.program, self.kept.sharpness, times, row)
             for times, row in zip(t, p, strict=True)
         ]
         return np.array(known) if known else np.zeros((1, 0), bool)
@@ -399,12 +401,12 @@ class DesignEngine:
         """The derivatives of :attr:`quantities` at points; they are derived and compiled when they
         are first asked for.
         """
-        return Slopes.of(self.graph, self.kept.quantities, self.kept.sharpness, self.rung)
+        return Slopes.of(self.program, self.kept.quantities, self.kept.sharpness, self.method)
 
     def moving(self, p: Array) -> MovingPeaks:
         """Derivatives of peaks and means of a design (parameters,) by all parameters."""
         instants = self.times.of(p[None], asked=False)[0][0]
-        return MovingPeaks(self.slopes, Ends(self.graph.laws, self.times.timing, instants, p))
+        return MovingPeaks(self.slopes, Ends(self.program.laws, self.times.timing, instants, p))
 
     def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
         """Gradient by all parameters of the peaks (q,) of a design (parameters,), which are at
@@ -424,7 +426,7 @@ class DesignEngine:
         """Return which of the peaks (q,) of a design, whose gradient is ``own``, tie with another
         one: see :meth:`.MovingPeaks.ties`.
         """
-        others = self.history(p, Listed(1.0 - AS_LARGE[self.rung.precision])).tops
+        others = self.history(p, Listed(1.0 - AS_LARGE[self.method.precision])).tops
         chosen = np.arange(value.size, dtype=np.intc)
         return self.moving(p).ties(chosen, value, own, others) & ~self._faint(value)
 
@@ -463,4 +465,6 @@ class DesignEngine:
         """
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
-        return failures(whole, p, self.times.of(p[None])[1][0], self.rung, self.outputs, series[0])
+        return failures(
+            whole, p, self.times.of(p[None])[1][0], self.method, self.outputs, series[0]
+        )

@@ -14,17 +14,17 @@ from ...base.status import Status
 from ...equations.program import Program
 from ...instants.backends import Evaluated, run
 from ...instants.determinacy import undetermined
+from ...instants.evaluation_method import EvaluationMethod
 from ...instants.refusal import refusal
-from ...instants.rung import Rung
 from ...instants.signals import Quantity, Signals, section_forces
 from ...instants.statistics import counted, shares
-from ...summits.panels import TOPS, Listed
+from ...peak_search.intervals import TOPS, Listed
 from .outcome import KEPT
 from .reduction import KeptOutputs
 
 
 def columns_of(
-    graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None
+    program: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None
 ) -> tuple[Status, Evaluated | None]:
     """The columns of a design at instants, or why it has no result; no number where friction at
     rest reaches.
@@ -32,7 +32,7 @@ def columns_of(
     if not np.isfinite(p).all():
         return Status.INVALID, None
     reduction = kept.reduction
-    margins = reduction.matter(p).full().ravel()[: reduction.margins]
+    margins = reduction.mass_properties(p).full().ravel()[: reduction.margins]
     if not (
         np.isfinite(margins).all()
         and (margins >= 0.0).all()
@@ -41,16 +41,16 @@ def columns_of(
         return Status.IMPOSSIBLE, None
     if not t[-1] >= t[0]:
         return Status.NO_INSTANTS, None
-    rung = Rung("vm", newton=newton)
-    evaluated, _ = run(graph, t, p, rung)
-    why = refusal(graph, evaluated, t, p, rung)
+    method = EvaluationMethod("vm", newton=newton)
+    evaluated, _ = run(program, t, p, method)
+    why = refusal(program, evaluated, t, p, method)
     if why is not None:
         return why.status, None
     return Status.OK, evaluated
 
 
 def outcome(
-    graph: Program,
+    program: Program,
     kept: KeptOutputs,
     t: Array,
     p: Array,
@@ -58,30 +58,34 @@ def outcome(
     listed: Listed | None = None,
 ) -> tuple[Status, dict[str, Array] | None]:
     """Results of a design, by their names in C, or the reason why it has none."""
-    status, evaluated = columns_of(graph, kept, t, p, newton)
+    status, evaluated = columns_of(program, kept, t, p, newton)
     if evaluated is None:
         return status, None
-    reduction, rung = kept.reduction, Rung("vm", newton=newton)
-    left_open = {graph.doubtful[output] for output in undetermined(graph, evaluated.out, p, rung)}
-    doubted = {
-        quantity for check, quantity in reduction.doubts if reduction.checks[check][0] in left_open
+    reduction, method = kept.reduction, EvaluationMethod("vm", newton=newton)
+    left_open = {
+        program.indeterminate[output] for output in undetermined(program, evaluated.out, p, method)
     }
-    told = [k for k in range(len(reduction.units)) if k not in doubted]
-    efforts = evaluated.out[[graph.outputs[effort] for effort in kept.efforts]]
+    doubted = {
+        quantity
+        for check, quantity in reduction.indeterminate_checks
+        if reduction.checks[check][0] in left_open
+    }
+    determined = [k for k in range(len(reduction.units)) if k not in doubted]
+    efforts = evaluated.out[[program.outputs[effort] for effort in kept.efforts]]
     with np.errstate(all="ignore"):
         means = np.array([_means(t, effort) for effort in efforts]).reshape(-1, 2).T
     peaks, tops = (
         np.full((3, len(reduction.units)), np.nan),
         np.full((len(reduction.units), TOPS, 4), np.nan),
     )
-    if told:
-        signals = _signals(graph, kept, t, p, newton, evaluated, told)
-        found = signals.peaks([reduction.units[k] for k in told], listed=listed)
-        if not found.told.all():
+    if determined:
+        signals = _signals(program, kept, t, p, newton, evaluated, determined)
+        found = signals.peaks([reduction.units[k] for k in determined], listed=listed)
+        if not found.resolved.all():
             return Status.PEAK_NOT_TOLD, None
-        peaks[:, told] = found.value, found.t, found.xi
-        tops[told] = np.nan if found.tops is None else found.tops
-    means[:, [effort not in told for effort in reduction.efforts]] = np.nan
+        peaks[:, determined] = found.value, found.t, found.xi
+        tops[determined] = np.nan if found.tops is None else found.tops
+    means[:, [effort not in determined for effort in reduction.efforts]] = np.nan
     every = dict(zip(KEPT, (*peaks, *means), strict=True))
     return Status.OK, every | {
         "history": evaluated.out,
@@ -98,7 +102,7 @@ def _means(t: Array, values: Array) -> tuple[Any, Any]:
 
 
 def _signals(
-    graph: Program,
+    program: Program,
     kept: KeptOutputs,
     t: Array,
     p: Array,
@@ -107,15 +111,15 @@ def _signals(
     some: Sequence[int],
 ) -> Signals:
     """Some quantities that are kept of a design, as curves over time."""
-    description, reduction = graph.data.at(p), kept.reduction
+    description, reduction = program.data.at(p), kept.reduction
     sections = [
         one
         for link in kept.links
-        for one in section_forces(description, link, graph.outputs).values()
+        for one in section_forces(description, link, program.outputs).values()
     ]
     quantities: list[Quantity] = [*reduction.quantities, *sections]
     return Signals(
-        graph,
+        program,
         evaluated.stages,
         kept.sharpness,
         [quantities[k] for k in some],

@@ -24,7 +24,7 @@ from ...declare.times import Over, Times
 from ...declare.wanted_names import without_fitted, without_life
 from ...equations.model_data import template
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
-from ...instants.rung import Rung
+from ...instants.evaluation_method import EvaluationMethod
 from ...instants.solution import Solution
 from ...sensitivity.peaks import MeanSlopes
 from ..request import Request
@@ -69,7 +69,7 @@ class Gradient:
     slopes: Array
     kinds: npt.NDArray[np.int8]
     efforts: tuple[str, ...]
-    look: Callable[[], npt.NDArray[np.bool_]] = field(repr=False)
+    sample: Callable[[], npt.NDArray[np.bool_]] = field(repr=False)
     add_up: Callable[[], MeanSlopes] = field(repr=False)
 
     @symbolic_property
@@ -79,7 +79,7 @@ class Gradient:
 
         It is looked for when it is first asked for, which takes longer than the gradient.
         """
-        return self.look()
+        return self.sample()
 
     @cached_property
     def mean(self) -> dict[str, dict[str, float]]:
@@ -149,10 +149,14 @@ class _Answers(threading.local):
 
     def __init__(self, engine: DesignEngine, defaults: Array) -> None:
         self.p, self.status = defaults[None].copy(), np.zeros(1, np.int8)
-        graph, quantities, efforts = engine.graph, len(engine.kept.quantities), len(engine.efforts)
-        self.history = np.empty((1, len(graph.columns), engine.count))
+        program, quantities, efforts = (
+            engine.program,
+            len(engine.kept.quantities),
+            len(engine.efforts),
+        )
+        self.history = np.empty((1, len(program.columns), engine.count))
         self.rows = {
-            str(output): self.history[0, graph.outputs[output]] for output in engine.outputs
+            str(output): self.history[0, program.outputs[output]] for output in engine.outputs
         }
         places = {
             name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(KEPT)
@@ -193,9 +197,9 @@ class Prepared:
         self, engine: DesignEngine, explain: Callable[[Mapping[str, float]], Solution]
     ) -> None:
         self._engine, self._explain = engine, explain
-        self._declared = engine.graph.data.parameters
+        self._declared = engine.program.data.parameters
         self._place = {name: k for k, name in enumerate(self._declared)}
-        self._defaults = engine.graph.data.defaults
+        self._defaults = engine.program.data.defaults
         self._answers = _Answers(engine, self._defaults)
 
     @property
@@ -252,13 +256,13 @@ class Prepared:
         if fill is None:
             found = engine.history(p[0])
             self._refuse(found.outcome.status[0], p)
-            return {str(o): row for o, row in engine.told(found.columns, p[0]).items()}
+            return {str(o): row for o, row in engine.reported(found.columns, p[0]).items()}
         fill[0]()
         self._refuse(self._watched(answers.instants[1], answers.history), p)
         return (
             answers.rows
             if engine.plain
-            else {str(o): row for o, row in engine.told(answers.history[0], p[0]).items()}
+            else {str(o): row for o, row in engine.reported(answers.history[0], p[0]).items()}
         )
 
     def peaks(self, /, *values: _Values, **named: Any) -> Peaks:
@@ -280,7 +284,7 @@ class Prepared:
         """
         p, value, t, xi = self._kept_peaks(values, named)
         found = self._engine.gradient(p, value, t, xi)
-        look, add_up = (
+        sample, add_up = (
             partial(self._engine.tied, p, value, found),
             partial(self._engine.mean_slopes, p),
         )
@@ -293,7 +297,7 @@ class Prepared:
             found.slopes,
             found.kinds,
             self.efforts,
-            look,
+            sample,
             add_up,
         )
 
@@ -411,13 +415,13 @@ def prepare(
     named = () if wanted is None else wanted
     without_life(named, "prepared scenes")
     without_fitted(fitted_of(template(scene).content), named, "prepared scenes")
-    rung = Rung(backend, precision, newton, None, flags)
-    request = Request(t=t, over=over, wanted=wanted, rung=rung)
+    method = EvaluationMethod(backend, precision, newton, None, flags)
+    request = Request(t=t, over=over, wanted=wanted, method=method)
 
     def explain(values: Mapping[str, float]) -> Solution:
         from ..solving import solve
 
         return solve(scene, replace(request, parameters=values), certificate=False)
 
-    engine = DesignEngine.of(scene, wanted, rung=rung, timing=scene.timing(t, over))
+    engine = DesignEngine.of(scene, wanted, method=method, timing=scene.timing(t, over))
     return Prepared(engine, explain)

@@ -15,35 +15,37 @@ from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.tables import Table, table_of
 from ...codegen.designs import Reduction
-from ...codegen.link_curves import Along, matter_of
+from ...codegen.link_curves import Along, mass_properties_of
 from ...codegen.stages import Stages, compensated, plain, stages_for
-from ...equations.mobility import stations_of
+from ...equations.distributed_loads import distributed_loads_of
+from ...equations.mobility import load_points_of
 from ...equations.model_data import ModelData
 from ...equations.program import Program
-from ...equations.spreads import spreads_of
 from ...errors import DeclarationError
+from ...instants.evaluation_method import EvaluationMethod
 from ...instants.laws import made_of
 from ...instants.rules import limits
-from ...instants.rung import Rung
-from ...summits.sharpness import Sharpness
+from ...peak_search.sharpness import Sharpness
 
 
 @symbolic
-def stages_of(graph: Program, rung: Rung, t: Array, *, alike: bool = True) -> Stages:
+def stages_of(
+    program: Program, method: EvaluationMethod, t: Array, *, alike: bool = True
+) -> Stages:
     """Stages that evaluate all designs: in pairs if angles count many turns, or may for some
     parameters.
 
     ``alike`` tells that all designs have the instants ``t``.
     """
-    time, p = graph.laws.motion.sx_in()
-    if rung.precision == "single" or (
-        alike and not ca.depends_on(ca.vertcat(*graph.laws.motion(time, p)), p)
+    time, p = program.laws.motion.sx_in()
+    if method.precision == "single" or (
+        alike and not ca.depends_on(ca.vertcat(*program.laws.motion(time, p)), p)
     ):
-        return stages_for(graph, rung.precision, t, graph.data.defaults)
+        return stages_for(program, method.precision, t, program.data.defaults)
     try:
-        return compensated(graph, "double")
+        return compensated(program, "double")
     except DeclarationError:
-        return plain(graph)
+        return plain(program)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,13 +66,13 @@ class KeptOutputs:
     sharpness: Sharpness
 
     @classmethod
-    def of(cls, graph: Program, rung: Rung) -> KeptOutputs:
+    def of(cls, program: Program, method: EvaluationMethod) -> KeptOutputs:
         """Make the reduction of a scene's designs on a rung."""
-        data, at = graph.data, graph.outputs
+        data, at = program.data, program.outputs
         table = table_of(data.space)
         chosen: dict[Output, tuple[int, ...]] = {}
         for output, k in at.items():
-            if output.along or output in graph.loop_angles:
+            if output.along or output in program.loop_angles:
                 continue
             for member in table.reactions if output.group == "reaction" else ():
                 size = Output("reaction", output.part, member)
@@ -90,20 +92,22 @@ class KeptOutputs:
         units = tuple(output.unit(data.kinds) for output in names)
         efforts = tuple(name for name in names if name.group in AVERAGED)
         along = tuple(_along(data, link, at, table) for link in links)
-        matter, positive, margins = _matter(graph, links, along, rung)
+        mass_properties, positive, margins = _mass_properties(program, links, along, method)
         columns = {column for columns in chosen.values() for column in columns}
-        rows = [row for link in along for row in (link.law, *link.stations, *link.spreads)]
+        rows = [
+            row for link in along for row in (link.law, *link.load_points, *link.distributed_loads)
+        ]
         columns |= {k for row in rows for k in row if k >= 0}
-        sharpness = Sharpness.of(graph, sorted(columns))
-        checks = [(bound.column, bound.kind) for bound in graph.bounds]
+        sharpness = Sharpness.of(program, sorted(columns))
+        checks = [(bound.column, bound.kind) for bound in program.bounds]
         doubted = {k: number for number, (k, kind) in enumerate(checks) if kind.startswith("OPEN")}
-        sizes = [(bound.size, "SIZE") for bound in graph.bounds if bound.kind == "ROW"]
-        made = {name: _made_of(graph, name, table) for name in names}
-        doubts = [
-            (doubted[graph.doubtful[n]], k)
+        sizes = [(bound.size, "SIZE") for bound in program.bounds if bound.kind == "ROW"]
+        made = {name: _made_of(program, name, table) for name in names}
+        indeterminate_checks = [
+            (doubted[program.indeterminate[n]], k)
             for k, name in enumerate(names)
             for n in made[name]
-            if n in graph.doubtful
+            if n in program.indeterminate
         ]
         reduction = Reduction(
             quantities=tuple(chosen.values()),
@@ -111,8 +115,8 @@ class KeptOutputs:
             units=tuple(compared(units)),
             efforts=tuple(names.index(name) for name in efforts),
             checks=(*checks, *sizes),
-            doubts=tuple(doubts),
-            matter=matter,
+            indeterminate_checks=tuple(indeterminate_checks),
+            mass_properties=mass_properties,
             positive=positive,
             margins=margins,
             statuses={status.name: int(status) for status in Status},
@@ -125,57 +129,57 @@ class KeptOutputs:
 def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> Along:
     density = data.template.content["bodies"][link]["density"]
     sliced = "slices" in density
-    stations, spreads = stations_of(at, link), list[tuple[int, ...]]()
+    load_points, distributed_loads = load_points_of(at, link), list[tuple[int, ...]]()
     marks: list[tuple[int, ...] | float] = []
-    for name, powers in spreads_of(at, link).items():
+    for name, powers in distributed_loads_of(at, link).items():
         width, end = (at[Output("spread", link, member, name)] for member in ("width", "end"))
         if name in data.partial:
             marks += [(end, width), (end,)]
-        directions = (*table.spread, *table.couples) if sliced else table.spread
+        directions = (*table.distributed, *table.couples) if sliced else table.distributed
         terms = (
             at.get(Output("spread", link, member, name, power), -1)
             for member in directions
             for power in range(powers)
         )
-        spreads.append((width, end, *terms))
-    if spreads:
+        distributed_loads.append((width, end, *terms))
+    if distributed_loads:
         marks += data.jumps[link]
     return Along(
         tuple(at[Output("law", link, member)] for member in table.law),
         tuple(
-            tuple(at[Output("station", link, member, station)] for member in table.place_first)
-            for station in stations
+            tuple(at[Output("station", link, member, load_point)] for member in table.place_first)
+            for load_point in load_points
         ),
         tuple(density["breaks"]),
         max(len(cell) for cell in density["cells"]),
-        tuple(spreads),
+        tuple(distributed_loads),
         tuple(marks),
         sliced,
     )
 
 
-def _made_of(graph: Program, quantity: Output, table: Table) -> list[Output]:
+def _made_of(program: Program, quantity: Output, table: Table) -> list[Output]:
     """The outputs that a quantity is made of."""
     if quantity.group == "section":
-        return made_of(graph.outputs, quantity.part, quantity.member, table)
+        return made_of(program.outputs, quantity.part, quantity.member, table)
     return list(quantity.components(table))
 
 
 @symbolic
-def _matter(
-    graph: Program, links: list[str], along: tuple[Along, ...], rung: Rung
+def _mass_properties(
+    program: Program, links: list[str], along: tuple[Along, ...], method: EvaluationMethod
 ) -> tuple[ca.Function, int, int]:
     """Numbers of the parts for the reduction, and how many of them must be positive, and not
     negative.
     """
-    data, symbols = graph.data, graph.data.symbols
-    positive, others = data.margins[rung.precision].in_order(symbols)
+    data, symbols = program.data, program.data.symbols
+    positive, others = data.margins[method.precision].in_order(symbols)
     positive = [data.extent(symbols), *positive]
     rest: list[Any] = []
     for link, part in zip(links, along, strict=True):
-        length, density = data.matter(link, symbols)
-        rest += matter_of(part, length, density.cells)
-    rest += limits(graph, rung.precision, rung.newton, positive[0])
+        length, density = data.mass_properties(link, symbols)
+        rest += mass_properties_of(part, length, density.cells)
+    rest += limits(program, method.precision, method.newton, positive[0])
     out = ca.densify(
         ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest)))
     )

@@ -11,10 +11,10 @@ from ...base.arrays import Array
 from ...base.symbolic import symbolic_property
 from ...declare.even_points import are_even
 from ...declare.laws import Laws
-from ...declare.reaching import Reaching
+from ...declare.motion_inverse import MotionInverse
 from ...declare.times import Timing, instants_of
 
-_LOOKS = 65
+_SAMPLES = 65
 """Least number of times at which a motion is checked for reversal."""
 
 
@@ -29,10 +29,10 @@ class DesignTimes:
     timing: Timing
 
     @symbolic_property
-    def law(self) -> Reaching | None:
+    def law(self) -> MotionInverse | None:
         """The law of the drive that they go by, if any."""
         joint = self.timing.joint
-        return Reaching.of(self.laws, joint) if joint else None
+        return MotionInverse.of(self.laws, joint) if joint else None
 
     @property
     def common(self) -> bool:
@@ -64,17 +64,17 @@ class DesignTimes:
             return even, instants if asked and self.default[0] is not self.default[1] else even
         start, stop, around = self.timing.bounds(p)
         if self.law is None:
-            even = self._steps(*self._possible(start, stop))
+            even = self._steps(*self._valid(start, stop))
             return even, even
-        way = self.law.way(start, stop, p, around, looks=max(_LOOKS, self.timing.count))
-        even = self._steps(*self._possible(way.first, way.last))
+        way = self.law.passage(start, stop, p, around, samples=max(_SAMPLES, self.timing.count))
+        even = self._steps(*self._valid(way.first, way.last))
         if self.law.steady or not asked:
             return even, even
         found = self.law.times(way, self._steps(start, stop), p)
         found[np.isnan(even[:, 0])] = np.nan
         return even, found
 
-    def _possible(self, start: Array, stop: Array) -> tuple[Array, Array]:
+    def _valid(self, start: Array, stop: Array) -> tuple[Array, Array]:
         """The first and last instants; NaN where they are none, or samples
         of a motion end before.
         """

@@ -24,20 +24,20 @@ _OK = int(Status.OK)
 class Watch:
     """Conditions on motions and constraints of a graph, for the parameters of each design."""
 
-    graph: Program
+    program: Program
 
     @property
     def _ends(self) -> Any | None:
-        return self.graph.laws.beyond
+        return self.program.laws.beyond
 
     @property
     def _corners(self) -> Corners:
-        return self.graph.data.corners
+        return self.program.data.corners
 
     @cached_property
     def _seen(self) -> dict[str, list[int]]:
         """The columns of what each constraint sees."""
-        return {name: self.graph.seen_columns(name) for name in self._corners.constraints}
+        return {name: self.program.seen_columns(name) for name in self._corners.constraints}
 
     def __bool__(self) -> bool:
         """Return whether there are any conditions."""

@@ -11,13 +11,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...errors import AssemblyError
+from .evaluated_design import EvaluatedDesign
 from .fatigue import tired_link
-from .judge import Judge
-from .judged import Judged
-from .look import KEEP, Point
+from .nonlinear_program import Found, Held, NonlinearProgram
 from .problem import Box, Problem
-from .program import Found, Held, NonlinearProgram
-from .trail import CONVERGED, HOLDS, STOPPED, Trail, rounded
+from .sampled_design import KEEP, Point
+from .search_run import CONVERGED, HOLDS, STOPPED, SearchRun, rounded
+from .term_evaluator import TermEvaluator
 
 _ROUNDS, _HALVINGS = 40, 12
 """Programs that are solved at most; and how often a step is halved that leads to where loops do not
@@ -46,15 +46,15 @@ _SAME = 1e-6
 _SOLVED = "Solve_Succeeded"
 """Answer of IPOPT for a program that it solved."""
 
-Told = Callable[[float, float], None]
+Progress = Callable[[float, float], None]
 """Hears the objective and the worst excess of each design on the way."""
 
 
 @dataclass(frozen=True)
-class _Seen:
+class _Iterate:
     """A design on the way, the program that led there, if any, and how the way would end here."""
 
-    judged: Judged
+    evaluated: EvaluatedDesign
     by: Found | None
     ending: str
 
@@ -66,31 +66,31 @@ class Descent:
     Nothing of it depends on other ways, so that it is the same wherever it is gone.
     """
 
-    judge: Judge
+    evaluator: TermEvaluator
     program: NonlinearProgram
     box: Box
     problem: Problem
     scales: tuple[float, ...]
-    told: Told
+    progress: Progress
     history: list[tuple[float, ...]] = field(default_factory=list)
-    seen: list[_Seen] = field(default_factory=list)
+    iterates: list[_Iterate] = field(default_factory=list)
 
-    def go(self, first: Judged) -> Trail:
+    def go(self, first: EvaluatedDesign) -> SearchRun:
         """Go from a design to the best near it; after an interrupt, as far as it went."""
-        before, stopped = self.judge.evaluations, False
+        before, stopped = self.evaluator.evaluations, False
         try:
             self._descend(first)
         except KeyboardInterrupt:
             stopped = True
         except AssemblyError as error:
-            self.seen.append(_Seen(first, None, str(error)))
-        best = self._best() if self.seen else _Seen(first, None, "")
+            self.iterates.append(_Iterate(first, None, str(error)))
+        best = self._best() if self.iterates else _Iterate(first, None, "")
         found = best.by
-        return Trail(
+        return SearchRun(
             start=tuple(first.p.tolist()),
-            end=tuple(best.judged.p.tolist()),
-            objective=best.judged.value(self.problem.objective),
-            excess=self.problem.excess(best.judged),
+            end=tuple(best.evaluated.p.tolist()),
+            objective=best.evaluated.value(self.problem.objective),
+            excess=self.problem.excess(best.evaluated),
             scale=self.scales[0],
             ending=STOPPED if stopped else best.ending,
             history=tuple(self.history),
@@ -98,73 +98,75 @@ class Descent:
             bounds=tuple(found.bounds.tolist()) if found else (),
             residual=found.conditions.residual if found else math.nan,
             curvature=found.conditions.curvature if found else math.nan,
-            evaluations=self.judge.evaluations - before,
+            evaluations=self.evaluator.evaluations - before,
         )
 
-    def _best(self) -> _Seen:
+    def _best(self) -> _Iterate:
         """The best design on the way; of those that are as good, as far as limits that hold tell,
         the one that converged.
         """
-        best = min(reversed(self.seen), key=lambda one: self._merit(one.judged))
-        excess, objective = self._merit(best.judged)
-        for one in reversed(self.seen):
+        best = min(reversed(self.iterates), key=lambda one: self._merit(one.evaluated))
+        excess, objective = self._merit(best.evaluated)
+        for one in reversed(self.iterates):
             if one.ending == CONVERGED and one.by is not None:
                 # Another one may seem better by a violation that passes as none.
                 gains = sum(
                     abs(gain) * scale
                     for gain, scale in zip(one.by.multipliers, self.scales[1:], strict=True)
                 )
-                if self._merit(one.judged) <= (
+                if self._merit(one.evaluated) <= (
                     excess,
                     objective + HOLDS * (self.scales[0] + gains),
                 ):
                     return one
         return best
 
-    def _merit(self, judged: Judged) -> tuple[float, float]:
+    def _merit(self, evaluated: EvaluatedDesign) -> tuple[float, float]:
         """A merit less its last digits, so that of designs as good the
         one that converged is taken.
         """
-        excess, objective = self.problem.merit(judged)
+        excess, objective = self.problem.merit(evaluated)
         return excess, rounded(objective, self.scales[0])
 
-    def _note(self, judged: Judged) -> None:
+    def _note(self, evaluated: EvaluatedDesign) -> None:
         """Keep a design in the history, and tell of it."""
-        objective, excess = judged.value(self.problem.objective), self.problem.excess(judged)
+        objective, excess = evaluated.value(self.problem.objective), self.problem.excess(evaluated)
         row = (
             objective,
             excess,
-            float(judged.has_result),
-            *judged.p[list(self.box.places)].tolist(),
+            float(evaluated.has_result),
+            *evaluated.p[list(self.box.places)].tolist(),
         )
         self.history.append(row)
-        self.told(objective, excess)
+        self.progress(objective, excess)
 
-    def _better(self, judged: Judged, by: Found | None, ending: str) -> None:
+    def _better(self, evaluated: EvaluatedDesign, by: Found | None, ending: str) -> None:
         """Keep a design that is no worse than those before."""
         converged = by is not None and ending == CONVERGED
         if (
-            not self.seen
+            not self.iterates
             or converged
-            or self.problem.merit(judged) <= self.problem.merit(self.seen[-1].judged)
+            or self.problem.merit(evaluated) <= self.problem.merit(self.iterates[-1].evaluated)
         ):
-            self.seen.append(_Seen(judged, by, ending))
+            self.iterates.append(_Iterate(evaluated, by, ending))
 
-    def _descend(self, first: Judged) -> None:
+    def _descend(self, first: EvaluatedDesign) -> None:
         self._note(first)
         self._better(first, None, "start")
-        look, box = first.look, self.box
-        assert look is not None
+        sampled, box = first.sampled, self.box
+        assert sampled is not None
         held = [Held(self.problem.objective, None, self.scales[0])]
         for constraint, scale in zip(self.problem.constraints, self.scales[1:], strict=True):
             held.append(Held(constraint.term, constraint.limit, scale, constraint.least))
-        numbers = np.unique(np.linspace(0, look.t.size - 1, _CLOSED).astype(int)).tolist()
-        closures = [look.instant(k) for k in numbers]
+        numbers = np.unique(np.linspace(0, sampled.t.size - 1, _CLOSED).astype(int)).tolist()
+        closures = [sampled.instant(k) for k in numbers]
         self._learn(held, closures, first, everything=True)
         current, tried = first, 0
         for _ in range(_ROUNDS):
             every = (
-                current.look.instants if self.program.averaged and current.look is not None else []
+                current.sampled.instants
+                if self.program.averaged and current.sampled is not None
+                else []
             )
             found = self.program.solve(box.share(current.p), held, closures, every)
             x = found.x
@@ -173,16 +175,16 @@ class Descent:
                     current, None, "the program has no solution: no derivative where it looked"
                 )
                 return
-            following = self.judge.look(box.all(x))
+            following = self.evaluator.evaluate(box.all(x))
             self._note(following)
             back = 0
-            while following.look is None and back < _HALVINGS:
+            while following.sampled is None and back < _HALVINGS:
                 # Loops do not close somewhere between the points: go back until they do, and look
                 # there from then on.
                 back += 1
                 x = (x + box.share(current.p)) / 2
-                following = self.judge.look(box.all(x))
-            if following.look is None:
+                following = self.evaluator.evaluate(box.all(x))
+            if following.sampled is None:
                 self._better(current, None, "loops close nowhere near")
                 return
             added = self._learn(held, closures, following, everything=back > 0)
@@ -204,7 +206,7 @@ class Descent:
             if tried >= 2:
                 return
 
-    def _lower(self, found: Found, judged: Judged) -> Judged | None:
+    def _lower(self, found: Found, evaluated: EvaluatedDesign) -> EvaluatedDesign | None:
         """A better design beside one that seems to be no minimum, along the way that it is left;
         None where it is one after all.
 
@@ -212,34 +214,39 @@ class Descent:
         those of the peaks.
         """
         way = found.conditions.way / (np.abs(found.conditions.way).max() or 1.0)
-        excess, objective = self._merit(judged)
+        excess, objective = self._merit(evaluated)
         for step in (share * sign for share in _STEPS for sign in (1.0, -1.0)):
-            tried = self.judge.look(self.box.all(np.clip(found.x + step * way, 0.0, 1.0)))
+            tried = self.evaluator.evaluate(self.box.all(np.clip(found.x + step * way, 0.0, 1.0)))
             if self._merit(tried) < (excess, objective):
                 return tried
         return None
 
-    def _settled(self, found: Found, judged: Judged) -> bool:
+    def _settled(self, found: Found, evaluated: EvaluatedDesign) -> bool:
         """Return whether a program's solution holds with all peaks, also those that the program did
         not include.
         """
-        value = judged.value(self.problem.objective)
+        value = evaluated.value(self.problem.objective)
         gap = abs(value - found.objective) / (abs(value) or 1.0)
         return (
-            self.problem.excess(judged) <= HOLDS
+            self.problem.excess(evaluated) <= HOLDS
             and gap <= HOLDS
             and found.conditions.residual <= _CONDITIONS
         )
 
     def _learn(
-        self, held: Sequence[Held], closures: list[Point], judged: Judged, *, everything: bool
+        self,
+        held: Sequence[Held],
+        closures: list[Point],
+        evaluated: EvaluatedDesign,
+        *,
+        everything: bool,
     ) -> bool:
         """Hold terms at the peaks of a design that programs do not know; whether there were any."""
-        added, look = False, judged.look
-        assert look is not None
-        near = _SAME * look.step
+        added, sampled = False, evaluated.sampled
+        assert sampled is not None
+        near = _SAME * sampled.step
         for k, term in enumerate(held):
-            points = judged.points[term.term]
+            points = evaluated.points[term.term]
             if not points:
                 continue
             largest = points[0][1] * points[0][0].value
@@ -249,7 +256,7 @@ class Descent:
                 level = largest if k == 0 else term.bound
                 least = max(least, level - _NEAR * term.scale)
             high = [(point, sign) for point, sign in points if sign * point.value >= least]
-            found = self.judge.following(term.term, high or points[:1], look)
+            found = self.evaluator.following(term.term, high or points[:1], sampled)
             first, sign = found[0]
             if (
                 term.term.kind == "peak"
@@ -258,14 +265,14 @@ class Descent:
                 and 0.0 < first.share < 1.0
             ):
                 # Where it is, a kink has no derivative; along its way it has one.
-                found[0] = self.judge.drifting(term.term, first, judged.p, self.box), sign
+                found[0] = self.evaluator.drifting(term.term, first, evaluated.p, self.box), sign
             for point, sign in found if high else ():
                 added |= term.add(point, sign, near)
             if not term.points:
                 added |= term.add(*found[0], near)
-        for row in look.closures():
+        for row in sampled.closures():
             k = int(np.argmin(row))
-            point = look.instant(k)
+            point = sampled.instant(k)
             if row[k] < 4 * self.program.least_closure and all(
                 abs(point.share - other.share) > near for other in closures
             ):

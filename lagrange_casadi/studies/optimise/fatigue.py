@@ -23,9 +23,9 @@ from ...beams.material import Material
 from ...equations.program import Program
 from ...errors import DeclarationError
 from ...instants.statistics import counted
-from ...strength.fatigue import loaded, strengths, swing_squares, used
+from ...strength.fatigue import cycle_squares, loaded, strengths, used
 from ...strength.fibres import FibreStresses
-from .look import Look, Point
+from .sampled_design import Point, SampledDesign
 
 _FEW = 8
 """Places of a link whose worst swings are told at least."""
@@ -38,7 +38,7 @@ class Tired:
     Raises :class:`.DeclarationError` where its material lacks a number.
     """
 
-    graph: Program
+    program: Program
     link: str
 
     def __post_init__(self) -> None:
@@ -47,24 +47,26 @@ class Tired:
     @property
     def material(self) -> Material:
         """Material of the link."""
-        return self.graph.data.materials[self.link]
+        return self.program.data.materials[self.link]
 
     @cached_property
     def fatigue(self) -> FibreStresses:
         """Stresses of the link by the members of its law."""
         members = [
-            output for output in self.graph.outputs if output.along and output.part == self.link
+            output for output in self.program.outputs if output.along and output.part == self.link
         ]
-        return FibreStresses.of(self.graph.data, self.link, members)
+        return FibreStresses.of(self.program.data, self.link, members)
 
-    def points(self, look: Look) -> list[Point]:
+    def points(self, sampled: SampledDesign) -> list[Point]:
         """The worst swings of a design, one a place, the worst first: a point's ``xi`` is the share
         of the swing's other instant.
 
         Raises :class:`.DeclarationError` where a load travels along the link.
         """
         fatigue = self.fatigue
-        members = look.history.columns[[self.graph.outputs[member] for member in fatigue.members]]
+        members = sampled.history.columns[
+            [self.program.outputs[member] for member in fatigue.members]
+        ]
         instants = np.flatnonzero(counted(members))
         members = members[:, instants]
         if not instants.size:
@@ -73,17 +75,17 @@ class Tired:
             raise DeclarationError(
                 f"a load moves along link '{self.link}'; its fatigue is available in sweeps only"
             )
-        histories = fatigue.histories(members[None], look.p[None])
+        histories = fatigue.histories(members[None], sampled.p[None])
         bound, _ = histories.bounds(self.material)
         found: list[Point] = []
         best = 0.0
         for k in np.argsort(-bound[0], kind="stable").tolist():
             if bound[0, k] <= best and len(found) >= _FEW:
                 break
-            swings = loaded(histories.at(0, k))
-            shares = used(swings.amplitude, swings.mean, self.material)
+            cycles = loaded(histories.at(0, k))
+            shares = used(cycles.amplitude, cycles.mean, self.material)
             worst = int(np.argmax(shares))
-            first, last = (look.instant(int(instants[i])) for i in swings.instants[worst])
+            first, last = (sampled.instant(int(instants[i])) for i in cycles.instants[worst])
             found.append(
                 Point(
                     first.share, last.share, k, float(shares[worst]), first.guess, second=last.guess
@@ -97,7 +99,7 @@ class Tired:
         at an instant: expressions.
         """
         fatigue, count = self.fatigue, self.fatigue.places
-        members = ca.vertcat(*(out[self.graph.outputs[member]] for member in fatigue.members))
+        members = ca.vertcat(*(out[self.program.outputs[member]] for member in fatigue.members))
         found = ca.mtimes(ca.reshape(fatigue.rows(members, p), members.numel(), -1).T, members)
         shears = ca.SX(2 * count, 1)
         for number, axis in enumerate(fatigue.axes):
@@ -107,7 +109,7 @@ class Tired:
             ]
         return ca.densify(ca.vertcat(found[:count], shears))
 
-    def swing(self, at_time: Any) -> Any:
+    def cycle(self, at_time: Any) -> Any:
         """``value(share, guess, p, xi, place)``: a swing's utilisation, by stresses at a time;
         ``place`` names the place by a 1.
         """
@@ -124,7 +126,7 @@ class Tired:
         a, b = (
             [ca.dot(chosen, end[k * count : (k + 1) * count]) for k in range(3)] for end in ends
         )
-        amplitude, mean = (_root(square) for square in swing_squares(a, b))
+        amplitude, mean = (_root(square) for square in cycle_squares(a, b))
         return ca.Function(
             "swing",
             given,

@@ -16,7 +16,7 @@ from ...store.opening import opened_file
 from ...store.untrusted import check_dataset, check_links, shown
 from .front import Front
 from .optimum import Optimum
-from .trail import CONVERGED
+from .search_run import CONVERGED
 
 SCHEMA, VERSION = "lagrange-casadi-optimum", 1
 _COLUMNS = ("start", "objective", "excess", "result")

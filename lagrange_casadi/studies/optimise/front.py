@@ -19,7 +19,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...errors import NoDesignError
-from .judged import Judged
+from .evaluated_design import EvaluatedDesign
 from .optimum import Optimum
 from .problem import Problem
 from .searching import Search
@@ -94,14 +94,14 @@ class _Found:
     """A point as it is found."""
 
     optimum: Optimum
-    judged: Judged
+    evaluated: EvaluatedDesign
     values: Array
 
 
 class _Fronts:
     def __init__(self, search: Search, count: int) -> None:
         self.search, self.count = search, count
-        question = search.finder.question
+        question = search.solver.question
         self.terms, self.limits = question.objectives, question.constraints
         self.notes: list[str] = []
         self.kept: list[_Found] = []
@@ -121,9 +121,9 @@ class _Fronts:
 
     def _result(self) -> Front:
         points = [self._told(one) for one in _efficient(self.kept)]
-        data = self.search.finder.engine.graph.data
+        data = self.search.solver.engine.program.data
         case, units = data.name, tuple(term.unit(data) for term in self.terms)
-        told = tuple(
+        notes = tuple(
             dict.fromkeys(
                 [*self.notes, *(note for point in points for note in point.optimum.notes)]
             )
@@ -135,7 +135,7 @@ class _Fronts:
             tuple(points),
             self.search.stopped,
             self.search.evaluations,
-            told,
+            notes,
         )
 
     def _grow(self) -> None:
@@ -183,7 +183,7 @@ class _Fronts:
                 break
             left, right = row[k], row[k + 1]
             limit = float(left.values[1] + right.values[1]) / 2
-            one = self._solved(self._limited(0, {1: limit}), [left.judged, right.judged])
+            one = self._solved(self._limited(0, {1: limit}), [left.evaluated, right.evaluated])
             width = abs(float(left.values[1] - right.values[1]))
             if (
                 not one.optimum.feasible
@@ -215,7 +215,7 @@ class _Fronts:
             size = np.where(high > low, high - low, 1.0)
             near = min(known, key=lambda one: float(np.abs((one.values - wanted) / size).max()))
             one = self._solved(
-                self._limited(0, dict(zip(others, limits, strict=True))), [near.judged]
+                self._limited(0, dict(zip(others, limits, strict=True))), [near.evaluated]
             )
             if one.optimum.feasible:
                 known.append(one)
@@ -225,7 +225,7 @@ class _Fronts:
         ``one`` is.
         """
         best = self._solved(
-            self._limited(objective, {other: low + _END * (high - low)}), [one.judged]
+            self._limited(objective, {other: low + _END * (high - low)}), [one.evaluated]
         )
         return best if best.optimum.feasible else one
 
@@ -234,9 +234,9 @@ class _Fronts:
         held = [Constraint(self.terms[k], float(limit)) for k, limit in limits.items()]
         return Problem(self.terms[objective], (*held, *self.limits))
 
-    def _solved(self, problem: Problem, starts: Sequence[Judged]) -> _Found:
+    def _solved(self, problem: Problem, starts: Sequence[EvaluatedDesign]) -> _Found:
         """A problem solved from some starts, and from the best of what was screened for it."""
-        box = self.search.finder.question.box
+        box = self.search.solver.question.box
         if (
             isinstance(self.search.starts, int)
             and self.search.screened
@@ -248,8 +248,8 @@ class _Fronts:
                 ):
                     starts = [*starts, one]
         optimum = self.search.solve(problem, starts)
-        judged = self.search.look(tuple(optimum.parameters.values()))
-        return _Found(optimum, judged, np.array([judged.value(term) for term in self.terms]))
+        evaluated = self.search.evaluate(tuple(optimum.parameters.values()))
+        return _Found(optimum, evaluated, np.array([evaluated.value(term) for term in self.terms]))
 
     def _told(self, one: _Found) -> FrontPoint:
         # Where the first objective is the limit it is at its least: nothing is gained any more.

@@ -19,8 +19,8 @@ from ...base.publish import check_writable, settled, telling
 from ...errors import BusyError, PathError, StoreError
 from ...store.untrusted import check_shape
 from ..sweep.plan import difference
-from .finder import Errand
-from .trail import WORDS, Trail
+from .search_run import WORDS, SearchRun
+from .solver import SearchTask
 
 try:
     import fcntl
@@ -47,22 +47,22 @@ class Journal:
 
     target: Path | None = None
     file: IO[bytes] | None = None
-    known: dict[str, Trail] = field(default_factory=dict)
+    known: dict[str, SearchRun] = field(default_factory=dict)
 
-    def get(self, errand: Errand) -> Trail | None:
+    def get(self, task: SearchTask) -> SearchRun | None:
         """The way of an errand, where it was gone."""
-        return self.known.get(_key(errand))
+        return self.known.get(_key(task))
 
-    def put(self, errand: Errand, trail: Trail) -> None:
+    def put(self, task: SearchTask, run: SearchRun) -> None:
         """Keep a way: on return it outlives a kill.
 
         Raises :class:`StoreError` where it cannot be written.
         """
-        key = _key(errand)
-        self.known[key] = trail
+        key = _key(task)
+        self.known[key] = run
         if self.file is not None and self.target is not None:
             with telling(journal_of(self.target)):
-                self.file.write(_line({"of": key, "trail": trail.words}))
+                self.file.write(_line({"of": key, "trail": run.words}))
                 self.file.flush()
                 os.fsync(self.file.fileno())
 
@@ -137,7 +137,7 @@ def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:
         return False
     for words in lines:
         if "trail" in words:
-            journal.known[words["of"]] = Trail.read(words["trail"])
+            journal.known[words["of"]] = SearchRun.read(words["trail"])
         elif found := difference(words["identity"], identity):
             raise StoreError(
                 f"{path} is of another search: {found}; start anew with force=True, or write"
@@ -175,12 +175,12 @@ def _words(line: bytes) -> Any:
     return words
 
 
-def _key(errand: Errand) -> str:
-    problem = errand.problem
-    told = [
+def _key(task: SearchTask) -> str:
+    problem = task.problem
+    key = [
         str(problem.objective),
         [c.words for c in problem.constraints],
-        errand.start,
-        errand.scales,
+        task.start,
+        task.scales,
     ]
-    return json.dumps(told)
+    return json.dumps(key)

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Array
+from .evaluated_design import EvaluatedDesign
 from .fatigue import tired_link
-from .finder import Finder
-from .judged import Judged
 from .problem import Problem
+from .search_run import CONVERGED, HOLDS, SearchRun
+from .solver import Solver
 from .terms import Constraint, Term
-from .trail import CONVERGED, HOLDS, Trail
 
 _NEAR = 1e-5
 """Distance from its limit, relative to its scale, within which a term is active."""
@@ -108,99 +108,99 @@ class Optimum:
 
 
 def optimum_of(
-    finder: Finder,
+    solver: Solver,
     problem: Problem,
-    trails: Sequence[Trail],
-    judged: Judged,
+    runs: Sequence[SearchRun],
+    evaluated: EvaluatedDesign,
     evaluations: int,
     *,
     stopped: bool,
 ) -> Optimum:
-    """Result of runs from starts; ``judged`` is the end of the best of them, evaluated closely."""
-    best = min(trails, key=lambda trail: trail.merit)
-    box, engine = finder.question.box, finder.engine
+    """Result of runs from starts; ``evaluated`` is the end of the best
+    of them, evaluated closely.
+    """
+    best = min(runs, key=lambda run: run.merit)
+    box, engine = solver.question.box, solver.engine
     limits = []
     multipliers = best.multipliers or (math.nan,) * len(problem.constraints)
     for constraint, multiplier in zip(problem.constraints, multipliers, strict=True):
-        value = judged.value(constraint.term)
+        value = evaluated.value(constraint.term)
         near = abs(constraint.excess(value)) <= _NEAR * constraint.scale(value)
         limits.append(Limit(constraint, value, bool(near), float(multiplier) if near else 0.0))
     bounds = dict.fromkeys(box.names, math.nan)
     if best.bounds:
-        x = box.share(judged.p)
+        x = box.share(evaluated.p)
         at_bound = np.minimum(x, 1.0 - x) <= 1e-6
         by_unit = np.where(at_bound, np.array(best.bounds) / (box.high - box.low), 0.0)
         bounds = dict(zip(box.names, by_unit.tolist(), strict=True))
-    everything = dict(zip(engine.parameters, judged.p.tolist(), strict=True))
-    excess = problem.excess(judged)
+    everything = dict(zip(engine.parameters, evaluated.p.tolist(), strict=True))
+    excess = problem.excess(evaluated)
     return Optimum(
-        case=finder.engine.graph.data.name,
+        case=solver.engine.program.data.name,
         minimised=problem.objective,
-        unit=problem.objective.unit(finder.engine.graph.data),
+        unit=problem.objective.unit(solver.engine.program.data),
         values={name: everything[name] for name in box.names},
         parameters=everything,
-        objective=judged.value(problem.objective),
-        start=_start(finder, best),
-        starts=tuple(_start(finder, trail) for trail in trails),
-        optima=_optima(finder, trails),
+        objective=evaluated.value(problem.objective),
+        start=_start(solver, best),
+        starts=tuple(_start(solver, run) for run in runs),
+        optima=_optima(solver, runs),
         limits=tuple(limits),
         bounds=bounds,
-        transmission=math.sqrt(judged.closure) if judged.closure >= 0.0 else math.nan,
+        transmission=math.sqrt(evaluated.closure) if evaluated.closure >= 0.0 else math.nan,
         feasible=excess <= HOLDS,
         converged=best.ending == CONVERGED,
         stopped=stopped,
         residual=best.residual,
         curvature=best.curvature,
-        history=np.array(
-            [[k, *row] for k, trail in enumerate(trails) for row in trail.history]
-        ).reshape(-1, 4 + len(box.names)),
+        history=np.array([[k, *row] for k, run in enumerate(runs) for row in run.history]).reshape(
+            -1, 4 + len(box.names)
+        ),
         evaluations=evaluations,
-        notes=tuple(_notes(finder, problem, judged)),
+        notes=tuple(_notes(solver, problem, evaluated)),
     )
 
 
-def _start(finder: Finder, trail: Trail) -> Start:
-    box = finder.question.box
+def _start(solver: Solver, run: SearchRun) -> Start:
+    box = solver.question.box
 
-    def told(p: Sequence[float]) -> dict[str, float]:
+    def named(p: Sequence[float]) -> dict[str, float]:
         return {name: p[place] for name, place in zip(box.names, box.places, strict=True)}
 
-    return Start(told(trail.start), told(trail.end), trail.objective, trail.excess, trail.ending)
+    return Start(named(run.start), named(run.end), run.objective, run.excess, run.ending)
 
 
-def _optima(finder: Finder, trails: Sequence[Trail]) -> tuple[LocalOptimum, ...]:
+def _optima(solver: Solver, runs: Sequence[SearchRun]) -> tuple[LocalOptimum, ...]:
     """Designs to which runs have converged."""
-    box = finder.question.box
-    found: list[list[Trail]] = []
-    for trail in sorted(
-        (trail for trail in trails if trail.ending == CONVERGED), key=lambda trail: trail.merit
-    ):
-        share = box.share(np.array(trail.end))
+    box = solver.question.box
+    found: list[list[SearchRun]] = []
+    for run in sorted((run for run in runs if run.ending == CONVERGED), key=lambda run: run.merit):
+        share = box.share(np.array(run.end))
         for known in found:
             if np.abs(share - box.share(np.array(known[0].end))).max() <= _SAME:
-                known.append(trail)
+                known.append(run)
                 break
         else:
-            found.append([trail])
+            found.append([run])
     return tuple(
-        LocalOptimum(_start(finder, known[0]).end, known[0].objective, len(known))
+        LocalOptimum(_start(solver, known[0]).end, known[0].objective, len(known))
         for known in found
     )
 
 
-def _notes(finder: Finder, problem: Problem, judged: Judged) -> Iterator[str]:
+def _notes(solver: Solver, problem: Problem, evaluated: EvaluatedDesign) -> Iterator[str]:
     """Notes on active peaks at a kink or a jump, whose change the program has by differences."""
-    look = judged.look
-    assert look is not None
+    sampled = evaluated.sampled
+    assert sampled is not None
     values = [
         None,
         *(
-            c.excess(judged.value(c.term)) / c.scale(judged.value(c.term))
+            c.excess(evaluated.value(c.term)) / c.scale(evaluated.value(c.term))
             for c in problem.constraints
         ),
     ]
     for term, excess in zip(problem.terms, values, strict=True):
-        points = judged.points[term]
+        points = evaluated.points[term]
         if (
             not points
             or term.output is None
@@ -209,11 +209,13 @@ def _notes(finder: Finder, problem: Problem, judged: Judged) -> Iterator[str]:
         ):
             continue
         point, _ = points[0]
-        followed = finder.judge.values.of(term.output)
+        followed = solver.evaluator.values.of(term.output)
         place = point.where(followed.size)
-        rate = float(followed.slopes(point.share, list(point.guess), judged.p, point.xi, place)[0])
-        if abs(rate) * look.step > _STEEP * abs(point.value) and 0.0 < point.share < 1.0:
-            time = look.time(point)
+        rate = float(
+            followed.slopes(point.share, list(point.guess), evaluated.p, point.xi, place)[0]
+        )
+        if abs(rate) * sampled.step > _STEEP * abs(point.value) and 0.0 < point.share < 1.0:
+            time = sampled.time(point)
             yield (
                 f"{term} is at a kink or a jump, at t = {time:.6g} s: the derivative of that time"
                 " is taken by finite differences"

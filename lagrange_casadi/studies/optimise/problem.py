@@ -16,14 +16,14 @@ from ...declare.scene import Scene
 from ...declare.times import Times, Timing
 from ...equations.fingerprint import sources
 from ...errors import DeclarationError, UnknownNameError, check_kind
-from ...instants.rung import Rung
+from ...instants.evaluation_method import EvaluationMethod
 from ..designs.engine import DesignEngine
 from ..peaks import wanted_for
+from .evaluated_design import EvaluatedDesign
 from .fatigue import tired_link
-from .judged import Judged
+from .search_run import HOLDS
 from .strength_limits import constraints_of
 from .terms import Constraint, Term
-from .trail import HOLDS
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,25 +112,25 @@ class Problem:
         """All terms, objective first."""
         return (self.objective, *(c.term for c in self.constraints))
 
-    def excess(self, judged: Judged) -> float:
+    def excess(self, evaluated: EvaluatedDesign) -> float:
         """Excess of the worst limit, over its scale; NaN without a result."""
-        excess = judged.closing
+        excess = evaluated.closing
         for constraint in self.constraints:
-            value = judged.value(constraint.term)
+            value = evaluated.value(constraint.term)
             excess = max(excess, constraint.excess(value) / constraint.scale(value))
-        return excess if judged.has_result else math.nan
+        return excess if evaluated.has_result else math.nan
 
-    def merit(self, judged: Judged) -> tuple[float, float]:
+    def merit(self, evaluated: EvaluatedDesign) -> tuple[float, float]:
         """Key by which designs are compared: the better one has less."""
-        if not judged.has_result:
+        if not evaluated.has_result:
             return math.inf, math.inf
-        excess = self.excess(judged)
-        return (excess if excess > HOLDS else 0.0), judged.value(self.objective)
+        excess = self.excess(evaluated)
+        return (excess if excess > HOLDS else 0.0), evaluated.value(self.objective)
 
-    def scales(self, judged: Judged) -> tuple[float, ...]:
+    def scales(self, evaluated: EvaluatedDesign) -> tuple[float, ...]:
         """Scales of the terms, objective first."""
-        objective = abs(judged.value(self.objective)) or 1.0
-        return (objective, *(c.scale(judged.value(c.term)) for c in self.constraints))
+        objective = abs(evaluated.value(self.objective)) or 1.0
+        return (objective, *(c.scale(evaluated.value(c.term)) for c in self.constraints))
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +144,7 @@ class Question:
     constraints: tuple[Constraint, ...]
     box: Box
     timing: Timing
-    rung: Rung
+    method: EvaluationMethod
     transmission: float
 
     @classmethod
@@ -187,7 +187,9 @@ class Question:
             raise DeclarationError(
                 f"transmission: expected a sine between 0 and 1, got {transmission!r}"
             )
-        return cls(objectives, constraints, box, scene.timing(t), Rung(backend), transmission)
+        return cls(
+            objectives, constraints, box, scene.timing(t), EvaluationMethod(backend), transmission
+        )
 
     @property
     def terms(self) -> tuple[Term, ...]:
@@ -208,10 +210,10 @@ class Question:
         """Make the engine that evaluates designs. Raises :class:`UnknownNameError` for a term
         without values.
         """
-        engine = DesignEngine.of(scene, self.wanted, rung=self.rung, timing=self.timing)
+        engine = DesignEngine.of(scene, self.wanted, method=self.method, timing=self.timing)
         for term in self.terms:
             if term.output is None:
-                term.of_parameters(engine.graph.data)
+                term.of_parameters(engine.program.data)
             if term.kind == "peak" and (link := tired_link(term.output)):
                 scene.wants([f"safety:{link}"])
                 continue
@@ -222,15 +224,15 @@ class Question:
 
     def words(self, engine: DesignEngine) -> dict[str, Any]:
         """Inputs of every number of a search beside its starts, for JSON: no clock, no path."""
-        made, graph, box = engine.provenance, engine.graph, self.box
-        told = {
-            "case": graph.data.name,
+        made, program, box = engine.provenance, engine.program, self.box
+        content = {
+            "case": program.data.name,
             "versions": made.versions,
             "sources": sources(),
             "compiler": f"{made.backend} {made.compiler} {made.flags} {made.rung}",
-            "scene": graph.identity or "cannot be told",
-            "mechanism": graph.data.at(graph.data.defaults),
-            "t": self.timing.words(graph.data.symbols),
+            "scene": program.identity or "cannot be told",
+            "mechanism": program.data.at(program.data.defaults),
+            "t": self.timing.words(program.data.symbols),
             "minimise": list(map(str, self.objectives)),
             "subject_to": [c.words for c in self.constraints],
             "over": {
@@ -244,5 +246,5 @@ class Question:
             },
             "transmission": self.transmission,
         }
-        plain: dict[str, Any] = json.loads(json.dumps(told))
+        plain: dict[str, Any] = json.loads(json.dumps(content))
         return plain

@@ -17,14 +17,14 @@ from ...declare.times import Times
 from ...errors import DeclarationError
 from ...methods import method
 from ...store.runs import check_target
+from .executors import Executor, LocalExecutor
 from .file import SCHEMA, save
-from .finder import Finder
 from .front import Front, front_of
-from .hands import Hands, Here
 from .journal import kept
 from .optimum import Optimum
 from .problem import Problem, Question
 from .searching import Progress, Search
+from .solver import Solver
 from .starts import MOST, Starts
 
 Over = Mapping[str, tuple[Any, Any]]
@@ -160,19 +160,19 @@ def optimise(
         )
     if resume and out is None:
         raise DeclarationError("resume: expected out, the file of the search that was stopped")
-    hands: Hands = Here() if dask is None else method("optimise.dask")(dask)
-    finder = Finder.of(question, question.engine(own))
+    executor: Executor = LocalExecutor() if dask is None else method("optimise.dask")(dask)
+    solver = Solver.of(question, question.engine(own))
     target = None if out is None else Path(out)
     if target is not None:
         check_target(target, SCHEMA)
-    told = {
+    options = {
         "starts": starts if isinstance(starts, int) else [dict(start) for start in starts],
         "screen": screen,
     }
     with kept(
-        target, {**question.words(finder.engine), **told}, resume=resume, force=force
+        target, {**question.words(solver.engine), **options}, resume=resume, force=force
     ) as journal:
-        search = Search(finder, journal, hands, progress or (lambda *_: None), starts, screen)
+        search = Search(solver, journal, executor, progress or (lambda *_: None), starts, screen)
         found: Optimum | Front
         if isinstance(minimise, str):
             problem = Problem(question.objectives[0], question.constraints)

@@ -10,14 +10,14 @@ import numpy as np
 
 from ...base.publish import uninterrupted
 from ...errors import NoDesignError
-from .finder import Errand, Finder
-from .hands import Hands
+from .evaluated_design import EvaluatedDesign
+from .executors import Executor
 from .journal import Journal
-from .judged import Judged
 from .optimum import Optimum, optimum_of
 from .problem import Problem
+from .search_run import STOPPED, SearchRun
+from .solver import SearchTask, Solver
 from .starts import Starts, chosen, named, screen
-from .trail import STOPPED, Trail
 
 _T = TypeVar("_T")
 
@@ -33,46 +33,51 @@ class Search:
     interrupt came.
     """
 
-    finder: Finder
+    solver: Solver
     journal: Journal
-    hands: Hands
+    executor: Executor
     progress: Progress
     starts: Starts
     many: int
-    screened: list[Judged] = field(default_factory=list)
+    screened: list[EvaluatedDesign] = field(default_factory=list)
     evaluations: int = 0
     gone: int = 0
     stopped: bool = False
 
-    def begin(self, problem: Problem, count: int | None = None) -> list[Judged]:
+    def begin(self, problem: Problem, count: int | None = None) -> list[EvaluatedDesign]:
         """The designs to start from: those that are named, or the best of many; ``count`` of them,
         or as many as were asked for.
         """
-        before = self.finder.judge.evaluations
+        before = self.solver.evaluator.evaluations
         if not isinstance(self.starts, int):
-            found = named(self.finder, self.starts)
+            found = named(self.solver, self.starts)
         else:
-            self.screened = self.screened or screen(self.finder, self.many)
+            self.screened = self.screened or screen(self.solver, self.many)
             found = chosen(
-                self.finder, problem, self.screened, self.starts if count is None else count
+                self.solver, problem, self.screened, self.starts if count is None else count
             )
-        self.evaluations += self.finder.judge.evaluations - before
+        self.evaluations += self.solver.evaluator.evaluations - before
         return found
 
-    def solve(self, problem: Problem, starts: Sequence[Judged]) -> Optimum:
+    def solve(self, problem: Problem, starts: Sequence[EvaluatedDesign]) -> Optimum:
         """The best that ways from some starts lead to.
 
         Raises :class:`NoDesignError` where an interrupt came before the first.
         """
-        trails = self._ways(problem, starts)
-        if not trails:
+        runs = self._ways(problem, starts)
+        if not runs:
             raise NoDesignError("optimise: stopped before a design was evaluated")
-        self.evaluations += sum(trail.evaluations + 1 for trail in trails)
-        best = min(trails, key=lambda trail: trail.merit)
+        self.evaluations += sum(run.evaluations + 1 for run in runs)
+        best = min(runs, key=lambda run: run.merit)
         stopped = self.stopped
         return self.whole(
             lambda: optimum_of(
-                self.finder, problem, trails, self.look(best.end), self.evaluations, stopped=stopped
+                self.solver,
+                problem,
+                runs,
+                self.evaluate(best.end),
+                self.evaluations,
+                stopped=stopped,
             )
         )
 
@@ -91,30 +96,30 @@ class Search:
                 raise
         return found[0]
 
-    def look(self, p: Sequence[float]) -> Judged:
+    def evaluate(self, p: Sequence[float]) -> EvaluatedDesign:
         """A design, looked at closely."""
-        return self.finder.judge.look(np.array(p))
+        return self.solver.evaluator.evaluate(np.array(p))
 
-    def _ways(self, problem: Problem, starts: Sequence[Judged]) -> list[Trail]:
+    def _ways(self, problem: Problem, starts: Sequence[EvaluatedDesign]) -> list[SearchRun]:
         """The ways from starts, in their order; after an interrupt those that were begun."""
         scales = problem.scales(starts[0])
-        errands = [Errand(problem, tuple(start.p.tolist()), scales) for start in starts]
-        found: dict[int, Trail] = {
-            k: trail for k, errand in enumerate(errands) if (trail := self.journal.get(errand))
+        tasks = [SearchTask(problem, tuple(start.p.tolist()), scales) for start in starts]
+        found: dict[int, SearchRun] = {
+            k: run for k, task in enumerate(tasks) if (run := self.journal.get(task))
         }
-        missing = [k for k in range(len(errands)) if k not in found]
-        first, self.gone = self.gone, self.gone + len(errands)
+        missing = [k for k in range(len(tasks)) if k not in found]
+        first, self.gone = self.gone, self.gone + len(tasks)
 
-        def told(number: int, objective: float, excess: float) -> None:
+        def report(number: int, objective: float, excess: float) -> None:
             self.progress(first + missing[number], objective, excess)
 
         try:
-            for number, trail in self.hands.go(self.finder, [errands[k] for k in missing], told):
-                found[missing[number]] = trail
-                if trail.ending == STOPPED:
+            for number, run in self.executor.go(self.solver, [tasks[k] for k in missing], report):
+                found[missing[number]] = run
+                if run.ending == STOPPED:
                     self.stopped = True
                     break
-                self.journal.put(errands[missing[number]], trail)
+                self.journal.put(tasks[missing[number]], run)
         except KeyboardInterrupt:
             self.stopped = True
         return [found[k] for k in sorted(found)]

@@ -10,10 +10,10 @@ import numpy as np
 from ...base.status import Status
 from ...base.units import Within
 from ...errors import DeclarationError, NoDesignError, UnknownNameError
-from .finder import Finder
-from .judged import Judged
+from .evaluated_design import EvaluatedDesign
 from .problem import Problem
 from .sobol import sobol
+from .solver import Solver
 
 _APART = 0.15
 """Distance of starts from each other, relative to the bounds."""
@@ -25,13 +25,13 @@ Starts: TypeAlias = Annotated[int, Within(1, MOST)] | Sequence[Mapping[str, floa
 """Number of designs to start from, or the values of parameters for each."""
 
 
-def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]:
+def named(solver: Solver, starts: Sequence[Mapping[str, float]]) -> list[EvaluatedDesign]:
     """Starts by their values; parameters that a start lacks have their own.
 
     Raises :class:`UnknownNameError` and :class:`DeclarationError` for what is not chosen or not
     within bounds, and :class:`NoDesignError` where none has a result.
     """
-    box, declared = finder.question.box, finder.engine.parameters
+    box, declared = solver.question.box, solver.engine.parameters
     rows = []
     for values in starts:
         p = box.p.copy()
@@ -42,46 +42,48 @@ def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]
                 raise DeclarationError(f"starts: {name} = {value!r} is not within its bounds")
             p[declared.index(name)] = value
         rows.append(box.all(np.clip(box.share(p), 0.0, 1.0)))
-    return _with_results(finder, found := [finder.judge.look(p) for p in rows], found)
+    return _with_results(solver, found := [solver.evaluator.evaluate(p) for p in rows], found)
 
 
-def screen(finder: Finder, count: int) -> list[Judged]:
+def screen(solver: Solver, count: int) -> list[EvaluatedDesign]:
     """Designs spread evenly over the bounds, after the parameters' own values."""
-    box = finder.question.box
+    box = solver.question.box
     shares = np.vstack([np.clip(box.share(box.p), 0.0, 1.0)[None], sobol(count, len(box.names))])
-    return finder.judge.screen(np.array([box.all(x) for x in shares]))
+    return solver.evaluator.screen(np.array([box.all(x) for x in shares]))
 
 
 def chosen(
-    finder: Finder, problem: Problem, screened: Sequence[Judged], count: int
-) -> list[Judged]:
+    solver: Solver, problem: Problem, screened: Sequence[EvaluatedDesign], count: int
+) -> list[EvaluatedDesign]:
     """The best of screened designs for a problem that are apart from each other, looked at closely.
 
     Raises :class:`NoDesignError` where none has a result.
     """
-    box = finder.question.box
-    found: list[Judged] = []
+    box = solver.question.box
+    found: list[EvaluatedDesign] = []
     for one in sorted((one for one in screened if one.has_result), key=problem.merit):
         share = box.share(one.p)
         if len(found) == count:
             break
         if all(np.abs(share - box.share(other.p)).max() >= _APART for other in found):
-            closely = finder.judge.look(one.p)
+            closely = solver.evaluator.evaluate(one.p)
             if closely.has_result:
                 found.append(closely)
-    return _with_results(finder, found, screened)
+    return _with_results(solver, found, screened)
 
 
 def _with_results(
-    finder: Finder, judged: Sequence[Judged], screened: Sequence[Judged]
-) -> list[Judged]:
-    found = [one for one in judged if one.has_result]
+    solver: Solver, evaluated: Sequence[EvaluatedDesign], screened: Sequence[EvaluatedDesign]
+) -> list[EvaluatedDesign]:
+    found = [one for one in evaluated if one.has_result]
     if not found:
-        outcome = finder.engine.evaluate(np.array([one.p for one in screened]))
+        outcome = solver.engine.evaluate(np.array([one.p for one in screened]))
         values = outcome.value[outcome.status == Status.OK]
-        open_ = np.isnan(values).all(axis=0) & bool(len(values))
+        indeterminate = np.isnan(values).all(axis=0) & bool(len(values))
         names = ", ".join(
-            name for name, is_open in zip(finder.engine.quantities, open_, strict=True) if is_open
+            name
+            for name, is_open in zip(solver.engine.quantities, indeterminate, strict=True)
+            if is_open
         )
         why = (
             f": {names} is indeterminate for all of them"

@@ -30,7 +30,7 @@ from ...errors import DeclarationError
 from ...sensitivity.jacobian import resultant
 from ..designs.times import DesignTimes
 from .fatigue import Tired, tired_link
-from .look import Point
+from .sampled_design import Point
 
 _NUDGE, _NEAR, _REACH = 1e-2, 1e-2, 8.0
 """Steps between instants: of which second derivatives are taken, in which a smooth peak is where it
@@ -128,7 +128,7 @@ class Followed:
 class PointValues:
     """The functions of a graph's quantities at points."""
 
-    graph: Program
+    program: Program
     times: DesignTimes
     known: dict[Output, Followed] = field(default_factory=dict)
     links: dict[str, Tired] = field(default_factory=dict)
@@ -150,15 +150,15 @@ class PointValues:
         out = self._instant(*inputs)
         if name := tired_link(quantity):
             tired = self.tired(name)
-            value = tired.swing(
+            value = tired.cycle(
                 self._at_time([*inputs, xi, ca.SX.sym("place")], tired.stresses(out, p))
             )
             return Followed.of(value, value.numel_in(4))
-        table = table_of(self.graph.data.space)
-        columns: dict[Column, Any] = {output: out[k] for output, k in self.graph.outputs.items()}
+        table = table_of(self.program.data.space)
+        columns: dict[Column, Any] = {output: out[k] for output, k in self.program.outputs.items()}
         if quantity.group == "section":
-            link = self.graph.data.section(quantity.part, columns, p)
-            places = [Place(xi), *(mark for mark in link.marks if mark.station)]
+            link = self.program.data.section(quantity.part, columns, p)
+            places = [Place(xi), *(mark for mark in link.marks if mark.load_point)]
             names = table.parts("section", quantity.member)
             sizes = [
                 resultant([link.at(name, place, END["double"]) for name in names])
@@ -178,7 +178,7 @@ class PointValues:
     def tired(self, link: str) -> Tired:
         """A link whose utilisation against fatigue is a term; it is made once."""
         if link not in self.links:
-            self.links[link] = Tired(self.graph, link)
+            self.links[link] = Tired(self.program, link)
         return self.links[link]
 
     @symbolic
@@ -188,28 +188,34 @@ class PointValues:
 
         Of an iterated loop it is the square of its volume.
         """
-        names = self.graph.checks("closure")
+        names = self.program.checks("closure")
         if not names:
             return None
         inputs = self._instant.sx_in()
         out = self._instant(*inputs)
         found = [
-            out[k] * out[k] * ca.sign(out[k]) if self.graph.iterates(name) else out[k]
+            out[k] * out[k] * ca.sign(out[k]) if self.program.iterates(name) else out[k]
             for name, k in names.items()
         ]
         return self._at_time([*inputs, ca.SX.sym("xi"), ca.SX.sym("place", 1)], ca.vertcat(*found))
 
     @symbolic_property
     def _instant(self) -> Any:
-        return differentiable(self.graph.instant)
+        return differentiable(self.program.instant)
 
     def _at_time(self, inputs: list[Expression], value: Expression) -> Any:
         """The function with its drives and loops inside."""
-        graph = self.graph
+        program = self.program
         at_drives = ca.Function("at_drives", inputs, [ca.densify(value)], {"cse": True})
-        smooth = graph.newton is None
+        smooth = program.newton is None
         kind = ca.SX if smooth else ca.MX
-        sizes = [1, graph.instant.size1_in("z"), graph.instant.size1_in("p"), 1, inputs[-1].numel()]
+        sizes = [
+            1,
+            program.instant.size1_in("z"),
+            program.instant.size1_in("p"),
+            1,
+            inputs[-1].numel(),
+        ]
         given: list[Any] = [
             kind.sym(name, n)
             for name, n in zip(("share", "guess", "p", "xi", "place"), sizes, strict=True)
@@ -217,9 +223,9 @@ class PointValues:
         share, guess, p, xi, place = given
         first, last = self._span(p)
         t = first + share * (last - first)
-        d, rate, acceleration = graph.laws.motion.call([t, p])
+        d, rate, acceleration = program.laws.motion.call([t, p])
         z = guess
-        if graph.newton is not None:
+        if program.newton is not None:
             z = self._loops(guess, ca.vertcat(t, d, p))
         found = at_drives.call([t, d, rate, acceleration, z, p, xi, place])
         return ca.Function("at_time", given, found, {"cse": True} if smooth else {})
@@ -231,7 +237,7 @@ class PointValues:
         Raises :class:`.DeclarationError` where a drive says when they are, and its motion can be
         inverted for numbers alone.
         """
-        times, symbols = self.times, ca.SX.sym("p", len(self.graph.data.parameters))
+        times, symbols = self.times, ca.SX.sym("p", len(self.program.data.parameters))
         if times.common:
             even = times.default[1]
             return ca.Function("span", [symbols], [ca.DM(float(even[0])), ca.DM(float(even[-1]))])
@@ -250,8 +256,8 @@ class PointValues:
     @symbolic_property
     def _loops(self) -> Any:
         """The loops' solution near a guess."""
-        assert self.graph.newton is not None
-        step = self.graph.newton.step
+        assert self.program.newton is not None
+        step = self.program.newton.step
         z, t, d, p = step.sx_in()
         correction = step(z, t, d, p)[0]
         residual = ca.Function("residual", [z, ca.vertcat(t, d, p)], [correction])

@@ -71,12 +71,12 @@ class Range:
             if type(self.count) is not int:
                 raise TypeError
         except (TypeError, NumberError):
-            told = ":".join(
+            text = ":".join(
                 shown(part) if not isinstance(part, str) else part
                 for part in (self.start, self.stop, self.count)
             )
             raise DeclarationError(
-                f"expected numbers for START and STOP and a whole COUNT, got {told}"
+                f"expected numbers for START and STOP and a whole COUNT, got {text}"
             ) from None
         if type(self.log) is not bool:
             raise DeclarationError(
@@ -135,12 +135,12 @@ class Values:
         try:
             if isinstance(self.values, bytes | set | frozenset):
                 raise TypeError
-            told = [typed(value) for value in self.values]
-            numbers = tuple(number(value, finite=False) for value, _ in told)
+            typed_values = [typed(value) for value in self.values]
+            numbers = tuple(number(value, finite=False) for value, _ in typed_values)
         except (TypeError, ValueError):
             raise DeclarationError(f"expected numbers, got {shown(self.values)}") from None
         object.__setattr__(self, "values", numbers)
-        object.__setattr__(self, "unit", _one_unit(*(unit for _, unit in told)))
+        object.__setattr__(self, "unit", _one_unit(*(unit for _, unit in typed_values)))
         if not numbers:
             raise DeclarationError("expected at least one value, got none")
         for value in numbers:
@@ -340,12 +340,12 @@ def check_designs(
     for name in designs.names:
         if name in fixed:
             raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]} as well")
-    for name, told in designs.units.items():
-        if (unit := parameters[name].unit) != told:
+    for name, given_unit in designs.units.items():
+        if (unit := parameters[name].unit) != given_unit:
             where = f"{designs.source}, column '{name}'" if designs.source else f"grid of {name}"
             raise DeclarationError(
                 f"{where}: expected numbers [{unit}], not"
-                f" {'angles' if told == 'rad' else f'numbers [{told}]'}"
+                f" {'angles' if given_unit == 'rad' else f'numbers [{given_unit}]'}"
             )
     wrong = []
     for name in designs.names:
@@ -398,8 +398,8 @@ def _are_along(words: str, values: Array) -> bool:
     start, *rest = words.split(":")
     if not rest:
         return str(Values(tuple(values.tolist()))) == words
-    told = Range(float(start), float(rest[0]), int(rest[1]), rest[2:] == ["log"])
-    return np.array_equal(told.at(np.arange(told.count)), values)
+    even = Range(float(start), float(rest[0]), int(rest[1]), rest[2:] == ["log"])
+    return np.array_equal(even.at(np.arange(even.count)), values)
 
 
 def size_of(described: Mapping[str, str]) -> int:

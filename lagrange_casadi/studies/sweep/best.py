@@ -162,7 +162,7 @@ def chosen(
         if condition.unit and (unit := sweep.unit(condition.name)) != condition.unit:
             raise DeclarationError(f"condition on {condition.name}: it is in {unit}, got an angle")
 
-    def met(
+    def satisfied(
         numbers: npt.NDArray[np.int64], values: dict[str, Operand]
     ) -> tuple[npt.NDArray[np.int64], dict[str, Operand]]:
         there = np.ones(numbers.size, bool)
@@ -170,7 +170,7 @@ def chosen(
             there &= condition.holds(values[condition.name])
         return numbers[there], {name: values[name][there] for name in names}
 
-    return (met(*block) for block in sweep.blocks(asked, along))
+    return (satisfied(*block) for block in sweep.blocks(asked, along))
 
 
 def conditions_in(where: str | Condition | Sequence[str | Condition]) -> list[Condition]:
@@ -187,17 +187,17 @@ def conditions_in(where: str | Condition | Sequence[str | Condition]) -> list[Co
     return [Condition.parse(text) if isinstance(text, str) else text for text in given]
 
 
-def tally(
+def counts(
     sweep: Sweep, where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()
 ) -> tuple[int, int]:
     """Number of designs, or rows ``along`` axes, that meet all conditions, and the number of these
     that have a result.
     """
-    met = with_result = 0
+    satisfied = with_result = 0
     for numbers, values in chosen(sweep, [STATUS], where, along):
-        met += numbers.size
+        satisfied += numbers.size
         with_result += int(np.sum(values[STATUS] == 0))
-    return met, with_result
+    return satisfied, with_result
 
 
 def missed(

@@ -19,10 +19,10 @@ def chunk_of(dims: Sequence[int], target: int) -> tuple[int, ...]:
     cut into equal lengths.
     """
     chunk: list[int] = []
-    room = max(target, 1)
+    capacity = max(target, 1)
     for length in reversed(dims):
-        here = length if length <= room else math.ceil(length / math.ceil(length / room))
-        room = room // length if length <= room else 1
+        here = length if length <= capacity else math.ceil(length / math.ceil(length / capacity))
+        capacity = capacity // length if length <= capacity else 1
         chunk.append(here)
     return tuple(chunk[::-1])
 

@@ -11,7 +11,7 @@ from itertools import islice
 from pathlib import Path
 
 from ...base.publish import check_writable, telling, uninterrupted
-from ...base.seal import Seen, seal
+from ...base.seal import VerifiedFile, seal
 from ...errors import (
     ClusterError,
     DeclarationError,
@@ -40,7 +40,7 @@ _CATCHING_UP = 4
 
 def carry_out(
     plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress
-) -> Seen | None:
+) -> VerifiedFile | None:
     """Carry out a plan into the file ``target``; what was seen of that, unless it was there
     already.
 
@@ -139,7 +139,7 @@ def _refuse_other(place: Path, found: str | None) -> None:
 
 def _fill(
     folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress
-) -> Seen:
+) -> VerifiedFile:
     """Commit what is missing, and meanwhile join what is there; then seal and publish it."""
     parts = {part.start: part for part in _fitting(folder, plan)}
     done, size = (
@@ -154,7 +154,7 @@ def _fill(
         closing(workers.results(plan, queue)) as blocks,
         ExitStack() as stack,
     ):
-        _require_room(folder, plan.axes_size)
+        _require_space(folder, plan.axes_size)
         if words := plan.takes(done):
             warn(words)
         progress("designs", done, plan.size)
@@ -164,7 +164,7 @@ def _fill(
                 parts[start] = folder.commit(start, stop, plan.columns, contents)
                 done, size = done + stop - start, size + parts[start].size
                 progress("designs", done, plan.size)
-                _require_room(folder, size / done * (2 * plan.size - done - joined))
+                _require_space(folder, size / done * (2 * plan.size - done - joined))
             try:
                 if (block or append) and not queue.stopped:
                     # While the file is laid out, other blocks are evaluated.
@@ -216,7 +216,7 @@ def _following(parts: Mapping[int, Part], after: int) -> Iterator[Part]:
         yield part
 
 
-def _require_room(folder: Folder, size: float) -> None:
+def _require_space(folder: Folder, size: float) -> None:
     """Raise :class:`StoreError` where the disk has less room than is still to be written, as parts
     are so far.
     """

@@ -12,7 +12,7 @@ from ...base.status import Status
 from ...declare.description import values_of
 from ...declare.even_points import points
 from ...errors import one_line
-from ...store.untrusted import check_chunks, parsed, told_as
+from ...store.untrusted import check_chunks, parsed, reported_as
 from ...store.words import unlike, unlike_conventions
 from .axes import are_described, counted, grouped, size_of
 from .blocks import slabs
@@ -62,7 +62,7 @@ def progress(folder: Folder) -> str:
 
     Raises :class:`StoreError` where its plan cannot be read.
     """
-    with told_as("damaged", folder.path):
+    with reported_as("damaged", folder.path):
         size = size_of(folder.identity["grid"])
     return (
         f"unfinished: {grouped(folder.done())} of {counted(size)} done; the same sweep goes on when"
@@ -93,9 +93,9 @@ def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
     asked for.
     """
     identity, description = sweep.identity, sweep.description
-    told = values_of(description)
+    parameter_values = values_of(description)
     if (
-        parsed(file.attrs["parameters"], {str: float}, "parameters") != told
+        parsed(file.attrs["parameters"], {str: float}, "parameters") != parameter_values
         or sweep.case != description["name"]
     ):
         yield "case or parameters: differ from those of the mechanism"

@@ -28,7 +28,7 @@ from .chunks import encoded
 from .column import MISSING, Column
 from .engine import Engine
 from .instant_axis import InstantAxis
-from .matter import Matter
+from .link_properties import LinkProperties
 from .meanings import LEAST, LIFE, MASS, STATUS, TIMES, Meanings
 from .strength import Kept
 
@@ -131,8 +131,10 @@ class Harvest:
         found = []
         for name, axes in names.items():
             unit, words = meanings.of_column(name, names)
-            open_ = self.strength.columns.get(name, name.partition(":")[2] in engine.doubtful)
-            words |= {"missing": MISSING} if open_ else {}
+            indeterminate = self.strength.columns.get(
+                name, name.partition(":")[2] in engine.indeterminate
+            )
+            words |= {"missing": MISSING} if indeterminate else {}
             found.append(
                 Column(
                     name,
@@ -174,19 +176,19 @@ class Harvest:
             ),
         )
 
-    def chunks(self, p: Array, room: int) -> list[bytes]:
+    def chunks(self, p: Array, capacity: int) -> list[bytes]:
         """The columns of designs ``p`` (designs, parameters) as chunks of the file that have room
         for so many.
         """
-        whole = [np.zeros((room, *column.lengths), column.dtype) for column in self.columns]
+        whole = [np.zeros((capacity, *column.lengths), column.dtype) for column in self.columns]
         for start in range(0, len(p), self._piece):
             some = slice(start, min(start + self._piece, len(p)))
             for into, values in zip(whole, self.evaluate(p[some]), strict=True):
                 into[some] = values
-        self._look_closely(p, whole)
+        self._check_closely(p, whole)
         return [encoded(values) for values in whole]
 
-    def _look_closely(self, p: Array, whole: Sequence[Operand]) -> None:
+    def _check_closely(self, p: Array, whole: Sequence[Operand]) -> None:
         """Take one of the designs that have a result, and mark it
         where it fails its certificate.
         """
@@ -247,11 +249,13 @@ class Harvest:
     def strength(self) -> Kept:
         """Strength results of links that are kept."""
         engine = self.engine
-        doubtful = {
-            output.part for output in map(Output.of, engine.doubtful) if output.group == "section"
+        indeterminate = {
+            output.part
+            for output in map(Output.of, engine.indeterminate)
+            if output.group == "section"
         }
         made = (engine.quantities, engine.columns, engine.provenance.precision)
-        return Kept(self.data, self.safety, self.life, *made, doubtful)
+        return Kept(self.data, self.safety, self.life, *made, indeterminate)
 
     @property
     def _histories(self) -> bool:
@@ -264,8 +268,8 @@ class Harvest:
         processor's cache when it is taken apart.
         """
         series = 8 * len(self.engine.columns) * self.axis.values.size if self._histories else 0
-        room = _BYTES if self._histories else _AT_HAND
-        return max(1, room // (series + sum(column.width for column in self.columns)))
+        capacity = _BYTES if self._histories else _AT_HAND
+        return max(1, capacity // (series + sum(column.width for column in self.columns)))
 
     @property
     def _own_times(self) -> bool:
@@ -308,12 +312,14 @@ class Harvest:
         assert series is not None
         largest, whole = [], []
         for link in self._links:
-            matter = Matter.of(self.data, link, self.engine.provenance.precision)
+            mass_properties = LinkProperties.of(self.data, link, self.engine.provenance.precision)
             every = enumerate(map(Output.of, self.engine.columns))
             rows = {output: k for k, output in every if output.along and output.part == link}
             with np.errstate(all="ignore"):  # of designs that have no result
                 moving = of_counted(series[:, list(rows.values())])
-                laws = matter.law({output: moving[:, k] for k, output in enumerate(rows)}, p)
+                laws = mass_properties.law(
+                    {output: moving[:, k] for k, output in enumerate(rows)}, p
+                )
                 basis = laws.basis(self.xi)
                 found = (laws.largest(force, basis) for force in self._table.forces)
                 largest += [
@@ -324,7 +330,9 @@ class Harvest:
                     (len(self._table.forces), len(p), self.axis.values.size, self.xi.size), np.nan
                 )
                 for i in np.flatnonzero(outcome.status == Status.OK):
-                    law = matter.law({output: series[i, k] for output, k in rows.items()}, p[i])
+                    law = mass_properties.law(
+                        {output: series[i, k] for output, k in rows.items()}, p[i]
+                    )
                     basis = law.basis(self.xi)
                     for force, grid in zip(self._table.forces, grids, strict=True):
                         law.on_grid(force, basis, grid[i], threads=1)

@@ -17,7 +17,7 @@ from .axes import DESIGN
 from .plots import Along, Front, Peaks, Scatter, Spec
 from .reading import Sweep
 
-_PANELS, _ROWS, _ACROSS = 9, 4, 3
+_INTERVALS, _ROWS, _ACROSS = 9, 4, 3
 _TOGETHER = {"effort": "effort", "load": "loads", "multiplier": "multipliers", "motion": "motion"}
 
 
@@ -63,7 +63,7 @@ def default_plots(
             family = free[0] if free and len(names) == 1 else ""
             specs += [
                 Peaks(f"peak_{group}{page}", some, names, family, at)
-                for page, some in _numbered(_pages(columns, _PANELS))
+                for page, some in _numbered(_pages(columns, _INTERVALS))
             ]
     links = dict.fromkeys(output.part for output in _of_kind(sweep, "peak_at").values())
     specs += [

@@ -23,7 +23,7 @@ class Engine(Protocol):
         """Full names of the efforts."""
 
     @property
-    def doubtful(self) -> tuple[str, ...]:
+    def indeterminate(self) -> tuple[str, ...]:
         """Full names of quantities, and of what histories hold, that equilibrium may leave open for
         some designs: NaN there.
         """
@@ -39,7 +39,7 @@ class Engine(Protocol):
         """
 
     @property
-    def room(self) -> int:
+    def capacity(self) -> int:
         """Bytes of memory that a core takes while it evaluates."""
 
     @property

@@ -147,15 +147,17 @@ class Meanings:
         return unit, {"long_name": long_name}
 
     def _of_status(self) -> dict[str, str]:
-        told = {
+        words_by_number = {
             number: words
             for number, words in STATUSES.items()
             if self.axis != "t" or number != Status.NO_INSTANTS
         }
         return {
             "long_name": "whether a design has a result, or why it has none",
-            "flag_meanings": " ".join(word for word, _ in told.values()),
-            "sentences": json.dumps({number: sentence for number, (_, sentence) in told.items()}),
+            "flag_meanings": " ".join(word for word, _ in words_by_number.values()),
+            "sentences": json.dumps(
+                {number: sentence for number, (_, sentence) in words_by_number.items()}
+            ),
         }
 
 

@@ -14,9 +14,9 @@ from ...base.status import Status
 from ...beams.beam import beam_of
 from ...declare.description import kinds_of_described
 from ...declare.notes import rest_note
+from ...declare.revolutions import note
 from ...declare.scene import Scene
 from ...declare.times import Over, Times, Timing
-from ...declare.turned import note
 from ...equations.model_data import template
 from ...errors import LagrangeCasadiError
 from ...strength.fatigue import lacking
@@ -57,8 +57,10 @@ def resting_note(
     """A line where a joint that rubs rests in some design that is looked at, of all those with a
     result; empty where none does.
     """
-    told = found.description
-    if "losses" not in told and not any("friction" in load for load in told["loads"].values()):
+    description = found.description
+    if "losses" not in description and not any(
+        "friction" in load for load in description["loads"].values()
+    ):
         return ""
     right = np.concatenate(
         [numbers[values["status"] == Status.OK] for numbers, values in found.blocks(["status"])]

@@ -299,8 +299,8 @@ def _whole(path: Path) -> Part | None:
         return None
     try:
         with path.open("rb") as file:
-            told = _head(file)
-            start, stop, columns = (told[key] for key in _HEAD)
+            head = _head(file)
+            start, stop, columns = (head[key] for key in _HEAD)
             size = sum(length for length, _ in columns.values())
             whole = os.fstat(file.fileno()).st_size == file.tell() + size and path.name == _name(
                 start, stop
@@ -316,11 +316,11 @@ def _head(file: BinaryIO) -> Any:
     if hashlib.sha256(head[:-1]).hexdigest().encode() != digest[:-1]:
         raise ValueError("damaged")
     try:
-        told = parsed(head, _HEAD, "head")
+        content = parsed(head, _HEAD, "head")
     except RecursionError:
         raise ValueError("damaged") from None
-    if not 0 <= told["start"] < told["stop"] or any(
-        length < 0 for length, _ in told["columns"].values()
+    if not 0 <= content["start"] < content["stop"] or any(
+        length < 0 for length, _ in content["columns"].values()
     ):
         raise ValueError("damaged")
-    return told
+    return content

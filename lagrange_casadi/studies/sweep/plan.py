@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.room import in_words, require
+from ...base.space import in_words, require
 from ...base.vocabulary import Keep
 from ...declare.description import Description, beams_of, fitted_of, shape_of
 from ...declare.even_points import EvenPoints, checked_ratios, points
@@ -27,10 +27,10 @@ from ...equations.derive import compile_scene
 from ...equations.fingerprint import sources
 from ...equations.program import Program
 from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
-from ...instants.rung import Rung
+from ...instants.evaluation_method import EvaluationMethod
 from ...instants.solution import Provenance
 from ..designs.engine import DesignEngine
-from ..designs.witness import wanted_whole
+from ..designs.spot_check import wanted_whole
 from ..request import Request
 from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
@@ -95,26 +95,26 @@ class Task:
     timing: Timing
     xi: EvenPoints | None
     keep: Keep
-    rung: Rung
+    method: EvaluationMethod
     safety: tuple[str, ...] = ()
     life: tuple[str, ...] = ()
     by: tuple[str, ...] = ()
 
-    def harvest(self, graph: Program, whole: Program | None = None) -> Harvest:
+    def harvest(self, program: Program, whole: Program | None = None) -> Harvest:
         """Compile the graph of what is wanted, for what is kept of its outcomes; ``whole`` has all
         outputs.
         """
         xi = np.zeros(0) if self.xi is None else points(self.xi)
-        engine, data = compiled(graph, self.timing, self.rung), graph.data
+        engine, data = compiled(program, self.timing, self.method), program.data
         axis = InstantAxis.of(data, self.timing)
         return Harvest(
-            engine, data, whole or graph, self.keep, axis, xi, self.safety, self.life, self.by
+            engine, data, whole or program, self.keep, axis, xi, self.safety, self.life, self.by
         )
 
 
-def compiled(graph: Program, timing: Timing, rung: Rung) -> Engine:
+def compiled(program: Program, timing: Timing, method: EvaluationMethod) -> Engine:
     """The engine of a graph."""
-    return DesignEngine.compiled(graph, timing, rung)
+    return DesignEngine.compiled(program, timing, method)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +126,7 @@ class Plan:
     values.
     """
 
-    graph: Program
+    program: Program
     description: Description
     designs: Designs
     values: Mapping[str, float]
@@ -147,7 +147,7 @@ class Plan:
 
         Raises what :func:`.sweep` does.
         """
-        fixed, rung = request.parameters or {}, request.rung
+        fixed, method = request.parameters or {}, request.method
         check_keep(keep)
         check_designs(designs, scene.parameters, fixed)
         values, timing = scene.values(fixed), scene.timing(request.t, request.over)
@@ -163,17 +163,23 @@ class Plan:
         names = _wanted(scene, request.wanted)
         ratios = None if request.xi is None else checked_ratios(request.xi)
         assembly = _assembly(scene, designs, values, names)
-        graph = compile_scene(scene, names, parameters=assembly)
-        content, named = graph.data.template.content, [name for name in names if name != "all"]
+        program = compile_scene(scene, names, parameters=assembly)
+        content, named = program.data.template.content, [name for name in names if name != "all"]
         without_fitted(fitted_of(content), names, "sweeps")
         safety, life = (tuple(among(kind, beams_of(content), named)) for kind in ("safety", "life"))
         task = Task(
-            timing, ratios, keep, rung, safety, life, by_parameters(graph.data.parameters, names)
+            timing,
+            ratios,
+            keep,
+            method,
+            safety,
+            life,
+            by_parameters(program.data.parameters, names),
         )
-        rung.check(graph)
+        method.check(program)
         scene.checked(scene.values())
-        whole = compile_scene(scene, wanted_whole(map(str, graph.outputs)), parameters=assembly)
-        harvest = task.harvest(graph, whole)
+        whole = compile_scene(scene, wanted_whole(map(str, program.outputs)), parameters=assembly)
+        harvest = task.harvest(program, whole)
         largest = max(harvest.columns, key=lambda column: column.width)
         if largest.width > _LARGEST:
             size = f"{largest.width / 2**30:.3g} GiB"
@@ -185,7 +191,7 @@ class Plan:
             "a design and what it is made from",
             (_TIMES, sum(column.width for column in harvest.columns) // 8),
         )
-        return cls(graph, graph.data.at(list(values.values())), designs, values, task, harvest)
+        return cls(program, program.data.at(list(values.values())), designs, values, task, harvest)
 
     @property
     def size(self) -> int:
@@ -229,7 +235,7 @@ class Plan:
         return chunk_of(self.dims, min(self.harvest.block, max(_FEW, self.size // _SHARES)))
 
     @property
-    def room(self) -> int:
+    def capacity(self) -> int:
         """Number of designs in a chunk."""
         return math.prod(self.chunk)
 
@@ -251,7 +257,7 @@ class Plan:
         """The first version of the schema that has all of it."""
         if self.harvest.by:
             return SCHEMA_VERSION
-        if self.graph.data.space:
+        if self.program.data.space:
             return _WITHOUT_SLOPES
         return _WITH_COMMON_TIMES if self.task.timing.shared else _PLANAR
 
@@ -262,13 +268,13 @@ class Plan:
         """
         words = {
             "schema_version": self._version,
-            "case": self.graph.data.name,
-            **signature(self.graph, self.task, self.harvest.engine.provenance),
+            "case": self.program.data.name,
+            **signature(self.program, self.task, self.harvest.engine.provenance),
             "mechanism": self.description,
             "grid": self.designs.describe(),
         }
-        told: dict[str, Any] = json.loads(json.dumps(words))
-        return told
+        content: dict[str, Any] = json.loads(json.dumps(words))
+        return content
 
 
 def _assembly(
@@ -316,7 +322,7 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     return (*(name for name in own if name not in ("all", "motion")), *strength, *slopes)
 
 
-def signature(graph: Program, task: Task, provenance: Provenance) -> dict[str, Any]:
+def signature(program: Program, task: Task, provenance: Provenance) -> dict[str, Any]:
     """Inputs of a design's numbers beside its parameters, wherever it is evaluated."""
     words = {
         "versions": {**provenance.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
@@ -326,14 +332,14 @@ def signature(graph: Program, task: Task, provenance: Provenance) -> dict[str, A
         "compiler": provenance.compiler,
         "flags": provenance.flags,
         "rung": provenance.rung,
-        "wanted": dataclasses.asdict(graph.wanted) | ({SENSITIVITY: task.by} if task.by else {}),
-        "t": task.timing.words(graph.data.symbols),
+        "wanted": dataclasses.asdict(program.wanted) | ({SENSITIVITY: task.by} if task.by else {}),
+        "t": task.timing.words(program.data.symbols),
         "xi": task.xi,
         "keep": task.keep,
-        "scene": graph.identity or "cannot be told",
+        "scene": program.identity or "cannot be told",
     }
-    told: dict[str, Any] = json.loads(json.dumps(words))
-    return told
+    content: dict[str, Any] = json.loads(json.dumps(words))
+    return content
 
 
 def difference(before: Any, now: Any, where: str = "") -> str | None:

@@ -22,7 +22,7 @@ from .meanings import STATUS
 from .reading import Sweep
 from .scale import Scale, edges, even_in_ratios, logarithmic, number
 from .selection import near
-from .sheet import STYLE, Gaps, Sheet, fitted, label, value
+from .sheet import STYLE, MissingDesigns, Sheet, fitted, label, value
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -66,7 +66,7 @@ class Peaks:
         """
         cut = Cut.of(sweep, self.over, self.at, self.family)
         shown, same = _differing(self.columns, cut)
-        gaps = Gaps.of(sweep, cut[STATUS])
+        gaps = MissingDesigns.of(sweep, cut[STATUS])
         sheet = Sheet.of(
             len(shown), share=("all", "all") if len(self.over) == 2 else ("all", False)
         )
@@ -118,7 +118,7 @@ class Scatter:
         """The figure. Raises what :meth:`Peaks.draw` does."""
         cut = Cut.listed(sweep, self.at)
         shown, same = _differing(self.columns, cut)
-        gaps = Gaps.of(sweep, cut[STATUS])
+        gaps = MissingDesigns.of(sweep, cut[STATUS])
         sheet = Sheet.of(len(shown) * len(self.over), columns=len(self.over), share=("col", "row"))
         for k, axes in enumerate(sheet.plots):
             (column, values), name = (
@@ -170,7 +170,7 @@ class Along:
         (there,), xi = cut.axes, sweep["xi"]
         mapped = there.size > LINES
         flips: dict[str, Any] = {}
-        gaps = Gaps.of(sweep, np.repeat(cut[STATUS][:, None], xi.size, axis=1))
+        gaps = MissingDesigns.of(sweep, np.repeat(cut[STATUS][:, None], xi.size, axis=1))
         forces = table_of_described(sweep.description).forces
         sheet = Sheet.of(len(forces), share=("all", mapped))
         for axes, force in zip(sheet.plots, forces, strict=True):
@@ -348,7 +348,7 @@ def _cells(
     over: tuple[Array, ...],
     values: Array,
     scale: Scale,
-    gaps: Gaps,
+    gaps: MissingDesigns,
     legend: dict[str, Any],
     colours: str = "viridis",
 ) -> Any:
@@ -367,7 +367,9 @@ def _cells(
     return cells
 
 
-def _curves(axes: Any, cut: Cut, values: Array, gaps: Gaps, legend: dict[str, Any]) -> None:
+def _curves(
+    axes: Any, cut: Cut, values: Array, gaps: MissingDesigns, legend: dict[str, Any]
+) -> None:
     """Values over the first axis, a curve for each place along the second one if there is one."""
     x, rest = cut.axes[0], cut.axes[1:]
     many = values.reshape(x.size, -1).T
@@ -376,7 +378,7 @@ def _curves(axes: Any, cut: Cut, values: Array, gaps: Gaps, legend: dict[str, An
     for k, row in enumerate(many):
         colour = _colour(k, len(many))
         (line,) = axes.plot(x, row, style, color=colour, linewidth=1.1, markersize=3.5)
-        Gaps(codes[k], gaps.words).cross(axes, x, legend, colour, k)
+        MissingDesigns(codes[k], gaps.words).cross(axes, x, legend, colour, k)
         if rest:
             legend[value(cut.sweep, cut.names[1], rest[0][k])] = line
     if logarithmic(x):

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from ...arguments import Count, Index, Outputs, public, texts
 from ...base.arrays import Array
-from ...base.seal import Seen, kind_of, verify
+from ...base.seal import VerifiedFile, kind_of, verify
 from ...errors import (
     DeclarationError,
     LagrangeCasadiError,
@@ -68,7 +68,7 @@ class Sweep:
     statuses: Mapping[int, tuple[str, str]]
     chosen: Mapping[str, npt.NDArray[np.int64]] = field(default_factory=dict)
     keeper: Any = None
-    seen: Seen | None = None
+    seen: VerifiedFile | None = None
 
     @classmethod
     def open(cls, path: str | Path) -> Sweep:
@@ -467,7 +467,7 @@ def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
     return slice(int(numbers[0]), int(numbers[-1]) + 1, int(steps[0]) if steps.size == 1 else 1)
 
 
-def opened_sweep(path: str | Path, seen: Seen | None = None, keeper: Any = None) -> Sweep:
+def opened_sweep(path: str | Path, seen: VerifiedFile | None = None, keeper: Any = None) -> Sweep:
     """A sweep, compared with its seal unless its file was ``seen`` already.
 
     ``keeper`` is kept alive as long as the sweep.
@@ -504,7 +504,7 @@ def _along(
     return np.broadcast_to(np.reshape(_taken(dataset, where[axis]), shape), kept).ravel()
 
 
-def _opened(path: str | Path, seen: Seen | None) -> AbstractContextManager[h5py.File]:
+def _opened(path: str | Path, seen: VerifiedFile | None) -> AbstractContextManager[h5py.File]:
     return opened_file(path, SCHEMA, READ, "the file of a sweep", " of sweeps", seen)
 
 

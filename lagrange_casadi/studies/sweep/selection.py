@@ -33,14 +33,14 @@ def matches(name: str, there: Array, wanted: Any, unit: str) -> npt.NDArray[np.b
     several = isinstance(wanted, list | tuple | set | frozenset | range) or (
         isinstance(wanted, np.ndarray) and wanted.ndim == 1
     )
-    told = [typed(number) for number in (wanted if several else [wanted])]
-    for in_unit in (told_unit for _, told_unit in told if told_unit not in ("", unit)):
+    typed_values = [typed(number) for number in (wanted if several else [wanted])]
+    for in_unit in (given_unit for _, given_unit in typed_values if given_unit not in ("", unit)):
         other = "angles" if in_unit == "rad" else f"numbers [{in_unit}]"
         raise DeclarationError(
             f"select: {name}: expected numbers [{unit}], not {other}, got {shown(wanted)}"
         )
     try:
-        numbers = np.array([read_number(value, finite=False) for value, _ in told])
+        numbers = np.array([read_number(value, finite=False) for value, _ in typed_values])
     except NumberError:
         numbers = np.array([np.nan])
     pair = isinstance(wanted, tuple)
@@ -75,8 +75,8 @@ def absent(name: str, there: Array, number: float, words: str = "=") -> str:
 
 
 def _found(
-    name: str, there: Array, met: npt.NDArray[np.bool_], number: float, words: str
+    name: str, there: Array, satisfied: npt.NDArray[np.bool_], number: float, words: str
 ) -> npt.NDArray[np.bool_]:
-    if not met.any():
+    if not satisfied.any():
         raise DeclarationError(absent(name, there, number, words))
-    return met
+    return satisfied

@@ -49,7 +49,7 @@ _KINDS = {
 
 
 @dataclass(frozen=True)
-class Gaps:
+class MissingDesigns:
     """Designs without a result: ``codes`` are 0 where there is one, else which of ``words`` says
     why there is none, from 1.
     """
@@ -58,7 +58,7 @@ class Gaps:
     words: tuple[str, ...]
 
     @classmethod
-    def of(cls, sweep: Sweep, status: Operand) -> Gaps:
+    def of(cls, sweep: Sweep, status: Operand) -> MissingDesigns:
         """Make them from the statuses of the designs that are drawn; the most frequent reasons have
         marks of their own.
         """

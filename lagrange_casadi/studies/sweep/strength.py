@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...beams.beam import beam_told
+from ...beams.beam import beam_from_numbers
 from ...declare.masses import ALL
 from ...equations.model_data import ModelData
 from ...instants.statistics import counted
@@ -28,7 +28,7 @@ from ...strength.fibres import FibreStresses
 from ...strength.member import Member
 from ...strength.stress import Stress
 from ...strength.worst import FEW, worst
-from .matter import Matter
+from .link_properties import LinkProperties
 from .meanings import LEAST, LIFE, MASS, WAYS
 
 _NUMBERS = 1 << 19
@@ -48,8 +48,8 @@ miss less than the rest.
 class Kept:
     """Links with strength results: those whose ``safety`` is wanted, and those whose ``life`` is.
 
-    ``series`` names what is evaluated over time, in a ``precision``; ``doubtful`` the links that
-    lack it for some designs.
+    ``series`` names what is evaluated over time, in a ``precision``; ``indeterminate`` the links
+    that lack it for some designs.
     """
 
     data: ModelData
@@ -58,7 +58,7 @@ class Kept:
     quantities: tuple[str, ...]
     series: tuple[str, ...]
     precision: str
-    doubtful: Collection[str] = ()
+    indeterminate: Collection[str] = ()
 
     @property
     def histories(self) -> bool:
@@ -80,11 +80,11 @@ class Kept:
         where there is a result.
         """
         found = {
-            f"{LEAST}:{way}:{link}": link in self.doubtful
-            for link in self._judged
+            f"{LEAST}:{way}:{link}": link in self.indeterminate
+            for link in self._rated
             for way in ("safety", *self._ways(link))
         }
-        found |= {f"{LIFE}:{link}": link in self.doubtful for link in self._lives}
+        found |= {f"{LIFE}:{link}": link in self.indeterminate for link in self._lives}
         return found | {f"{MASS}:{part}": False for part in (*self.links, ALL) if self.links}
 
     def evaluate(
@@ -105,7 +105,7 @@ class Kept:
             if self._tires(link)
         }
         found: list[Array] = []
-        for link in self._judged:
+        for link in self._rated:
             kept = [f"utilisation:{link}:{way}" for way in self._ways(link) if way != "fatigue"]
             shares = [np.abs(value[:, self.quantities.index(name)]) for name in kept]
             shares += [tired[link][0]] if link in tired else []
@@ -121,7 +121,7 @@ class Kept:
         return known + (["fatigue"] if self._tires(link) else [])
 
     @property
-    def _judged(self) -> list[str]:
+    def _rated(self) -> list[str]:
         """The links of which something is known that may fail."""
         return [link for link in self.safety if self._ways(link)]
 
@@ -201,8 +201,8 @@ class Kept:
     ) -> tuple[float, float]:
         """Strength results of one design, as of a solution."""
         members = {member: series[names[str(member)]] for member in self._fatigue[link].members}
-        beam = beam_told(self.data.at(p)["bodies"][link]["beam"])
-        law = Matter.of(self.data, link, self.precision).law(members, p)
+        beam = beam_from_numbers(self.data.at(p)["bodies"][link]["beam"])
+        law = LinkProperties.of(self.data, link, self.precision).law(members, p)
         member = Member(link, beam, law, t, np.linspace(0.0, 1.0, FEW), self.data.space)
         stress, material = Stress(member), beam.material
         (least, *_), *_ = worst(stress, factor_score(material, _CRITERION))

@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from ...arguments import LATER, Outputs, ThreadCount, public
-from ...base.room import MOST_THREADS
+from ...base.space import MOST_THREADS
 from ...base.vocabulary import Backend, Keep, Precision
 from ...case import Case, scene_of
 from ...declare.even_points import EvenPoints
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
 from ...errors import DeclarationError
-from ...instants.rung import Rung
+from ...instants.evaluation_method import EvaluationMethod
 from ...methods import method
 from ..request import Request
 from .axes import designs_of
@@ -79,7 +79,7 @@ def sweep(
         ``peaks``; with ``laws`` also the section laws over time; with ``histories`` also all
         outputs over time.
     backend, precision, newton, flags
-        How it is evaluated: see :class:`.Rung`.
+        How it is evaluated: see :class:`.EvaluationMethod`.
     workers
         How many threads share the designs; default: one a core.
     dask
@@ -99,14 +99,14 @@ def sweep(
     :class:`StoppedError` after an interrupt. What was done is kept.
     """
     one, designs = scene_of(scene), designs_of(grid)
-    rung = Rung(backend, precision, newton, None, flags)
-    request = Request(parameters, t, over, xi, wanted, rung)
+    method = EvaluationMethod(backend, precision, newton, None, flags)
+    request = Request(parameters, t, over, xi, wanted, method)
     plan = Plan.of(one, designs, request, keep, many=many)
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
-    hands = hired(workers, dask)
+    workforce = hired(workers, dask)
     seen = carry_out(
-        plan, target, hands, resume=resume, force=force, progress=progress or (lambda *_: None)
+        plan, target, workforce, resume=resume, force=force, progress=progress or (lambda *_: None)
     )
     return opened_sweep(target, seen, keeper)
 

@@ -8,10 +8,10 @@ from concurrent.futures import wait
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from ...base.room import cores, memory
+from ...base.space import cores, memory
 from .blocks import Queue
-from .crew import Crew
 from .plan import Plan
+from .thread_pool import ThreadPool
 
 Block = tuple[int, int, list[bytes]]
 """Designs from and to before, and their columns as the file keeps them."""
@@ -47,16 +47,18 @@ class Threads:
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue."""
-        count = max(1, int(min(self.count or cores(), memory() / max(1, plan.harvest.engine.room))))
+        count = max(
+            1, int(min(self.count or cores(), memory() / max(1, plan.harvest.engine.capacity)))
+        )
 
         def evaluated(start: int, stop: int) -> list[bytes]:
-            return plan.harvest.chunks(plan.block(start, stop), plan.room)
+            return plan.harvest.chunks(plan.block(start, stop), plan.capacity)
 
-        crew, pending = Crew(count), deque[tuple[int, int, Any]]()
+        pool, pending = ThreadPool(count), deque[tuple[int, int, Any]]()
         try:
             while True:
                 while len(pending) <= count and (block := queue.take()):
-                    pending.append((*block, crew.give(evaluated, *block)))
+                    pending.append((*block, pool.give(evaluated, *block)))
                 if not pending:
                     return
                 start, stop, future = pending[0]
@@ -71,7 +73,7 @@ class Threads:
         finally:
             for _, _, future in pending:
                 future.cancel()
-            crew.dismiss()
+            pool.dismiss()
 
 
 def _last(pending: Iterable[tuple[int, int, Any]]) -> Blocks:

@@ -1,0 +1,380 @@
+"""Times at which the motion of a drive is at given coordinates: laws of motion inverted, for many
+values of the parameters at once.
+
+Where the rate does not depend on time, the time follows by one subtraction and one division. Any
+other law is followed from a time at which it is known, by steps in which the coordinate changes
+little, until it passes what is looked for; Newton's method, held between the two last steps, then
+finds the time to its last bits. A law that turns back on its way is not inverted.
+"""
+
+from __future__ import annotations
+
+import enum
+import functools
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ..base.arrays import Array
+from .laws import Laws
+
+_SHARE = 1 / 32
+"""Fraction of the distance by which the coordinate changes in a step."""
+
+_FIRST = 1e-6
+"""Seconds of the first step from where a law rests with neither rate nor acceleration."""
+
+_STEPS, _HALVINGS = 5000, 80
+"""Largest number of steps along a motion, and of halvings for a time of reversal."""
+
+_NEWTON, _TRIALS = 60, 200
+"""Largest number of Newton steps for a time, and of trials in all; the rest are halvings."""
+
+_ROUNDING = 16 * float(np.finfo(float).eps)
+"""Relative rounding error of a coordinate."""
+
+_RESTS = 1e-9
+"""Fraction of the largest rate below which a rate of the wrong sign is rounding."""
+
+_FEW, _MANY = 1 << 4, 1 << 10
+"""Numbers of times at which a law is evaluated at once."""
+
+_CAPACITY = 1 << 16
+"""Number of times that are kept at once."""
+
+
+class Missed(enum.IntEnum):
+    """Reason why a coordinate has no time."""
+
+    REACHED = 0
+    STANDS_STILL = 1
+    OTHER_WAY = 2
+    TURNS_BACK = 3
+    ENDS = 4
+    NEVER = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """The stretch of time in which motions go from one coordinate to another, for n values of the
+    parameters, each (n,).
+
+    ``first`` and ``last`` are its ends [s], NaN where ``missed`` says why there is none; ``t`` and
+    ``d`` then are a time and the coordinate at which that is seen. ``sense`` is the sign of the
+    way.
+    """
+
+    first: Array
+    last: Array
+    sense: Array
+    missed: npt.NDArray[np.int8]
+    t: Array
+    d: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MotionInverse:
+    """A law of motion to be inverted: ``law(t, p) -> (d, rate, acceleration)``, defined within
+    ``span`` [s].
+
+    ``steady`` tells that its rate does not depend on time, ``varies`` that the law depends on
+    parameters.
+    """
+
+    law: ca.Function
+    steady: bool
+    varies: bool
+    span: tuple[float, float]
+
+    @classmethod
+    @functools.lru_cache(maxsize=64)
+    def of(cls, laws: Laws, joint: str) -> MotionInverse:
+        """Return the law of a drive, to be inverted."""
+        one = laws.only([joint])
+        law, (span,) = one.motion, one.spans
+        t, p = law.sx_in()
+        d, rate, _ = law(t, p)
+        steady = not (one.knots[0] or ca.depends_on(rate, t))
+        return cls(law, steady, bool(p.numel()) and bool(ca.depends_on(d, p)), span)
+
+    def at(self, t: Array, p: Array) -> tuple[Array, Array, Array]:
+        """Coordinate, rate and acceleration at times (n, k) for parameters (n, parameters), each
+        (n, k).
+        """
+        count = t.shape[1]
+        moments, known = t.ravel(), np.repeat(p, count, axis=0)
+        found = np.empty((3, moments.size))
+        size, law = (_FEW, self._few) if moments.size <= _FEW else (_MANY, self._many)
+        for start in range(0, moments.size, size):
+            some = slice(start, start + size)
+            many = moments[some].size
+            filled = np.resize(moments[some], size), np.resize(known[some], (size, p.shape[1]))
+            with np.errstate(all="ignore"):
+                found[:, some] = [
+                    row.full().ravel()[:many] for row in law(filled[0][None], filled[1].T)
+                ]
+        return found[0].reshape(t.shape), found[1].reshape(t.shape), found[2].reshape(t.shape)
+
+    @functools.cached_property
+    def _few(self) -> ca.Function:
+        # Of so many times at once: the law called with as many columns takes ten times as long.
+        return self.law.map(_FEW)
+
+    @functools.cached_property
+    def _many(self) -> ca.Function:
+        return self.law.map(_MANY)
+
+    def passage(
+        self, start: Array, stop: Array, p: Array, around: Array, *, samples: int
+    ) -> Passage:
+        """Times at which the motion goes from ``start`` to ``stop``, (n,), all the way in one
+        direction.
+
+        ``p`` is (n, parameters). A law that is not steady is followed from the times ``around``
+        (n,) [s], or from where it is defined; that it does not turn back is looked at ``looks``
+        times.
+        """
+        sense = np.sign(stop - start)
+        if self.steady:
+            return self._steady(start, stop, sense, p)
+        size = max(1, _CAPACITY // samples)
+        found = []
+        for k in range(0, len(p), size):
+            some = slice(k, k + size)
+            found.append(
+                self._followed(start[some], stop[some], sense[some], p[some], around[some], samples)
+            )
+        fields = ("first", "last", "sense", "missed", "t", "d")
+        return Passage(
+            *(
+                np.concatenate([np.zeros(0), *(getattr(passage, name) for passage in found)])
+                for name in fields
+            )
+        )
+
+    def times(self, passage: Passage, targets: Array, p: Array) -> Array:
+        """The times (n, k) at which the motion is at ``targets`` (n, k), from the start of a way to
+        its end; NaN without one.
+        """
+        if self.steady:
+            zero = np.zeros((len(p), 1))
+            d, rate, _ = self.at(zero, p)
+            with np.errstate(all="ignore"):
+                return np.where(
+                    passage.missed[:, None] == Missed.REACHED, (targets - d) / rate, np.nan
+                )
+        found = np.full(targets.shape, np.nan)
+        size = max(1, _CAPACITY // targets.shape[1])
+        there = np.flatnonzero(passage.missed == Missed.REACHED)
+        for k in range(0, there.size, size):
+            some = there[k : k + size]
+            found[some] = self._between(
+                passage.first[some],
+                passage.last[some],
+                passage.sense[some, None],
+                targets[some],
+                p[some],
+            )
+        return found
+
+    def _steady(self, start: Array, stop: Array, sense: Array, p: Array) -> Passage:
+        zero = np.zeros((len(p), 1))
+        d, rate, _ = (row[:, 0] for row in self.at(zero, p))
+        with np.errstate(all="ignore"):
+            first, last = (start - d) / rate, (stop - d) / rate
+        missed = np.where(np.isfinite(first) & np.isfinite(last), Missed.REACHED, Missed.NEVER)
+        missed = np.where(sense * rate < 0.0, Missed.OTHER_WAY, missed)
+        missed = np.where(rate == 0.0, Missed.STANDS_STILL, missed).astype(np.int8)
+        bad = missed != Missed.REACHED
+        return Passage(
+            np.where(bad, np.nan, first), np.where(bad, np.nan, last), sense, missed, zero[:, 0], d
+        )
+
+    def _followed(
+        self, start: Array, stop: Array, sense: Array, p: Array, around: Array, samples: int
+    ) -> Passage:
+        ends, missed, t, d = (
+            [],
+            np.zeros(len(p), np.int8),
+            np.full(len(p), np.nan),
+            np.full(len(p), np.nan),
+        )
+        for target in (start, stop):
+            end, why, at, there = self._reached(target, np.abs(stop - start), sense, p, around)
+            ends.append(end)
+            new = (missed == Missed.REACHED) & (why != Missed.REACHED)
+            missed, t, d = np.where(new, why, missed), np.where(new, at, t), np.where(new, there, d)
+        first, last = ends
+        grid = first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, samples)
+        values, rates, _ = self.at(grid, p)
+        with np.errstate(all="ignore"):
+            back = sense[:, None] * rates < -_RESTS * np.abs(rates).max(axis=1, keepdims=True)
+            rounding = _ROUNDING * np.abs(values).max(axis=1, keepdims=True)
+            back[:, 1:] |= ~(sense[:, None] * np.diff(values) >= -rounding)
+        turned = back.any(axis=1) & (missed == Missed.REACHED)
+        rows, places = np.arange(len(p)), np.argmax(back, axis=1)
+        missed = np.where(turned, Missed.TURNS_BACK, missed).astype(np.int8)
+        t, d = np.where(turned, grid[rows, places], t), np.where(turned, values[rows, places], d)
+        bad = missed != Missed.REACHED
+        return Passage(
+            np.where(bad, np.nan, first), np.where(bad, np.nan, last), sense, missed, t, d
+        )
+
+    def _reached(
+        self, target: Array, passage: Array, sense: Array, p: Array, around: Array
+    ) -> tuple[Array, npt.NDArray[np.int8], Array, Array]:
+        """Time at which the motion through its place at ``around`` is at a target; or the reason
+        why there is none, and its time.
+        """
+        low, high = self.span
+        here = np.clip(around, low, high)
+        d, rate, bend = (row[:, 0] for row in self.at(here[:, None], p))
+        rounding = _ROUNDING * np.maximum(np.maximum(np.abs(target), np.abs(d)), passage)
+        onward = np.where(sense * (target - d) >= 0.0, 1.0, -1.0)
+        share = _SHARE * np.maximum(passage, np.abs(target - d))
+        step = _step(rate, bend, share, np.full(here.size, np.inf))
+        step = np.where(np.isfinite(step), step, _FIRST)
+        missed = np.where(np.isfinite(d), Missed.REACHED, Missed.NEVER).astype(np.int8)
+        there = d == target
+        before, after, seen, at = here.copy(), here.copy(), here.copy(), d.copy()
+        for _ in range(_STEPS):
+            going = np.flatnonzero(~there & (missed == Missed.REACHED))
+            if not going.size:
+                break
+            with np.errstate(over="ignore"):
+                now, was = (
+                    np.clip(here[going] + onward[going] * step[going], low, high),
+                    here[going],
+                )
+            found, speed, bent = (row[:, 0] for row in self.at(now[:, None], p[going]))
+            ahead = onward[going] * sense[going]
+            passed = ahead * (found - target[going]) >= 0.0
+            turned = ~passed & (
+                (ahead * (found - d[going]) < -rounding[going]) | (sense[going] * speed < 0.0)
+            )
+            lost = ~np.isfinite(found) | ~np.isfinite(now)
+            ended = ~passed & (now == was)
+            before[going], after[going] = (
+                np.where(passed, was, before[going]),
+                np.where(passed, now, after[going]),
+            )
+            there[going] = passed & ~lost
+            if turned.any():
+                some = turned & ~lost
+                which = going[some]
+                seen[which], at[which] = self._turning(was[some], now[some], sense[which], p[which])
+            near = np.abs(at[going] - target[going]) <= rounding[going]
+            stays = np.abs(d[going] - target[going]) <= rounding[going]
+            # A target at which the motion rests is met where it comes to rest.
+            reached = (turned & near) | ((ended | lost) & stays)
+            place = np.where(turned, seen[going], was)
+            before[going], after[going] = (
+                np.where(reached, place, before[going]),
+                np.where(reached, place, after[going]),
+            )
+            there[going] |= reached
+            why = np.where(
+                lost,
+                Missed.NEVER,
+                np.where(ended, Missed.ENDS, np.where(turned, Missed.TURNS_BACK, Missed.REACHED)),
+            )
+            missed[going] = np.where(there[going], Missed.REACHED, why)
+            seen[going] = np.where(turned, seen[going], now)
+            at[going] = np.where(turned, at[going], found)
+            here[going], d[going] = now, found
+            with np.errstate(over="ignore"):
+                step[going] = _step(speed, bent, share[going], 2.0 * step[going])
+        missed[~there & (missed == Missed.REACHED)] = Missed.NEVER
+        begin, end = np.minimum(before, after), np.maximum(before, after)
+        time = self._solved(
+            target[:, None], begin[:, None], end[:, None], begin[:, None], sense[:, None], p
+        )[:, 0]
+        first_way = (missed == Missed.TURNS_BACK) & (seen == np.clip(around, low, high))
+        missed[first_way] = Missed.OTHER_WAY
+        return np.where(missed == Missed.REACHED, time, np.nan), missed, seen, at
+
+    def _turning(self, was: Array, now: Array, sense: Array, p: Array) -> tuple[Array, Array]:
+        """Time of reversal between two times, and the coordinate there."""
+        near, far = was.copy(), now.copy()
+        for _ in range(_HALVINGS):
+            middle = near + (far - near) / 2
+            rate = self.at(middle[:, None], p)[1][:, 0]
+            same = sense * rate > 0.0
+            near, far = np.where(same, middle, near), np.where(same, far, middle)
+        return near, self.at(near[:, None], p)[0][:, 0]
+
+    def _between(self, first: Array, last: Array, sense: Array, targets: Array, p: Array) -> Array:
+        """The times at targets (n, k) between the ends of a way, from a table of the motion."""
+        count = targets.shape[1]
+        grid = first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, count)
+        grid[:, -1] = last
+        values = sense * self.at(grid, p)[0]
+        values = np.maximum.accumulate(values, axis=1)
+        place = np.stack(
+            [np.searchsorted(row, u) for row, u in zip(values, sense * targets, strict=True)]
+        )
+        place = np.clip(place, 1, count - 1)
+        rows = np.arange(len(p))[:, None]
+        lower, upper = grid[rows, place - 1], grid[rows, place]
+        rise = values[rows, place] - values[rows, place - 1]
+        with np.errstate(all="ignore"):
+            share = np.clip(
+                np.nan_to_num((sense * targets - values[rows, place - 1]) / rise), 0.0, 1.0
+            )
+        found = self._solved(targets, lower, upper, lower + share * (upper - lower), sense, p)
+        found[:, 0], found[:, -1] = first, last
+        d, rate, _ = self.at(found, p)
+        off = np.abs(d - targets) - np.abs(rate) * 4 * np.spacing(np.abs(found))
+        sound = off <= _ROUNDING * np.maximum(
+            np.abs(values).max(axis=1, keepdims=True), np.abs(targets)
+        )
+        found[~(sound.all(axis=1) & (np.diff(found) > 0.0).all(axis=1))] = np.nan
+        return found
+
+    def _solved(
+        self, targets: Array, lower: Array, upper: Array, t: Array, sense: Array, p: Array
+    ) -> Array:
+        """The times at targets between others, all (n, k): Newton's method, and halving where that
+        leaves them or takes long.
+        """
+        count = targets.shape[1]
+        rows = np.repeat(np.arange(len(p)), count)
+        sign, aim = np.broadcast_to(sense, targets.shape).ravel(), targets.ravel()
+        low, high, now = (np.array(x, float).ravel() for x in (lower, upper, t))
+        best, least, going = now.copy(), np.full(now.size, np.inf), np.arange(now.size)
+        for trial in range(_TRIALS):
+            d, rate, _ = (row[:, 0] for row in self.at(now[going, None], p[rows[going]]))
+            miss = sign[going] * (d - aim[going])
+            better = np.abs(miss) < least[going]
+            best[going], least[going] = (
+                np.where(better, now[going], best[going]),
+                np.where(better, np.abs(miss), least[going]),
+            )
+            low[going], high[going] = (
+                np.where(miss <= 0.0, now[going], low[going]),
+                np.where(miss >= 0.0, now[going], high[going]),
+            )
+            with np.errstate(all="ignore"):
+                new = now[going] - miss / (sign[going] * rate)
+            halve = ~((new >= low[going]) & (new <= high[going])) | (trial >= _NEWTON)
+            new = np.where(halve, low[going] + (high[going] - low[going]) / 2, new)
+            stays = (
+                (miss == 0.0)
+                | ~np.isfinite(miss)
+                | (np.abs(new - now[going]) <= 2 * np.spacing(np.abs(new)))
+            )
+            now[going] = new
+            going = going[~stays]
+            if not going.size:
+                break
+        d = self.at(now[:, None], p[rows])[0][:, 0]
+        return np.where(np.abs(d - aim) < least, now, best).reshape(targets.shape)
+
+
+def _step(rate: Array, bend: Array, share: Array, most: Array) -> Array:
+    """Seconds in which a coordinate changes by about ``share``; at ``most`` so many."""
+    with np.errstate(all="ignore"):
+        seconds = 2.0 * share / (np.abs(rate) + np.sqrt(rate**2 + 2.0 * np.abs(bend) * share))
+    return np.where(seconds < most, seconds, most)

@@ -1,0 +1,505 @@
+"""Conditions for possible parts: one function of the parameters, for :func:`.evaluate`, sweeps and
+exported C.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+
+from ..base.numerals import readable
+from ..base.symbolic import Graphs, symbolic, symbolic_property
+from ..base.vocabulary import Precision
+from ..errors import ParameterError
+from ..geometry.vectors import dot, nil
+from .density import Density, Slices
+from .directions import RIGHT, not_right
+from .ends import BEYOND, beyond_ends
+from .joints import Joint
+from .limits import END, margins
+from .lowest import lowest
+from .mass_properties import inertias, second_moments
+from .meshes import FITTING, Fit
+from .parts import POSITIVE, Expression, Friction, LineLoad, Link, PointMass, RigidMass, Vector
+
+if TYPE_CHECKING:
+    from .mechanism import Mechanism
+
+Evaluator = Callable[[Any], float]
+"""Gives the value of an expression."""
+
+
+@dataclass(frozen=True, eq=False)
+class Demand:
+    """A value that must be finite and not negative, nor zero where ``positive``; ``refusal`` says
+    in words what is wrong.
+    """
+
+    value: Expression
+    positive: bool
+    refusal: Callable[[Evaluator], str]
+
+
+@dataclass(frozen=True, eq=False)
+class ParameterConstraints:
+    """All demands of a mechanism's parts, in the order in which they are told."""
+
+    symbols: ca.SX
+    each: tuple[Demand, ...]
+
+    @symbolic_property
+    def function(self) -> ca.Function:
+        """``possible(p)``: the value of each demand."""
+        values = ca.vertcat(ca.SX(0, 1), *(ca.SX(demand.value) for demand in self.each))
+        return ca.Function("possible", [self.symbols], [ca.densify(values)], {"cse": True})
+
+    def margins(self) -> Margins:
+        """Return the values alone."""
+        values = self.function(self.symbols)
+        order = sorted(range(len(self.each)), key=lambda k: not self.each[k].positive)
+        ordered = ca.densify(ca.vertcat(ca.SX(0, 1), *(values[k] for k in order)))
+        function = ca.Function(
+            "margins", [self.symbols], [ordered], ["p"], ["margins"], {"cse": True}
+        )
+        return Margins(function, sum(demand.positive for demand in self.each))
+
+    def check(self, p: Sequence[float], number: Evaluator) -> None:
+        """Raise :class:`ParameterError` for parameters at which a part is impossible, by the first
+        demand that is not met.
+        """
+        values = self.function(list(p)).full().ravel()
+        strict = np.array([demand.positive for demand in self.each], bool)
+        refused = ~(np.isfinite(values) & (values >= 0.0) & ((values > 0.0) | ~strict))
+        if refused.any():
+            raise ParameterError(self.each[int(np.argmax(refused))].refusal(number))
+
+
+@dataclass(frozen=True, eq=False)
+class Margins(Graphs):
+    """Expressions that must stay positive, ``positive`` numbers of ``function(p)``, and then those
+    that must not be negative.
+    """
+
+    function: ca.Function
+    positive: int
+
+    def in_order(self, symbols: ca.SX) -> tuple[list[ca.SX], list[ca.SX]]:
+        """Return expressions in the parameters: those that must be positive, and the others."""
+        values = ca.vertsplit(self.function(symbols)) if self.function.numel_out(0) else []
+        return values[: self.positive], values[self.positive :]
+
+    def words(self) -> list[Any]:
+        """Write them for JSON."""
+        return [self.function.serialize(), self.positive]
+
+    @classmethod
+    def loads(cls, words: Sequence[Any]) -> Margins:
+        """Read what :meth:`words` wrote."""
+        return cls(ca.Function.deserialize(words[0]), words[1])
+
+
+@symbolic
+def demands(mechanism: Mechanism, precision: Precision = "double") -> ParameterConstraints:
+    """Conditions on a mechanism's parts: lengths, masses, densities, load points; with the
+    tolerance of a precision.
+    """
+    return _of_frozen(mechanism, precision) if mechanism.frozen else _of(mechanism, precision)
+
+
+@functools.lru_cache(maxsize=64)
+def _of_frozen(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
+    return _of(mechanism, precision)
+
+
+def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
+    found: list[Demand] = []
+    masses: list[Expression] = []
+    for what, expressions in _numbers(mechanism):
+        found += _of_curves(what, expressions)
+    for body in mechanism.moving:
+        mass, own = _of_body(body, precision)
+        masses.append(mass)
+        found += own
+    if not any(_surely_positive(mass) for mass in masses):
+        loaded = any(not isinstance(load, Friction) for load in mechanism.loads.values())
+        found.append(_some_mass(mechanism.name, masses, loaded=loaded))
+    for joint in mechanism.joints.values():
+        found += _of_axes(joint, precision)
+        for point in (joint.parent, joint.child):
+            found += _of_load_point(
+                f"joint '{joint.name}'", point, precision, space=mechanism.space
+            )
+    for load in mechanism.loads.values():
+        if isinstance(load, LineLoad):
+            found += _of_part(load, precision)
+            continue
+        if isinstance(load, Friction):
+            found += _of_friction(load)
+            continue
+        for point in load.points:
+            found += _of_load_point(f"load '{load.name}'", point, precision, space=mechanism.space)
+    for constraint in mechanism.constraints.values():
+        if constraint.transmission is not None:
+            found += [
+                _of_fit(constraint.name, fit, precision) for fit in constraint.transmission.fits
+            ]
+    return ParameterConstraints(mechanism.symbols, tuple(found))
+
+
+def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
+    """The expressions in parameters of which parts are made, and what they are of."""
+    for body in mechanism.moving:
+        mass_properties = body.mass
+        made = (
+            [
+                c
+                for of in (
+                    mass_properties,
+                    *(mass_properties.slices.each if mass_properties.slices else ()),
+                )
+                for cell in of.cells
+                for c in cell
+            ]
+            if isinstance(mass_properties, Density)
+            else (
+                [mass_properties.mass, *mass_properties.centre, *inertias(mass_properties)]
+                if isinstance(mass_properties, RigidMass)
+                else [mass_properties]
+            )
+        )
+        link = isinstance(body, Link)
+        beam = body.beam if isinstance(body, Link) else None
+        made += (
+            []
+            if beam is None
+            else [x for shape in beam.course.shapes() for x in shape.dimensions.values()]
+        )
+        numbers = [*([body.length] if isinstance(body, Link) else []), *made]
+        yield f"{'link' if link else 'point mass'} '{body.name}'", numbers
+    for joint in mechanism.joints.values():
+        places = [number for point in (joint.parent, joint.child) for number in point.place]
+        yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
+    for load in mechanism.loads.values():
+        at_points = [number for point in load.points for number in point.place]
+        own = (
+            load.between
+            if isinstance(load, LineLoad)
+            else load.numbers.values()
+            if isinstance(load, Friction)
+            else at_points
+        )
+        yield f"load '{load.name}'", [*own]
+    yield "gravity", [*mechanism.gravity]
+
+
+def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
+    """Conditions that arguments of curves are between the curves' ends."""
+    symbolic = [expression for expression in expressions if isinstance(expression, ca.SX)]
+    found = beyond_ends(ca.vertcat(*symbolic)) if symbolic else []
+    reason = f"{what}: the argument of its curve is outside the curve's range"
+    return [Demand(BEYOND["double"] - far, False, lambda _: reason) for far in found]
+
+
+def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
+    """The part on which a load acts is on its link, and has a length."""
+    (start, end), link = load.between, load.link
+    if load.whole:
+        return []
+
+    def told(number: Evaluator) -> str:
+        return (
+            f"load '{load.name}': it acts between {readable(number(start))} and"
+            f" {readable(number(end))} m"
+        )
+
+    def beyond(number: Evaluator) -> str:
+        return (
+            f"{told(number)}, but link '{link.name}' is from 0 to {readable(number(link.length))} m"
+        )
+
+    margins = (
+        start + END[precision] * link.length,
+        (link.length - end) + END[precision] * link.length,
+    )
+    rising = Demand(
+        load.reach, True, lambda number: f"{told(number)}; expected an end greater than the start"
+    )
+    return [*(Demand(margin, False, beyond) for margin in margins), rising]
+
+
+def _of_fit(name: str, fit: Fit, precision: Precision) -> Demand:
+    """Condition that two numbers of a transmission are equal."""
+    apart = max(FITTING, END[precision]) * fit.size - ca.fabs(ca.SX(fit.got - fit.meant))
+    return Demand(
+        apart, False, lambda number: f"'{name}': {fit.refusal(number(fit.got), number(fit.meant))}"
+    )
+
+
+def _of_friction(friction: Friction) -> Iterator[Demand]:
+    """The numbers of a friction are not negative, and what it divides by is not zero."""
+    for word, number in friction.numbers.items():
+        positive, value = word in POSITIVE, number
+        least = "positive" if positive else "at least 0"
+
+        def refusal(
+            evaluated: Evaluator, value: Any = value, told: str = f"{word} must be {least}"
+        ) -> str:
+            return f"friction '{friction.name}': {told}, got {readable(evaluated(value))}"
+
+        if isinstance(number, ca.SX):
+            yield Demand(number, positive, refusal)
+    if friction.joint.kind == "screw" and friction.dry and friction.radius is not None:
+        steep = (
+            f"friction '{friction.name}': mu times the lead per radian must be less than the"
+            " radius; otherwise no torque can drive the screw"
+        )
+        yield Demand(
+            friction.radius - friction.mu * ca.fabs(friction.joint.pitch), True, lambda _: steep
+        )
+
+
+def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:
+    """The mass of a body, and its demands."""
+    what = f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
+    found: list[Demand] = []
+    if isinstance(body, Link):
+        found += _of_beam(what, body)
+        length = body.length
+        found.append(
+            Demand(
+                length,
+                True,
+                lambda n: f"{what}: length must be positive, got {readable(n(length))} m",
+            )
+        )
+        if isinstance(body.mass, Density):
+            base, tip, _ = body.mass.ends(length)
+            slices = _of_slices(what, body.mass.slices, precision) if body.mass.slices else []
+            return base + tip, [*found, *_of_density(what, body.mass, length, precision), *slices]
+    mass_properties = body.mass
+    mass = mass_properties.mass if isinstance(mass_properties, RigidMass) else mass_properties
+    assert not isinstance(mass, Density)
+    found.append(
+        Demand(
+            mass, False, lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg"
+        )
+    )
+    if isinstance(mass_properties, RigidMass):
+        if isinstance(mass_properties.inertia, tuple):
+            return mass, [*found, *_of_inertia(what, mass_properties)]
+        inertia = mass_properties.inertia
+        found.append(
+            Demand(
+                inertia,
+                False,
+                lambda n: (
+                    f"{what}: inertia must not be negative, got {readable(n(inertia))} kg m^2"
+                ),
+            )
+        )
+    return mass, found
+
+
+def _of_beam(what: str, link: Link) -> list[Demand]:
+    """Conditions on the dimensions of a cross-section; between two breaks they are linear, and so
+    are the conditions.
+    """
+
+    def demand(kind: str, value: Expression, words: str) -> Demand:
+        return Demand(
+            value,
+            True,
+            lambda n: f"{what}: {words} of its {kind} must be positive, got {readable(n(value))}",
+        )
+
+    shapes = () if link.beam is None else link.beam.course.shapes()
+    return [
+        demand(shape.kind, value, words) for shape in shapes for value, words in shape.demands()
+    ]
+
+
+def _of_inertia(what: str, mass_properties: RigidMass) -> list[Demand]:
+    """Conditions that moments of inertia belong to a mass: no principal second moment is negative.
+
+    So it is where no minor on the diagonal of the matrix of second moments is, each beside its
+    largest terms.
+    """
+    moments = [[ca.SX(entry) for entry in row] for row in second_moments(mass_properties.inertia)]
+    axes = "x, y and z"
+
+    def refusal(number: Evaluator) -> str:
+        x, y, z = (readable(number(mass_properties.inertia[k][k])) for k in range(3))
+        return (
+            f"{what}: impossible moments of inertia {x}, {y}, {z} kg m^2 about {axes}: each"
+            " principal moment must be at most the sum of the other two"
+        )
+
+    found = []
+    for chosen in ((0,), (1,), (2,), (0, 1), (0, 2), (1, 2), (0, 1, 2)):
+        minor = ca.vertcat(*(ca.horzcat(*(moments[i][j] for j in chosen)) for i in chosen))
+        size = sum((ca.fabs(moments[i][i]) for i in range(3)), ca.SX(0)) ** len(chosen)
+        found.append(Demand(ca.det(minor) + END["double"] * size, False, refusal))
+    return found
+
+
+def _of_density(
+    what: str, density: Density, length: Expression, precision: Precision
+) -> list[Demand]:
+    """The lowest density of each cell, beside what the sum of its terms rounds [kg or kg/m]; not
+    finite where a term is not.
+    """
+    if density.even:
+        mass = density.cells[0][0] * (length if density.per_length else 1.0)
+        return [
+            Demand(
+                mass,
+                False,
+                lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg",
+            )
+        ]
+    spans = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
+    places = [lowest(cell, a, b) for a, b, cell in spans]
+    place, value = places[0]
+    for other_place, other in places[1:]:
+        lower = other < value
+        place, value = ca.if_else(lower, other_place, place), ca.if_else(lower, other, value)
+
+    def refusal(number: Evaluator) -> str:
+        got = number(value) / (1.0 if density.per_length else number(length))
+        return (
+            f"{what}: density must not be negative, got {readable(got)} kg/m at xi/l ="
+            f" {number(place):.6g}"
+        )
+
+    sizes = [sum(ca.fabs(ca.SX(c)) for c in cell) for cell in density.cells]
+    return [
+        Demand(own + END[precision] * size, False, refusal)
+        for (_, own), size in zip(places, sizes, strict=True)
+    ]
+
+
+def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
+    """Conditions that second moments of slices belong to a mass: neither yy, nor zz, nor yy zz - yz
+    yz is negative anywhere.
+    """
+
+    def refusal(_: Evaluator) -> str:
+        return (
+            f"{what}: impossible second moments of slices: yy, zz and yy zz - yz yz must not be"
+            " negative anywhere along the link"
+        )
+
+    found = []
+    for start, stop in itertools.pairwise(slices.breaks):
+        yy, zz, yz = (moment.cell_at((start + stop) / 2) for moment in slices.each)
+        product = [
+            a - b
+            for a, b in itertools.zip_longest(
+                _product(yy, zz), _product(yz, yz), fillvalue=ca.SX(0)
+            )
+        ]
+        for cell in (yy, zz, product) if any(not nil(c) for c in yz) else (yy, zz):
+            size = sum(ca.fabs(ca.SX(c)) for c in cell)
+            found.append(
+                Demand(lowest(cell, start, stop)[1] + END[precision] * size, False, refusal)
+            )
+    return found
+
+
+def _product(first: Sequence[Expression], second: Sequence[Expression]) -> list[Any]:
+    """The product of two polynomials."""
+    found = [ca.SX(0) for _ in range(len(first) + len(second) - 1)]
+    for j, a in enumerate(first):
+        for k, b in enumerate(second):
+            found[j + k] += a * b
+    return found
+
+
+def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
+    """Condition that something has a mass, or is loaded: without either there is no force
+    anywhere.
+    """
+    total = sum(masses[1:], masses[0])
+
+    def refusal(number: Evaluator) -> str:
+        mass = number(total)
+        if mass == 0.0:
+            return (
+                f"mechanism '{name}' has neither mass nor load; give at least one link or point"
+                " mass a mass or a load"
+            )
+        return (
+            f"mechanism '{name}': its whole mass must be finite and positive, got"
+            f" {readable(mass)} kg"
+        )
+
+    return Demand(total, not loaded, refusal)
+
+
+def _surely_positive(mass: Expression) -> bool:
+    """Return whether a mass is positive for all values of the parameters."""
+    constant = ca.SX(mass)
+    return bool(constant.is_constant() and 0.0 < float(constant) < math.inf)
+
+
+def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
+    """Conditions that directions in space that depend on parameters are not zero, and at right
+    angles where two are given.
+    """
+    what = f"joint '{joint.name}'"
+    own = _of_pair(what, *joint.directions[:2], precision) if joint.directions is not None else []
+    return [
+        *own,
+        *(
+            _of_pair(f"{what}: turned", *joint.turned, precision)
+            if joint.turned is not None
+            else []
+        ),
+    ]
+
+
+def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> list[Demand]:
+    cosine = dot(first, second)
+    if not isinstance(cosine, ca.SX) or cosine.is_constant():
+        return []
+    return [
+        Demand(
+            dot(first, first) + dot(second, second),
+            True,
+            lambda _: f"{what}: its axes must not be of length zero",
+        ),
+        Demand(
+            max(RIGHT, END[precision]) - ca.fabs(cosine),
+            False,
+            lambda number: not_right(what, number(cosine)),
+        ),
+    ]
+
+
+def _of_load_point(what: str, point: Any, precision: Precision, *, space: bool) -> list[Demand]:
+    back = ", turned=[('z', '180 deg')]" if space else ", angle='180 deg'"
+
+    def refusal(number: Evaluator) -> str:
+        x, length, link = number(point.x), number(point.body.length), point.body.name
+        there = (
+            f"station {readable(x, 0.0, length)} m is outside link '{link}', 0 to"
+            f" {readable(length, x)} m"
+        )
+        end, beyond, turned = ("", -x, back) if x < 0.0 else (".tip", x - length, "")
+        if not math.isfinite(beyond):
+            return f"{what}: {there}"
+        tail = f"tail = m.link('{link}_tail', length={readable(beyond)}, mass=0.0)"
+        weld = f"m.weld('{link}_end', m.links['{link}']{end}, tail{turned})"
+        return (
+            f"{what}: {there}; for a point beyond an end declare another link: {tail}; {weld}; and"
+            " use tail.tip as the point"
+        )
+
+    return [Demand(margin, False, refusal) for margin in margins(point, precision)]

@@ -1,0 +1,163 @@
+"""Contribution of distributed loads to section forces: terms of their own, beside those of the
+link's mass.
+
+A load acts up to ``end``, a ratio u = xi/l, on so much of the link as ``width`` says, with the
+value c_0 + c_1 s + c_2 s^2 + ... per length, where s = (end - u)/width. With x = s kept from 0 to
+1, L = l width and a = l max(end - width - u, 0), the section at u feels of each coefficient
+
+    c_j L x^(j+1)/(j+1)                              of a force,
+    c_j L x^(j+1)/(j+1) (L x/(j+2) + a)              of a moment.
+
+Each is a product, so nothing cancels: not where the load ends, and not of a short load.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+import casadi as ca
+
+from ..base.quantities import Output
+from ..base.tables import Terms, table_of
+from ..declare.density import Density
+from ..declare.mechanism import Mechanism
+from ..declare.parts import LineLoad, Link, Vector
+from .checks import Column
+from .multibody import Multibody
+
+
+def distributed_loads(multibody: Multibody, link: Link) -> dict[Column, Any]:
+    """End, width and coefficients on the link's axes of each distributed load of a link."""
+    directions = table_of(multibody.mechanism.space).distributed
+    found: dict[Column, Any] = {}
+    for part in multibody.applied:
+        if part.distributed is None or part.point.body is not link:
+            continue
+        load = multibody.mechanism.loads[part.source]
+        assert isinstance(load, LineLoad)
+        found[Output("spread", link.name, "width", load.name)] = ca.SX(load.width)
+        found[Output("spread", link.name, "end", load.name)] = ca.SX(load.end)
+        for power, components in enumerate(part.distributed):
+            for member, value in zip(directions, components, strict=False):
+                found[Output("spread", link.name, member, load.name, power)] = ca.SX(value)
+    return found
+
+
+ROTARY = "rotary"
+"""Name of the rotary inertia of slices among distributed loads, unless another load has this
+name.
+"""
+
+
+def rotary(multibody: Multibody, link: Link, rate: Vector, angular: Vector) -> dict[Column, Any]:
+    """The rotary inertia of a link's slices as couples along it, between each two places at which
+    it may jump (d'Alembert).
+
+    ``rate`` and ``angular`` are the link's angular velocity w and its change a, on its axes. Of
+    second moments yy, zz, yz per length it is, per length,
+
+        c_x = -yy (a_x + w_y w_z) + zz (w_y w_z - a_x) + yz (w_y^2 - w_z^2), c_y = -yz (w_x w_y -
+        a_z) - zz (w_x w_z + a_y),    c_z = yy (w_x w_y - a_z) + yz (w_x w_z + a_y).
+    """
+    assert isinstance(link.mass, Density)
+    slices = link.mass.slices
+    if slices is None:
+        return {}
+    (x, y, z), (ax, ay, az) = rate, angular
+    yz, xy, xz = y * z, x * y - az, x * z + ay
+    found: dict[Column, Any] = {}
+    names = _unnamed(multibody.mechanism, ROTARY)
+    for name, (start, stop) in zip(names, itertools.pairwise(slices.breaks), strict=False):
+        width = stop - start
+        found[Output("spread", link.name, "width", name)] = ca.SX(width)
+        found[Output("spread", link.name, "end", name)] = ca.SX(stop)
+        cells = (_from(moment.cell_at((start + stop) / 2), stop, width) for moment in slices.each)
+        for power, (own_yy, own_zz, own_yz) in enumerate(
+            itertools.zip_longest(*cells, fillvalue=0.0)
+        ):
+            couples = (
+                own_zz * (yz - ax) - own_yy * (yz + ax) + own_yz * (y * y - z * z),
+                -own_yz * xy - own_zz * xz,
+                own_yy * xy + own_yz * xz,
+            )
+            for member, couple in zip(table_of(True).couples, couples, strict=True):
+                found[Output("spread", link.name, member, name, power)] = ca.SX(couple)
+    return found
+
+
+def _from(cell: Sequence[Any], end: float, width: float) -> list[Any]:
+    """A polynomial of u = end - width s as one of s."""
+    return [
+        (-width) ** j
+        * sum(c * math.comb(n, j) * end ** (n - j) for n, c in enumerate(cell) if n >= j)
+        for j in range(len(cell))
+    ]
+
+
+def _unnamed(mechanism: Mechanism, word: str) -> Iterator[str]:
+    """Names that nothing that acts has: a word, and the word with numbers."""
+    taken = {*mechanism.joints, *mechanism.loads, *mechanism.constraints, *mechanism.rows}
+    names = itertools.chain([word], (f"{word}_{k}" for k in itertools.count(2)))
+    return (name for name in names if name not in taken)
+
+
+def distributed_loads_of(outputs: Iterable[Output], link: str) -> dict[str, int]:
+    """The loads along a link that outputs name, in their order, and how many powers each has."""
+    found: dict[str, int] = {}
+    for output in outputs:
+        if output.group == "spread" and output.part == link:
+            many = 0 if output.power is None else output.power + 1
+            found[output.load_point] = max(found.get(output.load_point, 0), many)
+    return found
+
+
+def distributed_force(
+    outputs: Mapping[Column, ca.SX], link: str, length: ca.SX, terms: Terms, ratio: ca.SX
+) -> Iterator[Any]:
+    """The parts of a section force at a ratio by what acts along a link of a length [m]: loads by
+    their arms, couples of slices.
+    """
+    for load, powers in distributed_loads_of(
+        (key for key in outputs if isinstance(key, Output)), link
+    ).items():
+        for direction, sign, arm in (
+            (terms.distributed, terms.arm or 1, bool(terms.arm)),
+            (terms.couple, 1, False),
+        ):
+            if Output("spread", link, direction, load, 0) in outputs:
+                yield sign * _force_of_load(
+                    outputs, (link, load), length, powers, direction, ratio, arm=arm
+                )
+
+
+def _force_of_load(
+    outputs: Mapping[Column, Any],
+    of: tuple[str, str],
+    length: Any,
+    powers: int,
+    direction: str,
+    ratio: Any,
+    *,
+    arm: bool,
+) -> Any:
+    """The force of a link's load along it, the part that a section at a ratio feels in a direction,
+    or with ``arm`` its moment.
+    """
+    link, load = of
+
+    def value(member: str, power: int | None = None) -> Any:
+        return outputs[Output("spread", link, member, load, power)]
+
+    width, end = value("width"), value("end")
+    x = ca.fmin(ca.fmax((end - ratio) / width, 0), 1)
+    reach, lever = length * width, length * ca.fmax(end - width - ratio, 0)
+
+    def terms() -> Iterator[Any]:
+        for power in range(powers):
+            share = value(direction, power) * (reach * x ** (power + 1) / (power + 1))
+            yield share * (reach * x / (power + 2) + lever) if arm else share
+
+    return sum(terms(), ca.SX(0))

@@ -1,0 +1,97 @@
+"""The inertia that drives see: how the kinetic energy goes with the rates whose laws are given, and
+these with those of the drives.
+
+With E = q'.M q'/2 for the rates q' whose laws are given, and v = R q' for those of the drives, a
+drive alone feels the inertia e.(R^-T M R^-1) e, the other drives at rest. Nothing depends on how
+fast the mechanism moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import casadi as ca
+
+from ..base.quantities import Output
+from ..declare.scene import Scene, Wanted
+from ..declare.spatial import reference_posture
+from . import kinematics
+from .assembly import assemble
+from .checks import Column
+from .derive import assembled
+from .kinematics import Start
+from .model_data import ModelData
+from .multibody import column
+from .program import Program
+from .tree import span
+
+
+@dataclass(frozen=True, eq=False)
+class ReflectedInertia:
+    """A program whose columns are the matrix M (``motions``, ``motions``), row by row, and then R
+    (``drives``, ``motions``).
+    """
+
+    program: Program
+    motions: tuple[str, ...]
+    drives: tuple[str, ...]
+
+
+def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> ReflectedInertia:
+    """Compile what drives of a scene see, assembled as :func:`.compile_scene` does it.
+
+    Raises as that does.
+    """
+    scene = assembled(scene, parameters, ["motion"])
+    mechanism = scene.mechanism
+    drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
+    body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())
+    driven = tuple(c.name for c in body.coordinates if c.driven)
+    laws = scene.prescribed.only(driven)
+    values = list(mechanism.values(scene.assembly).values())
+    first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
+    start = Start(scene.span[0], first, values)
+    solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
+    energy = ca.substitute(
+        ca.SX(body.kinetic), column(body.velocities.symbols), column(body.velocities.graphs)
+    )
+    still = body.mobility_rates
+    energy = solved.evaluate(ca.substitute(energy, still, ca.SX.zeros(still.numel())))
+    own = {
+        c.name: solved.driven_rate[k] for k, c in enumerate(c for c in body.coordinates if c.driven)
+    }
+    rates = [
+        own[name]
+        if name in own
+        else solved.evaluate(ca.SX(body.motion_along(*mechanism.coordinates[name])[1]))
+        for name in drives
+    ]
+    matrix, by_rate = (
+        ca.hessian(energy, solved.driven_rate)[0],
+        ca.jacobian(column(rates), solved.driven_rate),
+    )
+    out = ca.densify(ca.vertcat(ca.vec(matrix.T), ca.vec(by_rate.T)))
+    inputs = [
+        mechanism.time,
+        solved.driven,
+        solved.driven_rate,
+        solved.driven_acceleration,
+        solved.iterated,
+        mechanism.symbols,
+    ]
+    instant = ca.Function(
+        "instant",
+        inputs,
+        [out],
+        ["t", "d", "d_rate", "d_acceleration", "z", "p"],
+        ["out"],
+        {"cse": True},
+    )
+    columns: list[Column] = [
+        Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven
+    ]
+    data, want = ModelData.of(scene, laws), Wanted.of(mechanism, ["motion"])
+    return ReflectedInertia(
+        Program(data, want, instant, solved.newton, tuple(columns), {}), driven, drives
+    )

@@ -1,0 +1,222 @@
+"""Behaviour of curves between equal steps of time, from their values at these: their range, and
+where they may do anything.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from ..base.arrays import Array
+from .sharpness import Kind, Watch
+
+Flags = npt.NDArray[np.bool_]
+Numbers = npt.NDArray[np.intp]
+
+RATE = 0.3
+"""An angle [rad] that a step may turn: less than a twentieth of a turn, so that harmonics show."""
+
+CHANGE = 0.75
+"""Largest change of an argument near which a function is steep, in a step."""
+
+DIP = 0.5
+"""Relative distance from zero to which a divisor may seem to come between two steps."""
+
+RISE = 0.5
+"""Rise of an exponent above both ends of a step."""
+
+STRAIGHT = 4.0
+"""Factor by which an argument goes further beyond its ends than it may seem to, in a step through
+which it goes straight on.
+"""
+
+NEGLIGIBLE = 40.0
+"""Distance of an exponent below the largest from which the power is negligible."""
+
+
+_NUMBERED = (Kind.SWITCH, Kind.KNOT)
+
+
+def highest(y: Array) -> Array:
+    """An upper bound of curves in every step, (..., n - 1), of their values (..., n) at five or
+    more times.
+
+    Where it bends downwards at both ends of a step, a curve is below the chords of the steps beside
+    it; where upwards, below its own. Where it bends both ways, and in the first step and the last,
+    it rises above an end at most as far as a kink in the middle would that bends it as much. To all
+    this comes what the flanks of a kink bend upwards; so beside an inflection, through which the
+    chord rises though the curve may fall.
+    """
+    a, b = y[..., :-1], y[..., 1:]
+    inner = -np.diff(y, 2)
+    bend = np.concatenate([2 * inner[..., :1], inner, 2 * inner[..., -1:]], axis=-1)
+    left, right, upward = bend[..., :-1], bend[..., 1:], np.maximum(-inner, 0.0)
+    flanks = np.zeros_like(a)
+    flanks[..., 2:-2] = upward[..., :-3] + upward[..., 3:]
+    beside = np.zeros_like(a)
+    beside[..., 2:] += upward[..., :-1]
+    beside[..., :-2] += upward[..., 1:]
+    flanks[..., :2], flanks[..., -2:] = 2 * np.abs(inner[..., 1:3]), 2 * np.abs(inner[..., -3:-1])
+    with np.errstate(all="ignore"):
+        up, down = left + (b - a), right - (b - a)
+        tip = np.where(
+            (up > 0.0) & (down > 0.0),
+            a + up * (right / (left + right)) + flanks,
+            np.maximum(a, b) + beside,
+        )
+        either = np.maximum(a + np.abs(left) / 2, b + np.abs(right) / 2) + flanks
+        concave, convex = (left >= 0.0) & (right >= 0.0), (left <= 0.0) & (right <= 0.0)
+    concave[..., [0, -1]] = convex[..., [0, -1]] = False
+    return np.where(concave, tip, np.where(convex, np.maximum(a, b), either))
+
+
+def unresolved(
+    rows: Array,
+    watches: Sequence[Watch],
+    step: float,
+    kinks: npt.NDArray[np.intp] | None = None,
+    finest: bool = False,
+) -> tuple[Flags, Flags]:
+    """Steps of time in which something may rise and fall unseen, (n - 1,), from the watched
+    functions (watches, n), and those with kinks.
+
+    ``kinks`` are how many more kinks are known to be in each step. One in a step shows, two or one
+    in each of two steps may not. In the ``finest`` steps they do: there rounding makes as many,
+    where what is watched is nearly zero, and poles alone hide more.
+    """
+    found = np.zeros(rows.shape[1] - 1, bool)
+    count = np.zeros(found.size, np.intp) if kinks is None else kinks.copy()
+    with np.errstate(all="ignore"):
+        for row, watch in zip(rows, watches, strict=True):
+            bounded, kinked = _unresolved(row, watch, step, found | (count > 0))
+            if not finest or watch.kind is Kind.POLE:
+                found |= bounded
+            count += kinked
+    if finest:
+        return found, count > 0
+    beside = np.zeros(found.size, bool)
+    beside[1:] |= count[:-1] > 0
+    beside[:-1] |= count[1:] > 0
+    return found | (count > 1) | ((count > 0) & beside), count > 0
+
+
+def passed(
+    rows: Array, watches: Sequence[Watch], step: int, length: float
+) -> Iterator[tuple[int, float]]:
+    """Watched functions, by number, that have a kink or a jump in a step as they pass a number, and
+    that number.
+
+    Nothing where something else may hide there. Whole numbers come first, for where they are passed
+    others jump.
+    """
+    none = np.zeros(rows.shape[1] - 1, bool)
+    others = [
+        (row, watch)
+        for row, watch in zip(rows, watches, strict=True)
+        if watch.kind not in (Kind.STEP, *_NUMBERED)
+    ]
+    if any(_unresolved(row, watch, length, none)[0][step] for row, watch in others):
+        return
+    for kinds in ((Kind.STEP,), _NUMBERED):
+        for k, watch in enumerate(watches):
+            low, high = sorted(rows[k, step : step + 2].tolist())
+            kind = watch.kind
+            if kind not in kinds or not math.isfinite(high - low):
+                continue
+            whole = (math.floor(high),) if math.floor(high) == math.floor(low) + 1 else ()
+            yield from (
+                (k, float(at))
+                for at in (whole if kind is Kind.STEP else watch.at)
+                if beyond(kind, low, at) < beyond(kind, high, at)
+            )
+
+
+def beyond(kind: Kind, value: float, at: float) -> bool:
+    """Return whether an argument has passed a number."""
+    return value >= at if kind is Kind.STEP else value > at
+
+
+def _unresolved(
+    row: Array, watch: Watch, step: float, bent: Flags
+) -> tuple[Flags, npt.NDArray[np.intp]]:
+    """Steps in which one of the watched functions is unresolved, and the number of its kinks in
+    each step; it may have one itself in ``bent`` ones.
+    """
+    kind, none = watch.kind, np.zeros(row.size - 1, np.intp)
+    if kind is Kind.RATE:
+        return _either(np.abs(row) * step > RATE), none
+    if kind is Kind.TURN:
+        turned = np.diff(row)
+        wide = np.abs(turned - math.tau * np.round(turned / math.tau)) > RATE
+        return wide | _beside(wide), none
+    a, b = row[:-1], row[1:]
+    low, high = _between(row, bent)
+    if kind in (Kind.POLE, Kind.ROOT):
+        nearest = np.where(a > 0.0, low, -high)
+        crossed = (a > 0.0) != (b > 0.0)
+        if kind is Kind.ROOT:
+            return np.zeros(none.size, bool), (crossed | (nearest < 0.0)).astype(np.intp)
+        beyond = (np.isinf(a) | np.isinf(b)) & ~np.isinf(row).all()
+        return beyond | crossed | (nearest < DIP * np.minimum(np.abs(a), np.abs(b))), none
+    if kind in _NUMBERED:
+        crossed, touched = passed_or_touched(np.sort(watch.at), a, b, low, high)
+        return (
+            (np.zeros(none.size, bool), crossed + touched)
+            if kind is Kind.KNOT
+            else (touched > 0, crossed)
+        )
+    if kind is Kind.STEP:
+        first, last = np.floor(a), np.floor(b)
+        beyond = (np.floor(high) > np.maximum(first, last)) | (
+            np.floor(low) < np.minimum(first, last)
+        )
+        passed = np.abs(last - first)
+        return beyond, np.where(np.isfinite(passed), np.minimum(passed, 2), 0).astype(np.intp)
+    if kind is Kind.SOFT:
+        reach = watch.at[0]
+        first, last = np.minimum(a, b), np.maximum(a, b)
+        turns = ((high > last + CHANGE) | (low < first - CHANGE)) & (low < reach) & (high > -reach)
+        return turns, ((last - first > CHANGE) & (first < reach) & (last > -reach)).astype(np.intp)
+    return (high > np.maximum(a, b) + RISE) & (
+        high > np.max(row[~np.isnan(row)], initial=-np.inf) - NEGLIGIBLE
+    ), none
+
+
+def passed_or_touched(
+    at: Array, a: Array, b: Array, low: Array, high: Array
+) -> tuple[Numbers, Numbers]:
+    """Number of the rising numbers ``at`` that an argument passes from ``a`` to ``b``, and of
+    others that it may touch.
+
+    It stays between ``low`` and ``high``. What is not a number passes as what is below all.
+    """
+    first, last = (np.searchsorted(at, np.where(np.isnan(end), -np.inf, end)) for end in (a, b))
+    under, over = np.minimum(first, last), np.maximum(first, last)
+    below = np.where(np.isnan(low), under, np.searchsorted(at, low, side="right"))
+    above = np.where(np.isnan(high), over, np.searchsorted(at, high))
+    return over - under, np.maximum(under - below, 0) + np.maximum(above - over, 0)
+
+
+def _between(row: Array, bent: Flags) -> tuple[Array, Array]:
+    """Bounds of an argument in every step.
+
+    Unless it may have a kink there, one that bends little stays between its ends.
+    """
+    low, high = -highest(-row), highest(row)
+    least, most = np.minimum(row[:-1], row[1:]), np.maximum(row[:-1], row[1:])
+    straight = ~bent & (most - least >= STRAIGHT * ((high - most) + (least - low)))
+    return np.where(straight, least, low), np.where(straight, most, high)
+
+
+def _either(ends: Flags) -> Flags:
+    return np.asarray(ends[:-1] | ends[1:])
+
+
+def _beside(steps: Flags) -> Flags:
+    found = np.zeros_like(steps)
+    found[1:] |= steps[:-1]
+    found[:-1] |= steps[1:]
+    return found

@@ -1,0 +1,118 @@
+"""One design of many, looked at as closely as a scene is: all its outputs at some instants, and
+their certificate.
+
+What a sweep keeps of its designs cannot balance a body. So a few of them are evaluated once more,
+with every output and by CasADi's virtual machine. The certificate judges that, and what the
+compiled code has made of the same design must agree with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...arithmetic.compensated import ROUNDING
+from ...base.arrays import Array
+from ...base.quantities import Output
+from ...equations.program import Program
+from ...instants.backends import run
+from ...instants.evaluation_method import EvaluationMethod
+from ...instants.phases import phases
+from ...instants.solution import Solution
+from ...verification.accuracy import estimate
+from ...verification.certificate import COARSE, tolerance
+from ..solving import outputs_of, residuals_of
+
+INSTANTS = 5
+_WANTED = {"stress": "stress", "utilisation": "safety", "deflection": "deflection"}
+"""Outputs to be wanted that ``all`` does not include."""
+
+_ROUNDINGS = 10.0
+_AGREES = 1e-6
+"""Relative difference, of the largest value of a unit, up to which two evaluations of the same
+graph agree; in single precision more.
+"""
+
+
+def wanted_whole(names: Iterable[str]) -> list[str]:
+    """Return what is to be wanted for a graph of all outputs, those of ``names`` among them."""
+    outputs = map(Output.of, names)
+    return [
+        "all",
+        *dict.fromkeys(f"{_WANTED[o.group]}:{o.part}" for o in outputs if o.group in _WANTED),
+    ]
+
+
+def failures(
+    program: Program,
+    p: Array,
+    t: Array,
+    method: EvaluationMethod,
+    outputs: Sequence[Output],
+    out: Array,
+) -> dict[str, float]:
+    """Failures of a design, and their size: residuals of its certificate, and under ``agreement``
+    the distance of ``out``.
+
+    ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``; ``graph``
+    has all outputs.
+    """
+    some = np.unique(np.linspace(0, t.size - 1, min(t.size, INSTANTS)).astype(int))
+    followed = t if program.newton is not None else t[some]
+    table, provenance = run(program, followed, p, EvaluationMethod("vm", newton=method.newton))
+    rows = table.out[:, some] if program.newton is not None else table.out
+    within = phases(program, rows, t[some], p)
+    found_there, description = outputs_of(program, rows), program.data.at(p)
+    whole = Solution(program.data.name, t[some], np.zeros(0), found_there, description, provenance)
+    limit = tolerance(whole) if method.newton is None else COARSE
+    found = {
+        name: float(np.max(gaps))
+        for name, gaps in residuals_of(whole, program, rows, p, within).items()
+    }
+    failed = {name: gap for name, gap in found.items() if not gap <= limit}
+    allowed = max(_AGREES, limit) if method.precision == "double" else COARSE
+    compiled = dict(zip(outputs, out[:, some], strict=True))
+    agreement = _agreement(whole, compiled, {})
+    if not agreement <= allowed:
+        # What is nothing but rounding has no size of its own to be compared with.
+        looked_at = table
+        if program.newton is not None:
+            looked_at = replace(
+                table, out=rows, status=table.status[some], iterated=table.iterated[:, some]
+            )
+        rounded = estimate(program, looked_at, whole, p)
+        coarser = ROUNDING[method.precision] / ROUNDING["double"]
+        agreement = _agreement(
+            whole,
+            compiled,
+            {output: _ROUNDINGS * coarser * error for output, error in rounded.items()},
+        )
+    return failed if agreement <= allowed else failed | {"agreement": agreement}
+
+
+def _agreement(
+    whole: Solution, found: Mapping[Output, Array], rounded: Mapping[Output, float]
+) -> float:
+    """Distance of outputs from those of a solution, beyond what is ``rounded``, relative to the
+    largest of their unit.
+    """
+    largest: dict[str, float] = {}
+    for name, values in whole.outputs.items():
+        unit = whole.unit(name)
+        largest[unit] = max(
+            largest.get(unit, 0.0), float(np.fmax.reduce(np.abs(values), initial=0.0))
+        )
+    worst = 0.0
+    for name, values in found.items():
+        there = ~np.isnan(
+            values
+        )  # no number is what equilibrium leaves open, or friction at rest does
+        gaps, unit = values[there] - whole.outputs[name][there], whole.unit(name)
+        if unit == "rad":
+            gaps = gaps - math.tau * np.rint(gaps / math.tau)
+        gap = max(float(np.max(np.abs(gaps), initial=0.0)) - rounded.get(name, 0.0), 0.0)
+        worst = max(worst, gap / (max(largest[unit], 1.0 if unit == "rad" else 0.0) or 1.0))
+    return worst

@@ -1,0 +1,329 @@
+"""The nonlinear program of a search: a design's terms held at some points, solved by IPOPT with
+exact derivatives.
+
+A peak is the largest of what a quantity is at all times and places. The program knows some of these
+points; the search adds those at which its solution exceeds a limit, until there are none. The
+points are parameters of the program, so it is built once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.symbolic import symbolic
+from ...errors import DeclarationError
+from .conditions import Conditions, conditions
+from .problem import Box, Problem
+from .sampled_design import Point
+from .terms import Term
+from .values import PointValues
+
+_NUMBERS = 8
+"""Number of entries of a point, beside its place and its guess."""
+
+_FEW, _LARGE = 8, 4000
+"""Points of a term for which there is room at first; and instructions beyond which second
+derivatives are not formed.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """A term that is held at points: not more than ``limit``, or less where ``least``; the
+    objective has none.
+
+    ``scale`` is about how large it is. ``points`` are those that are known.
+    """
+
+    term: Term
+    limit: float | None
+    scale: float
+    least: bool = False
+    points: list[tuple[Point, float]] = field(default_factory=list)
+
+    @property
+    def bound(self) -> float:
+        """Upper bound of the term, times -1 if the limit is the least."""
+        assert self.limit is not None
+        return -self.limit if self.least else self.limit
+
+    def add(self, point: Point, sign: float, near: float) -> bool:
+        """Hold the term at one point more, times ``sign``, unless it is as ``near`` one; whether it
+        was added.
+        """
+        for other, its in self.points:
+            same = its == sign and other.place == point.place
+            if same and abs(other.share - point.share) <= near and abs(other.xi - point.xi) <= 1e-9:
+                return False
+        self.points.append((point, sign))
+        return True
+
+
+@dataclass(frozen=True)
+class Found:
+    """A solution of the program: shares ``x``, the largest ``objective`` at the points,
+    multipliers, and how good it is.
+
+    ``multipliers`` are by constraint what the objective gains for a unit of its limit, ``bounds``
+    those of the shares. ``conditions`` are those of an optimum, ``status`` is what IPOPT says.
+    """
+
+    x: Array
+    objective: float
+    multipliers: tuple[float, ...]
+    bounds: Array
+    conditions: Conditions
+    status: str
+
+
+@dataclass(frozen=True, eq=False)
+class _Built:
+    """A program with ``room`` for so many points of each term; ``rows`` are those of the
+    constraints, objective first.
+    """
+
+    capacity: int
+    solver: Any
+    slopes: Any
+    rows: list[slice]
+
+
+class NonlinearProgram:
+    """The program of a problem, whose limits are numbers that it is given; it is built once for
+    each size.
+    """
+
+    @symbolic
+    def __init__(
+        self, values: PointValues, box: Box, problem: Problem, instants: int, least_closure: float
+    ) -> None:
+        if not ca.has_nlpsol("ipopt"):
+            raise DeclarationError(
+                "optimise: the CasADi at hand has no IPOPT; install CasADi from PyPI, whose wheel"
+                " contains it"
+            )
+        self.values, self.box, self.instants, self.least_closure = (
+            values,
+            box,
+            instants,
+            least_closure,
+        )
+        self.objective, self.terms = problem.objective, problem.terms
+        self.closures = values.closures()
+        self.large = (
+            values.program.instant.n_instructions() > _LARGE
+            or values.program.instant.size1_in("z") > 0
+        )
+        self.built: dict[int, _Built] = {}
+
+    def solve(
+        self, x: Array, held: Sequence[Held], closures: Sequence[Point], averages: Sequence[Point]
+    ) -> Found:
+        """The best design near shares ``x``, as far as points tell: those of ``held`` terms,
+        objective first, and of ``closures``.
+
+        ``averages`` are all instants, for means.
+        """
+        many, capacity = max([len(term.points) for term in held] + [len(closures), 1]), _FEW
+        while capacity < many:
+            capacity *= 2
+        if capacity not in self.built:
+            self.built[capacity] = self._build(held, capacity)
+        built = self.built[capacity]
+        given = np.concatenate(
+            [
+                np.array(
+                    [
+                        (0.0 if term.limit is None else term.bound / term.scale, 1.0 / term.scale)
+                        for term in held
+                    ]
+                ).ravel()
+            ]
+            + [self._packed(term, capacity) for term in held if term.points]
+            + [
+                self._packed(
+                    Held(self.objective, None, 1.0, points=[(point, 1.0) for point in closures]),
+                    capacity,
+                    1,
+                )
+            ]
+            * self.closed
+            + [np.array([point.guess for point in averages]).ravel()] * bool(self.averaged)
+        )
+        start = np.append(x, self._level(held)) if self.levelled else x
+        n = x.size
+        low, high = np.zeros(start.size), np.ones(start.size)
+        if self.levelled:
+            low[n], high[n] = -np.inf, np.inf
+        found = built.solver(x0=start, p=given, lbx=low, ubx=high, lbg=-np.inf, ubg=0.0)
+        status = str(built.solver.stats()["return_status"])
+        at, by_g, by_x = (found[name].full().ravel() for name in ("x", "lam_g", "lam_x"))
+        scale = held[0].scale
+        multipliers = tuple(
+            float(np.sum(by_g[rows])) * scale / term.scale
+            for rows, term in zip(built.rows[1:], held[1:], strict=True)
+        )
+        shares = np.clip(at[:n], 0.0, 1.0)
+        found_conditions = conditions(
+            built.slopes, at, float(found["f"]), by_g, by_x, given, n, formed=not self.large
+        )
+        return Found(
+            shares,
+            float(found["f"]) * scale,
+            multipliers,
+            by_x[:n] * scale,
+            found_conditions,
+            status,
+        )
+
+    @property
+    def levelled(self) -> bool:
+        """True if the objective is the largest of several values, which a variable of its own is
+        above.
+        """
+        return self.objective.kind in ("peak", "max")
+
+    def _level(self, held: Sequence[Held]) -> float:
+        return max(sign * point.value for point, sign in held[0].points) / held[0].scale
+
+    @property
+    def closed(self) -> bool:
+        """True if there are loops."""
+        return self.closures is not None
+
+    @property
+    def averaged(self) -> bool:
+        """True if some term is an average."""
+        return any(term.averaged for term in self.terms)
+
+    def _packed(self, held: Held, capacity: int, places: int | None = None) -> Array:
+        """The points of a term, as many as there is room for; the first one stands for those that
+        lack.
+        """
+        output = held.term.output
+        size = self.values.of(output).size if places is None and output is not None else 1
+        n = len(self.box.names)
+        rows = np.zeros((capacity, _NUMBERS + n + size + self.values.program.instant.size1_in("z")))
+        for k in range(capacity):
+            point, sign = held.points[k if k < len(held.points) else 0]
+            where = point.where(size)
+            rows[k] = np.concatenate(
+                [
+                    [point.share, point.xi, sign],
+                    point.turn,
+                    point.reach,
+                    point.drift or np.zeros(n),
+                    where,
+                    point.guess,
+                ]
+            )
+        return rows.ravel()
+
+    @symbolic
+    def _build(self, held: Sequence[Held], capacity: int) -> _Built:
+        box, n, nz = self.box, len(self.box.names), self.values.program.instant.size1_in("z")
+        x, limits = ca.MX.sym("x", n), ca.MX.sym("limits", 2, len(held))
+        level = ca.MX.sym("level", int(self.levelled))
+        chosen = ca.DM.zeros(box.p.size, n)
+        for k, place in enumerate(box.places):
+            chosen[place, k] = box.high[k] - box.low[k]
+        fixed = box.p.copy()
+        fixed[list(box.places)] = box.low
+        p = ca.DM(fixed) + ca.mtimes(chosen, x)
+        given: list[Any] = [ca.vec(limits)]
+        rows: list[Any] = []
+        places: list[slice] = []
+
+        def points(function: ca.Function, size: int, *, moved: bool) -> tuple[Any, Any]:
+            """Values at as many points as there is room for, and their signs."""
+            symbol = ca.MX.sym("points", _NUMBERS + n + size + nz, capacity)
+            given.append(ca.vec(symbol))
+            ends = np.cumsum([0, 1, 1, 1, 3, 2, n, size, nz]).tolist()
+            share, xi, sign, turn, reach, drift, place, guess = ca.vertsplit(symbol, ends)
+            share = ca.fmin(ca.fmax(share + ca.mtimes(x.T, drift), 0.0), 1.0)
+            further = [turn, reach] if moved else []
+            return (
+                function.map(capacity)(
+                    share, guess, ca.repmat(p, 1, capacity), xi, place, *further
+                ),
+                sign,
+            )
+
+        guesses = ca.MX.sym("guesses", nz, self.instants)
+        best: Any = level
+        for number, term in enumerate(held):
+            output, (limit, over) = term.term.output, (limits[0, number], limits[1, number])
+            if output is None or term.term.averaged:
+                of_parameters = (
+                    term.term.of_parameters(self.values.program.data) if output is None else None
+                )
+                value = (
+                    self._average(term.term, p, guesses)
+                    if of_parameters is None
+                    else of_parameters(p)
+                )
+                row = (-value if term.least else value) * over - limit
+                best = value * over if number == 0 else best
+                held_rows = ca.MX(0, 1) if number == 0 else row
+            else:
+                followed = self.values.of(output)
+                value, sign = points(followed.moved, followed.size, moved=True)
+                held_rows = ca.vec(sign * value * over - (level if number == 0 else limit))
+            begin = places[-1].stop if places else 0
+            rows.append(held_rows)
+            places.append(slice(begin, begin + held_rows.numel()))
+        if self.closures is not None:
+            value, _ = points(self.closures, 1, moved=False)
+            rows.append(ca.vec(self.least_closure - value))
+        if self.averaged:
+            given.append(ca.vec(guesses))
+        variables, parameters, g = ca.vertcat(x, level), ca.vertcat(*given), ca.vertcat(*rows)
+        options: dict[str, Any] = {
+            "print_time": False,
+            "error_on_fail": False,
+            "ipopt.print_level": 0,
+            "ipopt.sb": "yes",
+        }
+        options |= {
+            "ipopt.tol": 1e-10,
+            "ipopt.max_iter": 200,
+            "ipopt.bound_relax_factor": 0.0,
+            "show_eval_warnings": False,
+        }
+        options |= {"ipopt.hessian_approximation": "limited-memory"} if self.large else {}
+        solver = ca.nlpsol(
+            "solver", "ipopt", {"x": variables, "p": parameters, "f": best, "g": g}, options
+        )
+        by_g = ca.MX.sym("by_g", g.numel())
+        slope = ca.gradient(best + ca.dot(by_g, g), variables)
+        parts = ca.horzcat(ca.gradient(best, variables), ca.jtimes(g, variables, by_g, True))
+        hessian = ca.MX(0, 0) if self.large else ca.densify(ca.jacobian(slope, variables))
+        outputs = [slope, parts, g, ca.jacobian(g, variables), hessian]
+        return _Built(
+            capacity, solver, ca.Function("slopes", [variables, by_g, parameters], outputs), places
+        )
+
+    def _average(self, term: Term, p: Any, guesses: Any) -> Any:
+        """A mean over time, by trapezia, as sweeps have it."""
+        assert term.output is not None
+        followed, n = self.values.of(term.output), self.instants
+        weights = np.ones(n)
+        weights[[0, -1]] = 0.5 if n > 1 else 1.0
+        place = ca.DM.zeros(followed.size, n)
+        place[0, :] = 1
+        shares = ca.DM(np.linspace(0.0, 1.0, n)).T
+        values = followed.value.map(n)(
+            shares, guesses, ca.repmat(p, 1, n), ca.DM.zeros(1, n), place
+        )
+        weighted = ca.DM(weights / weights.sum())
+        return (
+            ca.mtimes(values, weighted)
+            if term.kind == "mean"
+            else ca.sqrt(ca.mtimes(values * values, weighted))
+        )

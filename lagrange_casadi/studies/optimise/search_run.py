@@ -1,0 +1,80 @@
+"""The way of one start, in plain numbers: to be kept, and to be sent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+WORDS = {
+    "start": [float],
+    "end": [float],
+    "objective": float,
+    "excess": float,
+    "scale": float,
+    "ending": str,
+    "history": [[float]],
+    "multipliers": [float],
+    "bounds": [float],
+    "residual": float,
+    "curvature": float,
+    "evaluations": int,
+}
+"""The shape of a trail in JSON."""
+
+HOLDS = 1e-7
+"""Violation of a constraint, relative to its limit, that is allowed."""
+
+CONVERGED, STOPPED = "converged", "stopped"
+"""Endings of a run; other endings describe a failure."""
+
+
+@dataclass(frozen=True)
+class SearchRun:
+    """Run from a ``start`` to its ``end``, values of all parameters each.
+
+    ``objective`` and ``excess`` are those of the end, ``scale`` is about how large the objective
+    is, ``ending`` says why it ended. ``history`` has a row for every design on the way: objective,
+    excess, 1 where it has a result, and the values that were chosen. ``multipliers`` are of the
+    constraints, ``bounds`` of the chosen parameters' bounds as shares; both are empty where no
+    program led there. See :class:`.Conditions` for ``residual`` and ``curvature``.
+    """
+
+    start: tuple[float, ...]
+    end: tuple[float, ...]
+    objective: float
+    excess: float
+    scale: float
+    ending: str
+    history: tuple[tuple[float, ...], ...]
+    multipliers: tuple[float, ...]
+    bounds: tuple[float, ...]
+    residual: float
+    curvature: float
+    evaluations: int
+
+    @classmethod
+    def read(cls, words: Mapping[str, Any]) -> SearchRun:
+        """One from what :attr:`words` told."""
+        lists = {name: tuple(words[name]) for name in ("start", "end", "multipliers", "bounds")}
+        return cls(**{**words, **lists, "history": tuple(map(tuple, words["history"]))})
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """Form for JSON."""
+        return asdict(self)
+
+    @property
+    def merit(self) -> tuple[float, float]:
+        """Key by which runs are compared: the better one has less."""
+        if math.isnan(self.excess):
+            return math.inf, math.inf
+        return (self.excess if self.excess > HOLDS else 0.0), rounded(self.objective, self.scale)
+
+
+def rounded(objective: float, scale: float) -> float:
+    """An objective less its last digits, so that of designs as good the one that converged is
+    taken.
+    """
+    return round(objective / scale, 8) * scale if math.isfinite(objective) else objective

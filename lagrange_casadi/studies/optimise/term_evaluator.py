@@ -1,0 +1,156 @@
+"""A design as it is: the terms of a search by the engine of sweeps, with all that lies between
+instants.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.status import Status
+from ..designs.engine import DesignEngine
+from ..designs.outcome import Outcome
+from .evaluated_design import EvaluatedDesign, Signed
+from .fatigue import tired_link
+from .problem import Box
+from .sampled_design import Point, SampledDesign
+from .terms import Term
+from .values import PointValues
+
+_BESIDE, _BESIDE_MOST, _STILL = 1e-3, 0.05, 1e-8
+"""Distances of neighbouring designs, relative to the bounds; the largest relative change of a
+peak's time there, and the least.
+"""
+
+
+@dataclass(eq=False)
+class TermEvaluator:
+    """Evaluation of designs by ``terms``, with an engine that keeps their quantities, and counts
+    them.
+    """
+
+    engine: DesignEngine
+    values: PointValues
+    terms: tuple[Term, ...]
+    least_closure: float
+    evaluations: int = 0
+
+    def evaluate(self, p: Array) -> EvaluatedDesign:
+        """A design's terms, by the engine of sweeps; largest and smallest values by their local
+        peaks.
+        """
+        self.evaluations += 1
+        sampled = SampledDesign.at(self.engine, p)
+        return self._evaluated(p, sampled.history.outcome, 0, sampled)
+
+    def screen(self, rows: Array) -> list[EvaluatedDesign]:
+        """Many designs (n, parameters) at once, by what lanes of designs tell alone where that is
+        enough.
+        """
+        self.evaluations += len(rows)
+        found = self.engine.evaluate(rows)
+        if not any(term.kind in ("max", "min") or tired_link(term.output) for term in self.terms):
+            return [self._evaluated(p, found, k, None) for k, p in enumerate(rows)]
+        there = found.status == Status.OK
+        return [
+            self._evaluated(p, found, k, SampledDesign.at(self.engine, p) if there[k] else None)
+            for k, p in enumerate(rows)
+        ]
+
+    def _evaluated(
+        self, p: Array, found: Outcome, row: int, sampled: SampledDesign | None
+    ) -> EvaluatedDesign:
+        nothing = EvaluatedDesign(p, dict.fromkeys(self.terms, math.nan))
+        if found.status[row] != Status.OK:
+            return nothing
+        closure, closing = math.nan, -math.inf
+        if sampled is not None:
+            closures = sampled.closures()
+            if closures.size:
+                closure = float(closures.min())
+                closing = (self.least_closure - closure) / self.least_closure
+                if not closure > 0.0:
+                    return nothing
+        values, points = {}, {}
+        for term in self.terms:
+            own: list[Signed] = []
+            if sampled is not None and term.output is not None and not term.averaged:
+                own = self._points(sampled, term)
+            points[term] = tuple(own)
+            if term.output is None:
+                values[term] = float(term.of_parameters(self.engine.program.data)(p))
+            elif link := tired_link(term.output):
+                forces = [
+                    k
+                    for k, name in enumerate(self.engine.quantities)
+                    if name.startswith(f"section:{link}:")
+                ]
+                values[term] = (
+                    own[0][0].value
+                    if own and np.isfinite(found.value[row, forces]).all()
+                    else math.nan
+                )
+            elif term.kind == "peak":
+                values[term] = abs(float(found.value[row, self.engine.quantities.index(term.name)]))
+            elif term.averaged:
+                values[term] = float(
+                    getattr(found, term.kind)[row, self.engine.efforts.index(term.name)]
+                )
+            else:
+                values[term] = own[0][0].value if own else math.nan
+        evaluated = EvaluatedDesign(p, values, sampled, closure, closing, points)
+        return evaluated if evaluated.has_result else nothing
+
+    def _points(self, sampled: SampledDesign, term: Term) -> list[Signed]:
+        """The local peaks of a term, the largest first, with the signs by which they count."""
+        assert term.output is not None
+        if link := tired_link(term.output):
+            return [(point, 1.0) for point in self.values.tired(link).points(sampled.as_asked())]
+        way = {"min": -1, "max": 1}.get(term.kind, 0)
+        return [
+            (point, float(way or math.copysign(1.0, point.value)))
+            for point in sampled.points(term.output, way)
+        ]
+
+    def drifting(self, term: Term, point: Point, p: Array, box: Box) -> Point:
+        """A peak at a kink or a jump that goes with the chosen parameters, seen by designs beside
+        this one.
+
+        The told peak of each is by the same switch where it is near. What does not move is the
+        point itself.
+        """
+        x, size = box.share(p), len(box.names)
+        ways = np.where(x + _BESIDE <= 1.0, _BESIDE, -_BESIDE)
+        rows = np.array(
+            [box.all(x + way * unit) for way, unit in zip(ways, np.eye(size), strict=True)]
+        )
+        self.evaluations += size
+        found = self.engine.evaluate(rows, threads=1)
+        k = self.engine.quantities.index(term.name)
+        even = self.engine.times.of(rows)[0]
+        shares = (found.t[:, k] - even[:, 0]) / (even[:, -1] - even[:, 0])
+        moved = np.where(np.abs(shares - point.share) <= _BESIDE_MOST, shares - point.share, 0.0)
+        drift = np.where(np.abs(moved) > _STILL, moved / ways, 0.0)
+        if not drift.any():
+            return point
+        return replace(point, share=float(point.share - drift @ x), drift=tuple(drift.tolist()))
+
+    def following(
+        self, term: Term, points: Sequence[Signed], sampled: SampledDesign
+    ) -> list[Signed]:
+        """Local peaks, and how the smooth ones follow as parameters change."""
+        assert term.output is not None
+        if tired_link(term.output):
+            return list(points)
+        followed = self.values.of(term.output)
+        found = []
+        for point, sign in points:
+            free = term.output.group == "section" and point.place == 0 and 0.0 < point.xi < 1.0
+            found.append(
+                (followed.following(point, sampled.p, sign, sampled.step, free=free), sign)
+            )
+        return found

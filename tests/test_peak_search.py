@@ -1,0 +1,389 @@
+"""The search for peaks between instants, on signals of every kind: by CasADi's virtual machine, in
+C, and in both precisions.
+"""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from mechanisms import pendulum
+
+from lagrange_casadi import codegen, evaluate, motion
+from lagrange_casadi.base.status import Status
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.peak_search.intervals import Curves, Listed, Samples
+from lagrange_casadi.peak_search.search import peaks
+from lagrange_casadi.peak_search.sharpness import Kind, Watch
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.peaks import refine
+
+STEP = 0.04
+GRID = (0.0, 2.0, 51)
+NAME = "load:push:fx"
+METHODS = [(EvaluationMethod("lanes"), 1e-11), (EvaluationMethod("vm"), 1e-11)]
+OTHERS = [
+    (EvaluationMethod("c"), 1e-11),
+    *((EvaluationMethod(backend, "single"), 4e-6) for backend in ("lanes", "c")),
+]
+
+
+def signal(law, grid=GRID):
+    """A scene of which one quantity is a function of time."""
+    return pendulum(motion.polynomial(0.0, 1.0), load=law, t=grid, wanted=["load:push"])
+
+
+def true(law, grid=GRID, places=()):
+    """The largest size, by 200 001 times and by some places of which it
+    is known that they matter.
+    """
+    x = ca.SX.sym("x")
+    times = np.append(np.linspace(*grid[:2], 200_001), places)
+    values = np.abs(ca.Function("law", [x], [law(x)])(times[None]).full())
+    return np.nanmax(values[np.isfinite(values)])
+
+
+def searched(scene, methods=METHODS):
+    """What each way says of the one quantity: its tolerance, and its value, NaN where it is not
+    told.
+    """
+    solution = evaluate(scene, backend="vm", certificate=False)
+    (peak,) = refine(scene, solution, [NAME])
+    assert not abs(peak.value) < abs(solution.peak(NAME).value)
+    yield 1e-11, peak.value
+    yield from by_designs(scene, methods)
+
+
+def by_designs(scene, methods=METHODS):
+    """What sweeps say of it."""
+    for method, tolerance in methods:
+        designs = DesignEngine.of(scene, method=method)
+        outcome = designs.evaluate(np.zeros((1, 0)))
+        value = outcome.value[0, designs.quantities.index(NAME)]
+        assert (outcome.status[0] == Status.PEAK_NOT_TOLD) == math.isnan(value)
+        yield tolerance, value
+
+
+def bell(x, place, width):
+    return ca.exp(-(((x - place) / width) ** 2))
+
+
+def tent(x, place, width):
+    return ca.fmax(0.0, 1 - ca.fabs(x - place) / width)
+
+
+SIGNALS = {
+    "in the first interval": (lambda x: bell(x, 0.3 * STEP, 0.6 * STEP) + 0.5 * ca.cos(x), []),
+    "in the last interval": (lambda x: bell(x, 2 - 0.3 * STEP, 0.6 * STEP) + 0.5 * ca.cos(x), []),
+    "at an end": (lambda x: ca.sqrt(x), []),
+    "a spike of a tenth of a step": (
+        lambda x: 3 * bell(x, 1.013, 0.1 * STEP) + 0.5 * ca.cos(x),
+        [1.013],
+    ),
+    "one downwards, of a hundredth": (
+        lambda x: -3 * bell(x, 1.013, 0.01 * STEP) + 0.5 * ca.cos(x),
+        [1.013],
+    ),
+    "beside ordinary data": (
+        lambda x: 1 / (1 + ((x - 0.513) / (0.05 * STEP)) ** 2) + ca.sin(7 * x),
+        [0.513],
+    ),
+    "forty equal summits": (lambda x: ca.sin(64 * x), []),
+    "as fast as the instants": (
+        lambda x: ca.sin(50 * math.pi * x + 0.3) * (1 + 1e-3 * ca.sin(3.3 * x)),
+        [],
+    ),
+    "ever faster": (lambda x: x * ca.sin(30 * x * x), []),
+    "a plateau": (lambda x: ca.fmin(1.0, 3 * ca.sin(x)), []),
+    "a kink": (lambda x: 1 - ca.fabs(x - 1.013), [1.013]),
+    "a narrow kink": (lambda x: tent(x, 1.013, 0.1 * STEP) + 0.2 * ca.cos(x), [1.013]),
+    "two kinks between two instants": (
+        lambda x: tent(x, 1.013, 4e-3) + 1.1 * tent(x, 1.023, 4e-3) + 0.2 * x,
+        [1.013, 1.023],
+    ),
+    "a jump": (lambda x: x * (x < 1.0137), [np.nextafter(1.0137, 0)]),
+    "two jumps between two instants": (lambda x: (x > 1.013) * (x < 1.0133) + 0.1 * ca.cos(x), []),
+    "the sign of a rate": (lambda x: (1 + 0.3 * x) * ca.sign(ca.sin(5 * x - 1.3)), []),
+    "steps": (lambda x: ca.floor(30 * x) * (1 - 0.03 * x) - ca.floor(20 * x), []),
+    "nearly a pole": (lambda x: 1 / ((x - 1.0137) ** 2 + 1e-6), [1.0137]),
+    "nearly one, on both sides": (
+        lambda x: (x - 1.0137) / ((x - 1.0137) ** 2 + 1e-5) + 0.2 * ca.cos(x),
+        [],
+    ),
+    "a steep change and back": (
+        lambda x: ca.tanh((x - 1.013) / 1e-3) - ca.tanh((x - 1.0135) / 1e-3) + 0.2 * ca.cos(x),
+        [],
+    ),
+    "a high power": (lambda x: ca.cos(x - 1.0137) ** 1000 + 0.2 * ca.cos(x), [1.0137]),
+    "a jump at the last instant": (
+        lambda x: ca.fmod(x, 2.0) + 0.3 * ca.sin(x),
+        [np.nextafter(2.0, 0)],
+    ),
+    "a jump at the first instant": (lambda x: (2.5 - x) * (x > 0), [np.nextafter(0.0, 1)]),
+    "a remainder, in the middle of a step": (
+        lambda x: ca.fmod(x, 0.7137) * (1 - 0.2 * x),
+        [np.nextafter(0.7137, 0)],
+    ),
+    "kinks of a remainder": (
+        lambda x: ca.fabs(ca.fmod(x + 0.3, 0.9137) - 0.4) + 0.01 * ca.sin(9 * x),
+        [0.6137 - 1e-15, 1.5274 - 1e-15],
+    ),
+    "a kink beside an instant": (
+        lambda x: 1 - ca.fabs(x - 1.0 - 1e-13) + 0.1 * x * x,
+        [1.0, 1 + 1e-13],
+    ),
+    "a kink of a curved argument": (
+        lambda x: 1 - ca.fabs(ca.exp(x) - 2.7713) / 5,
+        [math.log(2.7713)],
+    ),
+    "constant": (lambda x: 3.0 + 0 * x, []),
+    "nothing": (lambda x: 0 * x, []),
+}
+
+
+def assert_found(name, methods):
+    law, places = SIGNALS[name]
+    largest = true(law, places=places)
+    for tolerance, value in searched(signal(law), methods):
+        assert abs(value) >= largest * (1 - tolerance)
+        assert abs(value) <= largest * (1 + max(1e-6, tolerance))
+
+
+@pytest.mark.sampled(21)
+@pytest.mark.parametrize("name", SIGNALS)
+def test_the_largest_is_found(name):
+    assert_found(name, METHODS)
+
+
+@pytest.mark.sampled(7)
+@pytest.mark.parametrize(
+    "name",
+    ["in the first interval", "a spike of a tenth of a step", "a kink", "a jump", "a plateau"],
+)
+def test_other_rungs_search_alike(name):
+    """Singles come in other packs: a jump between the lanes of one must be seen too."""
+    assert_found(name, OTHERS)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("count", [211, 1500])
+def test_a_hundred_summits(count):
+    """All but as high as each other; of few instants each has at most two."""
+
+    def law(x):
+        return ca.sin(100 * math.pi * x) * (1 + 1e-3 * ca.sin(3.3 * x))
+
+    largest = true(law)
+    for tolerance, value in searched(signal(law, (0.0, 2.0, count))):
+        assert abs(value) == pytest.approx(largest, rel=max(1e-8, tolerance))
+        assert abs(value) >= largest * (1 - tolerance)
+
+
+@pytest.mark.sampled(7)
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 8, 9])
+def test_few_instants(count):
+    """However few the instants are, the peak is that of all times between
+    the first and the last.
+    """
+
+    def law(x):
+        return ca.sin(3 * x) + 0.3 * ca.cos(8 * x)
+
+    grid = (0.0, 2.0, count) if count > 1 else (0.5, 0.5, 1)
+    largest = true(law, grid)
+    for tolerance, value in searched(signal(law, grid)):
+        assert abs(value) == pytest.approx(largest, rel=max(1e-8, tolerance))
+
+
+class Counted:
+    """A function of time, what of it is watched, and how often it was asked for."""
+
+    def __init__(self, law, watched=None):
+        self.law, self.watched, self.times = law, watched, 0
+
+    def at(self, t):
+        self.times += t.size
+        watched = np.zeros((0, t.size)) if self.watched is None else self.watched(t)[None]
+        return Samples(self.law(t)[None], np.full((1, t.size), np.nan), watched)
+
+
+@pytest.mark.parametrize(
+    "law", [np.exp, lambda x: np.exp(-x), lambda x: 1 - 0.3 * x, lambda x: np.sinh(x - 1.5)]
+)
+def test_what_goes_straight_on_to_an_end_needs_no_cuts(law):
+    """It is looked at in the end step, and believed."""
+    times = np.linspace(0.0, 2.0, 51)
+    source = Counted(law)
+    samples, source.times = source.at(times), 0
+    found = peaks(source, Curves((0,), (0,)), times, samples, np.zeros(50, bool))
+    assert abs(found.value[0]) == np.abs(samples.values).max()
+    assert source.times <= 1
+
+
+@pytest.mark.parametrize(
+    ("law", "kind", "at"),
+    [
+        (lambda x: 1 - np.abs(x - 1.013), Kind.SWITCH, 1.013),
+        (lambda x: x * (x < 1.0137), Kind.SWITCH, 1.0137),
+        (lambda x: np.fmod(x + 0.4, 1.0), Kind.STEP, 0.6),
+    ],
+)
+def test_a_known_kink_cuts_a_step_in_two(law, kind, at):
+    """What is watched tells where it is, and little is looked at around it."""
+    times = np.linspace(0.0, 2.0, 51)
+    watches = (Watch(kind, (at,) if kind is Kind.SWITCH else ()),)
+    source = Counted(law, lambda x: x if kind is Kind.SWITCH else x + 0.4)
+    samples, source.times = source.at(times), 0
+    found = peaks(source, Curves((0,), (0,), (), watches), times, samples, np.zeros(50, bool))
+    sides = law(np.array([at, np.nextafter(at, 0), np.nextafter(at, 3), 1.6 - 4e-16]))
+    assert found.value[0] == pytest.approx(sides.max(), rel=1e-12)
+    assert source.times <= 80
+
+
+def local(values, share):
+    """The local tops of values, all of them (down to the least) or those down to a share of the
+    largest.
+    """
+    around = np.pad(values, 1, constant_values=-np.inf)
+    tops = np.flatnonzero((values >= around[:-2]) & (values > around[2:]))
+    return tops[values[tops] >= (values.min() if share is None else share * values.max())]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("way", [0, 1, -1])
+@pytest.mark.parametrize("language", ["c", "c++", None])
+def test_local_peaks_are_listed(language, way):
+    """Those of sizes, or of values one way, smooth, at a kink, and at the ends; of what is constant
+    the first instant.
+    """
+    find = peaks if language is None else codegen.load_search(codegen.find_compiler(language)).peaks
+    laws = (
+        lambda x: np.sin(9 * x) + 0.4 * x,
+        lambda x: -3 + 0.2 * np.sin(7 * x + 1),
+        lambda x: 1 - np.abs(x - 1.013) + 0.05 * np.sin(11 * x),
+        lambda x: 2.5 + 0 * x,
+    )
+
+    class Source:
+        def at(self, t):
+            values = np.array([law(t) for law in laws])
+            return Samples(values, np.full(values.shape, np.nan), t[None])
+
+    times, fine = np.linspace(0.0, 2.0, 51), np.linspace(0.0, 2.0, 200_001)
+    curves = Curves((0, 1, 2, 3), (0, 1, 2, 3), (), (Watch(Kind.SWITCH, (1.013,)),))
+    found = find(
+        Source(),
+        curves,
+        times,
+        Source().at(times),
+        np.zeros(50, bool),
+        Listed(0.51 if way else 0.3, way),
+    )
+    plain = find(Source(), curves, times, Source().at(times), np.zeros(50, bool))
+    assert found.resolved.all()
+    for k, law in enumerate(laws):
+        sized = way * law(fine) if way else np.abs(law(fine))
+        rows = found.tops[k]
+        rows = rows[~np.isnan(rows[:, 0])]
+        assert (rows[:, 0] == 0).all()
+        rows = rows[np.argsort(rows[:, 1])]
+        np.testing.assert_allclose(rows[:, 3], law(rows[:, 1]), rtol=0, atol=1e-14)
+        assert found.value[k] == pytest.approx(
+            rows[np.argmax(way * rows[:, 3] if way else np.abs(rows[:, 3])), 3], rel=1e-13
+        )
+        if not way:
+            assert found.value[k] == pytest.approx(plain.value[k], rel=1e-13)
+        if k == 3:
+            assert rows[0, 1] == 0.0
+            continue
+        expected = local(sized, None if way else 0.3)
+        low, high = sized.min(), sized.max()
+        # At the very least of the values a peak may be listed or not.
+        expected = expected[sized[expected] > low + 0.05 * (high - low)] if way else expected
+        rows = rows[way * rows[:, 3] > low + 0.05 * (high - low)] if way else rows
+        np.testing.assert_allclose(rows[:, 1], fine[expected], atol=2e-5)
+        np.testing.assert_allclose(rows[:, 3], law(fine[expected]), rtol=1e-8)
+
+
+def test_what_touches_zero_by_rounding_opens_few_steps():
+    """As the slope of a cam's lift where its cycle begins anew: its sign is that of its rounding,
+    at all times that are near.
+    """
+
+    def slope(t):
+        return (t - 1.0137) ** 3 + 6e-30 * np.sin(1e16 * t)
+
+    source, times = (
+        Counted(lambda t: np.cos(t) + np.abs(slope(t)), slope),
+        np.linspace(0.0, 2.0, 51),
+    )
+    watches = (Watch(Kind.SWITCH, (0.0, 1e-30)),)
+    found = peaks(
+        source, Curves((0,), (0,), (), watches), times, source.at(times), np.zeros(50, bool)
+    )
+    assert found.resolved.all()
+    assert source.times < 1000
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize(
+    "law",
+    [
+        lambda x: (x < 1.0137) / (1.0137 - x),
+        lambda x: 1 / (x - 1.0137),
+        lambda x: ca.tan(x),
+        lambda x: 1 / ca.sqrt(ca.fabs(x - 1.0137)),
+    ],
+)
+def test_poles_are_infinite(law):
+    assert all(math.isinf(value) for _, value in searched(signal(law)))
+
+
+def test_what_grows_without_an_end_too_slowly_is_not_told():
+    """A logarithm has no bound, and no number of times shows that."""
+    law = lambda x: ca.log(ca.fabs(x - 1.0137))  # noqa: E731
+    assert all(math.isnan(value) for _, value in searched(signal(law)))
+
+
+@pytest.mark.long
+def test_what_takes_too_many_times_is_not_told():
+    """Of 200 000 teeth each is a little larger than the one before; that of the instants must not
+    pass for the peak.
+    """
+    law = lambda x: ca.fmod(x, 1e-5) * (1 + x)  # noqa: E731
+    scene = signal(law)
+    (peak,) = refine(scene, evaluate(scene, backend="vm", certificate=False), [NAME])
+    assert math.isnan(peak.value)
+    assert 0 < peak.least < 3e-5
+    assert all(math.isnan(value) for _, value in by_designs(scene))
+
+
+@settings(max_examples=8, deadline=None)
+@example(
+    [(1.0, 2.0**-23, 1.0)], (2.0, 0.125, -1.0), 2
+)  # a steep flank, whose differences grow with their order
+@given(
+    st.lists(
+        st.tuples(st.floats(-1, 1), st.floats(0, 60), st.floats(0, 6)), min_size=1, max_size=4
+    ),
+    st.tuples(st.floats(0, 2), st.floats(1e-4, 1.0), st.floats(-3, 3)),
+    st.integers(2, 60),
+)
+def test_any_signal(waves, hump, count):
+    """Waves and a bell of any width, at any number of instants: no peak is short, but it may say
+    that it cannot be told.
+    """
+    place, width, height = hump
+
+    def law(x):
+        return sum(a * ca.sin(w * x + phase) for a, w, phase in waves) + height * bell(
+            x, place, width
+        )
+
+    scene = signal(law, (0.0, 2.0, count))
+    (peak,) = refine(scene, evaluate(scene, backend="vm", certificate=False), [NAME])
+    largest = true(law, places=[place])
+    assert abs(peak.value) >= largest * (1 - 1e-11) - 1e-13
+    assert abs(peak.value) <= largest * (1 + 1e-3) + 1e-13

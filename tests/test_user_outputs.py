@@ -1,0 +1,326 @@
+"""Outputs of a user's own."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from design_rows import around, assert_refined
+from exported import by_c99, compare, expected, exported, instants, solve
+from five_bars import five_bar
+
+from lagrange_casadi import Mechanism, Scene, check, density, evaluate, load, motion, refine, save
+from lagrange_casadi.base.status import Status
+from lagrange_casadi.equations.derive import derive
+from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.figures import figures
+from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.studies.designs.engine import DesignEngine
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+RATIOS = {"a": 0.0, "b": 0.2, "c": 0.4, "d": 0.75, "e": 1.0}
+LAWS = {"bending": "N m", "axial": "N", "shear": "N"}
+DENSITIES = {
+    "uniform": {"mass": 1.1},
+    "tapered": {"density": density.polynomial(4.0, -1.5, 0.7)},
+    "tabulated": {"density": density.tabulated([0.0, 0.3, 0.6, 1.0], [4.0, 2.0, 5.0, 1.0])},
+}
+
+
+def engine(rod=None, wanted=("all",), more=lambda m, parts: None, **keywords):
+    """A crank, a rod with a lump beside a station, a piston under a spring of gas; outputs of
+    everything that there is.
+    """
+    m = Mechanism("engine")
+    r, place = m.parameter("r", 0.1, "m"), m.parameter("place", 0.4)
+    crank, rod = (
+        m.link("crank", length=r, mass=0.8),
+        m.link("rod", length=0.25, **(rod or {"mass": 1.1})),
+    )
+    piston = m.point_mass("piston", 0.6)
+    main = m.revolute("main", m.ground, crank)
+    pin = m.revolute("pin", crank.tip, rod)
+    m.revolute("wrist", rod.tip, piston)
+    bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
+    m.weld("lump", rod.at(0.1, 0.02), m.point_mass("lumped", 0.3))
+    gas = m.force("gas", piston, x=-100.0 * m.coordinate(bore))
+    found = m.results
+    m.output("power", found.effort(main) * m.rate(main), unit="W")
+    m.output(
+        "pin_load", ca.sqrt(found.reaction(pin).fx ** 2 + found.reaction(pin).fy ** 2), unit="N"
+    )
+    for name, ratio in (*RATIOS.items(), ("p", place)):
+        section = found.section(rod, ratio)
+        for force, unit in LAWS.items():
+            m.output(f"{force}_{name}", getattr(section, force), unit=unit)
+    m.output("vx", m.velocity(rod.at(0.125, 0.02))[0], unit="m/s")
+    m.output("ax", found.acceleration(rod.at(0.125, 0.02))[0], unit="m/s^2")
+    m.output("stroke_acceleration", found.acceleration(bore), unit="m/s^2")
+    m.output("gas_force", found.load(gas).fx, unit="N")
+    m.output("lean", m.direction(rod), unit="rad")
+    m.output("bent", m.coordinate(pin) / (2 * math.pi), unit="1")
+    m.output("clock", 2 * m.time + r, unit="s")
+    more(m, {"main": main, "rod": rod, "bore": bore})
+    return Scene(
+        m,
+        {"main": motion.polynomial(0.3, 10, 2.0)},
+        wanted,
+        posture={"rod": 0.0},
+        **({"t": (0, 1, 201)} | keywords),
+    )
+
+
+@pytest.mark.parametrize("rod", DENSITIES)
+def test_sections_at_a_ratio_are_those_of_the_law(rod):
+    """At stations too, on the tip's side; at a ratio that is a parameter."""
+    scene = engine(DENSITIES[rod], t=(0, 1, 21))
+    for place in (0.4, 0.05, 1.0, 0.0):
+        found = evaluate(scene, parameters={"place": place})
+        law = found.section("rod").law
+        for name, ratio in (*RATIOS.items(), ("p", place)):
+            for force in LAWS:
+                size = 1e-15 * law.bound(force, np.array([ratio]))
+                at = law.at(force, np.full((21, 1), ratio))[:, 0]
+                np.testing.assert_allclose(
+                    found.output(f"{force}_{name}"), at, rtol=0, atol=4 * size
+                )
+
+
+def test_they_are_what_they_are_made_of():
+    found = evaluate(engine())
+    assert found.certified
+    piston, pin = found.motion("bore"), found.reaction("pin")
+    same = {
+        "power": found.effort("main") * found.motion("main").rate,
+        "pin_load": np.hypot(pin.fx, pin.fy),
+        "stroke_acceleration": piston.acceleration,
+        "gas_force": -100.0 * piston.value,
+        "lean": found.pose("rod").angle,
+        "bent": found.motion("pin").value / (2 * math.pi),
+        "clock": 2 * found.t + 0.1,
+    }
+    for name, values in same.items():
+        np.testing.assert_allclose(
+            found.output(name), values, rtol=1e-13, atol=1e-13 * np.abs(values).max()
+        )
+        assert float(found.errors[f"output:{name}"]) < 1e-11 * np.abs(values).max()
+    assert np.abs(found.output("bent")).max() > 1.5
+    pose = found.pose("rod")
+    lever = (0.125 + 0.02j) * np.exp(1j * pose.angle)
+    place = pose.x + 1j * pose.y + lever
+    speed = np.gradient(place.real, found.t)
+    assert np.abs(speed - found.output("vx"))[1:-1].max() < 2e-3 * np.abs(speed).max()
+    assert (
+        np.abs(np.gradient(found.output("vx"), found.t) - found.output("ax"))[1:-1].max()
+        < 2e-3 * np.abs(found.output("ax")).max()
+    )
+    assert found.unit("output:power") == "W"
+
+
+def test_what_is_not_wanted_costs_nothing_and_what_is_brings_what_it_is_made_of():
+    scene = engine()
+    another = engine(more=lambda m, parts: m.output("more", m.time))
+    assert derive(another, ["effort"]).instructions == derive(scene, ["effort"]).instructions
+    assert list(evaluate(scene, wanted=["output:power"]).series) == ["effort:main", "output:power"]
+    assert list(evaluate(scene, wanted=["output:vx"]).series) == ["output:vx"]
+    assert "section:rod:law:n0" in evaluate(scene, wanted=["output:bending_c"]).series
+    assert (
+        sum(derive(scene, ["output:power"]).instructions.values())
+        <= sum(derive(scene, ["effort"]).instructions.values()) + 3
+    )
+
+
+def test_their_peaks_are_between_instants():
+    scene = engine(t=(0, 1, 41))
+    coarse, fine = evaluate(scene), evaluate(scene, t=(0.0, 1.0, 40001))
+    names = ["output:power", "output:bending_c", "output:pin_load", "output:ax"]
+    for peak in refine(scene, coarse, names):
+        sampled = abs(fine.peak(peak.name).value)
+        assert sampled * (1 - 1e-12) <= abs(peak.value) <= sampled * (1 + 1e-5)
+
+
+@pytest.mark.parametrize("backend", ["c", "vm"])
+def test_sweeps_keep_their_peaks_and_means(backend):
+    scene = engine(t=(0, 1, 101), wanted=("output:power", "output:bending_c", "output:vx"))
+    designs, p = DesignEngine.of(scene, method=EvaluationMethod(backend)), around(scene, 2)
+    outcome = designs.evaluate(p)
+    assert outcome.status.tolist() == [Status.OK] * 2
+    for row in range(2):
+        assert_refined(scene, designs, outcome, row, p[row])
+        power = evaluate(
+            scene, parameters=dict(zip(scene.mechanism.parameters, p[row], strict=True))
+        ).output("power")
+        k = designs.efforts.index("output:power")
+        assert outcome.mean[row, k] == pytest.approx(np.trapezoid(power) / 100, rel=1e-12)
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_exported_c_has_them(precision, tmp_path):
+    scene = engine(t=(0, 1, 41))
+    made, told = exported(scene, tmp_path, precision=precision)
+    solution = solve(scene, precision)
+    found = by_c99(tmp_path, told, instants(solution.t, precision))
+    row = next(row for row in told["outputs"] if row["path"] == "output/power")
+    assert row["unit"] == "W"
+    compare(
+        found, expected(scene, told, solution), told, made, solution, exact=precision == "double"
+    )
+
+
+def test_files_hold_them(tmp_path):
+    found = evaluate(engine(t=(0, 1, 21)))
+    save(found, tmp_path / "x.h5")
+    kept = load(tmp_path / "x.h5")
+    assert kept.description == found.description
+    assert kept.unit("output:ax") == "m/s^2"
+    np.testing.assert_array_equal(kept.output("power"), found.output("power"))
+    assert check(tmp_path / "x.h5") == []
+
+
+def test_what_equilibrium_leaves_open_leaves_them_open():
+    """Two guides of one block share its load."""
+    m = Mechanism("two_guides")
+    block = m.link("block", length=1.0, mass=2.0)
+    one = m.prismatic("one", m.ground, block.base, axis=(1, 0))
+    two = m.prismatic("two", m.ground, block.tip, axis=(1, 0))
+    m.output("share", m.results.reaction(one).fy, unit="N")
+    m.output("whole", m.results.reaction(one).fy + m.results.reaction(two).fy, unit="N")
+    found = evaluate(Scene(m, {"one": motion.polynomial(0, 1.0)}, t=(0, 1, 3)))
+    assert "output:share" in found.undetermined
+    assert "output:whole" not in found.undetermined
+    np.testing.assert_allclose(found.output("whole"), 2.0 * 9.81)
+
+
+def test_nothing_is_added_to_a_scene():
+    made = five_bar().mechanism
+    with pytest.raises(DeclarationError, match="frozen"):
+        made.output("late", made.time)
+
+
+def test_an_effort_where_nothing_drives_is_named():
+    def more(m, parts):
+        m.output("wrong", m.results.effort(parts["bore"]))
+
+    with pytest.raises(
+        DeclarationError,
+        match=r"made of effort:bore, but joint 'bore' is not a drive; drives:"
+        r" main",
+    ):
+        evaluate(engine(more=more))
+
+
+@pytest.mark.parametrize(
+    ("declare", "error", "told"),
+    [
+        (
+            lambda m, p: m.output("power", 1.0),
+            DeclarationError,
+            "output 'power' is declared twice in mechanism 'engine'",
+        ),
+        (lambda m, p: m.output("a b", 1.0), DeclarationError, "output name 'a b' must be a letter"),
+        (
+            lambda m, p: m.output("x", ca.SX.sym("y")),
+            DeclarationError,
+            "output 'x' depends on 'y', not a parameter, .* result",
+        ),
+        (
+            lambda m, p: m.output("x", None),
+            DeclarationError,
+            "output 'x' must be a number or an expression",
+        ),
+        (
+            lambda m, p: m.output("x", ca.vertcat(m.time, m.time)),
+            DeclarationError,
+            "output 'x' must be a scalar",
+        ),
+        (lambda m, p: m.output("x", 1.0, unit="a\nb"), DeclarationError, "its unit must be a line"),
+        (
+            lambda m, p: m.results.section(p["rod"], 1.5),
+            DeclarationError,
+            "expected a ratio xi/l from 0 to 1, got 1.5",
+        ),
+        (
+            lambda m, p: m.results.section(m.ground, 0.5),
+            DeclarationError,
+            "section: 'ground' is not a link",
+        ),
+        (
+            lambda m, p: m.results.load("gas"),
+            DeclarationError,
+            "expected the load that its declaration returned, got its name 'gas'",
+        ),
+        (
+            lambda m, p: m.results.multiplier(p["rod"]),
+            UnknownNameError,
+            "unknown constraint of mechanism 'engine' 'rod'",
+        ),
+        (
+            lambda m, p: m.force("f", p["rod"], x=m.results.effort(p["main"])),
+            DeclarationError,
+            "depends on 'effort:main', not",
+        ),
+        (
+            lambda m, p: m.force("f", p["rod"], x=m.results.acceleration(p["main"])),
+            DeclarationError,
+            "on 'main_acceleration'",
+        ),
+    ],
+)
+def test_misuse_is_told(declare, error, told):
+    with pytest.raises(error, match=told):
+        engine(more=declare)
+
+
+def test_frictions_and_what_they_take_are_results():
+    """Wanted alone they bring their frictions; the heat of all is the drive's power less that of
+    the load.
+    """
+    m = Mechanism("pump")
+    crank, rod = m.link("crank", length=0.05, mass=0.0), m.link("rod", length=0.16, mass=0.0)
+    piston = m.link("piston", length=0.06, mass=1e-12, centre=(0.0, 0.0), inertia=0.0)
+    main = m.revolute("main", m.ground, crank)
+    m.revolute("big_end", crank.tip, rod)
+    m.revolute("wrist", rod.tip, piston)
+    bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
+    m.force("gas", piston, x=-2000.0)
+    rub = (
+        m.friction("bearing", main, mu=0.05, radius=0.02),
+        m.friction("rings", bore, mu=0.1, length=0.05, viscous=20.0),
+    )
+    m.output("heat", sum(m.results.friction(one).loss for one in rub), unit="W")
+    m.output("braked", m.results.friction(rub[1]).along, unit="N")
+    with pytest.raises(
+        UnknownNameError, match="unknown friction of mechanism 'pump' 'gas'; valid: bearing, rings"
+    ):
+        m.results.friction(m.loads["gas"])
+    with pytest.raises(
+        DeclarationError,
+        match="expected the friction that its declaration returned, got its name",
+    ):
+        m.results.friction("rings")
+    scene = Scene(m, {"main": motion.polynomial(0.1, 60.0)}, t=(0, 0.1, 21), posture={"rod": 0.0})
+    solution = evaluate(scene, wanted=["output"], backend="vm")
+    assert solution.output("braked").tolist() == solution.series["friction:rings:along"].tolist()
+    whole = evaluate(scene, backend="vm")
+    assert solution.output("heat") == pytest.approx(
+        whole.series["friction:bearing:loss"] + whole.series["friction:rings:loss"], rel=1e-13
+    )
+    gained = whole.effort("main") * 60.0 - 2000.0 * whole.motion("bore").rate
+    assert solution.output("heat") == pytest.approx(gained, rel=0, abs=1e-10 * gained.max())
+
+
+def test_an_unknown_output_lists_what_there_is():
+    with pytest.raises(UnknownNameError, match=r"output:power"):
+        evaluate(engine(), wanted=["output:powr"])
+    with pytest.raises(
+        UnknownNameError, match=r"unknown output of the mechanism's own 'powr' .*valid: power"
+    ):
+        evaluate(engine(), wanted=["output:power"]).output("powr")
+
+
+def test_a_figure_says_their_names():
+    found = evaluate(engine(t=(0, 1, 21)), wanted=["output:power"])
+    spec = next(spec for spec in figures.default_figures(found) if spec.name == "output_power")
+    (axes,) = spec.draw(found).axes
+    assert (axes.get_ylabel(), axes.get_title()) == ("power [W]", "engine: power")
