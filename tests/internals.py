@@ -118,12 +118,13 @@ from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
 from lagrange_casadi.elements.plate import area_of
 from lagrange_casadi.elements.profile_lift import read_profile
 from lagrange_casadi.equations import assembly, friction, loops, mobility
+from lagrange_casadi.equations import derive as equations_derive
 from lagrange_casadi.equations.assembly import assemble
 from lagrange_casadi.equations.blocks import solving_order
 from lagrange_casadi.equations.buckling import Column as BucklingColumn
 from lagrange_casadi.equations.buckling import critical_stress
 from lagrange_casadi.equations.buckling import used as buckling_used
-from lagrange_casadi.equations.derive import derive
+from lagrange_casadi.equations.derive import derive as derive_derive
 from lagrange_casadi.equations.fingerprint import fingerprint, sources
 from lagrange_casadi.equations.integrability import Course, no_rates
 from lagrange_casadi.equations.kinematics import describe_coordinate

@@ -12,7 +12,8 @@ from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from internals import DesignEngine, EvaluationMethod, Status, check, derive, load
+from internals import DesignEngine, EvaluationMethod, Status, check, load
+from internals import derive_derive as derive
 from internals import runs_save as save
 from mechanisms import block, four_bar, slider_crank, truss_platform
 

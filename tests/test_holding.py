@@ -207,7 +207,9 @@ def test_what_is_not_exact_is_not_told(scene, joint, why):
     open_ = np.isnan(solution.effort(joint))
     assert open_.any()
     assert np.isnan(ranges[joint].least[open_]).all()
-    with pytest.raises(DeclarationError, match=f"joints that rub are at rest there, and {why}"):
+    with pytest.raises(
+        DeclarationError, match=f"joints with friction are at rest there, and {why}"
+    ):
         duty_of(solution, joint, held=ranges[joint])
 
 

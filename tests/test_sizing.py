@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from internals import Profile, read_profiles, size
+from internals import equations_derive as derive
 from strong import BARS, arms
 
 from lagrange_casadi import evaluate
@@ -52,6 +53,21 @@ def test_every_link_is_safe_and_none_alone_can_be_lighter(scene, sized):
         assert found.factor < 2.0 <= one.safety.factor
     assert sized.mass == pytest.approx(sum(one.mass for one in sized.links))
     assert sized.left == {"plate": "diameter is not a dimension of its rectangle"}
+
+
+def test_all_profiles_have_one_graph(monkeypatch):
+    """Profiles are parameters: one graph is derived for all loads, and one for what is told."""
+    derived, real = [], derive._derive
+
+    def counted(scene, want):
+        derived.append(want)
+        return real(scene, want)
+
+    monkeypatch.setattr(derive, "_derive", counted)
+    monkeypatch.setenv("LAGRANGE_CASADI_CACHE_SIZE", "0")
+    derive._kept.cache_clear()
+    assert size(arms(), BARS, safety=2.0).evaluations > len(BARS)
+    assert len(derived) == 2
 
 
 @pytest.mark.long

@@ -6,8 +6,20 @@ import numpy as np
 import pytest
 from strong import press, robot, slider
 
-from lagrange_casadi import beams, derive, evaluate, load, optimise, prepare, refine, save
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    beams,
+    derive,
+    evaluate,
+    load,
+    optimise,
+    prepare,
+    refine,
+    save,
+)
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.motion import harmonic
 
 I_SECTION = beams.i_section(0.04, 0.03, 0.004, 0.005)
 LINKS = {
@@ -43,6 +55,21 @@ def test_series_are_the_largest_along_the_link(name):
     used = {way: solution.array(f"utilisation:{link}:{way}").max() for way in ("yield", "buckling")}
     assert 1.0 / used["yield"] == pytest.approx(safety.against("yield"), rel=1e-9)
     assert 1.0 / used["buckling"] == pytest.approx(safety.against("buckling"), rel=1e-8)
+
+
+def test_corners_of_a_polygon_may_be_parameters():
+    m = Mechanism("swing")
+    h = m.parameter("h", 0.03, "m")
+    shape = beams.polygon([(0.0, 0.0), (h, 0.005), (1.1 * h, 0.03), (0.01, 0.02)])
+    arm = m.link("arm", length=0.5, beam=beams.Beam(shape, beams.material("C45+QT")))
+    m.revolute("O", m.ground, arm)
+    scene = Scene(m, motion={"O": harmonic(0.1, 0.5, 0.5)}, t=(0.0, 2.0, 21))
+    wanted = ["stress:arm", "section:arm"]
+    solution = evaluate(
+        scene, parameters={"h": 0.04}, wanted=wanted, backend="vm", certificate=False
+    )
+    exact = solution.stress("arm").largest("von_mises").value
+    np.testing.assert_allclose(solution.array("stress:arm:von_mises"), exact, rtol=1e-10)
 
 
 def test_what_is_not_wanted_is_not_derived():

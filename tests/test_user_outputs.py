@@ -8,7 +8,8 @@ import pytest
 from design_rows import around, assert_refined
 from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
-from internals import DesignEngine, EvaluationMethod, Status, derive, figures
+from internals import DesignEngine, EvaluationMethod, Status, figures
+from internals import derive_derive as derive
 
 from lagrange_casadi import Mechanism, Scene, check, density, evaluate, load, motion, refine, save
 from lagrange_casadi.errors import DeclarationError, UnknownNameError

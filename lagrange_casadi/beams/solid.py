@@ -14,10 +14,11 @@ from collections.abc import Sequence
 from math import cos, pi, sin
 from typing import Any
 
-import numpy as np
-
 from ..base.arrays import Operand
 from .properties import POISSON, Fibre, Properties, chosen, exponential, larger, smaller
+
+_APART = 1e-300
+"""Below this two corners have one place across."""
 
 _FIFTH, _CATALAN = 1.0045237627951398, 0.9159655941772190
 """The sum of 1/n^5 over odd n, 31 zeta(5)/32; and that of 1/n^2 with signs by turns."""
@@ -198,24 +199,26 @@ def _moments(
 
 
 def _shear_at_centroid(places: Sequence[tuple[Any, Any]], moment: Any) -> Any:
-    """Q / (I b) at the line x = 0 of a polygon whose corners are
-    (x, across); of numbers or arrays.
+    """Q / (I b) at the line x = 0 of a polygon whose corners are (x, across); of numbers, arrays or
+    expressions.
     """
     first: Any = 0.0
     width: Any = 0.0
     for (x1, w1), (x2, w2) in zip(places, [*places[1:], places[0]], strict=True):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            crossing = np.where(
-                x1 != x2, w1 + (w2 - w1) * (0.0 - x1) / np.where(x1 != x2, x2 - x1, 1.0), 0.0
-            )
-        up, down = (x1 <= 0.0) & (x2 > 0.0), (x1 > 0.0) & (x2 <= 0.0)
-        width = width + np.where(up, crossing, 0.0) - np.where(down, crossing, 0.0)
+        apart = chosen(larger(x2 - x1, x1 - x2), _APART, x2 - x1, 1.0)
+        crossing = w1 + (w2 - w1) * (0.0 - x1) / apart
+        width = width + _beyond(x2, _beyond(x1, 0.0, crossing), _beyond(x1, -crossing, 0.0))
         # The first moment of the part with x > 0, by the integral of x^2/2 along its sides.
-        a, b = np.maximum(x1, 0.0), np.maximum(x2, 0.0)
-        start, stop = np.where(x1 > 0.0, w1, crossing), np.where(x2 > 0.0, w2, crossing)
-        there = (x1 > 0.0) | (x2 > 0.0)
-        first = first + np.where(there, (stop - start) * (a * a + a * b + b * b) / 6, 0.0)
-    return np.abs(first) / (moment * np.abs(width))
+        a, b = larger(x1, 0.0), larger(x2, 0.0)
+        start, stop = _beyond(x1, w1, crossing), _beyond(x2, w2, crossing)
+        part = (stop - start) * (a * a + a * b + b * b) / 6
+        first = first + _beyond(x1, part, _beyond(x2, part, 0.0))
+    return larger(first, -first) / (moment * larger(width, -width))
+
+
+def _beyond(x: Any, there: Any, here: Any) -> Any:
+    """``there`` where x is positive, else ``here``."""
+    return chosen(-x, 0.0, here, there)
 
 
 def _at(i: int, j: int) -> str:

@@ -128,22 +128,14 @@ class Loaded:
 
     def at(self, part: Part, x: Any) -> Properties:
         """The cross-section at a place of a part."""
-        first, last = self.course.cells[part.cell]
-        return (
-            self._constant[part.cell]
-            if first is last
-            else self.cross.properties(part.cell, part.low + part.width * x)
-        )
+        return self.cross.properties(part.cell, part.low + part.width * x)
 
     def square(self, part: Part, x: Any) -> Any:
         """The largest square of von Mises' stresses at a place of a part."""
         forces = [part.force(name, x) for name in self.cross.forces]
-        found = self.cross.stresses(self.at(part, x), self.cross.needed[part.cell], forces)
+        needed = self.cross.fibres(part.cell).needed
+        found = self.cross.stresses(part.cell, part.low + part.width * x, needed, forces)
         return most(ca.vertsplit(squared(found, KINDS["von_mises"])))
-
-    @cached_property
-    def _constant(self) -> list[Properties]:
-        return [first.properties(space=self.space) for first, _ in self.course.cells]
 
 
 def stresses(mechanism: Mechanism, name: str, columns: Mapping[Column, Any]) -> dict[Column, Any]:

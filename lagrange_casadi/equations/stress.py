@@ -6,6 +6,7 @@ those of :mod:`..beams`. In a planar mechanism bending is about z. All are linea
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,9 +17,10 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array, Operand
+from ..base.symbolic import Graphs, symbolic
 from ..beams.beam import Beam, Notch
 from ..beams.properties import Properties, smaller
-from ..beams.shape import between
+from ..beams.shape import Shape, between
 
 FORCES = {
     False: ("axial", "shear", "bending"),
@@ -34,6 +36,8 @@ KINDS = {"normal": (1.0, 0.0), "shear": (0.0, 1.0), "von_mises": (1.0, 3.0), "tr
 
 _SAMPLED = 65
 """Places at which the thinnest cross-section is sought where it changes."""
+
+_Row = tuple[list[Any], list[Any]]
 
 _DEEP = 4
 """Depth to which expressions of two fibres are compared."""
@@ -51,6 +55,46 @@ class Thinnest:
 
 
 @dataclass(frozen=True, eq=False)
+class Fibres(Graphs):
+    """The fibres of cross-sections of one kind, by their ``names``.
+
+    ``factors(dimensions) -> (3 fibres, forces)`` is a function of the dimensions alone: what normal
+    stresses, and then shear stresses along y and along z, take of section forces. ``alone`` are the
+    fibres but those that are like another one; ``needed`` those of them that have not the normal
+    stress of another one, and no shear.
+    """
+
+    names: tuple[str, ...]
+    factors: Any
+    alone: tuple[int, ...]
+    needed: tuple[int, ...]
+
+    @classmethod
+    def of(cls, shape: Shape, space: bool) -> Fibres:
+        """Make the fibres of the kind of a shape, once."""
+        return _fibres(shape.kind, tuple(shape.dimensions), space)
+
+
+@functools.cache
+@symbolic
+def _fibres(kind: str, dimensions: tuple[str, ...], space: bool) -> Fibres:
+    symbols = ca.SX.sym("dimensions", len(dimensions))
+    shape = Shape(kind, dict(zip(dimensions, ca.vertsplit(symbols), strict=True)))
+    p = shape.properties(space=space)
+    every = [p.rows(fibre) for fibre in p.fibres]
+    rows = [
+        ca.horzcat(*(ca.SX(part[place]) for place in _PLACES[space]))
+        for part in itertools.chain.from_iterable(zip(*every, strict=True))
+    ]
+    factors = ca.Function(
+        "factors", [symbols], [ca.sparsify(ca.vertcat(*rows))], ["dimensions"], ["factors"]
+    )
+    names = tuple(fibre.name for fibre in p.fibres)
+    plain = [_plain(row, space) for row in every]
+    return Fibres(names, factors, _differing(plain, lower=False), _differing(plain, lower=True))
+
+
+@dataclass(frozen=True, eq=False)
 class CrossSections:
     """The cross-sections of a beam along a link, and the stresses at their fibres."""
 
@@ -62,44 +106,46 @@ class CrossSections:
         """The names of the section forces that stresses are made of."""
         return FORCES[self.space]
 
-    def properties(self, cell: int, u: Operand) -> Properties:
-        """The properties between two breaks, at ratios ``u``."""
+    def shape(self, cell: int, u: Any) -> Shape:
+        """The shape between two breaks, at ratios ``u``."""
         course = self.beam.course
         first, last = course.cells[cell]
         share = (u - course.breaks[cell]) / (course.breaks[cell + 1] - course.breaks[cell])
-        return between(first, last, share).properties(space=self.space)
+        return between(first, last, share)
+
+    def properties(self, cell: int, u: Any) -> Properties:
+        """The properties between two breaks, at ratios ``u``."""
+        return self.shape(cell, u).properties(space=self.space)
+
+    def fibres(self, cell: int) -> Fibres:
+        """The fibres between two breaks."""
+        return Fibres.of(self.beam.course.cells[cell][0], self.space)
 
     def stresses(
-        self, p: Properties, fibres: Sequence[int], forces: Sequence[Any]
+        self, cell: int, u: Any, fibres: Sequence[int], forces: Sequence[Any]
     ) -> tuple[Any, Any, Any]:
-        """Normal stresses, and shear stresses along y and along z, at some fibres, of section
-        forces: as expressions, (fibres,).
+        """Normal stresses, and shear stresses along y and along z, at some fibres between two
+        breaks, at a ratio ``u``, of section forces: as expressions, (fibres,).
         """
-        rows = [
-            self._row(numbers)
-            for part in zip(*(p.rows(p.fibres[k]) for k in fibres), strict=True)
-            for numbers in part
-        ]
-        factors = ca.sparsify(ca.vertcat(*(ca.horzcat(*row) for row in rows)))
-        normal, along_y, along_z = ca.vertsplit(
-            ca.mtimes(factors, ca.vertcat(*forces)), len(fibres)
-        )
+        known = self.fibres(cell)
+        factors = known.factors(ca.vertcat(*self.shape(cell, u).dimensions.values()))
+        rows = [part * len(known.names) + k for part in range(3) for k in fibres]
+        found = ca.mtimes(ca.sparsify(factors[rows, :]), ca.vertcat(*forces))
+        normal, along_y, along_z = ca.vertsplit(found, len(fibres))
         return normal, along_y, along_z
 
     def factors(self, cell: int, u: Array) -> Array:
         """Factors of stresses by section forces between two breaks, at ratios ``u``: (3, fibres,
         forces, u...).
         """
-        p = self.properties(cell, u)
-        found = np.zeros((3, len(p.fibres), len(self.forces), *np.shape(u)))
-        for k, fibre in enumerate(p.fibres):
-            for part, numbers in enumerate(p.rows(fibre)):
-                for force, number in enumerate(self._row(numbers)):
-                    found[part, k, force] = number
-        return found
-
-    def _row(self, numbers: Sequence[Operand]) -> list[Operand]:
-        return [numbers[place] for place in _PLACES[self.space]]
+        known, many = self.fibres(cell), len(self.forces)
+        dimensions = [
+            np.broadcast_to(x, np.shape(u)).ravel() for x in self.shape(cell, u).dimensions.values()
+        ]
+        found = known.factors(np.array(dimensions)).full()
+        found = found.reshape(3, len(known.names), np.size(u), many)
+        found = np.ascontiguousarray(np.moveaxis(found, 2, 3))
+        return found.reshape(3, len(known.names), many, *np.shape(u))
 
     @cached_property
     def thinnest(self) -> Thinnest:
@@ -119,44 +165,26 @@ class CrossSections:
         area, *others = (_least(values) for values in zip(*every, strict=True))
         return Thinnest(area, (others[0], others[1]), (others[2], others[3]))
 
-    @cached_property
-    def alone(self) -> list[list[int]]:
-        """Fibres of each cell without those that equal another one."""
-        return [self._differing(cell, lower=False) for cell in range(len(self.beam.course.cells))]
 
-    @cached_property
-    def needed(self) -> list[list[int]]:
-        """Fibres of each cell without those that have the normal stress of another one, and no
-        shear.
-        """
-        return [self._differing(cell, lower=True) for cell in range(len(self.beam.course.cells))]
+def _differing(rows: Sequence[_Row], *, lower: bool) -> tuple[int, ...]:
+    """Return the numbers of the rows of fibres that equal none before; with ``lower`` also without
+    those below another one.
+    """
+    kept = list[int]()
+    for k, row in enumerate(rows):
+        below = lower and any(_below(row, other) for other in rows if other is not row)
+        if not below and not any(_same(row, rows[other]) for other in kept):
+            kept.append(k)
+    return tuple(kept)
 
-    def _differing(self, cell: int, *, lower: bool) -> list[int]:
-        first, last = self.beam.course.cells[cell]
-        shapes = [first] if first is last else [first, last]
-        every = [
-            [self._plain(p.rows(f)) for f in p.fibres]
-            for p in (s.properties(space=self.space) for s in shapes)
-        ]
-        numbers, kept = range(len(every[0])), list[int]()
-        for k in numbers:
-            alike = (all(_same(rows[k], rows[other]) for rows in every) for other in kept)
-            below = (
-                all(_below(rows[k], rows[other]) for rows in every)
-                for other in numbers
-                if lower and other != k
-            )
-            if not any(alike) and not any(below):
-                kept.append(k)
-        return kept
 
-    def _plain(self, row: tuple[tuple[Any, ...], ...]) -> tuple[list[Any], list[Any]]:
-        """Factors of a fibre's normal stress and shear stress: in the plane only the square of the
-        latter matters.
-        """
-        if self.space:
-            return [ca.SX(x) for x in row[0]], [ca.SX(x) for each in row[1:] for x in each]
-        return [ca.SX(row[0][k]) for k in (0, 5)], [ca.SX(row[1][1] ** 2 + row[2][1] ** 2)]
+def _plain(row: tuple[tuple[Any, ...], ...], space: bool) -> _Row:
+    """Return factors of a fibre's normal stress and shear stress: in the plane only the square of
+    the latter matters.
+    """
+    if space:
+        return [ca.SX(x) for x in row[0]], [ca.SX(x) for each in row[1:] for x in each]
+    return [ca.SX(row[0][k]) for k in (0, 5)], [ca.SX(row[1][1] ** 2 + row[2][1] ** 2)]
 
 
 def squared(stresses: Operand, weights: tuple[float, float]) -> Operand:
@@ -187,15 +215,13 @@ def _least(values: Sequence[float]) -> float:
     return found
 
 
-def _same(a: tuple[list[Any], list[Any]], b: tuple[list[Any], list[Any]]) -> bool:
+def _same(a: _Row, b: _Row) -> bool:
     return all(
         ca.is_equal(x, y, _DEEP) for x, y in zip([*a[0], *a[1]], [*b[0], *b[1]], strict=True)
     )
 
 
-def _below(a: tuple[list[Any], list[Any]], b: tuple[list[Any], list[Any]]) -> bool:
-    """Return whether a fibre has the normal stress of another one, no shear stress, and the other
-    some.
-    """
+def _below(a: _Row, b: _Row) -> bool:
+    """Compare two fibres: the first has the normal stress of the second, which alone has shear."""
     same = all(ca.is_equal(x, y, _DEEP) for x, y in zip(a[0], b[0], strict=True))
     return same and all(x.is_zero() for x in a[1]) and not all(x.is_zero() for x in b[1])

@@ -59,9 +59,7 @@ class FibreStresses:
                 body.force_at(force, u, side) * concentration(notch, force)
                 for force in body.cross.forces
             ]
-            stresses = body.cross.stresses(
-                body.cross.properties(cell, u), body.cross.alone[cell], forces
-            )
+            stresses = body.cross.stresses(cell, u, body.cross.fibres(cell).alone, forces)
             own, *across = (ca.vertsplit(one) for one in stresses)
             normal += own
             shears += zip(*across, strict=True)

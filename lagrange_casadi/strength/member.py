@@ -42,12 +42,10 @@ class Cell:
     index: int
     degree: int
 
-    @cached_property
+    @property
     def names(self) -> tuple[str, ...]:
         """The names of its fibres."""
-        return tuple(
-            fibre.name for fibre in self.member.cross.properties(self.index, np.zeros(1)).fibres
-        )
+        return self.member.cross.fibres(self.index).names
 
     def factors(self, u: Array) -> Array:
         """Factors of stresses, normal and along y and along z, by each force at ratios ``u``: (3,
