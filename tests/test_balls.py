@@ -104,7 +104,7 @@ def test_in_gimbal_lock_and_beside_it_all_is_as_the_oracle_has_it(name):
     assert set(solution.undetermined) == set(members) - {f"motion:{turns[1]}"}
     (note,) = solution.notes
     assert note.startswith(
-        f"joint '{turns[0].partition(':')[0]}' is in gimbal lock at t = 0.2 s: two of its turns"
+        f"joint '{turns[0].partition(':')[0]}' is in gimbal lock at t = 0.2 s: two of its rotations"
     )
     beside = evaluate(scene, t=(0.1, 0.3, 8), backend="vm")
     assert beside.certified

@@ -270,7 +270,7 @@ def test_a_case_that_is_sent_is_loaded_anew(tmp_path):
 
 def test_a_scene_says_why_it_is_not_sent(slider_crank):
     with pytest.raises(
-        PickleError, match=r"^a Scene cannot be pickled: .* send a Case from load_case"
+        PickleError, match=r"^a Scene cannot be pickled, .* send a Case from load_case"
     ) as raised:
         pickle.dumps([slider_crank.scene])
     assert isinstance(raised.value, pickle.PicklingError)

@@ -297,7 +297,7 @@ def test_what_has_no_meaning_is_one_line():
     m.revolute("O", m.ground, arm, axis=(0, 0, 1))
     scene = Scene(m, {"O": polynomial(0.0)}, t=(0, 0, 1))
     with pytest.raises(
-        DeclarationError, match="deflection of 'arm': for torsion of a polygon there is no formula"
+        DeclarationError, match="deflection of 'arm': there is no formula for torsion of a polygon"
     ):
         evaluate(scene).deflection("arm")
     bare = Mechanism("bare")

@@ -316,7 +316,7 @@ def test_what_never_moves_is_open_and_what_bears_nothing_does_not_rub():
     assert solution.series["friction:tip:along"].tolist() == [0.0] * 5
     assert np.isfinite(solution.effort("O")).all()
     assert solution.resting.all()
-    note = next(note for note in solution.notes if note.startswith("a joint that rubs"))
+    note = next(note for note in solution.notes if note.startswith("a joint with friction"))
     assert "pin, held" in note or "held, pin" in note
 
 

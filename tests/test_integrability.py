@@ -208,7 +208,8 @@ def test_rates_of_turning_in_space_are_no_rates_of_coordinates():
     about, _ = turning(q, w)
     tangent = ca.inv(ca.jacobian(about, w))
     with pytest.raises(
-        DeclarationError, match=r"tangent: coordinates 0, 1, 2 \(counted from 0\) are no function"
+        DeclarationError,
+        match=r"tangent: coordinates 0, 1, 2 \(counted from 0\) are not integrable",
     ):
         LagrangeSystem(ca.dot(INERTIA, w**2) / 2, ca.SX(0), q, w, wd, tangent=tangent)
 
@@ -218,6 +219,7 @@ def test_a_drift_that_belongs_to_no_motion_is_refused():
     tangent = ca.vertcat(-p[1], p[0])
     LagrangeSystem(qd**2, p[0], p, qd, qdd, tangent=tangent, drift=ca.cos(t) * tangent, time=t)
     with pytest.raises(
-        DeclarationError, match=r"tangent and drift: coordinate 1 \(counted from 0\) is no function"
+        DeclarationError,
+        match=r"tangent and drift: coordinate 1 \(counted from 0\) is not integrable",
     ):
         LagrangeSystem(qd**2, p[0], p, qd, qdd, tangent=tangent, drift=ca.vertcat(1, 0), time=t)

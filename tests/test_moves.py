@@ -342,7 +342,7 @@ def test_what_moves_use_beyond_their_demands_has_no_value():
     evaluate(scene)
     with pytest.raises(AssemblyError, match=r"not finite|cannot be closed"):
         evaluate(scene, parameters={"T": 5.0})
-    with pytest.raises(DeclarationError, match="is of the time alone"):
+    with pytest.raises(DeclarationError, match="depends on the time alone"):
         samples([0, 1, 2, 3], [0, 1, 4, 9])(m.coordinate(main))
 
 

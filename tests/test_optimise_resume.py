@@ -114,7 +114,7 @@ def test_a_search_that_is_stopped_goes_on(number, here, whole, capfd):
     capfd.readouterr()
     assert main([*ASKED, "--out", "x.h5"]) == 2
     assert (
-        "is of an unfinished search: go on with --resume, or start anew with --force"
+        "is of an unfinished search: continue with --resume, or start anew with --force"
         in capfd.readouterr().err
     )
     assert (

@@ -200,7 +200,7 @@ def test_a_counterweight_trades_one_direction_for_the_other():
 
 def test_mistakes():
     m = Mechanism("late")
-    with pytest.raises(DeclarationError, match="there are none"):
+    with pytest.raises(DeclarationError, match="there are no bodies yet"):
         shaking(m)
     arm = m.link("arm", length=0.3, mass=1.0)
     m.revolute("O", m.ground, arm)

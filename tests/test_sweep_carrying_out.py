@@ -122,7 +122,7 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     assert path.read_bytes() == whole
     with pytest.raises(
         PathError,
-        match=r"whole\.h5\.parts holds an unfinished sweep: go on with resume=True, or start anew",
+        match=r"whole\.h5\.parts holds an unfinished sweep: continue with resume=True, or start anew",
     ):
         run(path)
     assert run(path, resume=True) == whole
@@ -292,7 +292,7 @@ def test_ctrl_c_finishes_the_blocks_under_way_and_says_how_to_go_on(whole, engin
         if done and what == "designs":
             signal.raise_signal(signal.SIGINT)
 
-    says = r"stopped; \d+ of 420 designs are kept in .*x\.h5\.parts: go on with resume=True"
+    says = r"stopped; \d+ of 420 designs are kept in .*x\.h5\.parts: continue with resume=True"
     engine.pause = 1e-3
     with pytest.raises(StoppedError, match=says) as caught:
         run(path, workers=2, progress=progress)

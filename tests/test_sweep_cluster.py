@@ -266,7 +266,7 @@ def test_an_interrupt_does_not_wait_for_what_is_frozen(slider_crank, tmp_path, n
         stuck.send_signal(signal.SIGCONT)
     assert (stopped.returncode, out) == (130, "")
     assert re.fullmatch(
-        r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: go on with"
+        r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: continue with"
         r" --resume\n",
         err,
     )

@@ -91,7 +91,7 @@ def kept(
         begun = path.exists() and not (path.is_file() and _holds_nothing(path.read_bytes()))
     if begun and not (resume or force):
         raise PathError(
-            f"{path} is of an unfinished search: go on with resume=True, or start anew with"
+            f"{path} is of an unfinished search: continue with resume=True, or start anew with"
             " force=True"
         )
     journal, own = Journal(target), False

@@ -156,7 +156,7 @@ def optimise(
     )
     if resume and force:
         raise DeclarationError(
-            "resume and force exclude each other: go on with what is there, or start anew"
+            "resume and force exclude each other: continue with what is there, or start anew"
         )
     if resume and out is None:
         raise DeclarationError("resume: expected out, the file of the search that was stopped")

@@ -50,7 +50,7 @@ def carry_out(
     """
     if resume and force:
         raise DeclarationError(
-            "resume and force exclude each other: go on with what is there, or start anew"
+            "resume and force exclude each other: continue with what is there, or start anew"
         )
     check_names(plan.designs, plan.harvest.axis, plan.columns)
     check_writable(target, hdf5=True)
@@ -93,7 +93,7 @@ def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
     there = folder.target.exists()
     if folder.begun and not (resume or force):
         raise PathError(
-            f"{folder.path} holds an unfinished sweep: go on with resume=True, or start anew with"
+            f"{folder.path} holds an unfinished sweep: continue with resume=True, or start anew with"
             " force=True"
         )
     if there and not (resume or force):
