@@ -261,7 +261,7 @@ def test_what_does_not_close_a_loop_is_refused(method, monkeypatch, fresh_cache)
     for wanted in (["all"], ["effort"]):
         with pytest.raises(
             AssemblyError,
-            match=r"solution of the loop closed by constraint 'middle' does not close it at t = 0 s",
+            match=r"of the loop closed by constraint 'middle' does not close it at t = 0 s",
         ):
             evaluate(scene, wanted=wanted, **told)
     outcome = DesignEngine.of(scene, ["effort"], method=method).evaluate(np.ones((2, 1)))

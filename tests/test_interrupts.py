@@ -26,7 +26,10 @@ RUN = ["run", str(CASE), "--t", "0:0.08:9", "--no-figures"]
 SWEEP = ["sweep", str(CASE), "--t", "0:0.08:21", "--want", "effort", "--want", "section:rod"]
 SHORT = ["--grid", "l=0.11:0.4:25", "--grid", "r=0.05:0.1:6"]
 LONG = ["--grid", "l=0.11:0.4:4000", "--grid", "r=0.05:0.1:250"]
-KEPT = r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: continue with --resume\n"
+KEPT = (
+    r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts:"
+    r" continue with --resume\n"
+)
 
 
 def program(*arguments, **keywords):

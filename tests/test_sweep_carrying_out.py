@@ -122,7 +122,7 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     assert path.read_bytes() == whole
     with pytest.raises(
         PathError,
-        match=r"whole\.h5\.parts holds an unfinished sweep: continue with resume=True, or start anew",
+        match=r"whole\.h5\.parts holds an unfinished sweep: continue with resume=True, or start",
     ):
         run(path)
     assert run(path, resume=True) == whole

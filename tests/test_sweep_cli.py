@@ -302,7 +302,10 @@ def test_ctrl_c_is_one_line_that_says_how_to_go_on(here):
         out, err = stopped.communicate(timeout=60)
         assert stopped.returncode == 130
     assert out == ""
-    told = r"error: stopped; [\d ]+ of 100 000 designs are kept in x\.h5\.parts: continue with --resume\n"
+    told = (
+        r"error: stopped; [\d ]+ of 100 000 designs are kept in x\.h5\.parts:"
+        r" continue with --resume\n"
+    )
     assert re.fullmatch(told, err)
     assert os.listdir(here) == ["x.h5.parts"]
 

@@ -93,8 +93,8 @@ def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
     there = folder.target.exists()
     if folder.begun and not (resume or force):
         raise PathError(
-            f"{folder.path} holds an unfinished sweep: continue with resume=True, or start anew with"
-            " force=True"
+            f"{folder.path} holds an unfinished sweep: continue with resume=True, or start anew"
+            " with force=True"
         )
     if there and not (resume or force):
         raise PathError(
