@@ -43,7 +43,7 @@ def precise(scene, t, drives=None, parameters=None, digits=50, beside=None, leas
         postures(m, found, motion, 0.0),
     )
     named = _named(m, solved)
-    if not program.doubtful:
+    if not program.indeterminate:
         return named
     span = (
         (float(t), float(t), 1)

@@ -38,7 +38,7 @@ class Formula:
         "section:rod:bending",
     )
     efforts = ("effort:O",)
-    doubtful = ()
+    indeterminate = ()
     cost, room = 1 / 15, 0
     provenance = Provenance(
         "formula", "double", "", "", "(default)", {"lagrange_casadi": __version__}

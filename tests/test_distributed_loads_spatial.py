@@ -161,5 +161,7 @@ def test_a_bar_between_two_spherical_joints_may_be_loaded_across():
     assert solution.certified
     middle = math.hypot(1.2, 0.1, 0.4) / 2
     assert solution.description["bars"] == ["strut"]
-    assert solution.section("strut").law.spreads[0].end[0] == pytest.approx(0.9 / (2 * middle))
+    assert solution.section("strut").law.distributed_loads[0].end[0] == pytest.approx(
+        0.9 / (2 * middle)
+    )
     np.testing.assert_allclose(solution.section("strut").bending[:, [0, -1]], 0.0, atol=1e-12)

@@ -66,7 +66,7 @@ def added(scene, joint, at):
     """By how much the effort grows for a unit more of acceleration, at a time."""
     more = dict(scene.motion)
     law = more[joint]
-    more[joint] = type(law)(lambda t: law.program(t) + (t - at) ** 2 / 2)
+    more[joint] = type(law)(lambda t: law.graph(t) + (t - at) ** 2 / 2)
     found = [
         evaluate(
             Scene(scene.mechanism, motion, posture=scene.posture, t=(*scene.t[:2], 3)),

@@ -10,7 +10,7 @@ import oracle
 import pytest
 from balance import assert_balanced
 from conftest import CASES
-from internals import derive
+from internals import derive_derive as derive
 from machines import ROLLING, rolling, shown
 from splines import by_hand
 

@@ -60,7 +60,7 @@ def test_columns_are_read_in_their_units(here, heads, delimiter, comma, options)
     expected = samples(t / 1000.0, np.radians(np.round(angle, 13)))
     at = np.linspace(0.0, 0.9, 37)
     theirs = ca.SX.sym("t")
-    value = ca.Function("samples", [theirs], [expected.program(theirs)])(at[None]).full().ravel()
+    value = ca.Function("samples", [theirs], [expected.graph(theirs)])(at[None]).full().ravel()
     assert derivatives(law, at)[0] == pytest.approx(value, abs=1e-12)
 
 

@@ -55,7 +55,7 @@ def test_outputs_are_those_of_a_machine_with_plain_names(solutions):
     for output, values in named.outputs.items():
         part, station = (
             PLAIN.get(output.part, output.part),
-            STATIONS.get(output.station, output.station),
+            STATIONS.get(output.load_point, output.load_point),
         )
         np.testing.assert_array_equal(
             values, plain.outputs[Output(output.group, part, output.member, station)]
@@ -78,7 +78,7 @@ def test_what_acts_twice_hides_no_other_load(solutions):
     is.
     """
     named, _ = solutions
-    stations = {output.station for output in named.outputs if output.station}
+    stations = {output.load_point for output in named.outputs if output.load_point}
     assert stations == {"law", "pull", "pull_2", "pull_3"}
     np.testing.assert_allclose(
         np.hypot(named.series["section:rod:pull_2:n"], named.series["section:rod:pull_2:f"]),

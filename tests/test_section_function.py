@@ -75,7 +75,7 @@ class Link:
                 if random.random() < 0.3
                 else np.full(INSTANTS, still)
             )
-            for member in table.station:
+            for member in table.load_point:
                 values = moves if member == "station" else random.normal(size=INSTANTS)
                 self.outputs[Output("station", "rod", member, f"load {k}")] = values
         for k in range(int(random.integers(0, 3))):
@@ -170,7 +170,9 @@ class Link:
                 else 0.0
             )
             found += np.sum(w * np.polynomial.polynomial.polyval(v, cell) * pulled * lever(v))
-        for name in dict.fromkeys(output.station for output in self.outputs if output.station):
+        for name in dict.fromkeys(
+            output.load_point for output in self.outputs if output.load_point
+        ):
             place = self.of("station", "station", i, name)
             if Output("station", "rod", "station", name) in self.outputs and self.feels(
                 u, place, side
@@ -287,7 +289,7 @@ def test_links_of_one_kind_have_one_function():
     first, second = Link(np.random.default_rng(5), PLANE), Link(np.random.default_rng(5), PLANE)
     renamed = {
         Output(
-            one.group, "bar", one.member, one.station and f"other {one.station}", one.power
+            one.group, "bar", one.member, one.load_point and f"other {one.load_point}", one.power
         ): values
         for one, values in second.outputs.items()
     }

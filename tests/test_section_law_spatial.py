@@ -443,9 +443,9 @@ def test_changes_are_those_of_a_changed_law(seed, little):
 
 def test_what_a_resultant_is_made_of():
     outputs = [Output("law", "rod", member) for member in SPACE.law]
-    outputs += [Output("station", "rod", member, "A") for member in SPACE.station]
+    outputs += [Output("station", "rod", member, "A") for member in SPACE.load_point]
     found = made_of(outputs, "rod", "bending", SPACE)
-    assert {output.member for output in found if not output.station} == {
+    assert {output.member for output in found if not output.load_point} == {
         "my0",
         "mz0",
         "fy0",
@@ -455,7 +455,7 @@ def test_what_a_resultant_is_made_of():
         "fz1",
         "fz2",
     }
-    assert {output.member for output in found if output.station} == {"my", "mz", "fy", "fz"}
+    assert {output.member for output in found if output.load_point} == {"my", "mz", "fy", "fz"}
     assert [str(output) for output in made_of(outputs, "rod", "torsion", SPACE)] == [
         "section:rod:law:mx0",
         "section:rod:A:mx",

@@ -31,7 +31,7 @@ def test_a_point_on_a_surface():
     assert solution.certified
 
     t = ca.SX.sym("t")
-    x, y = (law.program(t) for law in laws.values())
+    x, y = (law.graph(t) for law in laws.values())
     z = -bowl((x, y, 0.0))
     place = ca.vertcat(x, y, z)
     acceleration = ca.jacobian(ca.jacobian(place, t), t)

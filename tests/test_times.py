@@ -119,7 +119,7 @@ def test_a_drive_that_turns_backwards_goes_from_the_higher_angle_to_the_lower():
 def test_a_slide_is_a_drive_too():
     scene = driven_slider()
     joint, law = next(iter(scene.motion.items()))
-    first, last = (float(law.program(ca.DM(t))) for t in (scene.t[0], scene.t[0] + 0.02))
+    first, last = (float(law.graph(ca.DM(t))) for t in (scene.t[0], scene.t[0] + 0.02))
     found = evaluate(scene, over=(joint, first, last, 9))
     assert (found.over.unit, found.over.label) == ("m", f"{joint} [m]")
     with pytest.raises(

@@ -14,6 +14,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Operand
 from .interpret import Arithmetic, interpret
 from .lookups import Lookup
 from .scalars import applied
@@ -40,7 +41,7 @@ _STEPS = {ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN, ca.OP_FMIN, ca.OP_FMAX, ca.OP_ASS
 """Operations that rise with their operands, and round nothing."""
 
 
-def boxed(function: Any) -> tuple[list[Any], list[Box], Any]:
+def boxed(function: Any) -> tuple[list[Operand], list[Box], Operand]:
     """Bounds of the rows of a followable function ``(x, fixed) -> rows``, with the symbols ``low``,
     ``high`` and ``fixed``.
 
@@ -208,7 +209,7 @@ def _once(code: int, rule: Callable[..., Box]) -> Callable[..., Box]:
     return ruled
 
 
-def _ends(box: Box) -> tuple[Any, ...]:
+def _ends(box: Box) -> tuple[Operand, ...]:
     return box[:1] if box[0] is box[1] else box
 
 
@@ -216,7 +217,7 @@ def _size(x: Box) -> Box:
     return ca.fmax(ca.fmax(x[0], -x[1]), 0.0), ca.fmax(ca.fabs(x[0]), ca.fabs(x[1]))
 
 
-def _whole(x: Any) -> Any:
+def _whole(x: Operand) -> Operand:
     return ca.if_else(x < 0.0, ca.ceil(x), ca.floor(x))
 
 

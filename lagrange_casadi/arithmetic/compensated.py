@@ -19,7 +19,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Expression
+from ..base.arrays import Expression, Operand
 from ..base.vocabulary import Precision
 from .interpret import Arithmetic
 from .lookups import Lookup
@@ -212,13 +212,13 @@ class Pairs:
         high, low = lookup.parts(DTYPES[self.precision])
         return Pair(high(x.value), None if low is None else low(x.value), whole=True)
 
-    def _below(self, x: Pair, y: Pair) -> Any:
+    def _below(self, x: Pair, y: Pair) -> Operand:
         return self._value(self.subtract(x, y)) < 0.0
 
     def _either(self, where: Any, x: Pair, y: Pair) -> Pair:
         return self.add(_choose(where, x), _choose(ca.logic_not(where), y))
 
-    def _turning(self, x: Pair, function: Any, slope: Any) -> Pair:
+    def _turning(self, x: Pair, function: Any, slope: Operand) -> Pair:
         angle = self.reduced(x)
         if angle.low is None:
             return Pair(self._rounded(function(angle.high)))
@@ -258,7 +258,7 @@ class Pairs:
         high = self._minus(c, self._minus(c, a))
         return high, self._minus(a, high)
 
-    def _once(self, code: int) -> Any:
+    def _once(self, code: int) -> Operand:
         """An operation on the nearest numbers: what it gives is rounded once,
         as are its arguments.
         """

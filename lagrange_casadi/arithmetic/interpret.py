@@ -120,14 +120,14 @@ def replay(
 
 def interpret(
     function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithmetic
-) -> list[list[Any]]:
+) -> list[list[Operand]]:
     """The nonzeros of every output of an SX function, from those of its inputs.
 
     Raises :class:`DeclarationError` where the function calls another one, or does what the
     arithmetic has no name for.
     """
 
-    def made(_k: int, step: Step, operands: list[Any]) -> Any:
+    def made(_k: int, step: Step, operands: list[Operand]) -> Operand:
         rule = arithmetic.operations.get(step.operation)
         if rule is not None and step.operation != ca.OP_CALL:
             return rule(*operands)
@@ -192,10 +192,10 @@ def _has_expression(function: ca.Function) -> bool:
     return bool(function.is_a("SXFunction"))
 
 
-def _written_out(function: Any, inputs: Sequence[Any]) -> list[Any]:
+def _written_out(function: Any, inputs: Sequence[Any]) -> list[Operand]:
     """Return the outputs of an SX function of expressions, with what it calls written out."""
 
-    def made(_k: int, step: Step, operands: list[Any]) -> Any:
+    def made(_k: int, step: Step, operands: list[Operand]) -> Operand:
         called = step.called
         if called is None:
             return expressed(step, operands)

@@ -54,7 +54,7 @@ class Lookup:
             return np.searchsorted(self.numbers[1:-1], x, side="right").astype(float)
         return self.numbers[np.asarray(x, int)]
 
-    def parts(self, kind: npt.DTypeLike) -> tuple[Any, Any | None]:
+    def parts(self, kind: npt.DTypeLike) -> tuple[Operand, Operand | None]:
         """The functions of the entries rounded to numbers of a kind, and of what that leaves of
         them; None if it leaves nothing.
         """

@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..arguments import public
+from ..base.arrays import Operand
 from ..errors import DeclarationError, LagrangeCasadiError
 from .shape import Shape, given
 
@@ -65,7 +66,7 @@ def analysed(section: Any, mesh: float | None = None) -> Shape:
     )
 
 
-def _meshed(shape: Shape, mesh: float | None) -> Any:
+def _meshed(shape: Shape, mesh: float | None) -> Operand:
     """A polygon as a section of triangles."""
     numbers = list(shape.dimensions.values())
     if shape.kind != "polygon" or not all(isinstance(x, (int, float)) for x in numbers):

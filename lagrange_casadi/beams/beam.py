@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, fields, replace
 from typing import Annotated, Any, TypeAlias
 
 from ..arguments import Share, public
+from ..base.arrays import Operand
 from ..base.units import Within
 from ..errors import DeclarationError, check_kind
 from .material import Material
@@ -93,7 +94,7 @@ class Beam:
         """Beam with other dimensions."""
         return replace(self, shape=self.course.mapped(change))
 
-    def masses(self) -> list[list[Any]]:
+    def masses(self) -> list[list[Operand]]:
         """The mass per length [kg/m] between two breaks, as coefficients of rising powers of the
         ratio xi/l.
 

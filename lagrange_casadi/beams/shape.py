@@ -51,7 +51,7 @@ class Shape:
         return self.kind in _ROUND
 
     @property
-    def area(self) -> Any:
+    def area(self) -> Operand:
         """Area [m^2]."""
         return _AREAS[self.kind](dict(self.dimensions))
 
@@ -87,7 +87,7 @@ class Course:
         yield from {id(shape): shape for cell in self.cells for shape in cell}.values()
 
 
-def _length(what: str, value: Any) -> Any:
+def _length(what: str, value: Any) -> Operand:
     """A text as a length [m], anything else as it is.
 
     Raises :class:`.DeclarationError` for a text of none.
@@ -151,7 +151,7 @@ def box(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> S
 
 
 @public
-def polygon(places: Sequence[tuple[Any, Any]]) -> Shape:
+def polygon(places: Sequence[tuple[Operand, Operand]]) -> Shape:
     """A polygon by its corners (y, z), counter-clockwise from y to z; its centroid comes to lie on
     the link's axis.
 

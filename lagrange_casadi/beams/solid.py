@@ -70,7 +70,7 @@ def _twisted(a: float, b: float) -> tuple[float, float]:
     return short * (1.0 - 8 / pi**2 * deep), short * 8 / pi**2 * (_CATALAN - rest)
 
 
-def ellipse(height: Any, width: Any, *, space: bool) -> Properties:
+def ellipse(height: Operand, width: Operand, *, space: bool) -> Properties:
     """An ellipse, by its two diameters; in space fibres are every 15 degrees around it, in the
     plane at the ends of its axes.
     """
@@ -88,12 +88,12 @@ def ellipse(height: Any, width: Any, *, space: bool) -> Properties:
     )
 
 
-def _elliptic(n: Any) -> Any:
+def _elliptic(n: Operand) -> Operand:
     v = POISSON
     return 12 * (1 + v) * n**2 * (3 * n**2 + 1) / ((40 + 37 * v) * n**4 + (16 + 10 * v) * n**2 + v)
 
 
-def tube(diameter: Any, wall: Any, *, space: bool) -> Properties:
+def tube(diameter: Operand, wall: Operand, *, space: bool) -> Properties:
     """A round tube by its outer diameter and its wall, whatever its thickness."""
     outer, inner = diameter / 2, diameter / 2 - wall
     square, polar = outer**2 + inner**2, pi * wall * (outer + inner)
@@ -126,7 +126,14 @@ def _around(space: bool) -> list[tuple[int, float, float]]:
 
 
 def _edge(
-    angle: int, y: Any, z: Any, c: float, s: float, most: Any, slope: Any, torsion: tuple[Any, Any]
+    angle: int,
+    y: Operand,
+    z: Operand,
+    c: float,
+    s: float,
+    most: Operand,
+    slope: Operand,
+    torsion: tuple[Operand, Operand],
 ) -> Fibre:
     """A fibre on the edge of an oval, where shear stresses lie along the edge."""
     aside = -most * s * c
@@ -139,7 +146,7 @@ def _edge(
     )
 
 
-def polygon(places: Sequence[tuple[Any, Any]]) -> Properties:
+def polygon(places: Sequence[tuple[Operand, Operand]]) -> Properties:
     """Any polygon without holes, by its corners counter-clockwise, y to the right and z up; about
     its own centroid.
 
@@ -198,7 +205,7 @@ def _moments(
     return sum(crosses) / 2, first[0], first[1]
 
 
-def _shear_at_centroid(places: Sequence[tuple[Any, Any]], moment: Any) -> Any:
+def _shear_at_centroid(places: Sequence[tuple[Operand, Operand]], moment: Operand) -> Operand:
     """Q / (I b) at the line x = 0 of a polygon whose corners are (x, across); of numbers, arrays or
     expressions.
     """
@@ -216,7 +223,7 @@ def _shear_at_centroid(places: Sequence[tuple[Any, Any]], moment: Any) -> Any:
     return larger(first, -first) / (moment * larger(width, -width))
 
 
-def _beyond(x: Any, there: Any, here: Any) -> Any:
+def _beyond(x: Operand, there: Operand, here: Operand) -> Operand:
     """``there`` where x is positive, else ``here``."""
     return chosen(-x, 0.0, here, there)
 

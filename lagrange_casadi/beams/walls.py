@@ -10,7 +10,6 @@ of the walls along the force.
 from __future__ import annotations
 
 import itertools
-from typing import Any
 
 from ..base.arrays import Operand
 from .properties import Fibre, Properties, smaller
@@ -63,7 +62,7 @@ def i_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
     )
 
 
-def t_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
+def t_section(height: Operand, width: Operand, web: Operand, flange: Operand) -> Properties:
     """A T: its flange on the side of +y, its web below."""
     b, hw = width, height - flange
     area = b * flange + hw * web
@@ -109,7 +108,7 @@ def t_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
     )
 
 
-def c_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
+def c_section(height: Operand, width: Operand, web: Operand, flange: Operand) -> Properties:
     """A C: its web along y on the side of -z, its flanges towards +z; the shear centre is beyond
     the web.
     """
@@ -157,7 +156,7 @@ def c_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
     )
 
 
-def box(height: Any, width: Any, web: Any, flange: Any) -> Properties:
+def box(height: Operand, width: Operand, web: Operand, flange: Operand) -> Properties:
     """A box: two webs along y, two flanges along z."""
     h, b, hi, bi = height, width, height - 2 * flange, width - 2 * web
     area = 2 * (b * flange + hi * web)

@@ -54,7 +54,7 @@ def rows(
 
 
 @public
-def table(x: Any, places: Sequence[float], values: Sequence[float]) -> Any:
+def table(x: Expression, places: Sequence[float], values: Sequence[float]) -> Any:
     """A curve for loads: linear between values at increasing places, and straight on beyond them.
 
     ``x`` is an expression, such as a joint's coordinate; ``places`` are in its unit, and ``values``

@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from .description import Description, density_of, drives_of, in_space, motions_of, slices_of
 from .stated import Equation, LoadLaw, Stated, Triple
 
@@ -169,13 +169,13 @@ class Declared:
         return body == "ground" or self.bodies[body].length is not None
 
 
-def _triple(vector: Any) -> Triple:
+def _triple(vector: Expression) -> Triple:
     """A vector of two or three numbers in space."""
     x, y, *z = vector
     return x, y, *(z or (0.0,))
 
 
-def _rows(matrix: Any) -> Rows:
+def _rows(matrix: Expression) -> Rows:
     """Three rows of three numbers."""
     x, y, z = map(tuple, matrix)
     return x, y, z

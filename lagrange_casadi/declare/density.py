@@ -86,7 +86,7 @@ class Density:
                     found[k] = found[k] + shifted * (parts[j + k] / (j + k + 1))
         return found[0] * scale, found[1] * scale, found[2] * scale
 
-    def cell_at(self, u: float) -> tuple[Any, ...]:
+    def cell_at(self, u: float) -> tuple[Expression, ...]:
         """The coefficients that hold at a ratio between two breaks."""
         return self.cells[int(np.searchsorted(self.breaks, u, side="right")) - 1]
 
@@ -121,7 +121,7 @@ class Slices:
         """All places between which each of them is a polynomial."""
         return tuple(sorted({place for moment in self.each for place in moment.breaks}))
 
-    def whole(self, length: Any) -> tuple[Any, Any, Any]:
+    def whole(self, length: Expression) -> tuple[Expression, Expression, Expression]:
         """Moments of the whole link [kg m^2]."""
         yy, zz, yz = (sum(moment.ends(length)[:2]) for moment in self.each)
         return yy, zz, yz
@@ -214,7 +214,7 @@ def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
 
 
 @public
-def thick(density: Density, *, yy: Any, zz: Any, yz: Any = 0.0) -> Density:
+def thick(density: Density, *, yy: Expression, zz: Expression, yz: Expression = 0.0) -> Density:
     """A density of slices that have rotary inertia, of a link in space, by second moments of mass
     per length [kg m].
 

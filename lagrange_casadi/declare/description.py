@@ -34,7 +34,9 @@ _MATRIX = [_VECTOR, _VECTOR, _VECTOR]
 _DENSITY = {"breaks": [float], "cells": [[float]]}
 
 
-def _shape(place: Any, centre: Any, gravity: Any, joint: Any, load: Any) -> dict[str, Any]:
+def _shape(
+    place: Expression, centre: Expression, gravity: Expression, joint: Any, load: Any
+) -> dict[str, Any]:
     body = {"length": float, "mass": float}
     return {
         "name": str,
@@ -261,7 +263,7 @@ class Template(Graphs):
                 body["mass"] = density_of(body).mass
         return found
 
-    def placed(self, content: Description, p: Any) -> Description:
+    def placed(self, content: Description, p: Expression) -> Description:
         """A part of the content, with expressions of parameters ``p`` at its places, and numbers
         where these are constant.
         """
@@ -311,7 +313,7 @@ class Template(Graphs):
         return cls(content, ca.Function("numbers", [symbols], [numbers], ["p"], ["numbers"]))
 
 
-def _with(content: Any, number: Callable[[Place], Any]) -> Any:
+def _with(content: Any, number: Callable[[Place], Any]) -> Expression:
     """A copy of a description with something else for each of its places."""
     if isinstance(content, dict):
         return {name: _with(part, number) for name, part in content.items()}
@@ -399,7 +401,7 @@ def _described(
         found = {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
         return found | {"z": number(point.z)} if mechanism.space else found
 
-    def vector(components: Iterable[Any]) -> list[float]:
+    def vector(components: Iterable[Expression]) -> list[float]:
         return [number(component) for component in components]
 
     def centre(mass: RigidMass) -> Description:

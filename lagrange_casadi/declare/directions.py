@@ -86,7 +86,7 @@ def vector(what: str, value: Any, checked: Checked, unit: str = "1") -> Vector:
     return x, y, z
 
 
-def triad_of(what: str, axis: Any, second: Any, own: Ownership, part: str = "") -> Triad:
+def triad_of(what: str, axis: Any, second: Expression, own: Ownership, part: str = "") -> Triad:
     """Directions u, v, w at right angles: along an axis, along a second one or any across it, and
     at right angles to both.
 
@@ -146,7 +146,7 @@ def across(axis: Vector) -> Vector:
     return 1 + sign * x * x * factor, sign * x * y * factor, -sign * x
 
 
-def turned_by(what: str, turned: Any, own: Ownership) -> tuple[Vector, Vector]:
+def turned_by(what: str, turned: Expression, own: Ownership) -> tuple[Vector, Vector]:
     """The directions of a body's x and y axes: as told, or after turns in sequence, each about an
     axis that those before carry.
     """
@@ -169,7 +169,7 @@ def turned_by(what: str, turned: Any, own: Ownership) -> tuple[Vector, Vector]:
 
 
 def between(
-    what: str, places: Any, beside: Any, checked: Checked
+    what: str, places: Expression, beside: Expression, checked: Checked
 ) -> tuple[Reference, Expression, Vector | None]:
     """The reference of a link that lies between two places, its length, and the direction
     ``beside`` of length 1, where told.
@@ -199,7 +199,7 @@ def between(
     return Reference(base, Rotation.of(x, y), tip), length, aside
 
 
-def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, Vector]:
+def tensor(what: str, inertia: Expression, checked: Checked) -> tuple[Vector, Vector, Vector]:
     """Moments of inertia as three rows, symmetric to the last digit where they are but for
     rounding.
 

@@ -8,6 +8,7 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.lookups import lookup
+from ..base.arrays import Expression
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 
@@ -18,7 +19,7 @@ BEYOND: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 
 
 @symbolic
-def beyond_ends(expression: ca.SX) -> list[Any]:
+def beyond_ends(expression: ca.SX) -> list[Expression]:
     """Distance of each argument of an expression's curves beyond the curve's ends, for curves that
     have ends.
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from typing import Any
 
 import casadi as ca
 
@@ -53,7 +52,7 @@ def _zeros(cell: Sequence[Expression], start: float, stop: float) -> list[ca.SX]
     return [_zero(cell, low, high) for low, high in itertools.pairwise(ends)]
 
 
-def _zero(cell: Sequence[Any], low: Any, high: Any) -> Any:
+def _zero(cell: Sequence[Expression], low: Expression, high: Expression) -> Expression:
     negative = _at(cell, low) < 0.0
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

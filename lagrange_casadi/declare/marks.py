@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import casadi as ca
 
 from ..arithmetic.lookups import is_entry
+from ..base.arrays import Expression
 
 _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
 
 
-def marks_of(operation: int, operands: Sequence[ca.SX]) -> Iterator[tuple[Any, bool, bool]]:
+def marks_of(operation: int, operands: Sequence[ca.SX]) -> Iterator[tuple[Expression, bool, bool]]:
     """Expressions at whose zeros, or whole numbers, an operation has a kink; and whether it is
     undefined there.
     """
@@ -58,7 +58,7 @@ def marks_of(operation: int, operands: Sequence[ca.SX]) -> Iterator[tuple[Any, b
         yield x, False, True
 
 
-def _zeros(x: ca.SX) -> Iterator[Any]:
+def _zeros(x: ca.SX) -> Iterator[Expression]:
     """Marks of where something is zero, for a stretch or at a place that it passes; a comparison
     has marks of its own.
     """

@@ -17,7 +17,7 @@ def mass_properties_of(
     mass: Expression,
     density: Density | None,
     centre: tuple[Expression, ...] | None,
-    inertia: Any,
+    inertia: Expression,
     checked: Callable[..., Expression],
     rigid: Callable[[Any, Any], tuple[tuple[Expression, ...], Any]] | None = None,
     beam: Beam | None = None,

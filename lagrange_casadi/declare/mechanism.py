@@ -141,7 +141,7 @@ class Mechanism(Graphs):
         return Results(self)
 
     @property
-    def symbols(self) -> Any:
+    def symbols(self) -> Expression:
         """The parameters' symbols as one column, in the order of declaration."""
         return ca.vertcat(
             ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values())
@@ -155,7 +155,7 @@ class Mechanism(Graphs):
         *,
         low: Number = -math.inf,
         high: Number = math.inf,
-    ) -> Any:
+    ) -> Expression:
         """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to
         build lengths and places from.
         """
@@ -266,7 +266,7 @@ class Mechanism(Graphs):
             name, self.coordinate(second) - ratio * self.coordinate(first) - offset
         )
 
-    def constraint(self, name: str, phi: Any) -> Constraint:
+    def constraint(self, name: str, phi: Expression) -> Constraint:
         """Declare Phi = 0, an expression of coordinates, places, directions, time and parameters
         (paper eq. 5); no slope may jump.
 
@@ -275,7 +275,7 @@ class Mechanism(Graphs):
         """
         return self.constraints.setdefault(name, constraint(self.own, name, phi))
 
-    def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
+    def nonholonomic(self, name: str, expression: Expression, *, replaces: Joint) -> Row:
         """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq. 3).
 
         It is an expression that is linear in rates and velocities.
@@ -435,7 +435,7 @@ class Mechanism(Graphs):
             Friction, self.loads.setdefault(name, friction(self.own, name, joint, along, numbers))
         )
 
-    def output(self, name: str, expression: Any, *, unit: str = "1") -> UserOutput:
+    def output(self, name: str, expression: Expression, *, unit: str = "1") -> UserOutput:
         """Declare an output of one's own, ``output:NAME``, with its unit: an expression of what
         loads see and of `results`.
         """
@@ -469,7 +469,7 @@ class Mechanism(Graphs):
         self.paths[name] = path
         return path
 
-    def coordinate(self, joint: Joint, axis: str = "") -> Any:
+    def coordinate(self, joint: Joint, axis: str = "") -> Expression:
         """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from
         the start of the scene on.
 
@@ -477,23 +477,23 @@ class Mechanism(Graphs):
         """
         return self.measures.joint(*self.own.moving_joint(joint, axis)).places[0]
 
-    def rate(self, joint: Joint, axis: str = "") -> Any:
+    def rate(self, joint: Joint, axis: str = "") -> Expression:
         """The symbol of a joint's rate, for loads and non-holonomic rows."""
         return self.measures.joint(*self.own.moving_joint(joint, axis)).rates[0]
 
-    def place(self, point: Body | Point) -> tuple[Any, ...]:
+    def place(self, point: Body | Point) -> tuple[Expression, ...]:
         """The symbols of a point's x and y, and in space z, in ground axes [m], for loads and
         constraints.
         """
         return self.measures.point(self.own.point("place", point)).places
 
-    def velocity(self, point: Body | Point) -> tuple[Any, ...]:
+    def velocity(self, point: Body | Point) -> tuple[Expression, ...]:
         """The symbols of a point's velocity in ground axes [m/s], for
         loads and non-holonomic rows.
         """
         return self.measures.point(self.own.point("velocity", point)).rates
 
-    def direction(self, link: Link) -> Any:
+    def direction(self, link: Link) -> Expression:
         """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts
         turns as a coordinate does.
         """

@@ -162,7 +162,7 @@ def _graph(
     period: float | None,
     advance: float,
     demands: tuple[Demand, ...],
-) -> Any:
+) -> Expression:
     """The law as a function of its argument: which stretch it is in is told once, and each law is
     written once.
     """
@@ -223,7 +223,7 @@ def _bends(stretch: Stretch) -> bool:
     return not (isinstance(bend, int | float) and bend == 0.0)
 
 
-def _chosen(rows: Any) -> Expression:
+def _chosen(rows: Expression) -> Expression:
     """Select the value whose condition holds, of which at most one does; zero if none does."""
     total: Any = 0.0
     for here, value in rows:

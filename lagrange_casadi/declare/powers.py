@@ -12,6 +12,7 @@ import casadi as ca
 
 from ..arithmetic.interpret import Arithmetic, interpret, steps
 from ..arithmetic.scalars import applied
+from ..base.arrays import Expression
 from ..errors import DeclarationError
 
 Polynomial = tuple[Any, ...]
@@ -22,7 +23,7 @@ class _NoPolynomialError(Exception):
     """An operation that no polynomial comes from."""
 
 
-def powers(expression: Any, symbol: Any, replaced: Polynomial) -> Polynomial | None:
+def powers(expression: Expression, symbol: Expression, replaced: Polynomial) -> Polynomial | None:
     """Coefficients of an expression for a polynomial that is put in for ``symbol``; or None where
     it is none of that symbol.
 
@@ -69,7 +70,7 @@ def _alone(operation: int) -> Callable[..., Polynomial]:
     return apply
 
 
-def _trimmed(polynomial: Sequence[Any]) -> Polynomial:
+def _trimmed(polynomial: Sequence[Expression]) -> Polynomial:
     """Without leading coefficients that are zero."""
     many = len(polynomial)
     while many > 1 and polynomial[many - 1].is_zero():

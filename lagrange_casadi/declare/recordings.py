@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -247,7 +246,7 @@ def _law(
     ratio, offset, stretch = scales
     start, rate = float(t[0]), climb * size
 
-    def graph(time: Any) -> Any:
+    def graph(time: Expression) -> Expression:
         at = time if isinstance(stretch, float) and stretch == 1.0 else time / stretch
         value = size * found(at)
         if rate:

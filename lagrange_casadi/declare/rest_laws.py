@@ -42,7 +42,7 @@ class RestLaw:
     begins: tuple[Expression, Expression] = (0.0, 0.0)
     inner: tuple[tuple[Expression, tuple[Expression, Expression]], ...] = ()
 
-    def least_time(self, way: Expression, limits: Limits) -> Any:
+    def least_time(self, way: Expression, limits: Limits) -> Expression:
         """The shortest time [s] in which a way [rad or m] is made within limits."""
         size, times = ca.fabs(ca.SX(way)), []
         if limits.speed is not None:
@@ -84,7 +84,7 @@ def trapezoid(share: Symbolic = _CUBE) -> RestLaw:
     _refuse_share("trapezoid: share", share, 0.5)
     top, steep = 1.0 / (1.0 - share), 1.0 / (share * (1.0 - share))
 
-    def shape(u: Any) -> Any:
+    def shape(u: Expression) -> Expression:
         return _both_halves(
             u, lambda w: _before(w, share, steep * w * w / 2.0, top * (w - share / 2.0))
         )
@@ -150,8 +150,8 @@ def _seven(first: Expression, second: Expression, third: Expression) -> RestLaw:
     ramp = second + third
     end = top * ramp / 2.0  # the way of speeding up
 
-    def shape(u: Any) -> Any:
-        def half(w: Any) -> Any:
+    def shape(u: Expression) -> Expression:
+        def half(w: Expression) -> Expression:
             rising = sharp * w**3 / 6.0
             x = w - third
             steady = sharp * third**3 / 6.0 + x * (sharp * third * third / 2.0 + x * steep / 2.0)
@@ -174,20 +174,20 @@ def _refuse_share(what: str, share: object, most: float) -> None:
         raise DeclarationError(f"{what} must be above 0 and at most {most:g}, got {share!r}")
 
 
-def _both_halves(u: Any, half: Callable[[Any], Any]) -> Any:
+def _both_halves(u: Expression, half: Callable[[Any], Any]) -> Expression:
     """A law of which the first half is known."""
     way = half(_before(u, 0.5, u, 1.0 - u))
     return _before(u, 0.5, way, 1.0 - way)
 
 
-def _before(x: Any, place: Any, first: Any, then: Any) -> Any:
+def _before(x: Expression, place: Expression, first: Expression, then: Expression) -> Expression:
     """One value before a place and another from there on; by two comparisons, for C tells a number
     from its negation.
     """
     return ca.if_else(x < place, first, 0.0) + ca.if_else(x >= place, then, 0.0)
 
 
-def _modified_trapezoid(w: Any) -> Any:
+def _modified_trapezoid(w: Expression) -> Expression:
     c = 1.0 / (2.0 + math.pi)
     rising = c * (2.0 * w - ca.sin(4.0 * math.pi * w) / (2.0 * math.pi))
     x = w - 0.125
@@ -197,7 +197,7 @@ def _modified_trapezoid(w: Any) -> Any:
     return _before(w, 0.125, rising, _before(w, 0.375, steady, fading))
 
 
-def _modified_sine(w: Any) -> Any:
+def _modified_sine(w: Expression) -> Expression:
     c = 1.0 / (4.0 + math.pi)
     rising = c * (math.pi * w - ca.sin(4.0 * math.pi * w) / 4.0)
     y = w - 0.5

@@ -115,7 +115,7 @@ class Results:
 
     mechanism: Mechanism
 
-    def acceleration(self, of: Joint | Body | Point) -> Any:
+    def acceleration(self, of: Joint | Body | Point) -> Expression:
         """The symbol of the acceleration of a joint's coordinate; or those of a point's, in ground
         axes [m/s^2].
         """

@@ -90,7 +90,7 @@ class SpatialMechanism(Mechanism):
         mass: Expression = None,
         density: Density | None = None,
         centre: Vector | None = None,
-        inertia: Any = None,
+        inertia: Expression = None,
         beam: Beam | None = None,
     ) -> Link:
         """Declare a link of a ``length`` [m], or one that lies ``between`` two places of the
@@ -120,7 +120,7 @@ class SpatialMechanism(Mechanism):
         if between is not None:
             reference, length, aside = lying(what, between, beside, self.own.expression)
 
-        def rigid(centre: Any, inertia: Any) -> tuple[Vector, Any]:
+        def rigid(centre: Expression, inertia: Expression) -> tuple[Vector, Any]:
             place, moments = (
                 self._vector(f"{what}: centre", centre, "m"),
                 tensor(what, inertia, self.own.expression),
@@ -160,7 +160,7 @@ class SpatialMechanism(Mechanism):
         child: Body | Point,
         *,
         axis: Vector = (0.0, 0.0, 1.0),
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Let ``child`` turn about ``axis`` through a point of ``parent``; a link stands for its
@@ -175,7 +175,7 @@ class SpatialMechanism(Mechanism):
         child: Body | Point,
         *,
         axis: Vector,
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without
@@ -190,7 +190,7 @@ class SpatialMechanism(Mechanism):
         child: Body | Point,
         *,
         axis: Vector,
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Let ``child`` slide along ``axis`` and turn about it:
@@ -206,7 +206,7 @@ class SpatialMechanism(Mechanism):
         *,
         axis: Vector,
         second: Vector,
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which
@@ -222,7 +222,7 @@ class SpatialMechanism(Mechanism):
         *,
         axis: Vector | None = None,
         second: Vector | None = None,
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Hold a point of ``child`` to a point of ``parent``: coordinates ``turn_1``, ``turn_2``,
@@ -242,7 +242,7 @@ class SpatialMechanism(Mechanism):
         *,
         axis: Vector,
         lead: Expression,
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] a turn: its
@@ -259,7 +259,7 @@ class SpatialMechanism(Mechanism):
         *,
         axis: Vector,
         second: Vector | None = None,
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Let ``child`` move in the plane through a point of ``parent`` that is normal to ``axis``:
@@ -274,7 +274,7 @@ class SpatialMechanism(Mechanism):
         child: Body | Point,
         *,
         axis: Vector = (1.0, 0.0, 0.0),
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, and
@@ -288,7 +288,7 @@ class SpatialMechanism(Mechanism):
         parent: Body | Point,
         child: Body | Point,
         *,
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Fix ``child`` to ``parent``."""
@@ -302,7 +302,7 @@ class SpatialMechanism(Mechanism):
         *,
         axis: Vector | None = None,
         second: Vector | None = None,
-        at: Any = None,
+        at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
         """Hold nothing: so the motion of a body's pose is given, or a body flies.
@@ -348,7 +348,7 @@ class SpatialMechanism(Mechanism):
         self.loads[name] = found
         return found
 
-    def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
+    def nonholonomic(self, name: str, expression: Expression, *, replaces: Joint) -> Row:
         """Declare a non-holonomic constraint, as in a plane; ``replaces`` is a driven joint of one
         coordinate.
         """
@@ -390,7 +390,7 @@ class SpatialMechanism(Mechanism):
         self.own.open("set gravity")
         self.gravity = self._vector("gravity", (x, y, z))
 
-    def direction(self, link: Link) -> Any:
+    def direction(self, link: Link) -> Expression:
         """Not in space, where a link has no single angle."""
         raise DeclarationError(
             "direction: a link in space has no single angle; use place() of its points, or"
@@ -403,7 +403,7 @@ class SpatialMechanism(Mechanism):
         kind: JointKind,
         bodies: tuple[Body | Point, Body | Point],
         axes: tuple[Vector | None, Vector | None],
-        at: Any,
+        at: Expression,
         turned: Turns,
         pitch: Expression = 0.0,
     ) -> Joint:
@@ -454,7 +454,7 @@ class SpatialMechanism(Mechanism):
         what: str,
         parent: Body | Point,
         child: Body | Point,
-        at: Any,
+        at: Expression,
         directions: Triad,
         turned: Turns,
     ) -> tuple[Point, Point, Triad, tuple[Vector, Vector]]:

@@ -69,7 +69,7 @@ class Timing:
 
     @classmethod
     def of(
-        cls, mechanism: Mechanism, motion: Mapping[str, Motion], t: Any, over: Any = None
+        cls, mechanism: Mechanism, motion: Mapping[str, Motion], t: Expression, over: Any = None
     ) -> Timing:
         """Parse the user's ``t``, or ``over`` if that is given; ``t`` is then the range in which
         ``over`` is sought.
@@ -309,7 +309,7 @@ def _read(mechanism: Mechanism, what: str, even: Any, unit: str = "s") -> tuple[
     return start, stop, count
 
 
-def _bound(name: str, bound: Any, unit: str) -> Operand:
+def _bound(name: str, bound: Expression, unit: str) -> Operand:
     """A bound of a coordinate, a text as a number.
 
     Raises :class:`DeclarationError` for a text of another unit, and for an angle beyond two turns
@@ -329,7 +329,7 @@ def _bound(name: str, bound: Any, unit: str) -> Operand:
     return found
 
 
-def _rising(even: Any) -> Any:
+def _rising(even: Any) -> Expression:
     """Interval with the lesser end first, if that is known."""
     try:
         return (even[1], even[0], *even[2:]) if even[1] < even[0] else even

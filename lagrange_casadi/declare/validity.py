@@ -413,7 +413,7 @@ def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
     return found
 
 
-def _product(first: Sequence[Expression], second: Sequence[Expression]) -> list[Any]:
+def _product(first: Sequence[Expression], second: Sequence[Expression]) -> list[Expression]:
     """The product of two polynomials."""
     found = [ca.SX(0) for _ in range(len(first) + len(second) - 1)]
     for j, a in enumerate(first):

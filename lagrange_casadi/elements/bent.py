@@ -99,19 +99,19 @@ def bent_bar(
     return Bent(tuple(pieces), (pieces[0].base, *(piece.tip for piece in pieces)))
 
 
-def _place(mechanism: Mechanism, what: str, corner: Any, size: int) -> list[Any]:
+def _place(mechanism: Mechanism, what: str, corner: Any, size: int) -> list[Expression]:
     if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != size:
         raise DeclarationError(f"{what}: expected {size} numbers, got {corner!r}")
     return [mechanism.own.expression(what, number, "m") for number in corner]
 
 
-def _length(way: Sequence[Any]) -> Any:
+def _length(way: Sequence[Expression]) -> Expression:
     if any(isinstance(x, ca.SX) for x in way):
         return ca.sqrt(sum(x * x for x in way))
     return math.hypot(*way)
 
 
-def _turn(y: Any, x: Any) -> Any:
+def _turn(y: Expression, x: Expression) -> Expression:
     return ca.atan2(y, x) if isinstance(x, ca.SX) or isinstance(y, ca.SX) else math.atan2(y, x)
 
 
@@ -120,7 +120,7 @@ def _weld(
     name: str,
     first: Link,
     second: Link,
-    way: Sequence[Any],
+    way: Sequence[Expression],
     onward: Sequence[Any],
 ) -> None:
     """Weld a piece to the tip of the one before, at the angle between their ways."""

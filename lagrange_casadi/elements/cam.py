@@ -297,7 +297,7 @@ def _translating(base: Expression, x: Expression, rise: Expression, layout: Layo
     )
 
 
-def _translating_flat(base: Any, x: Any, rise: Any, layout: Layout) -> Design:
+def _translating_flat(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
     up = layout.follower.axis[0], layout.follower.axis[1]
     aside = up[1], -up[0]
     offset = _dot(_sum(layout.away, _turned(layout.arm, layout.follower.angle)), aside)
@@ -311,7 +311,7 @@ def _translating_flat(base: Any, x: Any, rise: Any, layout: Layout) -> Design:
     )
 
 
-def _swinging(base: Any, x: Any, rise: Any, layout: Layout) -> Design:
+def _swinging(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
     away, arm = layout.away, layout.arm
     length, distance, prime = (
         ca.sqrt(ca.SX(_dot(arm, arm))),
@@ -328,7 +328,7 @@ def _swinging(base: Any, x: Any, rise: Any, layout: Layout) -> Design:
     )
 
 
-def _swinging_flat(base: Any, x: Any, rise: Any, layout: Layout) -> Design:
+def _swinging_flat(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
     away = layout.away
     distance = ca.sqrt(ca.SX(_dot(away, away)))
     sine = base / distance
@@ -340,8 +340,8 @@ def _swinging_flat(base: Any, x: Any, rise: Any, layout: Layout) -> Design:
 
 
 def _swung(
-    layout: Layout, rise: Any, cosine: Any, distance: Any
-) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    layout: Layout, rise: Expression, cosine: Expression, distance: Expression
+) -> tuple[tuple[Expression, Expression], tuple[Expression, Expression]]:
     """The direction of the arm of a swinging follower, and that in which it swings away from the
     cam.
 

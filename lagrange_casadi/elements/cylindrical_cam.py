@@ -189,7 +189,7 @@ def cylindrical_cam(
     return made
 
 
-def _carried(joint: Joint, angle: Any) -> Rotation:
+def _carried(joint: Joint, angle: Expression) -> Rotation:
     """Rotation of the child of a joint on the ground, at an angle of the joint."""
     assert joint.turned is not None
     resting = Rotation.of(*joint.turned)
@@ -203,8 +203,8 @@ def _carried(joint: Joint, angle: Any) -> Rotation:
 def _groove(
     what: str,
     mechanism: Mechanism,
-    x: Any,
-    coordinate: Any,
+    x: Expression,
+    coordinate: Expression,
     cam: Joint,
     follower: Joint,
     held: Point,
@@ -264,7 +264,9 @@ def _round(what: str, mechanism: Mechanism, design: Groove, roller: Expression) 
     return roller
 
 
-def _check(what: str, mechanism: Mechanism, design: Groove, rise: Any, follower: Joint) -> None:
+def _check(
+    what: str, mechanism: Mechanism, design: Groove, rise: Expression, follower: Joint
+) -> None:
     """Raise :class:`.DeclarationError` for axes that do not lie as they must, and for a lift that
     is another after a turn.
     """
@@ -293,7 +295,7 @@ def _check(what: str, mechanism: Mechanism, design: Groove, rise: Any, follower:
 
 
 def _contact(
-    mechanism: Mechanism, name: str, cam: Joint, held: Point, design: Groove, rise: Any
+    mechanism: Mechanism, name: str, cam: Joint, held: Point, design: Groove, rise: Expression
 ) -> Constraint:
     """The equation of the contact, in places, so that its force acts where it is."""
     drum, turn = cam.child.body, mechanism.coordinate(cam)
@@ -321,7 +323,7 @@ def _contact(
     )
 
 
-def _lean(design: Groove) -> tuple[Any, Any]:
+def _lean(design: Groove) -> tuple[Expression, Expression]:
     """The cosine and the sine of the angle between the force and the way of the roller."""
     across = cross(design.normal, design.way)
     return dot(design.normal, design.way), ca.sqrt(ca.SX(dot(across, across)))

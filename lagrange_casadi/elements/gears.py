@@ -22,7 +22,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
 import casadi as ca
 
@@ -183,7 +183,7 @@ def _teeth(
     own, count = mechanism.own, 1 if pair[1].slides else 2
     fits: list[Fit] = []
 
-    def each(word: str, values: Any, unit: str = "1") -> list[Expression]:
+    def each(word: str, values: Expression, unit: str = "1") -> list[Expression]:
         listed = list(values) if isinstance(values, (list, tuple)) else [values]
         if len(listed) != count:
             raise DeclarationError(f"{what}: expected {count} {word}, got {len(listed)}")
@@ -237,7 +237,7 @@ def _mesh(
     return Mesh(first, second, one.carrier, one.place, pitch.reach, *wrenches)
 
 
-def _sum(a: Any, b: Any) -> Any:
+def _sum(a: Expression, b: Expression) -> Expression:
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
@@ -298,7 +298,7 @@ def loss_of(
     return Loss(f"{name}:loss", (ahead + back) / 2, (back - ahead) / 2, first.turns), fits
 
 
-def lost(mechanism: Mechanism, constraint: Constraint, loss: Loss, pitch: Pitch) -> Any:
+def lost(mechanism: Mechanism, constraint: Constraint, loss: Loss, pitch: Pitch) -> Expression:
     """The power that one mesh takes."""
     rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.turns), ca.SX(0))
     force = mechanism.results.multiplier(constraint)

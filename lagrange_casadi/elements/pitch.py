@@ -281,7 +281,7 @@ def _sign(numbers: Numbers, value: Expression) -> int:
     return 1 if numbers.of(value) > 0.0 else -1
 
 
-def root(value: Any) -> Any:
+def root(value: Any) -> Expression:
     """The square root of a number or an expression."""
     return ca.sqrt(value) if isinstance(value, ca.SX) else math.sqrt(value)
 

@@ -101,7 +101,7 @@ def plate(
     return Plate(link, tuple(link.at(*corner) for corner in places))
 
 
-def area_of(places: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+def area_of(places: Sequence[Expression]) -> tuple[Expression, Expression, Expression, Expression]:
     """The area of a polygon, with its sign, the place of its centre, and its second moment about
     that over its area [m^2].
 
@@ -121,7 +121,7 @@ def area_of(places: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
     return area, x0 + x, y0 + y, second / area - x * x - y * y
 
 
-def _refuse_crossing(what: str, places: Sequence[Any]) -> None:
+def _refuse_crossing(what: str, places: Sequence[Expression]) -> None:
     """Raise for a polygon of numbers of which two edges cross."""
     if any(isinstance(number, ca.SX) for corner in places for number in corner):
         return
@@ -135,8 +135,8 @@ def _refuse_crossing(what: str, places: Sequence[Any]) -> None:
             )
 
 
-def _cross(a: Any, b: Any, c: Any, d: Any) -> bool:
-    def side(p: Any, q: Any, r: Any) -> float:
+def _cross(a: Expression, b: Expression, c: Expression, d: Expression) -> bool:
+    def side(p: Expression, q: Expression, r: Expression) -> float:
         return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
 
     return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import Numeric, public
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..base.csv_rows import read_rows
 from ..declare.curves import Curve, curve
 from ..declare.joints import Joint
@@ -44,7 +44,7 @@ class ProfileLift:
     curve: Curve
     base_radius: float
 
-    def __call__(self, angle: Any) -> Any:
+    def __call__(self, angle: Expression) -> Any:
         """The lift at an angle of the cam [rad]."""
         return self.curve(angle)
 
@@ -124,7 +124,7 @@ def profile_lift(
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
     values = mechanism.values()
 
-    def number(expression: Any) -> float:
+    def number(expression: Expression) -> float:
         return float(mechanism.number(expression, values))
 
     away, arm = (np.array([number(x) for x in pair]) for pair in (layout.away, layout.arm))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..declare.joints import Axis, Joint
 from ..declare.parts import Force, Friction, LineLoad, Link, Load, Point, Spring, Torque, Vector
 from ..geometry.frames import Velocities
@@ -123,7 +123,9 @@ def work(
             )
 
 
-def push(accelerated: Grown, joint: Joint, axis: Axis, effort: Any, velocities: Velocities) -> None:
+def push(
+    accelerated: Grown, joint: Joint, axis: Axis, effort: Expression, velocities: Velocities
+) -> None:
     """Let an effort do work along a joint's coordinate."""
     parent, child = accelerated.ends(joint)
     along = times(effort, accelerated.along(joint, axis))
@@ -170,7 +172,7 @@ def _along(load: LineLoad, resting: Grown) -> Applied:
 
 
 def _along_coordinate(
-    resting: Grown, name: str, joint: Joint, axis: Axis, force: Any
+    resting: Grown, name: str, joint: Joint, axis: Axis, force: Expression
 ) -> Iterator[Applied]:
     """Action on its bodies of a force that works along a joint's coordinate."""
     parent, child = resting.ends(joint)

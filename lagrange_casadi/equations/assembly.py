@@ -255,7 +255,7 @@ def kinetic_energy(
 
 
 def _rigid(
-    mass_properties: Any, frame: Frame, velocities: Velocities, *, space: bool, spun: bool
+    mass_properties: Expression, frame: Frame, velocities: Velocities, *, space: bool, spun: bool
 ) -> Expression:
     """A rigid body, or a point mass."""
     if not isinstance(mass_properties, RigidMass):
@@ -315,7 +315,9 @@ def _slender(
     return total * ca.sumsqr(base) / 2 + first * ca.dot(base, axis) + second * ca.sumsqr(axis) / 2
 
 
-def _turning(moments: tuple[Any, Any, Any], frame: Frame, velocities: Velocities) -> Any:
+def _turning(
+    moments: tuple[Expression, Expression, Expression], frame: Frame, velocities: Velocities
+) -> Expression:
     """The energy of slices that turn, by their second moments yy, zz, yz and the rates of the axes
     in their plane.
     """

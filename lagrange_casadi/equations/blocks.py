@@ -17,7 +17,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..declare.joints import Joint
 from ..errors import MobilityError
 from ..geometry.vectors import cross, dot
@@ -68,22 +68,22 @@ class Block:
     forms: tuple[ClosedForm, ...]
 
     @property
-    def residual(self) -> Any:
+    def residual(self) -> Expression:
         """The equations, one column."""
         return column(equation.residual for equation in self.equations)
 
     @property
-    def residual_rate(self) -> Any:
+    def residual_rate(self) -> Expression:
         """Total time derivative of the residuals."""
         return column(equation.residual_rate for equation in self.equations)
 
     @property
-    def residual_acceleration(self) -> Any:
+    def residual_acceleration(self) -> Expression:
         """Second total time derivative of the residuals."""
         return column(equation.residual_acceleration for equation in self.equations)
 
     @property
-    def multipliers(self) -> Any:
+    def multipliers(self) -> Expression:
         """The symbols of their multipliers."""
         return column(equation.loop.multipliers[equation.row] for equation in self.equations)
 
@@ -103,7 +103,7 @@ class Block:
         return ", ".join(f"{loop.kind} '{loop.name}'" for loop in self.loop_equations)
 
     @property
-    def jacobian(self) -> Any:
+    def jacobian(self) -> Expression:
         """Phi_z, in symbols: how Phi' goes with the rates."""
         return ca.jacobian(self.residual_rate, column(c.rate for c in self.unknown))
 
@@ -112,7 +112,7 @@ Part = tuple[list[Equation], list[Coordinate]]
 """Equations, and the coordinates that they are solved for."""
 
 
-def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block, ...]:
+def solving_order(multibody: Multibody, start: Mapping[str, Expression]) -> tuple[Block, ...]:
     """The blocks in the order of solution; among those that can be solved next, first the one that
     fewest joints close.
 
@@ -294,7 +294,10 @@ def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Par
 
 
 def _forms(
-    multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any
+    multibody: Multibody,
+    rows: Sequence[Equation],
+    unknown: Sequence[Coordinate],
+    counted: Expression,
 ) -> tuple[ClosedForm, ...]:
     """The closed forms that solve a part one after another, where there are any."""
     if any(c.spherical is not None for c in unknown):
@@ -376,7 +379,7 @@ def _require_freedom(
     )
 
 
-def _slopes(multibody: Multibody, start: Mapping[str, Any]) -> Array | None:
+def _slopes(multibody: Multibody, start: Mapping[str, Expression]) -> Array | None:
     """The loops' Jacobian by all coordinates, in a posture near the rough one, drives too; None
     where no posture is found.
     """
@@ -387,7 +390,11 @@ def _slopes(multibody: Multibody, start: Mapping[str, Any]) -> Array | None:
 
 
 def solve_line(
-    joint: Joint, rows: Sequence[int], phi: Any, unknown: Sequence[Coordinate], multibody: Multibody
+    joint: Joint,
+    rows: Sequence[int],
+    phi: Expression,
+    unknown: Sequence[Coordinate],
+    multibody: Multibody,
 ) -> tuple[ClosedForm, ...]:
     """The closed forms, one after another, of the ``rows`` of a joint that are Phi, told in the
     plane in which its line moves.

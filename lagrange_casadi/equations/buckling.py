@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import Numeric, Positive, public
-from ..base.arrays import Array, Operand
+from ..base.arrays import Array, Expression, Operand
 from ..beams.beam import SLIGHT
 from ..beams.properties import chosen, larger, smaller, symbolic
 from .stress import CrossSections
@@ -28,7 +28,7 @@ _ROUNDS, _TINY = 8, 1e-12
 
 
 @public
-def critical_stress(slenderness: Numeric, elasticity: Positive, strength: Positive) -> Any:
+def critical_stress(slenderness: Numeric, elasticity: Positive, strength: Positive) -> Expression:
     """The stress at which a column of a slenderness, effective length over radius of gyration,
     fails: Euler's or Johnson's [Pa].
     """

@@ -18,6 +18,7 @@ import casadi as ca
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..declare.mechanism import Mechanism
 from .checks import Column
@@ -30,8 +31,8 @@ _MORE = 6
 
 
 def deflections(
-    mechanism: Mechanism, name: str, columns: Mapping[Column, Any], *, ends: bool
-) -> dict[Column, Any]:
+    mechanism: Mechanism, name: str, columns: Mapping[Column, Expression], *, ends: bool
+) -> dict[Column, Expression]:
     """The size of the deflection across a link that is largest along it [m].
 
     It counts from the straight line between the ``ends`` as they are, or from the link's axes at
@@ -56,7 +57,7 @@ def deflections(
     return {Output("deflection", name, "across"): value}
 
 
-def _size(pieces: Sequence[_Piece], x: Any) -> Any:
+def _size(pieces: Sequence[_Piece], x: Expression) -> Expression:
     """The size of a deflection at a place of a part; in space its square."""
     return (
         ca.fabs(pieces[0].at(x)) if len(pieces) == 1 else sum(piece.at(x) ** 2 for piece in pieces)
@@ -82,7 +83,7 @@ class _Piece:
     def degree(self) -> int:
         return len(self.coefficients) - 1
 
-    def at(self, x: Any) -> Any:
+    def at(self, x: Expression) -> Expression:
         """Value at a place from 0 to 1, by Clenshaw's rule."""
         twice = 4.0 * x - 2.0
         last, before = 0.0, 0.0
@@ -124,7 +125,7 @@ def _curve(
     return [_Piece(ca.vertsplit(curve)) for _, curve in found]
 
 
-def _integrals(degree: int) -> tuple[list[float], Any, Any]:
+def _integrals(degree: int) -> tuple[list[float], Expression, Expression]:
     """Nodes from 0 to 1, and what makes of values there the integral from 0 of their polynomial,
     and the integral of that.
     """

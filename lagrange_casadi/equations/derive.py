@@ -303,7 +303,7 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
 
 
 def _least_energy(
-    scene: Scene, acting: Mapping[Column, Any], joint_forces: _JointForces
+    scene: Scene, acting: Mapping[Column, Expression], joint_forces: _JointForces
 ) -> LeastEnergy | None:
     """Choose by least strain energy what equilibrium leaves open; None where this is nothing.
 
@@ -340,7 +340,9 @@ def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
             raise DeclarationError(unaimed(two_force_link.link.name))
 
 
-def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, ca.SX]) -> dict[Column, Any]:
+def _strength(
+    scene: Scene, want: Wanted, columns: Mapping[Column, ca.SX]
+) -> dict[Column, Expression]:
     """Stresses, utilisation and deflections of the links of which they are wanted."""
     found: dict[Column, Any] = {}
     for name in want.stressed:

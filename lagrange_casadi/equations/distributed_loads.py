@@ -20,6 +20,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.tables import Terms, table_of
 from ..declare.density import Density
@@ -29,7 +30,7 @@ from .checks import Column
 from .multibody import Multibody
 
 
-def distributed_loads(multibody: Multibody, link: Link) -> dict[Column, Any]:
+def distributed_loads(multibody: Multibody, link: Link) -> dict[Column, Expression]:
     """End, width and coefficients on the link's axes of each distributed load of a link."""
     directions = table_of(multibody.mechanism.space).distributed
     found: dict[Column, Any] = {}
@@ -52,7 +53,9 @@ name.
 """
 
 
-def rotary(multibody: Multibody, link: Link, rate: Vector, angular: Vector) -> dict[Column, Any]:
+def rotary(
+    multibody: Multibody, link: Link, rate: Vector, angular: Vector
+) -> dict[Column, Expression]:
     """The rotary inertia of a link's slices as couples along it, between each two places at which
     it may jump (d'Alembert).
 
@@ -88,7 +91,7 @@ def rotary(multibody: Multibody, link: Link, rate: Vector, angular: Vector) -> d
     return found
 
 
-def _from(cell: Sequence[Any], end: float, width: float) -> list[Any]:
+def _from(cell: Sequence[Expression], end: float, width: float) -> list[Expression]:
     """A polynomial of u = end - width s as one of s."""
     return [
         (-width) ** j
@@ -116,7 +119,7 @@ def distributed_loads_of(outputs: Iterable[Output], link: str) -> dict[str, int]
 
 def distributed_force(
     outputs: Mapping[Column, ca.SX], link: str, length: ca.SX, terms: Terms, ratio: ca.SX
-) -> Iterator[Any]:
+) -> Iterator[Expression]:
     """The parts of a section force at a ratio by what acts along a link of a length [m]: loads by
     their arms, couples of slices.
     """
@@ -136,26 +139,26 @@ def distributed_force(
 def _force_of_load(
     outputs: Mapping[Column, Any],
     of: tuple[str, str],
-    length: Any,
+    length: Expression,
     powers: int,
     direction: str,
-    ratio: Any,
+    ratio: Expression,
     *,
     arm: bool,
-) -> Any:
+) -> Expression:
     """The force of a link's load along it, the part that a section at a ratio feels in a direction,
     or with ``arm`` its moment.
     """
     link, load = of
 
-    def value(member: str, power: int | None = None) -> Any:
+    def value(member: str, power: int | None = None) -> Expression:
         return outputs[Output("spread", link, member, load, power)]
 
     width, end = value("width"), value("end")
     x = ca.fmin(ca.fmax((end - ratio) / width, 0), 1)
     reach, lever = length * width, length * ca.fmax(end - width - ratio, 0)
 
-    def terms() -> Iterator[Any]:
+    def terms() -> Iterator[Expression]:
         for power in range(powers):
             share = value(direction, power) * (reach * x ** (power + 1) / (power + 1))
             yield share * (reach * x / (power + 2) + lever) if arm else share

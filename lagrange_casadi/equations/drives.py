@@ -15,6 +15,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from .linear import LinearSystem
 from .multibody import column
 
@@ -36,7 +37,7 @@ class Efforts:
     authority: Any
 
 
-def pushed(moved: Sequence[str], drives: Mapping[str, Any] | None) -> tuple[str, ...]:
+def pushed(moved: Sequence[str], drives: Mapping[str, Expression] | None) -> tuple[str, ...]:
     """The drives whose efforts are unknowns: all where they are too many, else those that are not
     at a joint that is ``moved``.
     """
@@ -46,10 +47,10 @@ def pushed(moved: Sequence[str], drives: Mapping[str, Any] | None) -> tuple[str,
 
 
 def solve_efforts(
-    efforts: Mapping[str, Any],
-    needs: Mapping[str, Any],
-    weights: Mapping[str, Any],
-    units: Mapping[str, Any],
+    efforts: Mapping[str, Expression],
+    needs: Mapping[str, Expression],
+    weights: Mapping[str, Expression],
+    units: Mapping[str, Expression],
 ) -> Efforts:
     """The efforts, by joint their symbols, that leave nothing of ``needs``, which are linear in
     them.
@@ -74,7 +75,7 @@ def solve_efforts(
     return Efforts(symbols, values, authority)
 
 
-def closure(authority: Any, usual: float) -> Any:
+def closure(authority: Expression, usual: float) -> Expression:
     """A ``hold`` as loops tell how far they are from a dead centre, from 0 to 1: beside what it is
     where the motion starts.
     """

@@ -53,7 +53,9 @@ class Solved:
 
 
 def solve(
-    found: Sequence[FrictionContact], indeterminate: ca.SX, signs: Mapping[str, Any] | None = None
+    found: Sequence[FrictionContact],
+    indeterminate: ca.SX,
+    signs: Mapping[str, Expression] | None = None,
 ) -> Solved:
     """The forces of frictions, along their coordinates, from what presses on them, which is linear
     in the symbols of all.
@@ -117,7 +119,7 @@ class _Pressed:
         """R for values of all frictions, None where they count as zero."""
         return [_sum(row, values, start) for row, start in zip(self.slopes, self.free, strict=True)]
 
-    def seen(self, k: int) -> Any:
+    def seen(self, k: int) -> Expression:
         """Largest dependence on a friction; None if there is none."""
         column_ = [row[k] for row in self.slopes if row[k] is not None]
         lean = self.contact.lean
@@ -129,7 +131,9 @@ class _Pressed:
         size, lean = self.contact.arm * self.contact.size(pressing), self.contact.lean
         return size if lean is None else size + sigma * (lean * pressing[0])
 
-    def weights(self, pressing: Sequence[Any], sigma: Any, unit: Any) -> list[Any]:
+    def weights(
+        self, pressing: Sequence[Expression], sigma: Expression, unit: Expression
+    ) -> list[Expression]:
         """Derivatives of ``unit`` times the normal force by each component; their products with the
         components add up to it.
         """
@@ -158,7 +162,7 @@ class _Law:
     still: bool = False
 
     @classmethod
-    def of(cls, one: FrictionContact, pressed: list[_Pressed], sign: Any = None) -> _Law:
+    def of(cls, one: FrictionContact, pressed: list[_Pressed], sign: Expression = None) -> _Law:
         friction, v = one.friction, one.rate
         if isinstance(friction, Transmission):
             return cls(friction.name, pressed, 1.0, -1.0, None, None)
@@ -194,7 +198,9 @@ class _Law:
         )
         return dry if self.steady is None else dry - self.steady
 
-    def straight(self, values: Sequence[Any], known: Sequence[Any]) -> tuple[Any, list[Any]]:
+    def straight(
+        self, values: Sequence[Expression], known: Sequence[Expression]
+    ) -> tuple[Expression, list[Expression]]:
         """The force as ``start - slopes s``, beside what is ``known``, if all that presses kept its
         direction at ``values``.
         """
@@ -221,7 +227,7 @@ class _Law:
 
 
 def _way(
-    one: FrictionContact, sign: Any, lever: Operand = 1.0
+    one: FrictionContact, sign: Expression, lever: Operand = 1.0
 ) -> tuple[Expression, Expression, bool]:
     """The sign of what slides, or its share of where it slides along two coordinates; whether it
     rests; and whether it always does, and has no ``sign`` given for that.
@@ -250,7 +256,7 @@ def _way(
     return sigma, rest, ca.SX(rest).is_one()
 
 
-def _bend(law: _Law, laws: Sequence[_Law]) -> Any:
+def _bend(law: _Law, laws: Sequence[_Law]) -> Expression:
     """Largest change of slope of a law by sliding friction, or by those at rest; None if there is
     none.
 
@@ -270,7 +276,7 @@ def _bend(law: _Law, laws: Sequence[_Law]) -> Any:
 
 def _solve_block(
     laws: Sequence[_Law], block: Sequence[int], values: list[Expression]
-) -> dict[Column, Any]:
+) -> dict[Column, Expression]:
     """Put the values of frictions that depend on each other into ``values``; and the checks of
     them.
     """
@@ -299,7 +305,9 @@ def _solve_block(
     return {Check("jam", name): _least_pivot(laws, block), Check("slip", name): missed / size}
 
 
-def _doubted(laws: Sequence[_Law], values: Sequence[Any], indeterminate_slopes: Any) -> list[Any]:
+def _doubted(
+    laws: Sequence[_Law], values: Sequence[Expression], indeterminate_slopes: Expression
+) -> list[Expression]:
     """Values with what they change at most where what presses on them changes by
     ``indeterminate_slopes``, row by row.
     """
@@ -327,7 +335,7 @@ def _doubted(laws: Sequence[_Law], values: Sequence[Any], indeterminate_slopes: 
     return [value + change for value, change in zip(values, changes, strict=True)]
 
 
-def _least_pivot(laws: Sequence[_Law], block: Sequence[int]) -> Any:
+def _least_pivot(laws: Sequence[_Law], block: Sequence[int]) -> Expression:
     """The least pivot of I - B: positive where there is one solution."""
     matrix: list[list[Any]] = []
     for j, law in zip(block, laws, strict=True):
@@ -344,7 +352,9 @@ def _least_pivot(laws: Sequence[_Law], block: Sequence[int]) -> Any:
     return least
 
 
-def _eliminated(matrix: list[list[Any]], right: list[Any]) -> tuple[list[Any], list[Any]]:
+def _eliminated(
+    matrix: list[list[Expression]], right: list[Expression]
+) -> tuple[list[Expression], list[Expression]]:
     """The solution of a system by elimination without exchange of rows, and its pivots; None stands
     for zero.
     """
@@ -417,6 +427,6 @@ def _sum(row: Sequence[Any], values: Sequence[Expression], start: Expression) ->
     return start if total is None else start + total
 
 
-def _entry(matrix: Expression, row: int, k: int) -> Any:
+def _entry(matrix: Expression, row: int, k: int) -> Expression:
     entry = matrix[row, k]
     return None if not entry.nnz() or entry.is_zero() else entry

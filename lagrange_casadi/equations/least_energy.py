@@ -26,6 +26,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Expression
 from ..base.quantities import Output, force_members
 from ..base.tables import table_of
 from ..declare.compliant import Elastic
@@ -84,7 +85,7 @@ class LeastEnergy:
     chosen: Any
     residual: Any
 
-    def completed(self, acting: Mapping[Column, Any], free: Any) -> Forces:
+    def completed(self, acting: Mapping[Column, Expression], free: Expression) -> Forces:
         """Forces ``acting`` that are expressions of what equilibrium leaves open, ``free``, with
         what is chosen in its place.
         """
@@ -112,7 +113,7 @@ class Completion:
         cls,
         least: LeastEnergy,
         forces: Forces,
-        columns: Mapping[Column, Any],
+        columns: Mapping[Column, Expression],
         inputs: Sequence[Any],
     ) -> Completion:
         """Put together what is told of ``forces`` that are among the ``columns`` of a graph, over
@@ -166,7 +167,7 @@ class Completion:
 
 
 def least_energy(
-    mechanism: Mechanism, elastic: Elastic, columns: Mapping[Column, Any], free: Any
+    mechanism: Mechanism, elastic: Elastic, columns: Mapping[Column, Expression], free: Expression
 ) -> LeastEnergy:
     """Choose ``free``, which ``columns`` are linear in; ``elastic`` is as in :class:`.Scene`.
 
@@ -235,7 +236,11 @@ class _Way:
 
 
 def _apart(
-    ways: Iterable[tuple[Any, Any]], rows: Any, weights: Any, measure: Any, least: Any
+    ways: Iterable[tuple[Expression, Expression]],
+    rows: Expression,
+    weights: Expression,
+    measure: Any,
+    least: Expression,
 ) -> list[_Way]:
     """Make what ``rows`` make of ways orthogonal, each to those before it that did something.
 
@@ -256,7 +261,7 @@ def _apart(
     return found
 
 
-def _relaxed(way: _Way, later: Sequence[_Way]) -> Any:
+def _relaxed(way: _Way, later: Sequence[_Way]) -> Expression:
     """A way, with what is chosen along later ones when it changes."""
     return way.way - sum(
         (ca.dot(other.weighed, way.made) * other.inverse * other.way for other in later), ca.SX(0)
@@ -264,8 +269,8 @@ def _relaxed(way: _Way, later: Sequence[_Way]) -> Any:
 
 
 def _strains(
-    beams: Sequence[tuple[Loaded, Moduli]], free: Any, more: int = 0
-) -> tuple[Any, Any, Any]:
+    beams: Sequence[tuple[Loaded, Moduli]], free: Expression, more: int = 0
+) -> tuple[Expression, Expression, Expression]:
     """Return what strains links at Gauss's nodes with nothing for what is open, by each number of
     that, and weights of squares.
     """
@@ -289,7 +294,13 @@ def _strains(
     )
 
 
-def _residual(chosen: Sequence[_Way], x: Any, strained: Any, bent: Any, weights: Any) -> Any:
+def _residual(
+    chosen: Sequence[_Way],
+    x: Expression,
+    strained: Expression,
+    bent: Expression,
+    weights: Expression,
+) -> Expression:
     """The largest cosine between the strains of what was chosen and those of the whole."""
     whole = strained + bent @ x
     size = ca.fmax(ca.dot(weights * whole, whole), ca.dot(weights * strained, strained))
@@ -320,12 +331,14 @@ def _links(mechanism: Mechanism, elastic: Elastic) -> tuple[dict[str, Moduli], d
     return soft, firm
 
 
-def _unit(mechanism: Mechanism, member: str) -> Any:
+def _unit(mechanism: Mechanism, member: str) -> Expression:
     """Return one for a component of a force, for a moment a length."""
     return extent(mechanism) if member.startswith(("m", "bending", "torsion")) else 1.0
 
 
-def _loading(mechanism: Mechanism, link: Link, columns: Mapping[Column, Any]) -> list[Any]:
+def _loading(
+    mechanism: Mechanism, link: Link, columns: Mapping[Column, Expression]
+) -> list[Expression]:
     """Tell how a link is loaded, in forces: by its section forces, or those of its joints, where
     they act at one place as one.
     """

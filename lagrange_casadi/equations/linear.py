@@ -96,7 +96,7 @@ class LinearSystem:
         return turned
 
 
-def _reflect(reflection: tuple[Any, Any], x: Any) -> Any:
+def _reflect(reflection: tuple[Any, Any], x: Expression) -> Any:
     """(1 - factor v v') x."""
     v, factor = reflection
     return x - v @ (factor * (v.T @ x))

@@ -9,7 +9,6 @@ the equation, and reactions and sections feel what acts where they touch.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import casadi as ca
 
@@ -59,7 +58,7 @@ def pressing_apart(transmission: Transmission, multiplier: Expression) -> Fricti
     return FrictionContact(transmission, contacts, ca.SX(0), ca.SX(0), (ca.SX(0), ca.SX(0)))
 
 
-def braking(multibody: Multibody, loss: Loss, multiplier: Any) -> FrictionContact:
+def braking(multibody: Multibody, loss: Loss, multiplier: Expression) -> FrictionContact:
     """Friction loss of a transmission, by its multiplier."""
     rate, acceleration = ca.SX(0), ca.SX(0)
     for sign, joint in loss.turns:

@@ -87,8 +87,8 @@ def internal_forces(
     multibody: Multibody,
     kinematics: Kinematics,
     want: Wanted,
-    weights: Mapping[str, Any] | None,
-    signs: Mapping[str, Any] | None = None,
+    weights: Mapping[str, Expression] | None,
+    signs: Mapping[str, Expression] | None = None,
 ) -> InternalForces:
     """Derive the efforts, reactions, multipliers of constraints and rows, laws of links and
     frictions that are wanted.
@@ -221,7 +221,7 @@ class Reaction:
 
 
 def _section_law(
-    multibody: Multibody, name: str, found: Mapping[str, Reaction], drives: Any
+    multibody: Multibody, name: str, found: Mapping[str, Reaction], drives: Expression
 ) -> dict[Column, Expression]:
     """The coefficients of a link's law: of its material from the section mobility, of the tip and
     stations from what acts there.
@@ -273,7 +273,7 @@ def _by_plane(acting: Action, space: bool) -> tuple[Expression, ...]:
     return (*acting.force, *acting.couple) if space else (*acting.force[:2], acting.couple[2])
 
 
-def _between_pins(multibody: Multibody, link: Link, drives: Any) -> bool:
+def _between_pins(multibody: Multibody, link: Link, drives: Expression) -> bool:
     """Return whether pins of a plane without effort at a link's base and at its tip are all that
     acts on it.
     """
@@ -337,8 +337,8 @@ def _of_any_link(space: bool) -> tuple[Expression, Expression]:
 
 
 def _loads_on(
-    multibody: Multibody, link: Link, found: Mapping[str, Reaction], drives: Any
-) -> Iterator[tuple[str, tuple[Any, Any, Any], Action]]:
+    multibody: Multibody, link: Link, found: Mapping[str, Reaction], drives: Expression
+) -> Iterator[tuple[str, tuple[Expression, Expression, Expression], Action]]:
     """Actions on a link beyond its base: the part that acts, and in the link's axes the place and
     the force.
 

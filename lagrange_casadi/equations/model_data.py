@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
@@ -54,7 +54,7 @@ def materials_of(description: Description) -> dict[str, Material]:
 
 
 @symbolic
-def beam_at(described: Template, link: str, p: Any) -> Beam:
+def beam_at(described: Template, link: str, p: Expression) -> Beam:
     """Return the beam of a link, its numbers as expressions of parameters ``p``, or as numbers
     where these are numbers.
     """
@@ -234,11 +234,11 @@ class ModelData(Graphs):
         return body["length"], Density(tuple(body["density"]["breaks"]), cells, per_length=False)
 
     @symbolic
-    def link(self, name: str, p: Any) -> Link:
+    def link(self, name: str, p: Expression) -> Link:
         """A link that has sections and a beam, its numbers as expressions of parameters ``p``."""
         return Link(name, *self.mass_properties(name, p), beam_at(self.template, name, p))
 
-    def section(self, link: str, columns: Mapping[Column, Any], p: Any) -> Section:
+    def section(self, link: str, columns: Mapping[Column, Expression], p: Expression) -> Section:
         """The section forces of a link, of columns and parameters ``p`` that are expressions."""
         return Section(link, table_of(self.space), columns, *self.mass_properties(link, p))
 
@@ -262,7 +262,7 @@ class ModelData(Graphs):
         return cls(**{name: read(words[name]) for name, (_, read) in _WRITTEN.items()})
 
 
-def _as_it_is(value: Any) -> Any:
+def _as_it_is(value: Any) -> Expression:
     return value
 
 

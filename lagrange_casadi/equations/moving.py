@@ -87,7 +87,7 @@ class Moving:
             mechanism.symbols,
         ]
 
-    def begins(self, expression: Any) -> Any:
+    def begins(self, expression: Expression) -> Expression:
         """An expression in the inputs where the motion starts."""
         start, newton = self.start, self.solved.newton
         at_start = (
@@ -212,7 +212,7 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:
     return found
 
 
-def _beyond(body: Multibody, seeing: Mapping[str, Expression]) -> dict[Column, Any]:
+def _beyond(body: Multibody, seeing: Mapping[str, Expression]) -> dict[Column, Expression]:
     """Distance of curves' arguments beyond their ends, by the constraint, load or row that uses the
     curve.
     """
@@ -228,7 +228,7 @@ def _beyond(body: Multibody, seeing: Mapping[str, Expression]) -> dict[Column, A
     return columns
 
 
-def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Column, Any]:
+def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Column, Expression]:
     """Square of the cosine of the second angle of joints with three turns as coordinates: zero if
     the third axis is the first.
 
@@ -246,7 +246,7 @@ def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Colum
     return found
 
 
-def _rolls(body: Multibody, want: Wanted) -> dict[Column, Any]:
+def _rolls(body: Multibody, want: Wanted) -> dict[Column, Expression]:
     """Square of the sine of the angle of bars with their declared y direction: zero if the
     direction is undefined.
 
@@ -266,7 +266,7 @@ def _rolls(body: Multibody, want: Wanted) -> dict[Column, Any]:
     return found
 
 
-def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Any]:
+def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Expression]:
     """Check of the turns of spherical joints, which are ``open`` in gimbal lock; the second angle
     is defined there.
     """

@@ -169,7 +169,7 @@ class Turned:
     angle: Any
 
     @property
-    def within(self) -> Any:
+    def within(self) -> Expression:
         """The angle between -pi and pi."""
         return ca.atan2(self.sine, self.cosine)
 
@@ -367,6 +367,6 @@ def change(expression: ca.SX, coordinates: tuple[Coordinate, ...], time: ca.SX) 
     return ca.jtimes(ca.SX(expression), moving, speed)
 
 
-def column(parts: Any) -> Expression:
+def column(parts: Expression) -> Expression:
     """Parts one below the other; an empty column where there are none."""
     return ca.vertcat(ca.SX(0, 1), *parts)

@@ -53,7 +53,7 @@ class Contact:
         return ca.sqrt(sum((x * x for x in components[1:]), components[0] * components[0]))
 
 
-def both_edges(components: Sequence[Any]) -> tuple[Any, Any]:
+def both_edges(components: Sequence[Expression]) -> tuple[Expression, Expression]:
     """Normal forces on both edges of a guide."""
     both, tilt = components
     return (both + tilt) / 2, (both - tilt) / 2
@@ -158,7 +158,7 @@ def way_of(joint: Joint, grown: Grown) -> Vector:
     return times(1 / ca.fmax(_size((x, y, z)), _TINY), (x, y, z))
 
 
-def _size(vector: Vector) -> Any:
+def _size(vector: Vector) -> Expression:
     return ca.sqrt(ca.SX(dot(vector, vector)))
 
 

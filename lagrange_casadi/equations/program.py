@@ -11,7 +11,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..base.quantities import Output, law_members, load_point_members
 from ..base.symbolic import Graphs, symbolic
 from ..declare.laws import Laws
@@ -87,7 +87,7 @@ class Program(Graphs):
         return status_of(self)
 
     @property
-    def beside(self) -> Any:
+    def beside(self) -> Expression:
         """The function ``beside(before, checks, next, after, most)``: what :attr:`status` sees of
         other instants.
         """
@@ -116,7 +116,7 @@ class Program(Graphs):
         return self.laws.joints
 
     @property
-    def motion(self) -> Any:
+    def motion(self) -> Expression:
         """The function ``motion(t, p) -> (d, d_rate, d_acceleration)``."""
         return self.laws.motion
 

@@ -57,7 +57,7 @@ class ReleasedLoops:
         multibody: Multibody,
         posture: Mapping[Coordinate, float],
         inputs: Sequence[Expression],
-        values: Sequence[Any],
+        values: Sequence[Expression],
         by: Sequence[Any],
     ) -> ReleasedLoops:
         """Coordinates near the given ones; ``values`` are the initial numbers of the symbols
@@ -106,7 +106,7 @@ class ReleasedLoops:
             np.array([c.spherical is not None for c in coordinates], bool),
         )
 
-    def at(self, posture: Posture, values: Sequence[Any]) -> list[Array]:
+    def at(self, posture: Posture, values: Sequence[Expression]) -> list[Array]:
         """The gaps and their derivatives there."""
         residual, *slopes = (x.full() for x in self.residuals(posture.u, posture.q, *values))
         return [residual.ravel(), *slopes]
@@ -116,7 +116,7 @@ class ReleasedLoops:
         u = posture.u + step * min(1.0, 0.5 / (np.max(np.abs(step), initial=0.0) + 1e-300))
         return Posture(np.where(self.resting, 0.0, u), self.turned(u, posture.q).full().ravel())
 
-    def slopes(self, values: Sequence[Any]) -> Array | None:
+    def slopes(self, values: Sequence[Expression]) -> Array | None:
         """The derivatives by all coordinates where the loops close near the rough posture; None
         where they do not.
         """

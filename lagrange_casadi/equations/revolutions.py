@@ -23,7 +23,7 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..errors import DeclarationError
 from .iteration import NewtonLoop
 from .kinematics import Kinematics, Start
@@ -256,7 +256,7 @@ def _widest(rows: Array) -> float:
     return float(np.max(np.abs(np.diff(rows, axis=1)), initial=0.0))
 
 
-def depends_on_turns(expression: Any, angle: Any) -> bool:
+def depends_on_turns(expression: Expression, angle: Expression) -> bool:
     """Return whether an expression may change if a whole turn is added to an angle."""
     expression = ca.densify(ca.vec(ca.SX(expression)))
     others = [

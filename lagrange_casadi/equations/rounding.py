@@ -268,14 +268,14 @@ class Share:
         return replace(joint, parent=parent, child=child, directions=(u, v, w), turned=(x, y))
 
 
-def _turned(turn: Any, vector: Vector) -> Vector:
+def _turned(turn: Expression, vector: Vector) -> Vector:
     """A vector after a small turn (Cayley): its length is kept to the last digit."""
     half = times(0.5, (turn[0], turn[1], turn[2]))
     across = cross(half, vector)
     return plus(vector, times(2 / (1 + dot(half, half)), plus(across, cross(half, across))))
 
 
-def _shifted(point: Point, shift: Any) -> Point:
+def _shifted(point: Point, shift: Expression) -> Point:
     if not _free(point):
         return point
     x, y, z = plus(point.place, (shift[0], shift[1], shift[2]))
@@ -290,7 +290,7 @@ def _free(point: Point) -> bool:
     return point.body.oriented and not (sections and nil(point.y) and nil(point.z))
 
 
-def _shared(mechanism: Mechanism, corrections: Any, size: float) -> Mechanism:
+def _shared(mechanism: Mechanism, corrections: Expression, size: float) -> Mechanism:
     """The mechanism with corrections, joint by joint: twelve each, in radians and of the
     mechanism's size.
     """
@@ -347,7 +347,7 @@ class _Search:
     rounding: float
 
     @classmethod
-    def of(cls, scene: Scene, mechanism: Mechanism, symbols: Any, size: float) -> _Search:
+    def of(cls, scene: Scene, mechanism: Mechanism, symbols: Expression, size: float) -> _Search:
         """Make it from a scene; ``mechanism`` is its own with symbols of corrections."""
         body = assemble(mechanism, span(mechanism, scene.laws), scene.laws, ())
         values, t = list(scene.mechanism.values(scene.assembly).values()), scene.span[0]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -167,7 +166,7 @@ def _load(load: Load, *, space: bool) -> str:
     return f"spring between {first} and {second}, {words}"
 
 
-def _along(powers: Sequence[Any]) -> str:
+def _along(powers: Sequence[Expression]) -> str:
     """A load along a link: what it is where it begins and where it ends, and its degree where it is
     not straight between.
     """

@@ -124,7 +124,9 @@ class Section:
             return [1, *(terms.arm * row for row in (l * (1 - u), l * t1, l * l * (u * t1 + t2)))]
         return [1, t0, l * (u * t0 + t1)][: len(terms.coefficients)]
 
-    def _acting(self, terms: Terms, load_point: str, ratio: Any, beyond: Any) -> Any:
+    def _acting(
+        self, terms: Terms, load_point: str, ratio: Expression, beyond: Expression
+    ) -> Expression:
         """Action of a load point, if it is beyond a ratio."""
         place, value = (
             self._of("station", member, load_point) for member in ("station", terms.acting)

@@ -21,7 +21,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..declare.joints import Joint
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import Vector
@@ -56,12 +56,12 @@ class SphericalCoordinates:
         x, y, z = (self._axis(k) for k in range(3))
         return Rotation(x, y, None, z)
 
-    def changes(self, rates: Sequence[Any]) -> tuple[Any, Any, Any]:
+    def changes(self, rates: Sequence[Expression]) -> tuple[Expression, Expression, Expression]:
         """The rates of the axes, by those about them."""
         (x, y, z), (p, q, r) = (self.axes[3 * k : 3 * k + 3] for k in range(3)), rates
         return r * y - q * z, p * z - r * x, q * x - p * y
 
-    def turned_by(self, turns: Sequence[float], base: Rotation) -> Any:
+    def turned_by(self, turns: Sequence[float], base: Rotation) -> Expression:
         """The axes of the body for its joint's three turns [rad] and for what it hangs on, one
         column.
         """
@@ -81,7 +81,7 @@ class SphericalCoordinates:
         return x, y, z
 
 
-def axes_of(quaternion: Any) -> Any:
+def axes_of(quaternion: Expression) -> Expression:
     """The three axes that a quaternion (w, x, y, z) of any length turns to, nine expressions."""
     w, x, y, z = ca.vertsplit(quaternion)
     twice = 2 / ca.sumsqr(quaternion)
@@ -101,7 +101,7 @@ def axes_of(quaternion: Any) -> Any:
     )
 
 
-def turn(quaternion: Any, rotation: Any) -> Any:
+def turn(quaternion: Expression, rotation: Expression) -> Expression:
     """A quaternion turned by a rotation about its axes [rad], of length one."""
     (w, x, y, z), (a, b, c) = ca.vertsplit(quaternion), ca.vertsplit(rotation / 2)
     moved = ca.vertcat(

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.status import Status
 from ..base.symbolic import symbolic
@@ -146,7 +147,7 @@ def status_of(program: Program) -> ca.Function:
 
 @functools.lru_cache(maxsize=64)
 @symbolic
-def beside_of(program: Program) -> Any:
+def beside_of(program: Program) -> Expression:
     """Return the function ``beside(before, checks, next, after, most)``: what stands beside checks,
     from those at the instants before and after, and the largest sizes of terms over all instants.
 
@@ -182,7 +183,7 @@ def outside(program: Program) -> float:
     return 1.0 if program.newton is None else 0.0
 
 
-def _sine(closure: Any) -> Any:
+def _sine(closure: Expression) -> Expression:
     """The sine whose square a closure is; zero of what is not above zero, or not finite."""
     return ca.sqrt(ca.if_else(closure / 2 < closure, closure, 0))
 

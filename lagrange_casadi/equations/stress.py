@@ -16,7 +16,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Operand
+from ..base.arrays import Array, Expression, Operand
 from ..base.symbolic import Graphs, symbolic
 from ..beams.beam import Beam, Notch
 from ..beams.properties import Properties, smaller
@@ -106,14 +106,14 @@ class CrossSections:
         """The names of the section forces that stresses are made of."""
         return FORCES[self.space]
 
-    def shape(self, cell: int, u: Any) -> Shape:
+    def shape(self, cell: int, u: Expression) -> Shape:
         """The shape between two breaks, at ratios ``u``."""
         course = self.beam.course
         first, last = course.cells[cell]
         share = (u - course.breaks[cell]) / (course.breaks[cell + 1] - course.breaks[cell])
         return between(first, last, share)
 
-    def properties(self, cell: int, u: Any) -> Properties:
+    def properties(self, cell: int, u: Expression) -> Properties:
         """The properties between two breaks, at ratios ``u``."""
         return self.shape(cell, u).properties(space=self.space)
 
@@ -122,8 +122,8 @@ class CrossSections:
         return Fibres.of(self.beam.course.cells[cell][0], self.space)
 
     def stresses(
-        self, cell: int, u: Any, fibres: Sequence[int], forces: Sequence[Any]
-    ) -> tuple[Any, Any, Any]:
+        self, cell: int, u: Expression, fibres: Sequence[int], forces: Sequence[Expression]
+    ) -> tuple[Expression, Expression, Expression]:
         """Normal stresses, and shear stresses along y and along z, at some fibres between two
         breaks, at a ratio ``u``, of section forces: as expressions, (fibres,).
         """

@@ -56,12 +56,12 @@ class ThreeRotations:
         return dot(u, w), squared, self.side * ca.sqrt(squared)
 
     @property
-    def locked(self) -> Any:
+    def locked(self) -> Expression:
         """Above zero where the turns are not told, else zero."""
         return 1 - ca.fmin(1, self._second[1] / LOCKED)
 
     @property
-    def angles(self) -> tuple[Any, Any, Any]:
+    def angles(self) -> tuple[Expression, Expression, Expression]:
         """The turns [rad], the first and the third from -pi to pi, the second at most a right angle
         from 0, or from pi.
         """
@@ -75,12 +75,12 @@ class ThreeRotations:
         )
 
     @cached_property
-    def rates(self) -> tuple[Any, Any, Any]:
+    def rates(self) -> tuple[Expression, Expression, Expression]:
         """Rates of the angles."""
         return self._along(minus(self.child.rate, self.parent.rate))
 
     @property
-    def accelerations(self) -> tuple[Any, Any, Any]:
+    def accelerations(self) -> tuple[Expression, Expression, Expression]:
         """Accelerations of the angles: from the relative angular acceleration, less the
         contribution of the axes' own motion.
         """
@@ -94,7 +94,7 @@ class ThreeRotations:
         return self._along(minus(change, times(last, cross(self.child.rate, third))))
 
     @cached_property
-    def _inverse(self) -> Any:
+    def _inverse(self) -> Expression:
         """One over the square of the cosine; of what is locked a number."""
         squared = self._second[1]
         share = ca.fmin(1, squared / LOCKED)
@@ -106,7 +106,7 @@ class ThreeRotations:
         (u, *_), (*_, third) = self._axes
         return times(self._second[2] * self._inverse, cross(third, u))
 
-    def _along(self, turning: Vector) -> tuple[Any, Any, Any]:
+    def _along(self, turning: Vector) -> tuple[Expression, Expression, Expression]:
         """The components of a vector along the three axes."""
         (u, *_), (*_, third) = self._axes
         sine = self._second[0]

@@ -17,6 +17,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
@@ -102,7 +103,7 @@ class PointFunction(Graphs):
         )
 
     @symbolic
-    def further(self) -> Any:
+    def further(self) -> Expression:
         """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: the derivatives that
         ``function`` has, and how they change along a ``way`` of time, xi/l and the parameters.
 
@@ -128,7 +129,7 @@ class PointFunction(Graphs):
         )
 
 
-def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> Any:
+def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> Expression:
     """``total(t, d, d_rate, d_acceleration, z, p) -> slopes``: of some ``rows`` of a graph by some
     parameters, by their numbers.
 
@@ -153,7 +154,9 @@ def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> Any:
     return ca.Function("total", inputs, [ca.densify(slopes)], names, ["slopes"], {"cse": True})
 
 
-def section_slopes(data: ModelData, link: str, columns: Sequence[Output], by: Sequence[int]) -> Any:
+def section_slopes(
+    data: ModelData, link: str, columns: Sequence[Output], by: Sequence[int]
+) -> Expression:
     """``sections(columns, slopes, xi, p) -> changes``: those of all section forces of a link,
     (parameters, forces), at a ratio.
 
@@ -181,12 +184,12 @@ def section_slopes(data: ModelData, link: str, columns: Sequence[Output], by: Se
     return ca.Function("at_once", given, [found], names, ["changes"], {"cse": True})
 
 
-def resultant(parts: Sequence[Any]) -> Any:
+def resultant(parts: Sequence[Expression]) -> Expression:
     """The size of what has these components, of one its value."""
     return parts[0] if len(parts) == 1 else ca.sqrt(sum(part * part for part in parts))
 
 
-def _weights(parts: Sequence[Any]) -> list[Any]:
+def _weights(parts: Sequence[Expression]) -> list[Expression]:
     """Derivatives of a resultant by its components: the resultant changes with the parts of changes
     along it.
     """
@@ -196,7 +199,9 @@ def _weights(parts: Sequence[Any]) -> list[Any]:
     return [part / ca.if_else(size > 0.0, size, 1.0) for part in parts]
 
 
-def _backwards(program: Program, inputs: Sequence[Any], adjoint: Any) -> tuple[Any, Any, Any]:
+def _backwards(
+    program: Program, inputs: Sequence[Any], adjoint: Expression
+) -> tuple[Expression, Expression, Expression]:
     """The derivatives by time, by the drives' coordinates, rates and accelerations, and in total by
     the parameters, of what has an ``adjoint``, (inputs, n), by the ``inputs`` of an instant.
     """
@@ -212,12 +217,12 @@ def _backwards(program: Program, inputs: Sequence[Any], adjoint: Any) -> tuple[A
     return by_t, by_drives, by_p + ca.jtimes(driven, p, by_drives, True)
 
 
-def _seeds(count: int, by: Sequence[int]) -> Any:
+def _seeds(count: int, by: Sequence[int]) -> Expression:
     """Derivatives of all parameters by some of them."""
     return ca.SX.eye(count)[:, list(by)]
 
 
-def _ends(parts: Sequence[Any]) -> list[int]:
+def _ends(parts: Sequence[Expression]) -> list[int]:
     """First row of each of some parts that stand below each other, and the end of the last one."""
     ends = [0]
     for part in parts:
@@ -227,21 +232,21 @@ def _ends(parts: Sequence[Any]) -> list[int]:
 
 def _rows(
     data: ModelData,
-    p: Any,
-    columns: dict[Column, Any],
+    p: Expression,
+    columns: dict[Column, Expression],
     quantities: Sequence[Output],
-    xi: Any,
+    xi: Expression,
     value: Any,
-    moving: Any,
+    moving: Expression,
     chosen: Any,
-) -> tuple[list[Any], list[Any]]:
+) -> tuple[list[Expression], list[Expression]]:
     """Rows of which a sum is the quantity that is meant, and their weights in it."""
     table = table_of(data.space)
     rows: list[Any] = []
     weights: list[Any] = []
     links: dict[str, Section] = {}
 
-    def add(parts: Sequence[Any], weight: Any) -> None:
+    def add(parts: Sequence[Expression], weight: Expression) -> None:
         rows.extend(parts)
         weights.extend(weight * own for own in _weights(parts))
 
