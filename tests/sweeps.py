@@ -39,7 +39,7 @@ class Formula:
     )
     efforts = ("effort:O",)
     indeterminate = ()
-    cost, room = 1 / 15, 0
+    cost, capacity = 1 / 15, 0
     provenance = Provenance(
         "formula", "double", "", "", "(default)", {"lagrange_casadi": __version__}
     )

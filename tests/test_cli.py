@@ -370,7 +370,7 @@ def scene():
         (
             ["run", "CASE", "--over", "O=1:0:5"],
             2,
-            "the motion of joint 'O' goes in the opposite direction to from 1 rad",
+            "the motion of joint 'O' runs opposite to the range from 1 rad",
         ),
         (["run", "CASE", "--xi", "0:2:5"], 2, "ratios xi/l must lie in [0, 1]"),
         (["run", "CASE", "--backend", "gpu"], 2, "'gpu' is not one of 'auto', 'lanes', 'c', 'vm'"),

@@ -135,7 +135,7 @@ def test_a_swing_is_followed_from_the_start_of_t():
     forth = press(lambda *_: law, over=("O", 0.7, 1.3, 9))
     back = press(lambda *_: law, over=("O", 1.3, 0.7, 9), t=(0.25, 1, 2))
     np.testing.assert_allclose(evaluate(forth).t + evaluate(back).t[::-1], 0.25, atol=1e-15)
-    with pytest.raises(DeclarationError, match=r"goes in the opposite direction to from 1\.3 rad"):
+    with pytest.raises(DeclarationError, match=r"runs opposite to the range from 1\.3 rad"):
         press(lambda *_: law, over=("O", 1.3, 0.7, 9))
 
 
@@ -171,7 +171,7 @@ def test_what_is_asked_for_can_be_sent_and_compared():
         (
             ("O", 1, 0, 5),
             (
-                "over: the motion of joint 'O' goes in the opposite direction to from 1 rad"
+                "over: the motion of joint 'O' runs opposite to the range from 1 rad"
                 " (57.2958 deg) to 0 rad (0 deg)"
             ),
         ),

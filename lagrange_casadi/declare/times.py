@@ -267,7 +267,7 @@ def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Passage:
     said = {
         Missed.STANDS_STILL: f"is at rest and does not go {asked}",
         Missed.OTHER_WAY: (
-            f"goes in the opposite direction to {asked} at t = {way.t[0]:.6g} s; expected START"
+            f"runs opposite to the range {asked} at t = {way.t[0]:.6g} s; expected START"
             " and STOP in the order of time"
         ),
         Missed.TURNS_BACK: f"does not go {asked}: it reverses at {where}",
