@@ -80,7 +80,8 @@ class Link:
                 self.outputs[Output("station", "rod", member, f"load {k}")] = values
         for k in range(int(random.integers(0, 3))):
             start, end = sorted(random.choice([0.0, 0.1, 0.35, 0.62, 1.0], 2, replace=False))
-            members = table.couples if table is SPACE and random.random() < 0.5 else table.distributed
+            couples = table is SPACE and random.random() < 0.5
+            members = table.couples if couples else table.distributed
             for member, value in (("width", end - start), ("end", end)):
                 self.outputs[Output("spread", "rod", member, f"along {k}")] = np.full(
                     INSTANTS, value

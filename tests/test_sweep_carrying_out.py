@@ -52,7 +52,7 @@ def test_the_order_of_blocks_does_not_matter(whole, tmp_path, monkeypatch):
             blocks = list(iter(queue.take, None))
             assert len(blocks) > 3
             for start, stop in blocks[::-1]:
-                yield start, stop, plan.harvest.chunks(plan.block(start, stop), plan.room)
+                yield start, stop, plan.harvest.chunks(plan.block(start, stop), plan.capacity)
 
     monkeypatch.setattr(sweeping, "hired", lambda *_: Backwards())
     assert run(tmp_path / "x.h5") == whole
