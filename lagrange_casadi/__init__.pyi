@@ -27,6 +27,7 @@ from .equations.derive import compile_scene, derive
 from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .exports import export
+from .formats import read, save_model
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
 from .store.runs import check, load, save
@@ -79,9 +80,11 @@ __all__ = [
     "optimise",
     "peaks",
     "prepare",
+    "read",
     "read_designs",
     "refine",
     "save",
+    "save_model",
     "sensitivities",
     "shaking",
     "size",

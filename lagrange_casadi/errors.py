@@ -193,6 +193,10 @@ class CaseError(LagrangeCasadiError):
     """A case's file is missing, raises, or has no ``scene``."""
 
 
+class ModelFileError(LagrangeCasadiError):
+    """A model file of another program cannot be read; the message names file, line and element."""
+
+
 class AssemblyError(LagrangeCasadiError):
     """A loop cannot be closed, or is singular, at some instant of the motion."""
 

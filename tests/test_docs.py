@@ -27,6 +27,7 @@ PAGES = [
     "docs/declaring.md",
     "docs/loads.md",
     "docs/machines.md",
+    "docs/models.md",
     "docs/space.md",
     "docs/strength.md",
     "docs/sweeps.md",

@@ -55,6 +55,7 @@ ORDER = (
     "animation",
     "actuators",
     "cluster",
+    "formats",
     "cli",
 )
 """A room imports only those before it, late imports too."""
@@ -62,7 +63,7 @@ ORDER = (
 DECLARED = ORDER[: ORDER.index("equations") + 1]
 """The rooms up to where a scene is compiled. All others read what it is compiled to."""
 
-LEAVES = ("exports", "figures", "report", "animation", "actuators", "cluster", "cli")
+LEAVES = ("exports", "figures", "report", "animation", "actuators", "cluster", "formats", "cli")
 """What nothing but the command line imports."""
 
 
@@ -289,7 +290,7 @@ else:
     from lagrange_casadi.cli import main
     assert main(["run", case, "--no-figures", "--backend", "vm", "--t", "0:0.1:5", "--out", out]) == 0
     asked = {"animate": [out], "drive": [case], "export": [case, "--out", out + "_c"], "plot": [out, "--out", out + "_p"]}
-    asked["report"] = [out]
+    asked |= {"report": [out], "new": [out + "_new", "--from", "model.json"]}
     for word in commands:
         assert main([word, *asked[word]]) == 1
 print(json.dumps([lost, refused]))
@@ -310,6 +311,7 @@ GOES = {
     "animation": (["cli.animate"], ["Solution.animate", "animation"], ["animate"]),
     "actuators": (["cli.drive"], ["actuators"], ["drive"]),
     "cluster": ([], ["optimise.dask", "sweep.dask"], []),
+    "formats": ([], ["read", "save_model"], ["new"]),
     "cli": ([], [], []),
 }
 """What goes with each leaf: commands' modules, methods and public names, and commands that then say

@@ -13,7 +13,6 @@ from ..base.space import MOST_THREADS
 from ..base.vocabulary import (
     RATE,
     SECONDS,
-    SIMPLE,
     TIME_LIMIT,
     WIDTH,
 )
@@ -101,7 +100,13 @@ def run(**given: Any) -> None:
 
 @command()
 @click.argument("case", type=CASE)
-@click.option("--out", type=PATH, required=True, metavar="DIR", help="Write into this folder.")
+@click.option("--out", type=PATH, metavar="DIR", help="Write into this folder.")
+@click.option(
+    "--model",
+    type=PATH,
+    metavar="FILE.json",
+    help="Write the mechanism as data for other programs: bodies, joints, motions.",
+)
 @click.option(
     "--name", metavar="NAME", help="Set the prefix of the names in C; default: the case's name."
 )
@@ -319,15 +324,21 @@ def cases(**given: Any) -> None:
 @click.argument("folder", type=PATH)
 @click.option(
     "--like",
-    default=SIMPLE,
-    show_default=True,
     metavar="NAME",
     help="Copy this case; the command cases lists all.",
+)
+@click.option(
+    "--from",
+    "source",
+    type=PATH,
+    metavar="FILE",
+    help="Begin with a model of another program: .json, .asmt or .urdf.",
 )
 def new(**given: Any) -> None:
     """Begin a case of your own in a new FOLDER.
 
-    It is a copy of one that comes with the package, under the folder's name.
+    It is a copy of one that comes with the package, under the folder's name, or a model of another
+    program that is written as a case.
     """
     from .new import new
 

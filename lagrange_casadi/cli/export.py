@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ..base.vocabulary import Precision
 from ..case import load_case
+from ..errors import DeclarationError
 from ..exports import export as write
 from .echo import echo
 from .options import parameters
@@ -15,7 +16,8 @@ from .options import parameters
 
 def export(
     case: Path,
-    out: Path,
+    out: Path | None,
+    model: Path | None,
     name: str | None,
     settings: Sequence[tuple[str, float | str]],
     want: Sequence[str],
@@ -29,6 +31,15 @@ def export(
 ) -> None:
     """See :func:`.commands.export`."""
     loaded = load_case(case)
+    if model is not None:
+        from ..formats import save_model
+
+        save_model(loaded.scene, model, parameters(settings))
+        echo(f"wrote {model}")
+    if out is None:
+        if model is None:
+            raise DeclarationError("nothing to write: give --out DIR or --model FILE.json")
+        return
     made = write(
         loaded.scene,
         out,

@@ -1,4 +1,6 @@
-"""``lagrange-casadi new``: a case of one's own, begun as one that comes with the package."""
+"""``lagrange-casadi new``: a case of one's own, begun as one that comes with the package, or as a
+model of another program.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +11,20 @@ import shutil
 from pathlib import Path
 
 from ..base.publish import filling
-from ..errors import PathError, UnknownNameError
+from ..base.vocabulary import SIMPLE
+from ..errors import DeclarationError, PathError, UnknownNameError
 from ..shipped_cases import shipped_cases
 from .echo import echo
 
 
-def new(folder: Path, like: str) -> None:
+def new(folder: Path, like: str | None, source: Path | None) -> None:
     """See :func:`.commands.new`."""
-    found = shipped_cases()
+    if source is not None:
+        if like is not None:
+            raise DeclarationError("--like and --from exclude each other")
+        _translated(folder, source)
+        return
+    like, found = like or SIMPLE, shipped_cases()
     if like not in found:
         raise UnknownNameError("case", like, found)
     if os.path.lexists(folder):
@@ -32,6 +40,23 @@ def new(folder: Path, like: str) -> None:
     echo(
         f"wrote {folder / 'case.py'}: change it, then lagrange-casadi run"
         f" {shlex.quote(str(folder))}"
+    )
+
+
+def _translated(folder: Path, source: Path) -> None:
+    """Write the case of a model of another program."""
+    from ..formats import case_of
+
+    text = case_of(source)
+    if os.path.lexists(folder):
+        raise PathError(f"{folder} exists: expected a new folder")
+    with filling(folder) as draft:
+        (draft / "case.py").write_text(text, encoding="utf-8", newline="\n")
+    for line in text.splitlines():
+        if line.startswith("# "):
+            echo(line[2:])
+    echo(
+        f"wrote {folder / 'case.py'}: read it, then lagrange-casadi run {shlex.quote(str(folder))}"
     )
 
 

@@ -1,0 +1,96 @@
+"""Models of other programs as cases: a file is read into a record, and the record is written as a
+case.
+
+A format is a module with ``read(path, text) -> Model``; :data:`FORMATS` lists them by the ending of
+files.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ..arguments import public
+from ..base.publish import check_writable, writing
+from ..declare.scene import Scene
+from ..errors import ModelFileError, PathError
+from . import asmt, json_model, urdf
+from .as_case import case_text
+from .checks import checked
+from .drives import driven
+from .of_scene import model_of
+from .record import Model
+
+__all__ = ["FORMATS", "case_of", "read", "save_model"]
+
+FORMATS: dict[str, Callable[[Path, str], Model]] = {
+    ".json": json_model.read,
+    ".asmt": asmt.read,
+    ".urdf": urdf.read,
+}
+"""What reads a file, by its ending."""
+
+LARGEST = 64 * 2**20
+"""Bytes of a file, at most."""
+
+
+@public
+def read(path: str | os.PathLike[str]) -> Scene:
+    """Read a mechanism from a file of another program: the scene of the case that the command
+    ``new`` writes of it.
+
+    The ending says the format, see the page on models of other programs. Raises
+    :class:`.ModelFileError`, which names file, line and element, for what no mechanism has.
+    """
+    name: dict[str, Any] = {"__name__": "lagrange_casadi_case"}
+    exec(compile(case_of(path), f"<{Path(path).name}>", "exec"), name)  # our own text, see as_case
+    scene: Scene = name["scene"]()
+    return scene
+
+
+def case_of(path: str | os.PathLike[str]) -> str:
+    """Return the text of a case for a file of another program."""
+    return case_text(driven(checked(_model(Path(path)))))
+
+
+@public
+def save_model(
+    scene: Scene,
+    path: str | os.PathLike[str],
+    parameters: Mapping[str, float] | None = None,
+) -> None:
+    """Write a scene's mechanism and motion as JSON, as :func:`read` reads it, for values of
+    parameters.
+    """
+    file = Path(path)
+    check_writable(file)
+    text = json_model.write(checked(model_of(scene, parameters or {}, file.name)))
+    with writing(file) as (draft,):
+        draft.write(text.encode())
+
+
+def _model(path: Path) -> Model:
+    if (reader := FORMATS.get(path.suffix.lower())) is None:
+        if path.suffix.lower() == ".xacro":
+            raise ModelFileError(
+                f"{path.name}: xacro is a macro language; expand it first: xacro {path.name} >"
+                f" {path.stem.removesuffix('.urdf')}.urdf"
+            )
+        raise ModelFileError(
+            f"{path.name}: unknown format '{path.suffix}'; valid: {', '.join(FORMATS)}"
+        )
+    try:
+        found = path.stat()
+        if not stat.S_ISREG(found.st_mode):
+            raise PathError(f"cannot read {path}: it is not a file")
+        if found.st_size > LARGEST:
+            raise ModelFileError(f"{path.name}: more than {LARGEST // 2**20} MB")
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise PathError(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise ModelFileError(f"{path.name}: no text in UTF-8") from None
+    return reader(path, text)

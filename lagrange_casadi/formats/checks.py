@@ -1,0 +1,184 @@
+"""Checks of a record: what no body and no mechanism can be, and what a drawing has rounded."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..base.arrays import Array
+from .record import GROUND, Body, Frame, Joint, Model, Tie, about_axis
+
+SLACK = 1e-6
+"""Frames of a joint that are apart by less, of the mechanism's size and in rad, are one."""
+
+EXACT = 1e-12
+"""What is off by less is the rounding of sums, and is not worth a note."""
+
+
+def checked(model: Model) -> Model:
+    """Return a model that can be declared, its frames without rounding.
+
+    Raises :class:`.ModelFileError`, which names the element, for impossible bodies, joints of
+    unknown bodies, and parts that hang on nothing.
+    """
+    if not model.bodies:
+        raise model.refuse("", "has no body that moves")
+    for body in model.bodies.values():
+        model.bodies[body.name] = _body(model, body)
+    joints: list[Joint | Tie] = [*model.joints.values(), *model.ties.values()]
+    for joint in joints:
+        for name in (joint.parent, joint.child):
+            if name != GROUND and name not in model.bodies:
+                there = ", ".join([GROUND, *model.bodies])
+                words = f"joint '{joint.name}': unknown body '{name}'; valid: {there}"
+                raise model.refuse(joint.where, words)
+        if joint.parent == joint.child:
+            words = f"joint '{joint.name}' joins '{joint.parent}' to itself"
+            raise model.refuse(joint.where, words)
+    _connected(model)
+    valid = [name for joint in model.joints.values() for name in joint.coordinates]
+    told = {name: law.where for name, law in model.motions.items()}
+    told |= {
+        name: one.where for one in model.couplings.values() for name in (one.first, one.second)
+    }
+    for name, where in told.items():
+        if name not in valid:
+            words = f"unknown coordinate '{name}'; valid: {', '.join(valid)}"
+            raise model.refuse(where, words)
+    _rounding(model)
+    _spins(model)
+    return model
+
+
+def _body(model: Model, body: Body) -> Body:
+    """Return a body whose mass can be: no mass is negative, no moment exceeds the other two."""
+    what = f"body '{body.name}'"
+    if body.mass < 0.0:
+        raise model.refuse(body.where, f"{what}: a mass of {body.mass:g} kg is impossible")
+    if body.inertia is None or not np.any(body.inertia):
+        if body.mass > 0.0 and not body.point:
+            words = f"{what} has a mass of {body.mass:g} kg and no inertia; tell its moments"
+            raise model.refuse(body.where, f"{words} of inertia about the centre of mass")
+        return replace(body, inertia=np.zeros((3, 3)))
+    inertia = (body.inertia + body.inertia.T) / 2.0
+    moments = np.linalg.eigvalsh(inertia)
+    excess = float(2.0 * moments[2] - moments.sum())
+    told = ", ".join(f"{moment:.6g}" for moment in moments)
+    if moments[0] < -1e-9 * moments[2] or excess > 1e-3 * moments[2] or moments[2] <= 0.0:
+        raise model.refuse(
+            body.where,
+            f"{what}: no body has the principal moments of inertia {told} kg m^2: none is negative,"
+            " and none is larger than the sum of the other two",
+        )
+    if excess > EXACT * moments[2]:
+        model.notes.append(
+            f"{what}: its largest principal moment of inertia exceeds the sum of the other two by"
+            f" {excess:.1e} kg m^2, which is taken for rounding"
+        )
+    return replace(body, inertia=inertia)
+
+
+def _connected(model: Model) -> None:
+    """Raise :class:`.ModelFileError` for the first body that hangs on nothing; one that ties alone
+    hold is free but for these.
+    """
+    reached, before = {GROUND}, 0
+    while before < len(reached):
+        before = len(reached)
+        for joint in model.joints.values():
+            if {joint.parent, joint.child} & reached:
+                reached |= {joint.parent, joint.child}
+    for tie in model.ties.values():
+        for one, other in ((tie.parent, tie.child), (tie.child, tie.parent)):
+            if one not in reached and other in reached:
+                name = model.name_of("joint", f"{one}_free", tie.where, model.joints)
+                model.joints[name] = Joint(name, "free", GROUND, one, model.frame_of(one), Frame())
+                _connected(model)
+                return
+    for body in model.bodies.values():
+        if body.name not in reached:
+            words = f"body '{body.name}' is joined to nothing that hangs on the ground"
+            raise model.refuse(body.where, words)
+
+
+def _spins(model: Model) -> None:
+    """Hold the idle spin of bodies that are no rods: one of their spherical joints is universal."""
+    for name in spinning(model):
+        body = model.bodies[name]
+        if body.rod is not None:
+            continue
+        first, last = (one for one in model.joints.values() if name in (one.parent, one.child))
+        other = last.parent if last.child == name else last.child
+        along = model.frames(last)[0].place - model.frames(first)[0].place
+        across = _axis_of(model, other, along / np.linalg.norm(along))
+        held = []
+        for mine, frame in ((last.parent, last.on_parent), (last.child, last.on_child)):
+            # The neighbour carries the axis about which it turns; the body the one across it.
+            z = across if mine == other else np.cross(along, across)
+            axes = model.frame_of(mine).axes.T @ about_axis(z)
+            held.append(Frame(frame.place, axes))
+        near, far = held
+        model.joints[last.name] = replace(last, kind="universal", on_parent=near, on_child=far)
+        model.notes.append(
+            f"body '{name}' lies between two spherical joints, and its spin about itself loads"
+            f" nothing: joint '{last.name}' is universal here"
+        )
+
+
+def _axis_of(model: Model, body: str, along: Array) -> Array:
+    """Return a direction across a line, about which a body at its end turns, where one does."""
+    for joint in model.joints.values():
+        if joint.kind == "revolute" and body in (joint.parent, joint.child):
+            axis = model.frames(joint)[0].axes[:, 2]
+            across = axis - (axis @ along) * along
+            if (size := float(np.linalg.norm(across))) > 0.1:
+                return np.asarray(across / size)
+    return about_axis(along)[:, 0]
+
+
+def _rounding(model: Model) -> None:
+    """Lay the frames of each joint on each other where they miss by a drawing's rounding."""
+    size = model.size()
+    for joint in model.joints.values():
+        gap, angle = model.apart(joint)
+        if max(gap / size, angle) > SLACK or max(gap / size, angle) <= EXACT:
+            continue
+        model.notes.append(
+            f"joint '{joint.name}': its two frames miss each other by {gap:.1e} m and {angle:.1e}"
+            " rad, which is taken for rounding: the child's place and the parent's axes hold"
+        )
+
+
+def spinning(model: Model) -> list[str]:
+    """Return the bodies between two spherical joints and on no other, whose spin about the line
+    between these loads nothing.
+    """
+    found = []
+    for body in model.bodies.values():
+        mine = [one for one in model.joints.values() if body.name in (one.parent, one.child)]
+        if len(mine) != 2 or any(one.kind != "spherical" for one in mine) or body.point:
+            continue
+        places = [one.on_parent if one.parent == body.name else one.on_child for one in mine]
+        first, second = (frame.place for frame in places)
+        if not (length := float(np.linalg.norm(second - first))) or body.inertia is None:
+            continue
+        along, beside = (second - first) / length, body.centre - first
+        off = float(np.linalg.norm(beside - (beside @ along) * along))
+        twist = body.inertia @ along
+        askew = float(np.linalg.norm(twist - (twist @ along) * along))
+        if (off <= SLACK * length or not body.mass) and askew <= SLACK * float(
+            np.trace(body.inertia)
+        ):
+            found.append(body.name)
+    return found
+
+
+def opened(model: Model) -> dict[str, tuple[float, float]]:
+    """Return the joints whose frames are apart in the reference posture, by how much."""
+    size, found = model.size(), {}
+    for joint in model.joints.values():
+        gap, angle = model.apart(joint)
+        if gap > SLACK * size or angle > SLACK:
+            found[joint.name] = (gap, angle)
+    return found

@@ -1,0 +1,265 @@
+"""The record as JSON: our own format, for other programs and for generators of models.
+
+``docs/model.schema.json`` is its schema. A number after ``version`` counts its changes.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import shown
+from .record import (
+    COORDINATES,
+    Body,
+    Coupling,
+    Frame,
+    Joint,
+    Law,
+    Model,
+    about_axis,
+    number,
+    numbers,
+    rotation,
+)
+
+SCHEMA, VERSION = "lagrange_casadi.model", 1
+"""What a file says that it is."""
+
+TOP = (
+    "schema",
+    "version",
+    "name",
+    "units",
+    "gravity",
+    "time",
+    "bodies",
+    "joints",
+    "couplings",
+    "motions",
+    "posture",
+    "drives",
+    "notes",
+)
+FRAME = ("place", "axes", "z")
+BODY = ("name", "mass", "centre", "inertia", "rod", "point", "places", *FRAME)
+JOINT = ("name", "kind", "parent", "child", "on_parent", "on_child", "lead")
+COUPLING = ("name", "first", "second", "ratio", "offset")
+
+Told = Mapping[str, Any]
+
+
+def read(path: Path, text: str) -> Model:
+    """Return the model of a file. Raises :class:`.ModelFileError`, which names the element."""
+    model = Model(path.stem, path.name)
+    try:
+        told = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise model.refuse("", f"no JSON: {error}") from None
+    _keys(model, "", told, TOP, ("schema", "version", "bodies", "joints"))
+    if told["schema"] != SCHEMA or told["version"] != VERSION:
+        expected = f'"schema": "{SCHEMA}", "version": {VERSION}'
+        got = f"{shown(told['schema'])}, {shown(told['version'])}"
+        raise model.refuse("", f"expected {expected}, got {got}")
+    if told.get("units", "SI") != "SI":
+        raise model.refuse("units", f'expected "SI", got {shown(told["units"])}')
+    model.name = _text(model, "name", told.get("name", model.name))
+    x, y, z = numbers(model, "gravity", told.get("gravity", (0.0, 0.0, -9.81)), "gravity", 3)
+    model.gravity = (float(x), float(y), float(z))
+    for k, one in enumerate(_list(model, "bodies", told["bodies"])):
+        body = _body(model, f"bodies[{k}]", one)
+        model.bodies[body.name] = body
+    for k, one in enumerate(_list(model, "joints", told["joints"])):
+        joint = _joint(model, f"joints[{k}]", one)
+        model.joints[joint.name] = joint
+    for k, one in enumerate(_list(model, "couplings", told.get("couplings", []))):
+        coupling = _coupling(model, f"couplings[{k}]", one)
+        model.couplings[coupling.name] = coupling
+    for name, one in _table(model, "motions", told.get("motions", {})).items():
+        model.motions[name] = _law(model, f"motions.{name}", one)
+    for name, one in _table(model, "posture", told.get("posture", {})).items():
+        model.posture[name] = number(model, f"posture.{name}", one, "value")
+    if "drives" in told:
+        names = _list(model, "drives", told["drives"])
+        model.drives = [_text(model, "drives", one) for one in names]
+    if "time" in told:
+        model.span = _span(model, told["time"])
+    model.notes = [
+        _text(model, "notes", one) for one in _list(model, "notes", told.get("notes", []))
+    ]
+    return model
+
+
+def write(model: Model) -> str:
+    """Return the text of the file for a model."""
+    told: dict[str, Any] = {"schema": SCHEMA, "version": VERSION, "name": model.name, "units": "SI"}
+    told["gravity"] = list(model.gravity)
+    told["time"] = dict(zip(("start", "stop", "count"), model.span, strict=True))
+    told["bodies"] = [_told_body(body) for body in model.bodies.values()]
+    told["joints"] = [
+        {"name": one.name, "kind": one.kind, "parent": one.parent, "child": one.child}
+        | {"on_parent": _told_frame(one.on_parent), "on_child": _told_frame(one.on_child)}
+        | ({"lead": one.lead} if one.lead else {})
+        for one in model.joints.values()
+    ]
+    told["couplings"] = [
+        {key: getattr(one, key) for key in COUPLING} for one in model.couplings.values()
+    ]
+    told["motions"] = {
+        name: law.text
+        if law.samples is None
+        else {"times": list(law.samples[0]), "values": list(law.samples[1])}
+        for name, law in model.motions.items()
+    }
+    told |= {"posture": model.posture} if model.posture else {}
+    told |= {"drives": model.drives} if model.drives is not None else {}
+    told |= {"notes": model.notes} if model.notes else {}
+    return json.dumps(told, indent=1, allow_nan=False) + "\n"
+
+
+def _told_body(body: Body) -> dict[str, Any]:
+    told: dict[str, Any] = {"name": body.name, "mass": body.mass} | _told_frame(body.frame)
+    if body.rod is not None:
+        told["rod"] = [end.tolist() for end in body.rod]
+    elif body.point:
+        told["point"] = True
+    else:
+        assert body.inertia is not None
+        told |= {"centre": body.centre.tolist(), "inertia": body.inertia.tolist()}
+    if body.places:
+        told["places"] = {name: place.tolist() for name, place in body.places.items()}
+    return told
+
+
+def _told_frame(frame: Frame) -> dict[str, Any]:
+    told: dict[str, Any] = {"place": frame.place.tolist()}
+    if not np.array_equal(frame.axes, np.eye(3)):
+        told["axes"] = frame.axes.T.tolist()
+    return told
+
+
+def _body(model: Model, where: str, told: Told) -> Body:
+    _keys(model, where, told, BODY, ("name", "mass"))
+    name = model.name_of("body", _text(model, where, told["name"]), where, model.bodies)
+    mass = number(model, f"{where}.mass", told["mass"], "mass")
+    frame = _frame(model, where, {key: told[key] for key in FRAME if key in told})
+    places = {
+        one: numbers(model, f"{where}.places.{one}", place, "place", 3)
+        for one, place in _table(model, f"{where}.places", told.get("places", {})).items()
+    }
+    if "rod" in told:
+        ends = _list(model, f"{where}.rod", told["rod"])
+        if len(ends) != 2:
+            raise model.refuse(f"{where}.rod", "expected two places")
+        start, end = (numbers(model, f"{where}.rod", one, "rod", 3) for one in ends)
+        body = Body.slender(name, mass, (start, end), where)
+        return Body(name, mass, body.centre, body.inertia, frame, places, body.rod, where=where)
+    centre = numbers(model, f"{where}.centre", told.get("centre", (0.0, 0.0, 0.0)), "centre", 3)
+    inertia, given = None, told.get("inertia")
+    if given is not None and all(isinstance(one, Sequence) for one in _list(model, where, given)):
+        rows = [numbers(model, f"{where}.inertia", one, "inertia", 3) for one in given]
+        inertia = np.array(rows)
+        if inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0.0):
+            raise model.refuse(
+                f"{where}.inertia", "expected three moments or three rows, symmetric"
+            )
+    elif given is not None:
+        inertia = np.diag(numbers(model, f"{where}.inertia", given, "inertia", 3))
+    point = told.get("point", False) is True
+    return Body(name, mass, centre, inertia, frame, places, point=point, where=where)
+
+
+def _joint(model: Model, where: str, told: Told) -> Joint:
+    _keys(model, where, told, JOINT, ("name", "kind", "parent", "child"))
+    name = model.name_of("joint", _text(model, where, told["name"]), where, model.joints)
+    if told["kind"] not in COORDINATES:
+        valid = ", ".join(COORDINATES)
+        words = f"joint '{name}': unknown kind {shown(told['kind'])}; valid: {valid}"
+        raise model.refuse(f"{where}.kind", words)
+    parent, child = (_text(model, f"{where}.{key}", told[key]) for key in ("parent", "child"))
+    near, far = (
+        _frame(model, f"{where}.{key}", told.get(key, {})) for key in ("on_parent", "on_child")
+    )
+    lead = number(model, f"{where}.lead", told.get("lead", 0.0), "lead")
+    return Joint(name, told["kind"], parent, child, near, far, lead, where)
+
+
+def _frame(model: Model, where: str, told: Told) -> Frame:
+    """Return a frame: its place, and either its three axes, or the direction of z."""
+    _keys(model, where, told, FRAME, ())
+    place = numbers(model, f"{where}.place", told.get("place", (0.0, 0.0, 0.0)), "place", 3)
+    if "axes" in told:
+        rows = _list(model, f"{where}.axes", told["axes"])
+        axes = np.array([numbers(model, f"{where}.axes", row, "axes", 3) for row in rows]).T
+        if axes.shape != (3, 3):
+            raise model.refuse(f"{where}.axes", "expected the directions of x, y and z")
+        return Frame(place, rotation(model, f"{where}.axes", axes))
+    if "z" in told:
+        z = numbers(model, f"{where}.z", told["z"], "z", 3)
+        if not np.any(z):
+            raise model.refuse(f"{where}.z", "expected a direction, got zero")
+        return Frame(place, about_axis(z))
+    return Frame(place)
+
+
+def _coupling(model: Model, where: str, told: Told) -> Coupling:
+    _keys(model, where, told, COUPLING, ("name", "first", "second", "ratio"))
+    name = model.name_of("coupling", _text(model, where, told["name"]), where, model.couplings)
+    first, second = (_text(model, f"{where}.{key}", told[key]) for key in ("first", "second"))
+    ratio = number(model, f"{where}.ratio", told["ratio"], "ratio")
+    offset = number(model, f"{where}.offset", told.get("offset", 0.0), "offset")
+    return Coupling(name, first, second, ratio, offset, where)
+
+
+def _law(model: Model, where: str, told: object) -> Law:
+    if isinstance(told, str):
+        return Law(told, where=where)
+    table = _table(model, where, told)
+    _keys(model, where, table, ("times", "values"), ("times", "values"))
+    count = len(_list(model, where, table["times"]))
+    rows = [numbers(model, f"{where}.{key}", table[key], key, count) for key in ("times", "values")]
+    return Law(samples=(tuple(rows[0].tolist()), tuple(rows[1].tolist())), where=where)
+
+
+def _span(model: Model, told: object) -> tuple[float, float, int]:
+    table = _table(model, "time", told)
+    _keys(model, "time", table, ("start", "stop", "count"), ("start", "stop", "count"))
+    start, stop = (number(model, f"time.{key}", table[key], key) for key in ("start", "stop"))
+    count = table["count"]
+    if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= 1_000_000:
+        raise model.refuse("time.count", f"expected 1 to 1000000, got {shown(count)}")
+    return start, stop, count
+
+
+def _keys(
+    model: Model, where: str, told: object, valid: Sequence[str], needed: Sequence[str]
+) -> None:
+    table = _table(model, where, told)
+    for key in table:
+        if key not in valid:
+            raise model.refuse(where, f"unknown key {shown(key)}; valid: {', '.join(valid)}")
+    for key in needed:
+        if key not in table:
+            raise model.refuse(where, f"lacks '{key}'")
+
+
+def _table(model: Model, where: str, told: object) -> dict[str, Any]:
+    if not isinstance(told, dict):
+        raise model.refuse(where, f"expected an object, got {shown(told)}")
+    return told
+
+
+def _list(model: Model, where: str, told: object) -> list[Any]:
+    if not isinstance(told, list | tuple):
+        raise model.refuse(where, f"expected a list, got {shown(told)}")
+    return list(told)
+
+
+def _text(model: Model, where: str, told: object) -> str:
+    if not isinstance(told, str) or not told or len(told) > 200:
+        raise model.refuse(where, f"expected a text, got {shown(told)}")
+    return told

@@ -1,0 +1,158 @@
+"""The record of a scene that was declared here: its description, and where its bodies are at its
+first instant.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..arithmetic.interpret import Arithmetic, interpret
+from ..base.arrays import Array
+from ..declare.description import density_of, slices_of
+from ..declare.scene import Scene
+from ..errors import DeclarationError
+from ..instants.solution import Solution
+from ..studies.evaluate import evaluate
+from .laws import LONGEST, ONE_NUMBER
+from .record import Body, Frame, Joint, Law, Model, turned
+
+Told = dict[str, Any]
+
+SAMPLES = 1001
+"""Instants of a motion that has no expression, as one from measured points."""
+
+
+def _infix(sign: str) -> Any:
+    return lambda x, y: f"({x} {sign} {y})"
+
+
+def _call(name: str) -> Any:
+    return lambda x: f"{name}({x})"
+
+
+_TEXT = Arithmetic(
+    repr,
+    {ca.OP_ADD: _infix("+"), ca.OP_SUB: _infix("-"), ca.OP_MUL: _infix("*")}
+    | {ca.OP_DIV: _infix("/"), ca.OP_POW: _infix("^"), ca.OP_CONSTPOW: _infix("^")}
+    | {ca.OP_NEG: lambda x: f"(-{x})", ca.OP_SQ: lambda x: f"({x} ^ 2)"}
+    | {ca.OP_TWICE: lambda x: f"(2 * {x})", ca.OP_INV: lambda x: f"(1 / {x})"}
+    | {getattr(ca, f"OP_{name.upper()}"): _call(name) for name in ONE_NUMBER},
+)
+"""Graphs as texts."""
+
+
+def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
+    """Return the record of a scene for values of parameters; what it has no word for is in its
+    notes.
+
+    Raises :class:`.DeclarationError` where what moves the mechanism has no word: a constraint, or a
+    motion of a path's point.
+    """
+    start, stop = scene.span
+    solution = evaluate(
+        scene, t=(start, start, 1), wanted=["motion"], parameters=parameters, backend="vm"
+    )
+    told = solution.description
+    model = Model(told["name"], file, span=(start, stop, 101))
+    what = f"mechanism '{model.name}'"
+    for name in (*told["constraints"], *told["rows"]):
+        raise DeclarationError(f"{what}: constraint '{name}' has no word in a model file")
+    if told["loads"]:
+        model.notes.append(f"Loads are not told: {', '.join(told['loads'])}.")
+    x, y, z = (*told["gravity"], 0.0)[:3]
+    model.gravity = (x, y, z)
+    for name, body in told["bodies"].items():
+        model.bodies[name] = _body(name, body, _frame(solution, name))
+        if "density" in body and model.bodies[name].rod is None:
+            model.notes.append(f"The mass of '{name}' is told as a whole, not along it.")
+    for name, joint in told["joints"].items():
+        model.joints[name] = _joint(name, joint, len(told["gravity"]) == 2)
+    known = [name for joint in model.joints.values() for name in joint.coordinates]
+    values = ca.DM(list(scene.values(parameters).values()))
+    laws = scene.prescribed
+    for k, name in enumerate(laws.joints):
+        if name not in known:
+            raise DeclarationError(f"{what}: the motion of '{name}' has no word in a model file")
+        t = ca.SX.sym("t")
+        law = ca.Function("law", [t], [ca.densify(laws.motion(t, values)[0][k])])
+        model.motions[name] = _law(law, model.span)
+    if scene.drives is not None:
+        model.drives = list(scene.drives)
+    return model
+
+
+def _frame(solution: Solution, body: str) -> Frame:
+    """Return where a body is at the first instant."""
+    pose = solution.pose(body)
+    place = np.array([pose.x[0], pose.y[0], 0.0 if pose.z is None else pose.z[0]])
+    if pose.axes is not None:
+        return Frame(place, pose.axes[0].T)
+    angle = 0.0 if pose.angle is None else float(pose.angle[0])
+    return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
+
+
+def _body(name: str, told: Told, frame: Frame) -> Body:
+    mass, zero = told["mass"], np.zeros(3)
+    if told["length"] is None:
+        return Body(name, mass, zero, None, frame, point=True)
+    tip = np.array([told["length"], 0.0, 0.0])
+    if "centre" not in told:
+        density = density_of(told)
+        slices = slices_of(told)
+        if len(density.cells) == 1 and len(density.cells[0]) == 1 and not any(slices):
+            rod = Body.slender(name, mass, (zero, tip))
+            return Body(name, mass, rod.centre, rod.inertia, frame, rod=rod.rod)
+        _, first, second = (float(tail[0]) for tail in density.tails(np.zeros(1)))
+        middle, (yy, zz, yz) = first / mass, slices
+        across = (second - first * middle) * told["length"] ** 2
+        inertia = np.array([[yy + zz, 0, 0], [0, across + zz, -yz], [0, -yz, across + yy]])
+        return Body(name, mass, middle * tip, inertia, frame)
+    centre, moments = told["centre"], told["centre"]["inertia"]
+    if not isinstance(moments, list):
+        moments = np.diag([moments / 2.0, moments / 2.0, moments])
+    place = np.array([centre["x"], centre["y"], centre.get("z", 0.0)])
+    return Body(name, mass, place, np.array(moments), frame)
+
+
+def _joint(name: str, told: Told, plane: bool) -> Joint:
+    """Return a joint, the frames so that its coordinates are those that were declared."""
+    parent, child = (
+        np.array([one["x"], one["y"], one.get("z", 0.0)]) for one in (told["parent"], told["child"])
+    )
+    kind = told["kind"]
+    if plane:
+        x, y = told["axis"]
+        zero = turned(np.array([0.0, 0.0, 1.0]), told["angle"])
+        u, v, w = np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])
+        if kind in ("revolute", "weld"):
+            u, v, w = w, u, v
+    else:
+        u, v, w = np.array(told["triad"])
+        zero = np.array(told["turned"]).T
+    # Slides and turns are about z of a frame; of three of a kind about x, y and z.
+    columns = (u, v, w) if kind in ("spherical", "free") else (v, w, u)
+    near = np.column_stack(columns)
+    far = zero.T @ near
+    if kind == "universal":
+        far = zero.T @ np.column_stack([w, u, v])
+    lead = told.get("pitch", 0.0) * math.tau
+    one, other = told["parent"]["body"], told["child"]["body"]
+    return Joint(name, kind, one, other, Frame(parent, near), Frame(child, far), lead)
+
+
+def _law(law: Any, span: tuple[float, float, int]) -> Law:
+    """Return a motion as text, or as samples where it has none."""
+    try:
+        ((text,),) = interpret(law, [["t"]], _TEXT)
+        if len(text) <= LONGEST:
+            return Law(text)
+    except DeclarationError:
+        pass
+    times = np.linspace(span[0], span[1], SAMPLES)
+    values: Array = law(times[None, :]).full()[0]
+    return Law(samples=(tuple(times.tolist()), tuple(values.tolist())))

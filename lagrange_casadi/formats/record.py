@@ -1,0 +1,373 @@
+"""The record between formats and a case: bodies, joints with a frame on each body, couplings,
+motions and gravity, as plain numbers in SI units.
+
+A format's module makes a :class:`Model` of a file; :mod:`.as_case` makes a case of it.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..base.arrays import Array
+from ..errors import ModelFileError, shown
+
+GROUND = "ground"
+"""The name of the fixed frame, as of a body."""
+
+LARGEST = 1e12
+"""A larger number in a file is no length, mass or angle of a machine."""
+
+ROWS: dict[str, str] = {
+    "slide": "ca.dot(q - p, {e})",
+    "cosine": "ca.dot({e}, {f})",
+    "sides": "ca.dot(x, v) + ca.dot(y, u)",
+    "distance": "ca.dot(q - p, q - p)",
+    "distance across": "ca.dot(q - p, x) ** 2 + ca.dot(q - p, y) ** 2",
+    "slide and turn": "ca.dot(q - p, {e}) + {factor} * turn",
+    "wheels": "second + {factor} * first",
+}
+"""What rows of ties say: their expressions in a case are a value. The parent's frame is at p and
+has the axes x, y, z; the child's is at q and has u, v, w; e and f are one of each.
+"""
+
+COORDINATES: dict[str, tuple[str, ...]] = {
+    "revolute": ("",),
+    "prismatic": ("",),
+    "screw": ("",),
+    "cylindrical": ("slide", "turn"),
+    "universal": ("turn_1", "turn_2"),
+    "spherical": ("turn_1", "turn_2", "turn_3"),
+    "planar": ("slide_1", "slide_2", "turn"),
+    "slot": ("slide", "turn_1", "turn_2", "turn_3"),
+    "weld": (),
+    "free": ("slide_1", "slide_2", "slide_3", "turn_1", "turn_2", "turn_3"),
+}
+"""The kinds of joints, and what their coordinates are called: of one alone by the joint's name."""
+
+HELD: dict[str, tuple[str, str]] = {
+    "revolute": ("xyz", "xy"),
+    "prismatic": ("xy", "xyz"),
+    "screw": ("xy", "xy"),
+    "cylindrical": ("xy", "xy"),
+    "universal": ("xyz", ""),
+    "spherical": ("xyz", ""),
+    "planar": ("z", "xy"),
+    "slot": ("xy", ""),
+    "weld": ("xyz", "xyz"),
+    "free": ("", ""),
+}
+"""The axes of the parent's frame along which a kind holds the places of its two frames together,
+and about which it holds their axes; a universal joint's second axis is apart.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A place [m] and three axes, the columns of a rotation, on some other frame."""
+
+    place: Array = field(default_factory=lambda: np.zeros(3))
+    axes: Array = field(default_factory=lambda: np.eye(3))
+
+    def then(self, inner: Frame) -> Frame:
+        """Return a frame that is told on this one, on what this one is told on."""
+        return Frame(self.place + self.axes @ inner.place, self.axes @ inner.axes)
+
+    def seen(self, other: Frame) -> Frame:
+        """Return a frame that is told on what this one is told on, on this one."""
+        return Frame(self.axes.T @ (other.place - self.place), self.axes.T @ other.axes)
+
+    def at(self, place: Array) -> Array:
+        """Return the place of a point of this frame."""
+        return np.asarray(self.place + self.axes @ place)
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A rigid body: its mass [kg], and on its own axes the centre of mass [m] and the inertia about
+    it [kg m^2].
+
+    ``frame`` is where it is in the reference posture. ``places`` are points of it that have a name.
+    A uniform slender ``rod`` lies between two places, and has sections; a ``point`` mass has no
+    axes. ``where`` is what messages call it: the line and the element of the file.
+    """
+
+    name: str
+    mass: float
+    centre: Array
+    inertia: Array | None
+    frame: Frame = field(default_factory=Frame)
+    places: Mapping[str, Array] = field(default_factory=dict)
+    rod: tuple[Array, Array] | None = None
+    point: bool = False
+    where: str = ""
+
+    @classmethod
+    def slender(cls, name: str, mass: float, rod: tuple[Array, Array], where: str = "") -> Body:
+        """Return a uniform rod between two places."""
+        along = rod[1] - rod[0]
+        inertia = mass / 12.0 * (along @ along * np.eye(3) - np.outer(along, along))
+        return cls(name, mass, (rod[0] + rod[1]) / 2.0, inertia, rod=rod, where=where)
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint between a frame of its parent and a frame of its child, on the bodies' own axes.
+
+    The frames coincide where its coordinates are zero. It turns about z and slides along z of the
+    parent's frame; a planar joint's normal is z and its slides are along x and y; of a free and a
+    spherical joint slides and turns are along and about x, y, z; of a universal joint the axes are
+    z of the parent's frame and z of the child's. ``lead`` [m] is a screw's.
+    """
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    on_parent: Frame
+    on_child: Frame
+    lead: float = 0.0
+    where: str = ""
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The full names of its coordinates."""
+        names = COORDINATES[self.kind]
+        return tuple(f"{self.name}:{name}" if name else self.name for name in names)
+
+
+@dataclass(frozen=True, eq=False)
+class Coupling:
+    """A transmission between two joints of one coordinate: second = ratio first + offset."""
+
+    name: str
+    first: str
+    second: str
+    ratio: float
+    offset: float = 0.0
+    where: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """An equation between two frames: ``kind`` is one of :data:`ROWS`, with its numbers.
+
+    ``i`` and ``j`` number axes of the parent's and of the child's frame. Where it has an angle,
+    that of the child's frame about z of the parent's, ``angle`` is its value in the reference
+    posture; of two wheels it is the direction of one's centre in the other's axes, and ``other``
+    the direction the other way.
+    """
+
+    kind: str
+    i: int = 2
+    j: int = 2
+    value: float = 0.0
+    factor: float = 0.0
+    angle: float = 0.0
+    other: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Tie:
+    """A closure that no joint of the table is: rows between two frames."""
+
+    name: str
+    parent: str
+    child: str
+    on_parent: Frame
+    on_child: Frame
+    rows: tuple[Row, ...]
+    where: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """The motion of a coordinate as the text of an expression of ``t`` [s], or samples."""
+
+    text: str = ""
+    samples: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+    where: str = ""
+
+
+@dataclass(eq=False)
+class Model:
+    """A mechanism as a file tells it. ``notes`` say what was not read, and what was cleaned.
+
+    ``file`` is the name of the file, ``span`` the instants: start [s], stop [s], count. ``posture``
+    are rough values of coordinates at the start, from which loops that are open in the reference
+    posture are assembled. ``drives`` are the joints whose efforts make the motion, where these are
+    not those that have one; ``preferred`` are joints that are driven first. ``called`` are the
+    file's names of parts that have another one here.
+    """
+
+    name: str
+    file: str
+    bodies: dict[str, Body] = field(default_factory=dict)
+    joints: dict[str, Joint] = field(default_factory=dict)
+    couplings: dict[str, Coupling] = field(default_factory=dict)
+    ties: dict[str, Tie] = field(default_factory=dict)
+    motions: dict[str, Law] = field(default_factory=dict)
+    gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
+    span: tuple[float, float, int] = (0.0, 1.0, 101)
+    posture: dict[str, float] = field(default_factory=dict)
+    drives: list[str] | None = None
+    preferred: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    called: dict[str, str] = field(default_factory=dict)
+
+    def refuse(self, where: str, words: str) -> ModelFileError:
+        """Return the error of an element of the file."""
+        return ModelFileError(f"{self.file}: {where + ': ' if where else ''}{words}")
+
+    def name_of(self, kind: str, told: str, where: str, taken: Mapping[str, Any]) -> str:
+        """Return a name of the file as one that parts may have, and keep what it was."""
+        name = re.sub(r"\W", "_", told.strip(), flags=re.ASCII)
+        name = name if name[:1].isalpha() else f"{kind[0]}_{name}"
+        if name in taken or (name == GROUND and kind == "body"):
+            raise self.refuse(where, f"{kind} {shown(told)}: the name is taken")
+        while name in {GROUND, *self.bodies, *self.joints, *self.couplings, *self.ties}:
+            name = f"{name}_{kind}"
+        if name != told:
+            self.called[name] = told
+        return name
+
+    def frame_of(self, body: str) -> Frame:
+        """Return where a body is in the reference posture."""
+        return Frame() if body == GROUND else self.bodies[body].frame
+
+    def frames(self, joint: Joint | Tie) -> tuple[Frame, Frame]:
+        """Return the two frames of a joint in the reference posture, on the ground."""
+        return (
+            self.frame_of(joint.parent).then(joint.on_parent),
+            self.frame_of(joint.child).then(joint.on_child),
+        )
+
+    def at_reference(self, joint: Joint) -> list[float]:
+        """Return the coordinates of a joint in the reference posture, in their order."""
+        near, far = self.frames(joint)
+        seen = near.seen(far)
+        x, y, z = (float(number) for number in seen.place)
+        turn = math.atan2(seen.axes[1, 0], seen.axes[0, 0])
+        about = _three_turns(seen.axes)
+        found: dict[str, list[float]] = {
+            "revolute": [turn],
+            "prismatic": [z],
+            "screw": [turn],
+            "cylindrical": [z, turn],
+            "universal": [0.0, 0.0],
+            "spherical": about,
+            "planar": [x, y, turn],
+            "slot": [z, *about],
+            "weld": [],
+            "free": [x, y, z, *about],
+        }
+        return found[joint.kind]
+
+    def size(self) -> float:
+        """Return the extent of what joints and centres of mass span [m]."""
+        places = [one.place for joint in self.joints.values() for one in self.frames(joint)]
+        places += [body.frame.at(body.centre) for body in self.bodies.values()]
+        return float(np.max(np.ptp(np.array(places), axis=0))) or 1.0 if places else 1.0
+
+    def apart(self, joint: Joint) -> tuple[float, float]:
+        """Return by how much the frames of a joint miss what it holds: in m, and in rad."""
+        near, far = self.frames(joint)
+        seen = near.seen(far)
+        slides, turns = HELD[joint.kind]
+        gap = math.hypot(*(float(seen.place["xyz".index(axis)]) for axis in slides))
+        if any(one != GROUND and self.bodies[one].point for one in (joint.parent, joint.child)):
+            return gap, 0.0
+        if joint.kind == "universal":
+            return gap, abs(float(seen.axes[2, 2]))
+        if joint.kind == "screw":
+            turn = math.atan2(seen.axes[1, 0], seen.axes[0, 0])
+            away = (float(seen.place[2]) - joint.lead * turn / math.tau) / (joint.lead or 1.0)
+            gap = math.hypot(gap, joint.lead * (away - round(away)))
+        if turns == "xyz":
+            cosine = min(1.0, max(-1.0, (float(np.trace(seen.axes)) - 1.0) / 2.0))
+            return gap, math.hypot(math.acos(cosine) if cosine < 0.9 else 0.0, _small(seen.axes))
+        tilt = math.hypot(float(seen.axes[0, 2]), float(seen.axes[1, 2]))
+        return gap, math.atan2(tilt, float(seen.axes[2, 2])) if turns else 0.0
+
+
+def _small(axes: Array) -> float:
+    """Return the angle of a small rotation, where its cosine has no digits of it."""
+    skew = axes - axes.T
+    return math.hypot(*(float(skew[i, j]) / 2.0 for i, j in ((0, 1), (0, 2), (1, 2))))
+
+
+def _three_turns(axes: Array) -> list[float]:
+    """Return the angles about x, y and z in sequence, each axis carried by those before."""
+    y = math.asin(min(1.0, max(-1.0, float(axes[0, 2]))))
+    return [math.atan2(-axes[1, 2], axes[2, 2]), y, math.atan2(-axes[0, 1], axes[0, 0])]
+
+
+def number(model: Model, where: str, told: object, what: str) -> float:
+    """Return a number of a file. Raises :class:`.ModelFileError` for what is none, and for one that
+    no machine has.
+    """
+    try:
+        found = float(told)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        raise model.refuse(where, f"{what}: expected a number, got {shown(told)}") from None
+    if isinstance(told, bool) or "_" in str(told) or not abs(found) <= LARGEST:
+        expected = f"expected a finite number of at most {LARGEST:g}"
+        raise model.refuse(where, f"{what}: {expected}, got {shown(told)}")
+    return found
+
+
+def numbers(model: Model, where: str, told: object, what: str, count: int) -> Array:
+    """Return so many numbers of a file, from a list or from a text with blanks."""
+    parts = told.split() if isinstance(told, str) else told
+    if not isinstance(parts, Sequence) or len(parts) != count:
+        raise model.refuse(where, f"{what}: expected {count} numbers, got {shown(told)}")
+    return np.array([number(model, where, part, what) for part in parts])
+
+
+def rotation(model: Model, where: str, axes: Array) -> Array:
+    """Return axes at right angles that are nearest to those of a file, without its rounding.
+
+    Components that are nothing or one but for rounding are so. Raises :class:`.ModelFileError` for
+    axes that are off by more than 1e-4.
+    """
+    snapped = np.where(np.abs(axes) < 1e-9, 0.0, axes)
+    left, _, right = np.linalg.svd(snapped)
+    exact = left @ right
+    if np.abs(exact - axes).max() > 1e-4 or np.linalg.det(exact) < 0:
+        raise model.refuse(where, "axes: expected three directions at right angles, right-handed")
+    exact = np.where(np.abs(exact) < 1e-9, 0.0, exact)
+    return np.asarray(np.where(np.abs(np.abs(exact) - 1.0) < 1e-15, np.sign(exact), exact))
+
+
+def about_axis(axis: Array) -> Array:
+    """Return axes whose third is along a direction."""
+    z = axis / np.linalg.norm(axis)
+    other = np.eye(3)[int(np.argmin(np.round(np.abs(z), 9)))]
+    x = other - (other @ z) * z
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z]) + 0.0
+
+
+def rpy(angles: Array) -> Array:
+    """Return the rotation by roll, pitch and yaw about fixed x, y and z [rad]."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(angles), np.sin(angles)
+    axes = np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+    return np.where(np.abs(axes) < 1e-15, 0.0, axes)
+
+
+def turned(axis: Array, angle: float) -> Array:
+    """Return the rotation about a direction of length 1 by an angle [rad]."""
+    x, y, z = axis
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.asarray(np.eye(3) + math.sin(angle) * skew + (1 - math.cos(angle)) * skew @ skew)

@@ -1,0 +1,322 @@
+"""Robots as URDF: links, joints, and what people add for loops.
+
+The root link is the ground. Links without mass that are fixed to another one are frames of it.
+Loops are told by a second joint of a link, and by ``<constraint>`` (proposed for urdfdom),
+``<loop>`` and ``<coupling>`` (URDF+), ``<loop_joint>`` (Isaac Sim) and
+``<drake:ball_constraint>``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..base.arrays import Array
+from ..errors import shown
+from .record import (
+    GROUND,
+    Body,
+    Coupling,
+    Frame,
+    Joint,
+    Model,
+    about_axis,
+    number,
+    numbers,
+    rotation,
+    rpy,
+)
+from .xml_tree import Element, attribute, needed, parsed
+
+KINDS: dict[str, str] = {
+    "revolute": "revolute",
+    "continuous": "revolute",
+    "prismatic": "prismatic",
+    "fixed": "weld",
+    "floating": "free",
+    "planar": "planar",
+    "spherical": "spherical",
+    "ball": "spherical",
+    "universal": "universal",
+    "cylindrical": "cylindrical",
+}
+"""Types of joints; those after ``planar`` are of loops alone in most dialects."""
+
+_LOOPS = ("constraint", "loop", "loop_joint")
+_ONE = ("parent", "predecessor", "link1")
+_OTHER = ("child", "successor", "link2")
+_IGNORED = ("visual", "collision", "material", "gazebo", "sensor", "safety_controller")
+
+
+def read(path: Path, text: str) -> Model:
+    """Return the model of a file. Raises :class:`.ModelFileError`, which names line and element."""
+    model = Model(path.stem, path.name)
+    root = parsed(model, text, "robot")
+    for one in root.inside:
+        if one.name.startswith("xacro:"):
+            told = f"xacro {path.name} > expanded.urdf"
+            raise model.refuse(one.where, f"is a macro of xacro; expand it first: {told}")
+    model.name = model.name_of("mechanism", root.given.get("name", path.stem), root.where, {})
+    return _Robot(model, root).read()
+
+
+class _Robot:
+    """A robot under way: its elements by name, and where links are in the zero posture."""
+
+    def __init__(self, model: Model, root: Element) -> None:
+        self.model, self.root = model, root
+        self.links: dict[str, Element] = {}
+        for link in root.all("link"):
+            name = attribute(model, link, "name")
+            if name in self.links:
+                raise model.refuse(link.where, "the name is taken")
+            self.links[name] = link
+        self.on: dict[str, tuple[str, Frame]] = {}
+        self.names: dict[str, str] = {}
+
+    def read(self) -> Model:
+        """Return the model."""
+        model = self.model
+        joints = list(self.root.all("joint"))
+        children = {self.side(joint, _OTHER)[0] for joint in joints}
+        roots = [name for name in self.links if name not in children]
+        if len(roots) != 1:
+            found = ", ".join(map(repr, roots)) or "none"
+            raise model.refuse(self.root.where, f"expected one root link, found {found}")
+        self.on[roots[0]] = (GROUND, Frame())
+        placed = {roots[0]: Frame()}
+        waiting = joints
+        while waiting:
+            ready = [one for one in waiting if self.side(one, _ONE)[0] in placed]
+            if not ready:
+                words = "its links hang on nothing that leads to the root"
+                raise model.refuse(waiting[0].where, words)
+            self.grow(ready[0], placed)
+            waiting = [one for one in waiting if one is not ready[0]]
+        for loop in self.root.all(*_LOOPS):
+            self.loop(loop, placed)
+        for ball in self.root.all("drake:ball_constraint"):
+            self.ball(ball)
+        for joint in joints:
+            self.mimic(joint)
+        for coupling in self.root.all("coupling"):
+            self.coupling(coupling, joints)
+        self.actuators()
+        self.left_out(joints)
+        return model
+
+    def grow(self, line: Element, placed: dict[str, Frame]) -> None:
+        """Read a joint: its link is placed by it, or closes a loop."""
+        kind = self.kind(line)
+        (parent, _), (child, _) = self.side(line, _ONE), self.side(line, _OTHER)
+        origin, again = self.origin(line.first("origin")), child in placed
+        massless = self.links[child].first("inertial") is None
+        if not again:
+            placed[child] = placed[parent].then(origin)
+            body, frame = self.on[parent]
+            if kind == "weld" and massless:
+                self.on[child] = (body, frame.then(origin))
+                return
+            self.on[child] = (self.body(child, placed[child]), Frame())
+        axes = self.axes(line, kind)
+        self.add(line, kind, (parent, origin.then(axes)), (child, axes))
+
+    def add(
+        self, line: Element, kind: str, one: tuple[str, Frame], other: tuple[str, Frame]
+    ) -> None:
+        """Declare a joint between frames of two links."""
+        told = attribute(self.model, line, "name")
+        name = self.names[told] = self.model.name_of("joint", told, line.where, self.model.joints)
+        (parent, near), (child, far) = ((self.on[link], frame) for link, frame in (one, other))
+        self.model.joints[name] = Joint(
+            name,
+            kind,
+            parent[0],
+            child[0],
+            parent[1].then(near),
+            child[1].then(far),
+            where=line.where,
+        )
+
+    def loop(self, line: Element, placed: dict[str, Frame]) -> None:
+        """Read a loop that an element of its own closes."""
+        kind = self.kind(line)
+        (parent, near), (child, far) = self.side(line, _ONE), self.side(line, _OTHER)
+        near = near.then(self.axes(line, kind, "parent_axis", "axis"))
+        if kind == "universal" or line.first("child_axis") is not None:
+            far = far.then(self.axes(line, kind, "child_axis", "axis"))
+        elif near.axes is not None and line.first(*_ONE) is not None:
+            given = line.first("parent_axis", "axis")
+            if given is not None and given.given.get("frame") == "parent":
+                # The axis is told on the parent alone: the child's is where it is at zero.
+                seen = placed[child].seen(placed[parent].then(near))
+                far = Frame(far.place, rotation(self.model, line.where, seen.axes))
+            else:
+                far = far.then(self.axes(line, kind, "parent_axis", "axis"))
+        self.add(line, kind, (parent, near), (child, far))
+
+    def ball(self, line: Element) -> None:
+        """Read a ball constraint of Drake's."""
+        sides = []
+        for letter, point in (("A", "p_AP"), ("B", "p_BQ")):
+            body = needed(self.model, line, f"drake:ball_constraint_body_{letter}")
+            place = needed(self.model, line, f"drake:ball_constraint_{point}")
+            told = attribute(self.model, place, "value")
+            at = numbers(self.model, place.where, told, point, 3)
+            sides.append((self.known(body, attribute(self.model, body, "name")), Frame(at)))
+        line.given.setdefault("name", f"ball_{len(self.model.joints)}")
+        self.add(line, "spherical", sides[0], sides[1])
+
+    def mimic(self, joint: Element) -> None:
+        """Read that a joint follows another one."""
+        if (mimic := joint.first("mimic")) is None:
+            return
+        model, told = self.model, attribute(self.model, mimic, "joint")
+        if told not in self.names:
+            words = f"unknown joint {shown(told)}; valid: {', '.join(self.names)}"
+            raise model.refuse(mimic.where, words)
+        second = self.names[attribute(model, joint, "name")]
+        ratio, offset = (
+            number(model, mimic.where, mimic.given.get(key, usual), key)
+            for key, usual in (("multiplier", "1"), ("offset", "0"))
+        )
+        name = f"{second}_mimic"
+        model.couplings[name] = Coupling(
+            name, self.names[told], second, ratio, offset, where=mimic.where
+        )
+
+    def coupling(self, line: Element, joints: list[Element]) -> None:
+        """Read a coupling of two links' joints."""
+        found = []
+        for side in (_ONE, _OTHER):
+            link = self.side(line, side)[0]
+            above = next((one for one in joints if self.side(one, _OTHER)[0] == link), None)
+            if above is None:
+                raise self.model.refuse(line.where, f"link {shown(link)} has no joint")
+            found.append(above)
+        if self.side(found[0], _ONE)[0] != self.side(found[1], _ONE)[0]:
+            words = "is not read where its links do not hang on the same link"
+            raise self.model.refuse(line.where, words)
+        first, second = (self.names[attribute(self.model, one, "name")] for one in found)
+        value = attribute(self.model, needed(self.model, line, "ratio"), "value")
+        ratio = number(self.model, line.where, value, "ratio")
+        name = self.model.name_of(
+            "coupling", attribute(self.model, line, "name"), line.where, self.model.couplings
+        )
+        self.model.couplings[name] = Coupling(name, first, second, ratio, where=line.where)
+
+    def actuators(self) -> None:
+        """Read which joints have a drive."""
+        lines = [
+            joint for group in self.root.all("transmission") for joint in group.all("joint")
+        ] + [
+            joint
+            for group in self.root.all("ros2_control")
+            for joint in group.all("joint")
+            if joint.first("command_interface") is not None
+        ]
+        for joint in lines:
+            told = attribute(self.model, joint, "name")
+            if told not in self.names:
+                words = f"unknown joint {shown(told)}; valid: {', '.join(self.names)}"
+                raise self.model.refuse(joint.where, words)
+            self.model.preferred.append(self.names[told])
+        if any(group.first("actuator") for group in self.root.all("transmission")):
+            self.model.notes.append(
+                "Reductions of transmissions are not read: efforts are at joints."
+            )
+
+    def left_out(self, joints: list[Element]) -> None:
+        """Note what was not read."""
+        rubbing = [
+            joint.given["name"]
+            for joint in joints
+            if (one := joint.first("dynamics"))
+            and any(
+                float(value or 0)
+                for key, value in one.given.items()
+                if key in ("damping", "friction")
+            )
+        ]
+        if rubbing:
+            self.model.notes.append(f"Damping and friction are not read: {', '.join(rubbing)}.")
+        frames = [name for name, (body, _) in self.on.items() if name != body and body != GROUND]
+        frames = [name for name in frames if self.model.called.get(self.on[name][0]) != name]
+        if frames:
+            self.model.notes.append(f"Frames without mass are left out: {', '.join(frames)}.")
+        known = {"link", "joint", "material", "gazebo", "transmission", "ros2_control", "coupling"}
+        for one in self.root.inside:
+            if one.name not in (*known, *_LOOPS, *_IGNORED, "drake:ball_constraint"):
+                self.model.notes.append(f"<{one.name}> of line {one.line} is not read.")
+
+    def body(self, told: str, frame: Frame) -> str:
+        """Declare a link as a body."""
+        model, link = self.model, self.links[told]
+        name = model.name_of("body", told, link.where, model.bodies)
+        inertial = link.first("inertial")
+        if inertial is None:
+            body = Body(name, 0.0, np.zeros(3), np.zeros((3, 3)), frame, where=link.where)
+            model.bodies[name] = body
+            return name
+        line = needed(model, inertial, "mass")
+        mass = number(model, line.where, attribute(model, line, "value"), "mass")
+        origin, inertia = self.origin(inertial.first("origin")), None
+        if (told_inertia := inertial.first("inertia")) is not None:
+            where = told_inertia.where
+            xx, xy, xz, yy, yz, zz = (
+                number(model, where, told_inertia.given.get(key, "0"), key)
+                for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+            )
+            moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+            inertia = origin.axes @ moments @ origin.axes.T
+        model.bodies[name] = Body(name, mass, origin.place, inertia, frame, where=link.where)
+        return name
+
+    def kind(self, line: Element) -> str:
+        """Return the kind of a joint."""
+        told = attribute(self.model, line, "type")
+        if told not in KINDS:
+            words = f"unknown type {shown(told)}; valid: {', '.join(KINDS)}"
+            raise self.model.refuse(line.where, words)
+        return KINDS[told]
+
+    def axes(self, line: Element, kind: str, *names: str) -> Frame:
+        """Return a frame whose z is the axis of a joint, where its kind has one."""
+        if kind in ("weld", "free", "spherical"):
+            return Frame()
+        axis: Array = np.array([1.0, 0.0, 0.0])
+        if (found := line.first(*(names or ("axis",)))) is not None:
+            told = attribute(self.model, found, "xyz")
+            axis = numbers(self.model, found.where, told, "axis", 3)
+            if not np.any(axis):
+                raise self.model.refuse(found.where, "expected a direction, got zero")
+        return Frame(axes=about_axis(axis))
+
+    def origin(self, line: Element | None) -> Frame:
+        """Return the frame that ``xyz`` and ``rpy`` tell."""
+        if line is None:
+            return Frame()
+        place, angles = (
+            numbers(self.model, line.where, line.given.get(key, "0 0 0"), key, 3)
+            for key in ("xyz", "rpy")
+        )
+        return Frame(place, rotation(self.model, line.where, rpy(angles)))
+
+    def side(self, line: Element, names: tuple[str, ...]) -> tuple[str, Frame]:
+        """Return one link of a joint or a loop, and the frame on it that the dialect tells."""
+        found = line.first(*names)
+        if found is None and names == _OTHER:  # some write link1 twice
+            found = next(iter(list(line.all("link1"))[1:2]), None)
+        if found is None:
+            raise self.model.refuse(line.where, f"lacks <{names[0]}>")
+        link = self.known(found, attribute(self.model, found, "link"))
+        beside = line.first(f"{found.name}_origin")
+        return link, self.origin(found.first("origin") or beside or found)
+
+    def known(self, line: Element, link: str) -> str:
+        """Return a link's name. Raises :class:`.ModelFileError` for one that is not there."""
+        if link not in self.links:
+            words = f"unknown link {shown(link)}; valid: {', '.join(self.links)}"
+            raise self.model.refuse(line.where, words)
+        return link

@@ -1,0 +1,90 @@
+"""XML as elements that know their line, read as data: no document types, no entities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+from ..errors import shown
+from .record import Model
+
+_DEEPEST = 200
+_MOST = 500_000
+
+
+@dataclass(eq=False)
+class Element:
+    """An element: its name, attributes, text, and what is in it."""
+
+    name: str
+    line: int
+    given: dict[str, str] = field(default_factory=dict)
+    text: str = ""
+    inside: list[Element] = field(default_factory=list)
+
+    @property
+    def where(self) -> str:
+        """Its line and its start, for messages."""
+        named = f" name={shown(self.given['name'])}" if "name" in self.given else ""
+        return f"line {self.line}, <{self.name}{named}>"
+
+    def all(self, *names: str) -> Iterator[Element]:
+        """Yield the elements in it of these names."""
+        return (one for one in self.inside if one.name in names)
+
+    def first(self, *names: str) -> Element | None:
+        """Return the first element in it of these names."""
+        return next(self.all(*names), None)
+
+
+def parsed(model: Model, text: str, root: str) -> Element:
+    """Return the root element of a text. Raises :class:`.ModelFileError`."""
+    parser, stack, count = expat.ParserCreate(), [Element("", 0)], 0
+
+    def start(name: str, given: dict[str, str]) -> None:
+        nonlocal count
+        count += 1
+        one = Element(name, parser.CurrentLineNumber, given)
+        if len(stack) > _DEEPEST or count > _MOST:
+            raise model.refuse(one.where, "too deep, or too many elements")
+        stack[-1].inside.append(one)
+        stack.append(one)
+
+    def end(_: str) -> None:
+        stack.pop()
+
+    def characters(told: str) -> None:
+        stack[-1].text += told
+
+    def refuse(*_: object) -> None:
+        where = f"line {parser.CurrentLineNumber}"
+        raise model.refuse(where, "document types and entities are refused: a model is data")
+
+    parser.StartElementHandler, parser.EndElementHandler = start, end
+    parser.CharacterDataHandler = characters
+    parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = refuse
+    parser.buffer_text = True
+    try:
+        parser.Parse(text.encode(), True)
+    except expat.ExpatError as error:
+        raise model.refuse(f"line {error.lineno}", f"no XML: {error}") from None
+    found = stack[0].inside[0]
+    if found.name != root:
+        raise model.refuse(found.where, f"expected <{root}>")
+    return found
+
+
+def needed(model: Model, element: Element, *names: str) -> Element:
+    """Return the first element of these names. Raises :class:`.ModelFileError` for none."""
+    if (found := element.first(*names)) is None:
+        raise model.refuse(element.where, f"lacks <{names[0]}>")
+    return found
+
+
+def attribute(model: Model, element: Element, *names: str) -> str:
+    """Return an attribute. Raises :class:`.ModelFileError` for none."""
+    for name in names:
+        if name in element.given:
+            return element.given[name]
+    raise model.refuse(element.where, f"lacks {names[0]}=")

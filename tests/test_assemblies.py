@@ -1,0 +1,344 @@
+"""Assemblies of FreeCAD: held against series that OndselSolver wrote, and against closed forms."""
+
+import re
+
+import numpy as np
+import pytest
+from conftest import CASES
+
+from lagrange_casadi import Mechanism, Scene, errors, evaluate, load_case, read
+from lagrange_casadi.formats import case_of
+from lagrange_casadi.motion import polynomial
+from tests.assembly_file import IDENTITY, assembly, turned
+
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+
+SLENDER = (1e-4, 0.02, 0.02)
+OUT = turned("y", 90)  # z of a marker is along x
+TURN = {"drive": ("RotationalMotion", "O", "2.0d*pi*time")}
+
+
+@pytest.fixture
+def solved(tmp_path):
+    def solve(*told, count=None, **more):
+        path = tmp_path / "press.asmt"
+        path.write_text(assembly(*told, **more))
+        scene = read(path)
+        return evaluate(scene) if count is None else evaluate(scene, t=(*scene.span, count))
+
+    return solve
+
+
+FOUR_BAR = (
+    {"Marker1": (2.0, 0.0, 0.0), "Marker2": (0.0, 0.0, 0.0)},
+    {
+        "Part1": (
+            *(0.2, (0.5, 0.1, 0.05), (8.3333333333333e-4, 0.016833333333333, 0.017333333333333)),
+            *({"Marker1": (0.1, 0.1, 0.1), "Marker2": (0.9, 0.1, 0.1)}, (-0.1, -0.1, -0.1)),
+        ),
+        "Part2": (
+            *(0.4, (1.0, 0.1, 0.05), (0.0016666666666667, 0.13366666666667, 0.13466666666667)),
+            {"Marker1": (0.1, 0.1, 0.0), "Marker2": (1.9, 0.1, 0.0)},
+            (0.80296435866847, -0.1413902845944, -4.8572257327351e-17),
+            (
+                (0.69212962962963, -0.72177321631434, -4.0768415228988e-17),
+                (0.72177321631434, 0.69212962962963, 3.7688895158774e-17),
+                (1.0141930549436e-18, -5.5511151231258e-17, 1.0),
+            ),
+        ),
+        "Part3": (
+            *(0.3, (0.75, 0.1, 0.05), (0.00125, 0.0565, 0.05725)),
+            {"Marker1": (0.1, 0.1, 0.1), "Marker2": (1.4, 0.1, 0.1)},
+            (1.9494211444078, 1.4026552603427, -0.1),
+            (
+                (-0.035256410256409, 0.99937829951217, -4.2098016992882e-17),
+                (-0.99937829951217, -0.035256410256409, -3.0814879110196e-33),
+                (-1.4842249580823e-18, 4.2071844635181e-17, 1.0),
+            ),
+        ),
+    },
+    {
+        "O": ("RevoluteJoint", "Marker2", "Part1/Marker1"),
+        "A": ("RevoluteJoint", "Part1/Marker2", "Part2/Marker1"),
+        "B": ("RevoluteJoint", "Part2/Marker2", "Part3/Marker1"),
+        "C": ("RevoluteJoint", "Part3/Marker2", "Marker1"),
+    },
+    TURN,
+)
+
+
+def test_a_four_bar_has_the_forces_of_the_file(solved):
+    """OndselSolver's testapp/fourbar.asmt, series of FXonI, FYonI and TZonI at three instants."""
+    solution = solved(*FOUR_BAR)
+    at = [10, 37, 80]
+    told = {
+        "A": (23.558520471336, -8.8478827575929, -4.0487681140884),
+        "C": (15.045678148917, -0.14392927908564, 1.0705274917106),
+        "drive": (-6.1615311736962, 5.3660632828109, -7.1272231426398),
+    }
+    assert np.allclose(-solution.reaction("A").fx[at], told["A"], rtol=0, atol=1e-9)
+    assert np.allclose(-solution.reaction("C").fy[at], told["C"], rtol=0, atol=1e-9)
+    assert np.allclose(-solution.effort("O")[at], told["drive"], rtol=0, atol=1e-9)
+
+
+RACK = (
+    {
+        "Shaft": ((3.0, 0.0, 0.0), OUT),
+        "Pinion": (0.0, 0.0, 0.0),
+        "Guide": ((-1.7712954438145, 0.34642512144607, 0.0), ((0, 0, 1), (1, 0, 0), (0, 1, 0))),
+    },
+    {
+        "Screw": (
+            *(
+                0.0,
+                (0.5, 0.0, 0.0),
+                (0.0, 0.0, 0.0),
+                {"M": ((1.0, 0.0, 0.0), OUT)},
+                (2.0, 0.0, 0.0),
+            ),
+            (
+                (1.0, 0.0, 0.0),
+                (0.0, -0.95970564352992, -0.28100725573698),
+                (0.0, 0.28100725573698, -0.95970564352992),
+            ),
+        ),
+        "Wheel": (
+            *(0.3233675003485, (0.0125, 0.0, 0.05)),
+            (0.0085917337014084, 0.0085917337014084, 0.016644521568903),
+            {"M": (0.0125, 0.0, 0.1)},
+            (-0.0125, 0.0, -0.1),
+        ),
+        "Rack": (
+            *(0.68670431609232, (0.052542245884331, 0.71533562625128, 0.05)),
+            (0.0036566034220765, 0.50124388724643, 0.50375598347502),
+            {
+                "Pitch": (-1.01384629393851, 0.68184995977736, 0.1),
+                "Guide": (
+                    (-1.426403464485, 0.59925558503043, 0.1),
+                    ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+                ),
+                "Nut": (
+                    (1.5314879562537, 0.83141566747213, 0.0),
+                    ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)),
+                ),
+            },
+            (1.0138462939386, -0.25283046358436, -0.1),
+        ),
+    },
+    {
+        "O": ("RevoluteJoint", "Pinion", "Wheel/M"),
+        "screw": ("ScrewJoint", "Rack/Nut", "Screw/M", ("pitch", 1.0)),
+        "teeth": ("RackPinionJoint", "Rack/Pitch", "Wheel/M", ("pitchRadius", -0.3)),
+        "shaft": ("RevoluteJoint", "Shaft", "Screw/M"),
+        "guide": ("TranslationalJoint", "Guide", "Rack/Guide"),
+    },
+    TURN,
+)
+
+
+def test_a_rack_and_a_screw_have_the_forces_of_the_file(solved):
+    """testapp/rackscrew.asmt; its forces are constant, for its weights are and it does not
+    accelerate."""
+    solution = solved(*RACK, count=11)
+    assert np.allclose(solution.reaction("O").fy, 3.1722351784188, rtol=1e-11)
+    assert np.allclose(solution.reaction("guide").fy, 6.7365693408657, rtol=1e-11)
+    assert np.allclose(solution.reaction("guide").mx, 0.33682846704328, rtol=1e-11)
+    assert np.abs(solution.effort("O")).max() < 1e-10
+
+
+def wheels(law, joint, *, gravity=(0.0, 0.0, 0.0)):
+    """Two wheels on parallel shafts 0.3 m apart."""
+    parts = {
+        "one": (2.0, (0.0, 0.0, 0.0), (0.01, 0.01, 0.02), {"M": (0.0, 0.0, 0.0)}),
+        "two": (3.0, (0.0, 0.0, 0.0), (0.03, 0.03, 0.05), {"M": (0.0, 0.0, 0.0)}, (0.3, 0.0, 0.0)),
+    }
+    joints = {
+        "O": ("RevoluteJoint", "A", "one/M"),
+        "Q": ("RevoluteJoint", "B", "two/M"),
+        "tie": joint,
+    }
+    motions = {"drive": ("RotationalMotion", "O", law)}
+    return {"A": (0.0, 0.0, 0.0), "B": (0.3, 0.0, 0.0)}, parts, joints, motions, gravity
+
+
+def test_gears_press_on_their_bearings(solved):
+    """alpha2 = -alpha1 / 2, the torque on the second wheel is a force at radius r2."""
+    gear = ("GearJoint", "one/M", "two/M", ("radiusI", 0.1), ("radiusJ", 0.2))
+    solution = solved(*wheels("3.0d*time*time", gear), count=11)
+    assert np.allclose(solution.effort("O"), 6.0 * (0.02 + 0.05 / 4), rtol=1e-12)
+    tooth = 0.05 * 3.0 / 0.2
+    assert np.allclose(solution.reaction("Q").fy, -tooth, rtol=1e-12)
+    assert np.allclose(solution.reaction("O").fy, tooth, rtol=1e-12)
+
+
+def shafts(kind, *more):
+    """Two shafts whose axes meet at 30 degrees."""
+    tilt, parts = turned("y", 30), {}
+    for name, rows, moment in (("one", IDENTITY, 0.02), ("two", tilt, 0.05)):
+        # Markers whose z is across the shaft; of the second at right angles to that of the first.
+        across = turned("y", 90) if name == "one" else turned("x", -90)
+        marks = {"M": (0.0, 0.0, 0.0), "Across": ((0.0, 0.0, 0.0), across)}
+        parts[name] = (1.0, (0.0, 0.0, 0.0), (0.04, 0.04, moment), marks, (0.0, 0.0, 0.0), rows)
+    mark = "M" if kind == "ConstantVelocityJoint" else "Across"
+    joints = {
+        "O": ("RevoluteJoint", "A", "one/M"),
+        "Q": ("RevoluteJoint", "B", "two/M"),
+        "tie": (kind, f"one/{mark}", f"two/{mark}", *more),
+    }
+    points = {"A": (0.0, 0.0, 0.0), "B": ((0.0, 0.0, 0.0), tilt)}
+    return points, parts, joints, {"drive": ("RotationalMotion", "O", "2*time")}, (0.0, 0.0, 0.0)
+
+
+def test_axes_that_stay_at_right_angles_are_hookes_joint(solved):
+    """tan(second) = tan(first) / cos(30 deg) or its like: all power goes into the second shaft."""
+    solution = solved(*shafts("PerpendicularJoint"), count=41)
+    rate = 2.0 * np.cos(np.pi / 6) / (1 - np.sin(np.pi / 6) ** 2 * np.cos(2 * solution.t) ** 2)
+    other = 2.0 * np.cos(np.pi / 6) / (1 - np.sin(np.pi / 6) ** 2 * np.sin(2 * solution.t) ** 2)
+    found = np.abs(solution.motion("Q").rate)
+    assert min(np.abs(found - rate).max(), np.abs(found - other).max()) < 1e-12
+    power = 0.05 * solution.motion("Q").rate * solution.motion("Q").acceleration
+    assert np.allclose(2.0 * solution.effort("O"), power, rtol=1e-10, atol=1e-12)
+
+
+def test_a_joint_of_constant_velocity(solved):
+    solution = solved(*shafts("ConstantVelocityJoint"), count=11)
+    assert np.allclose(np.abs(solution.motion("Q").rate), 2.0, rtol=1e-12)
+    assert np.abs(solution.effort("O")).max() < 1e-12
+
+
+def test_a_distance_is_a_rod_without_mass(solved):
+    """A crank and a rocker, between them a distance or a part without mass on two ball joints."""
+    crank = (0.5, (0.1, 0.0, 0.0), SLENDER, {"O": (0.0, 0.0, 0.0), "A": (0.2, 0.0, 0.0)})
+    rocker = (
+        0.8,
+        (0.0, 0.2, 0.0),
+        SLENDER,
+        {"Q": (0.0, 0.0, 0.0), "B": (0.0, 0.5, 0.1)},
+        (0.6, 0, 0),
+    )
+    joints = {"O": ("RevoluteJoint", "P", "crank/O"), "Q": ("RevoluteJoint", "R", "rocker/Q")}
+    motions = {"drive": ("RotationalMotion", "O", "4*time")}
+    points = {"P": (0.0, 0.0, 0.0), "R": (0.6, 0.0, 0.0)}
+    length = float(np.linalg.norm(np.array([0.6, 0.5, 0.1]) - np.array([0.2, 0.0, 0.0])))
+    tie = {"rod": ("SphSphJoint", "crank/A", "rocker/B", ("distanceIJ", length))}
+    parts = {"crank": crank, "rocker": rocker}
+    one = solved(points, parts, joints | tie, motions, count=11)
+    rod = (0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), {"A": (0.2, 0.0, 0.0), "B": (0.6, 0.5, 0.1)})
+    balls = {
+        "A": ("SphericalJoint", "crank/A", "rod/A"),
+        "B": ("SphericalJoint", "rod/B", "rocker/B"),
+    }
+    other = solved(points, parts | {"rod": rod}, joints | balls, motions, count=11)
+    assert np.allclose(one.effort("O"), other.effort("O"), rtol=1e-10)
+    assert np.allclose(one.reaction("Q").fz, other.reaction("Q").fz, rtol=1e-9, atol=1e-10)
+
+
+def test_a_body_that_ties_alone_hold_is_free_but_for_them(solved):
+    """A slider on no joint: in two planes, without rotation; moved by a crank and a distance."""
+    crank = (0.5, (0.1, 0.0, 0.0), SLENDER, {"O": (0.0, 0.0, 0.0), "A": (0.2, 0.0, 0.0)})
+    block = (2.0, (0.0, 0.0, 0.0), (0.01, 0.01, 0.01), {"M": (0.0, 0.0, 0.0)}, (0.7, 0.1, 0.0))
+    length = float(np.hypot(0.5, 0.1))
+    points = {"P": (0.0, 0.0, 0.0), "G": ((0.0, 0.1, 0.0), OUT), "H": (0.0, 0.1, 0.0)}
+    joints = {"O": ("RevoluteJoint", "P", "crank/O")}
+    distance = {"rod": ("SphSphJoint", "crank/A", "block/M", ("distanceIJ", length))}
+    ties = {
+        "flat": ("PointInPlaneJoint", "H", "block/M"),
+        "straight": ("NoRotationJoint", "H", "block/M"),
+        "height": ("PointInPlaneJoint", "Up", "block/M", ("offset", 0.1)),
+    }
+    points |= {"Up": ((0.0, 0.0, 0.0), turned("x", -90))}
+    guide = {"guide": ("TranslationalJoint", "G", "block/G")}
+    motions = {"drive": ("RotationalMotion", "O", "4*time")}
+    span = (0.0, 0.3, 0.1)
+    one = solved(
+        points, {"crank": crank, "block": block}, joints | distance | ties, motions, span=span
+    )
+    guided = (*block[:3], {"M": (0.0, 0.0, 0.0), "G": ((0.0, 0.0, 0.0), OUT)}, block[4])
+    other = solved(
+        points, {"crank": crank, "block": guided}, joints | distance | guide, motions, span=span
+    )
+    assert np.allclose(one.effort("O"), other.effort("O"), rtol=1e-10)
+
+
+def refusal(told, *replaced):
+    text = assembly(*told)
+    for old, new in replaced:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return text
+
+
+MISUSE = {
+    "another file": (("OndselSolver", "solid"), "line 1: expected the first line of an assembly"),
+    "no parts": (("ConstantGravity", "Gravity"), "line 2, Assembly: lacks ConstantGravity"),
+    "unknown joint": (("RevoluteJoint", "CurveCurveContact"), "CurveCurveContact O: is not read"),
+    "unknown marker": (
+        ("/Press/Part1/Marker2", "/Press/Part9/M"),
+        "unknown marker '/Press/Part9/M'",
+    ),
+    "unknown motion": (("RotationalMotion", "GeneralMotion"), "GeneralMotion drive: is not read"),
+    "motion of none": (
+        ("/Press/O\n", "/Press/Z\n"),
+        "RotationalMotion drive: unknown joint '/Press/Z'",
+    ),
+    "law": (("2.0d*pi*time", "spline(time)"), "'spline(time)' is not read; valid: numbers"),
+    "rotation": (
+        ("0.0\t1.0\t0.0", "0.0\t1.0\t0.5"),
+        "RotationMatrix: axes: expected three directions",
+    ),
+    "mass": (("\t\t\t\t\t0.2\n", "\t\t\t\t\t-0.2\n"), "body 'Part1': a mass of -0.2 kg is imp"),
+    "number": (
+        ("\t0.2\n", "\t1e99\n"),
+        "Mass: expected a finite number of at most 1e+12, got '1e99'",
+    ),
+    "tabs": (("\tParts", "\t\t\t\t\t\t\tParts"), "has too many tabs for what is above it"),
+}
+
+
+@pytest.mark.parametrize("what", MISUSE)
+def test_misuse_names_line_and_element(what, tmp_path):
+    replaced, words = MISUSE[what]
+    path = tmp_path / "press.asmt"
+    path.write_text(refusal(FOUR_BAR, replaced))
+    with pytest.raises(errors.ModelFileError, match=re.escape(words)) as error:
+        read(path)
+    assert re.match(r"press\.asmt: line \d+", str(error.value))
+
+
+def test_what_is_not_read_is_said(tmp_path):
+    path = tmp_path / "press.asmt"
+    path.write_text(refusal(FOUR_BAR, ("\tForceTorques", "\tForceTorques\n\t\tForceTorqueInLine")))
+    assert re.search(r"# ForceTorqueInLine of line \d+ is not read\.", case_of(path))
+
+
+def test_markers_that_a_drawing_has_rounded(tmp_path):
+    """Off by 1e-8: taken for one place, and said."""
+    path = tmp_path / "press.asmt"
+    path.write_text(refusal(FOUR_BAR, ("2.0\t0.0\t0.0", "2.00000001\t0.0\t0.0")))
+    assert "joint 'C': its two frames miss each other by 1.0e-08 m" in case_of(path).replace(
+        "\n#  ", ""
+    )
+    assert evaluate(read(path), t=(0.0, 1.0, 3)).certified
+
+
+def test_the_press_is_the_one_by_hand():
+    """The shipped case, and its file, against a declaration in the plane."""
+    m = Mechanism("by_hand")
+    length = 0.22
+    crank = m.link("crank", length=0.04, mass=1.6, centre=(0.012, 0.0), inertia=1.6 / 12 * 0.0117)
+    rod = m.link("rod", length=length, mass=0.9, centre=(0.1, 0.0), inertia=0.9 / 12 * 0.0585)
+    ram = m.link("ram", length=0.1, mass=6.5, centre=(0.05, 0.0), inertia=0.01)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, ram)
+    m.prismatic("guide", m.ground, ram, axis=(0.0, -1.0), angle="-90 deg")
+    m.force("work", ram.tip, y=900.0)
+    turning = {"O": polynomial(0.0, 8 * np.pi)}
+    by_hand = Scene(m, turning, t=(0.0, 0.25, 11), posture={"rod": "-100 deg"}, wanted=["effort"])
+    shipped = load_case("cad_press").scene
+    found = evaluate(shipped, t=(0.0, 0.25, 11), wanted=["effort"]).effort("Bearing")
+    assert np.allclose(found, evaluate(by_hand).effort("O"), rtol=1e-11, atol=1e-11)
+    told = read(CASES / "cad_press" / "press.asmt")
+    weight = evaluate(told, t=(0.0, 0.25, 11), wanted=["effort"]).effort("Bearing")
+    moved = 900.0 * evaluate(told, t=(0.0, 0.25, 11)).motion("Guide").rate / (8 * np.pi)
+    assert np.allclose(found, weight - moved, rtol=1e-10, atol=1e-10)

@@ -1,0 +1,215 @@
+"""Models of other programs: the record, its JSON, and the case that is written of it."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lagrange_casadi import errors, evaluate, load_case, read, save_model
+from lagrange_casadi.cli import main
+from lagrange_casadi.formats import case_of, json_model
+from lagrange_casadi.formats.laws import LawError, parsed, python
+from lagrange_casadi.formats.record import COORDINATES
+
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+
+ROD = {"name": "arm", "mass": 2.0, "rod": [[0, 0, 0], [0.5, 0, 0]]}
+HINGE = {"name": "hinge", "kind": "revolute", "parent": "ground", "child": "arm"}
+ARM = {"schema": "lagrange_casadi.model", "version": 1, "bodies": [ROD], "joints": [HINGE]}
+
+
+def efforts(scene, count=5):
+    start, stop = scene.span
+    solution = evaluate(scene, t=(start, stop, count), wanted=["effort"])
+    return np.array([solution.outputs[one] for one in solution.outputs if one.group == "effort"])
+
+
+def write(folder, told, name="model.json"):
+    path = Path(folder) / name
+    path.write_text(told if isinstance(told, str) else json.dumps(told))
+    return path
+
+
+@pytest.mark.parametrize("name", ["arm6", "rrr3", "four_bar", "six_bar", "delta", "bricard"])
+def test_a_case_comes_back_from_its_file(name, tmp_path):
+    """Trees, loops, guides and bars, planar and in space: none of these has a load."""
+    scene = load_case(name).scene
+    save_model(scene, tmp_path / "model.json")
+    there, back = efforts(scene), efforts(read(tmp_path / "model.json"))
+    assert np.abs(back - there).max() < 1e-12 * np.abs(there).max()
+
+
+def test_a_rod_keeps_its_sections(tmp_path):
+    told = ARM | {"motions": {"hinge": "0.5 * sin(3 * t)"}, "gravity": [0, -9.81, 0]}
+    solution = evaluate(read(write(tmp_path, told)), t=(0.0, 1.0, 7))
+    angle = 0.5 * np.sin(3 * solution.t)
+    rate, acceleration = 1.5 * np.cos(3 * solution.t), -4.5 * np.sin(3 * solution.t)
+    effort = 2.0 * 0.5**2 / 3 * acceleration + 2.0 * 9.81 * 0.25 * np.cos(angle)
+    assert np.allclose(solution.effort("hinge"), effort, rtol=1e-13, atol=1e-13)
+    axial = 2.0 * 0.25 * rate**2 - 2.0 * 9.81 * np.sin(angle)
+    assert np.allclose(solution.section("arm").axial[:, 0], axial, rtol=1e-13, atol=1e-13)
+
+
+def test_what_new_writes_gives_the_numbers_of_read(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    assert main(["export", "stewart_gough", "--model", "legs.json"]) == 0
+    assert main(["new", "legs", "--from", "legs.json"]) == 0
+    assert "Loads are not told: tool, twist." in capfd.readouterr().out
+    text = (tmp_path / "legs" / "case.py").read_text()
+    assert 'mass_piston0 = m.parameter("mass_piston0", 0.7, "kg", low=0.0)' in text
+    assert max(map(len, text.splitlines())) <= 100
+    again = efforts(load_case("legs").scene)
+    assert np.array_equal(again, efforts(read("legs.json")))
+    assert main(["new", "legs", "--from", "legs.json"]) == 2
+    assert main(["new", "other", "--from", "legs.json", "--like", "arm"]) == 2
+    assert main(["export", "arm6"]) == 2
+    assert capfd.readouterr().err.splitlines() == [
+        "error: legs exists: expected a new folder",
+        "error: --like and --from exclude each other",
+        "error: nothing to write: give --out DIR or --model FILE.json",
+    ]
+
+
+def test_what_rests_is_said(tmp_path):
+    text = case_of(write(tmp_path, ARM))
+    assert "# The file gives no motion of hinge: here it rests." in text
+    assert '"hinge": polynomial(0.0)' in text
+
+
+def test_the_schema_has_the_words_of_the_reader():
+    schema = json.loads(Path("docs/model.schema.json").read_text())
+    assert tuple(schema["properties"]) == json_model.TOP
+    parts = {"body": json_model.BODY, "joint": json_model.JOINT}
+    parts |= {"coupling": json_model.COUPLING, "frame": json_model.FRAME}
+    for part, words in parts.items():
+        assert tuple(schema["$defs"][part]["properties"]) == words
+    assert set(schema["$defs"]["joint"]["properties"]["kind"]["enum"]) == set(COORDINATES)
+
+
+def changed(**change):
+    return ARM | change
+
+
+MISUSE = {
+    "no JSON": ("{", "no JSON"),
+    "another schema": (changed(version=2), 'expected "schema": "lagrange_casadi.model", "version"'),
+    "unknown key": (changed(links=[]), "unknown key 'links'; valid: schema, version"),
+    "no joints": ({k: v for k, v in ARM.items() if k != "joints"}, "lacks 'joints'"),
+    "no inertia": (
+        changed(bodies=[{"name": "arm", "mass": 2.0}]),
+        "bodies[0]: body 'arm' has a mass of 2 kg and no inertia",
+    ),
+    "negative mass": (changed(bodies=[ROD | {"mass": -2}]), "a mass of -2 kg is impossible"),
+    "impossible inertia": (
+        changed(bodies=[{"name": "arm", "mass": 2.0, "inertia": [1, 1, 3]}]),
+        "body 'arm': no body has the principal moments of inertia 1, 1, 3 kg m^2",
+    ),
+    "gigantic": (
+        changed(bodies=[ROD | {"mass": 1e300}]),
+        "expected a finite number of at most 1e+12",
+    ),
+    "not a number": (changed(bodies=[ROD | {"mass": "2_0"}]), "at most 1e+12, got '2_0'"),
+    "NaN": (json.dumps(changed(gravity=[0, 0, float("nan")])), "expected a finite number"),
+    "unknown joint": (
+        changed(joints=[HINGE | {"kind": "hinge"}]),
+        "unknown kind 'hinge'; valid: rev",
+    ),
+    "unknown body": (
+        changed(joints=[HINGE | {"child": "leg"}]),
+        "unknown body 'leg'; valid: ground",
+    ),
+    "to itself": (
+        changed(joints=[HINGE | {"parent": "arm"}]),
+        "joint 'hinge' joins 'arm' to itself",
+    ),
+    "disconnected": (
+        changed(bodies=[ROD, ROD | {"name": "leg"}]),
+        "bodies[1]: body 'leg' is joined to nothing that hangs on the ground",
+    ),
+    "twice": (changed(bodies=[ROD, ROD]), "bodies[1]: body 'arm': the name is taken"),
+    "skew axes": (
+        changed(bodies=[ROD | {"axes": [[1, 0, 0], [1, 1, 0], [0, 0, 1]]}]),
+        "bodies[0].axes: axes: expected three directions at right angles",
+    ),
+    "left-handed": (
+        changed(bodies=[ROD | {"axes": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}]),
+        "bodies[0].axes: axes: expected three directions at right angles, right-handed",
+    ),
+    "unknown motion": (changed(motions={"knee": "t"}), "unknown coordinate 'knee'; valid: hinge"),
+    "code": (
+        changed(motions={"hinge": "__import__('os')"}),
+        "motions.hinge: motion of 'hinge': '__import__('os')' is not read; valid: numbers, pi, t",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", MISUSE)
+def test_misuse_is_one_line_that_names_the_element(what, tmp_path):
+    told, words = MISUSE[what]
+    with pytest.raises(errors.ModelFileError, match=re.escape(words.replace("\\", ""))) as error:
+        read(write(tmp_path, told))
+    assert str(error.value).startswith("model.json: ")
+
+
+def test_names_and_notes_of_a_file_are_no_code(tmp_path):
+    end = '"""\nimport os\n# \u2028 \\'
+    told = ARM | {"name": "a", "notes": [end], "bodies": [ROD | {"name": end}]}
+    told |= {"joints": [HINGE | {"child": "b_" + re.sub(r"\W", "_", end.strip())}]}
+    text = case_of(write(tmp_path, told))
+    assert "\nimport os" not in text
+    assert len(re.findall("import os", text)) == 2  # in comments
+    read(write(tmp_path, told))
+
+
+@pytest.mark.parametrize(
+    ("told", "written"),
+    [
+        ("2.0d*pi*time", "polynomial(0.0, 2 * pi)"),
+        ("3", "polynomial(3.0)"),
+        ("(1 + t)^2/2", "polynomial(0.5, 1.0, 0.5)"),
+        ("0.2 * sin(3*t)", "expression(lambda t: 0.2 * ca.sin(3 * t))"),
+        ("t/(1 + t)", "expression(lambda t: t / (1 + t))"),
+    ],
+)
+def test_laws(told, written):
+    assert python(told) == written
+
+
+NO_LAWS = ["", "x", "t.real", "lambda: 1", "[t]", "sin", "sin(t, t)", "1e400 * t", "9" * 400]
+NO_LAWS += ["t" * 9, "(" * 500 + "t" + ")" * 500, "-" * 20000 + "t", "t if t else 1", "'t'", "f(t)"]
+
+
+@pytest.mark.parametrize("told", NO_LAWS, ids=range(len(NO_LAWS)))
+def test_no_laws(told):
+    with pytest.raises(LawError):
+        parsed(told)
+
+
+def test_files_that_are_none(tmp_path):
+    with pytest.raises(errors.PathError, match="No such file"):
+        read(tmp_path / "none.json")
+    (tmp_path / "folder.json").mkdir()
+    with pytest.raises(errors.PathError, match="not a file"):
+        read(tmp_path / "folder.json")
+    with pytest.raises(errors.ModelFileError, match=r"unknown format '.step'; valid: .json"):
+        read(tmp_path / "part.step")
+    with pytest.raises(errors.ModelFileError, match=r"first: xacro arm.urdf.xacro > arm.urdf"):
+        read(tmp_path / "arm.urdf.xacro")
+    (tmp_path / "latin.json").write_bytes(b"\xff\xfe\xfa")
+    with pytest.raises(errors.ModelFileError, match="no text in UTF-8"):
+        read(tmp_path / "latin.json")
+
+
+@pytest.mark.parametrize("plane", ["four_bar", "slider_crank"])
+def test_forces_in_the_plane_are_those_of_space(plane, tmp_path):
+    """What a plane leaves out is open in space; what it has is the same."""
+    scene = load_case(plane).scene
+    save_model(scene, tmp_path / "model.json")
+    scenes = (scene, read(tmp_path / "model.json"))
+    one, other = (evaluate(each, t=(*scene.span, 5)) for each in scenes)
+    for joint in one.description["joints"]:
+        there, back = one.reaction(joint), other.reaction(joint)
+        assert np.abs(back.fx - there.fx).max() < 1e-10 * max(np.abs(there.fx).max(), 1.0)
+        assert np.abs(back.fy - there.fy).max() < 1e-10 * max(np.abs(there.fy).max(), 1.0)
