@@ -159,6 +159,10 @@ from lagrange_casadi.figures.postures import assemblies, draw_postures
 from lagrange_casadi.figures.stills import stills
 from lagrange_casadi.figures.strength_plot import draw_strength, draw_utilisation
 from lagrange_casadi.figures.trade_plot import draw_trade
+from lagrange_casadi.formats import case_of, json_model
+from lagrange_casadi.formats.laws import LawError, python
+from lagrange_casadi.formats.laws import parsed as laws_parsed
+from lagrange_casadi.formats.record import COORDINATES
 from lagrange_casadi.geometry.frames import Frame
 from lagrange_casadi.geometry.rotation import Rotation
 from lagrange_casadi.instants import backends, cycle_table, grids, tabulate
@@ -229,7 +233,8 @@ from lagrange_casadi.store import runs
 from lagrange_casadi.store.runs import SCHEMA, SCHEMA_VERSION, check, load
 from lagrange_casadi.store.runs import save as runs_save
 from lagrange_casadi.store.scales import LARGE, Scales
-from lagrange_casadi.store.untrusted import check_shape, parsed, reported_as
+from lagrange_casadi.store.untrusted import check_shape, reported_as
+from lagrange_casadi.store.untrusted import parsed as untrusted_parsed
 from lagrange_casadi.strength import critical_plane, plane_factor
 from lagrange_casadi.strength.critical_plane import DUCTILE, FINDLEY, _bounds, worst_plane
 from lagrange_casadi.strength.fatigue import (

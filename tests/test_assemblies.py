@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 from conftest import CASES
+from internals import case_of
 
 from lagrange_casadi import Mechanism, Scene, errors, evaluate, load_case, read
-from lagrange_casadi.formats import case_of
 from lagrange_casadi.motion import polynomial
 from tests.assembly_file import IDENTITY, assembly, turned
 

@@ -6,12 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from internals import COORDINATES, LawError, case_of, json_model, python
+from internals import laws_parsed as parsed
 
 from lagrange_casadi import errors, evaluate, load_case, read, save_model
 from lagrange_casadi.cli import main
-from lagrange_casadi.formats import case_of, json_model
-from lagrange_casadi.formats.laws import LawError, parsed, python
-from lagrange_casadi.formats.record import COORDINATES
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from internals import case_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, errors, evaluate, load_case, read
-from lagrange_casadi.formats import case_of
 from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
