@@ -20,8 +20,8 @@ PRIVATE = {
 }
 """Words that once stood for methods of evaluation, local maxima, samples, load points and more."""
 
-PUBLIC = frozenset(("Spreads", "spreads"))
-"""Names that stay: of what tolerances do, where a spread is what statistics calls so."""
+PUBLIC = frozenset(("Spreads", "spreads", "ball_constraint"))
+"""Names that stay: a spread of tolerances as in statistics, and an element of URDF."""
 
 
 def names(tree: ast.AST) -> Iterator[str]:

@@ -6,9 +6,10 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
+import click
+
 from ..base.vocabulary import Precision
 from ..case import load_case
-from ..errors import DeclarationError
 from ..exports import export as write
 from .echo import echo
 from .options import parameters
@@ -38,7 +39,7 @@ def export(
         echo(f"wrote {model}")
     if out is None:
         if model is None:
-            raise DeclarationError("nothing to write: give --out DIR or --model FILE.json")
+            raise click.UsageError("Missing option '--out' or '--model'.")
         return
     made = write(
         loaded.scene,

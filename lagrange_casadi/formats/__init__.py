@@ -31,7 +31,7 @@ FORMATS: dict[str, Callable[[Path, str], Model]] = {
     ".asmt": asmt.read,
     ".urdf": urdf.read,
 }
-"""What reads a file, by its ending."""
+"""Readers of files by their ending."""
 
 LARGEST = 64 * 2**20
 """Bytes of a file, at most."""

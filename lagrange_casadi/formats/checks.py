@@ -13,7 +13,7 @@ SLACK = 1e-6
 """Frames of a joint that are apart by less, of the mechanism's size and in rad, are one."""
 
 EXACT = 1e-12
-"""What is off by less is the rounding of sums, and is not worth a note."""
+"""Difference that is rounding of sums, and is not worth a note."""
 
 
 def checked(model: Model) -> Model:

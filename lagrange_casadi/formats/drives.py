@@ -1,4 +1,4 @@
-"""Which coordinates are driven where a file gives too few motions, and how they rest."""
+"""Drives of a model whose file gives too few motions: the coordinates, and their values at rest."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ from .record import (
 )
 
 SCHEMA, VERSION = "lagrange_casadi.model", 1
-"""What a file says that it is."""
+"""Name of the format in a file."""
 
 TOP = (
     "schema",

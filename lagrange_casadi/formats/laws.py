@@ -31,7 +31,7 @@ Coefficients = tuple[float, ...]
 
 
 class LawError(ValueError):
-    """What a text has that no law has, in words."""
+    """Part of a text that no law has, in words."""
 
 
 def parsed(text: str) -> ast.expr:

@@ -32,7 +32,7 @@ ROWS: dict[str, str] = {
     "slide and turn": "ca.dot(q - p, {e}) + {factor} * turn",
     "wheels": "second + {factor} * first",
 }
-"""What rows of ties say: their expressions in a case are a value. The parent's frame is at p and
+"""Rows of ties, whose expressions in a case are a value. The parent's frame is at p and
 has the axes x, y, z; the child's is at q and has u, v, w; e and f are one of each.
 """
 

@@ -96,8 +96,8 @@ class _Robot:
             waiting = [one for one in waiting if one is not ready[0]]
         for loop in self.root.all(*_LOOPS):
             self.loop(loop, placed)
-        for ball in self.root.all("drake:ball_constraint"):
-            self.ball(ball)
+        for line in self.root.all("drake:ball_constraint"):
+            self.ball_constraint(line)
         for joint in joints:
             self.mimic(joint)
         for coupling in self.root.all("coupling"):
@@ -156,7 +156,7 @@ class _Robot:
                 far = far.then(self.axes(line, kind, "parent_axis", "axis"))
         self.add(line, kind, (parent, near), (child, far))
 
-    def ball(self, line: Element) -> None:
+    def ball_constraint(self, line: Element) -> None:
         """Read a ball constraint of Drake's."""
         sides = []
         for letter, point in (("A", "p_AP"), ("B", "p_BQ")):
@@ -229,7 +229,7 @@ class _Robot:
 
     def left_out(self, joints: list[Element]) -> None:
         """Note what was not read."""
-        rubbing = [
+        losses = [
             joint.given["name"]
             for joint in joints
             if (one := joint.first("dynamics"))
@@ -239,8 +239,8 @@ class _Robot:
                 if key in ("damping", "friction")
             )
         ]
-        if rubbing:
-            self.model.notes.append(f"Damping and friction are not read: {', '.join(rubbing)}.")
+        if losses:
+            self.model.notes.append(f"Damping and friction are not read: {', '.join(losses)}.")
         frames = [name for name, (body, _) in self.on.items() if name != body and body != GROUND]
         frames = [name for name in frames if self.model.called.get(self.on[name][0]) != name]
         if frames:

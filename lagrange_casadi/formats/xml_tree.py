@@ -25,7 +25,7 @@ class Element:
 
     @property
     def where(self) -> str:
-        """Its line and its start, for messages."""
+        """Line and start of the element, for messages."""
         named = f" name={shown(self.given['name'])}" if "name" in self.given else ""
         return f"line {self.line}, <{self.name}{named}>"
 

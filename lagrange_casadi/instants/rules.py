@@ -5,6 +5,7 @@ are evaluated.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from ..declare.ends import BEYOND
 from ..equations.checks import Check
 from ..equations.program import Program
 from ..equations.revolutions import REACH
-from ..equations.status import Bound
+from ..equations.status import NEAR, Bound
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """Largest residual of redundant equations, relative to the links' length, and of a row, relative to
@@ -101,15 +102,24 @@ def beside(program: Program, out: Array, outside: float) -> Array:
     :class:`.Bound`. Closures are ``outside`` before the first instant and after the last.
     """
     count = out.shape[-1]
-    seen = [
-        np.pad(row, (1, 2), constant_values=row[-1] if bound.kind == "TURNED" else outside)
-        for bound in program.bounds
-        for row in [np.asarray(out[bound.column], float)]
-    ]
-    most = [
+    rows = [np.asarray(out[bound.column], float) for bound in program.bounds]
+    found: list[Any] = [
         np.fmax.reduce(out[bound.size], initial=0.0) if bound.kind == "ROW" else 0.0
         for bound in program.bounds
     ]
-    shifted = [[row[k : k + count] for row in seen] for k in range(4)]
-    (found,) = interpret(program.beside, [*shifted, most], numpy_arithmetic())
+    if any(map(_depends_on_others, program.bounds, rows)):
+        ends = [
+            row[-1] if bound.kind == "TURNED" else outside
+            for bound, row in zip(program.bounds, rows, strict=True)
+        ]
+        longer = [np.concatenate(([x], row, [x, x])) for x, row in zip(ends, rows, strict=True)]
+        shifted = [[row[k : k + count] for row in longer] for k in range(4)]
+        (found,) = interpret(program.beside, [*shifted, found], numpy_arithmetic())
     return np.array([np.broadcast_to(row, count) for row in found], float).reshape(-1, count)
+
+
+def _depends_on_others(bound: Bound, row: Array) -> bool:
+    """Return whether other instants can break a bound: a loop must come near a dead centre first."""
+    if bound.kind in ("CLOSURE", "BRANCH"):
+        return not bool(((row >= NEAR**2) & (row < math.inf)).all())
+    return bound.kind == "TURNED"
