@@ -67,7 +67,7 @@ def test_what_new_writes_gives_the_numbers_of_read(tmp_path, monkeypatch, capfd)
     assert capfd.readouterr().err.splitlines() == [
         "error: legs exists: expected a new folder",
         "error: --like and --from exclude each other",
-        "error: nothing to write: give --out DIR or --model FILE.json",
+        "error: Missing option '--out' or '--model'.",
     ]
 
 

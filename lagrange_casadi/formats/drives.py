@@ -1,4 +1,4 @@
-"""Drives of a model whose file gives too few motions: the coordinates, and their values at rest."""
+"""Drives of a model whose file gives too few motions: coordinates, and their values at rest."""
 
 from __future__ import annotations
 

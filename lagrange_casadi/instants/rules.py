@@ -119,7 +119,7 @@ def beside(program: Program, out: Array, outside: float) -> Array:
 
 
 def _depends_on_others(bound: Bound, row: Array) -> bool:
-    """Return whether other instants can break a bound: a loop must come near a dead centre first."""
+    """Return whether other instants can break a bound: loops must come near a dead centre."""
     if bound.kind in ("CLOSURE", "BRANCH"):
         return not bool(((row >= NEAR**2) & (row < math.inf)).all())
     return bound.kind == "TURNED"
