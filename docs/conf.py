@@ -37,6 +37,7 @@ extensions = [
 ]
 exclude_patterns = ["_*"]
 UNLISTED = [
+    r"ca\.SX",
     *(
         "Axis",
         "Backend",
@@ -44,8 +45,10 @@ UNLISTED = [
         "Deflection",
         "Derivatives",
         "Design",
+        "Expression",
         "Figure",
         "Listed",
+        "Operand",
         "Over",
         "Progress",
         "Quantity",
