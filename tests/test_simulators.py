@@ -5,9 +5,9 @@ import sys
 
 import numpy as np
 import pytest
+from internals import case_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, errors, evaluate, read
-from lagrange_casadi.formats import case_of
 from lagrange_casadi.motion import harmonic
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
