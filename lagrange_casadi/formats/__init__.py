@@ -17,7 +17,7 @@ from ..arguments import public
 from ..base.publish import check_writable, writing
 from ..declare.scene import Scene
 from ..errors import ModelFileError, PathError
-from . import asmt, json_model, urdf
+from . import asmt, json_model, mjcf, sdf, urdf
 from .as_case import case_text
 from .checks import checked
 from .drives import driven
@@ -30,6 +30,8 @@ FORMATS: dict[str, Callable[[Path, str], Model]] = {
     ".json": json_model.read,
     ".asmt": asmt.read,
     ".urdf": urdf.read,
+    ".sdf": sdf.read,
+    ".xml": mjcf.read,
 }
 """Readers of files by their ending."""
 

@@ -39,7 +39,10 @@ class Element:
 
 
 def parsed(model: Model, text: str, root: str) -> Element:
-    """Return the root element of a text. Raises :class:`.ModelFileError`."""
+    """Return the root element of a text, any where no name is told.
+
+    Raises :class:`.ModelFileError`.
+    """
     parser, stack, count = expat.ParserCreate(), [Element("", 0)], 0
 
     def start(name: str, given: dict[str, str]) -> None:
@@ -70,7 +73,7 @@ def parsed(model: Model, text: str, root: str) -> Element:
     except expat.ExpatError as error:
         raise model.refuse(f"line {error.lineno}", f"no XML: {error}") from None
     found = stack[0].inside[0]
-    if found.name != root:
+    if root and found.name != root:
         raise model.refuse(found.where, f"expected <{root}>")
     return found
 

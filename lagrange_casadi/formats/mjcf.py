@@ -1,0 +1,202 @@
+"""Models of MuJoCo, ``.xml``: compiled by MuJoCo itself, which knows defaults and the inertia of
+shapes.
+
+Files that a model names are read in its own folder alone. A body with several joints has bodies
+without mass between these.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..base.arrays import Array
+from ..errors import MissingPackageError, shown
+from .record import GROUND, Body, Coupling, Frame, Joint, Model, about_axis, rotation, turned
+from .xml_tree import Element, parsed
+
+_FOLDERS = ("assetdir", "meshdir", "texturedir")
+_FILES = ("file", "fileup", "filedown", "filefront", "fileback", "fileleft", "fileright", "content")
+_DEEPEST = 20
+
+
+def read(path: Path, text: str) -> Model:
+    """Return the model of a file. Raises :class:`.ModelFileError`, and
+    :class:`.MissingPackageError` without MuJoCo.
+    """
+    model = Model(path.stem, path.name)
+    root = parsed(model, text, "mujoco")
+    _inside(model, path.parent.resolve(), root, path.parent.resolve(), 0)
+    try:
+        import mujoco
+    except ModuleNotFoundError:
+        raise MissingPackageError(
+            f"{path.name}: a model of MuJoCo is compiled by MuJoCo: pip install mujoco"
+        ) from None
+    try:
+        compiled = mujoco.MjModel.from_xml_path(str(path))
+    except ValueError as error:
+        raise model.refuse("", f"MuJoCo refuses it: {error}") from None
+    return _Reader(model, compiled, mujoco).read()
+
+
+def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -> None:
+    """Raise :class:`.ModelFileError` for a file outside of the folder; included ones are read."""
+    for key, told in line.given.items():
+        if key not in (*_FOLDERS, *_FILES):
+            continue
+        there = (base / told).resolve()
+        if Path(told).is_absolute() or not there.is_relative_to(folder):
+            raise model.refuse(line.where, f"{key} {shown(told)} leads out of its folder")
+        if line.name == "include" and there.is_file():
+            if depth > _DEEPEST:
+                raise model.refuse(line.where, "includes are too deep")
+            included = there.read_text(encoding="utf-8", errors="replace")
+            _inside(model, folder, parsed(model, included, ""), there.parent, depth + 1)
+    for one in line.inside:
+        _inside(model, folder, one, base, depth)
+
+
+class _Reader:
+    """A compiled model under way."""
+
+    def __init__(self, model: Model, compiled: Any, mujoco: Any) -> None:
+        self.model, self.m, self.mujoco = model, compiled, mujoco
+        self.data = mujoco.MjData(compiled)
+        mujoco.mj_kinematics(compiled, self.data)
+        self.bodies: dict[int, str] = {0: GROUND}
+        self.joints: dict[int, str] = {}
+
+    def read(self) -> Model:
+        """Return the model."""
+        model, m = self.model, self.m
+        model.name = model.name_of("mechanism", self.own_name() or model.name, "", {})
+        x, y, z = (float(one) for one in m.opt.gravity)
+        model.gravity = (x, y, z)
+        for k in range(1, m.nbody):
+            self.body(k)
+        for k in range(m.neq):
+            if m.eq_active0[k]:
+                self.equality(k)
+        kinds = self.mujoco.mjtTrn
+        for k in range(m.nu):
+            if kinds(int(m.actuator_trntype[k])) in (kinds.mjTRN_JOINT, kinds.mjTRN_JOINTINPARENT):
+                model.preferred.append(self.joints[int(m.actuator_trnid[k, 0])])
+        self.left_out()
+        return model
+
+    def own_name(self) -> str:
+        """Return the model's name: the first text of its names."""
+        return str(self.m.names[: self.m.names.index(b"\0")].decode(errors="replace"))
+
+    def called(self, kind: str, k: int) -> str:
+        """Return the name of an object, or its number."""
+        told = self.mujoco.mj_id2name(self.m, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind}"), k)
+        return told or f"{kind.lower()}_{k}"
+
+    def frame(self, k: int) -> Frame:
+        """Return where a body is in the reference posture."""
+        axes = self.data.xmat[k].reshape(3, 3)
+        return Frame(self.data.xpos[k].copy(), rotation(self.model, f"body {k}", axes))
+
+    def body(self, k: int) -> None:
+        """Declare a body, and the joints that it hangs on."""
+        model, m, told = self.model, self.m, self.called("BODY", k)
+        where = f"body {shown(told)}"
+        name = self.bodies[k] = model.name_of("body", told, where, model.bodies)
+        axes = self.rotation(m.body_iquat[k])
+        inertia = axes @ np.diag(m.body_inertia[k]) @ axes.T
+        mass, frame = float(m.body_mass[k]), self.frame(k)
+        model.bodies[name] = Body(name, mass, m.body_ipos[k].copy(), inertia, frame, where=where)
+        above = self.bodies[int(m.body_parentid[k])]
+        first, count = int(m.body_jntadr[k]), int(m.body_jntnum[k])
+        if not count:
+            near = model.frame_of(above).seen(frame)
+            joint = model.name_of("joint", f"{name}_fixed", where, model.joints)
+            model.joints[joint] = Joint(joint, "weld", above, name, near, Frame(), where=where)
+        for j in range(first, first + count):
+            below = name
+            if j < first + count - 1:
+                below = model.name_of("body", f"{name}_{j - first + 1}", where, model.bodies)
+                zero = np.zeros((3, 3))
+                model.bodies[below] = Body(below, 0.0, np.zeros(3), zero, frame, where=where)
+            self.joint(j, above, below, frame)
+            above = below
+
+    def joint(self, j: int, above: str, below: str, frame: Frame) -> None:
+        """Declare a joint; in the reference posture its coordinate is ``ref``."""
+        model, m, told = self.model, self.m, self.called("JOINT", j)
+        kind = ("free", "spherical", "prismatic", "revolute")[int(m.jnt_type[j])]
+        where = f"joint {shown(told)}"
+        name = self.joints[j] = model.name_of("joint", told, where, model.joints)
+        at, far = frame.then(Frame(m.jnt_pos[j].copy())), Frame(m.jnt_pos[j].copy())
+        if kind == "free":
+            at, far = Frame(), Frame()
+        if kind in ("prismatic", "revolute"):
+            axes, ref = about_axis(m.jnt_axis[j].copy()), float(m.qpos0[m.jnt_qposadr[j]])
+            at, far = at.then(Frame(axes=axes)), far.then(Frame(axes=axes))
+            if kind == "revolute":
+                far = far.then(Frame(axes=turned(np.array([0.0, 0.0, 1.0]), -ref)))
+            else:
+                at = at.then(Frame(np.array([0.0, 0.0, -ref])))
+        near = model.frame_of(above).seen(at)
+        model.joints[name] = Joint(name, kind, above, below, near, far, where=where)
+
+    def equality(self, k: int) -> None:
+        """Declare an equality: connect and weld close loops, joint couples two of them."""
+        model, m, told = self.model, self.m, self.called("EQUALITY", k)
+        where, data = f"equality {shown(told)}", m.eq_data[k]
+        one, other = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
+        kinds = self.mujoco.mjtEq
+        kind = kinds(int(m.eq_type[k]))
+        sites = int(m.eq_objtype[k]) == int(self.mujoco.mjtObj.mjOBJ_SITE)
+        if kind == kinds.mjEQ_JOINT:
+            if np.any(data[2:5]) or other < 0:
+                raise model.refuse(where, "is not read: its polynomial is not linear")
+            name = model.name_of("coupling", told, where, model.couplings)
+            starts = [float(m.qpos0[m.jnt_qposadr[j]]) for j in (one, other)]
+            offset = float(data[0]) + starts[0] - float(data[1]) * starts[1]
+            first, second = self.joints[other], self.joints[one]
+            model.couplings[name] = Coupling(name, first, second, float(data[1]), offset, where)
+            return
+        if kind not in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD):
+            raise model.refuse(where, "is not read; valid: connect, weld, joint")
+        name = model.name_of("joint", told, where, model.joints)
+        if sites:
+            near, far = self.site(one), self.site(other)
+            one, other = int(m.site_bodyid[one]), int(m.site_bodyid[other])
+        elif kind == kinds.mjEQ_CONNECT:
+            near, far = Frame(data[:3].copy()), Frame(data[3:6].copy())
+        else:
+            far = Frame(data[:3].copy())
+            near = Frame(data[3:6].copy(), self.rotation(data[6:10])).then(far)
+        shape = "weld" if kind == kinds.mjEQ_WELD else "spherical"
+        ends = self.bodies[one], self.bodies[other]
+        model.joints[name] = Joint(name, shape, *ends, near, far, where=where)
+
+    def site(self, k: int) -> Frame:
+        """Return the frame of a site on its body."""
+        return Frame(self.m.site_pos[k].copy(), self.rotation(self.m.site_quat[k]))
+
+    def rotation(self, quaternion: Array) -> Array:
+        """Return the axes of a quaternion."""
+        axes = np.zeros(9)
+        self.mujoco.mju_quat2Mat(axes, np.asarray(quaternion, dtype=float))
+        return rotation(self.model, "quaternion", axes.reshape(3, 3))
+
+    def left_out(self) -> None:
+        """Note what was not read."""
+        m, notes = self.m, self.model.notes
+        told = {
+            "Springs of joints": np.any(m.jnt_stiffness),
+            "Damping of joints": np.any(m.dof_damping),
+            "Friction of joints": np.any(m.dof_frictionloss),
+            "Armature, the inertia of motors at joints": np.any(m.dof_armature),
+            "Contacts": m.npair > 0 or (np.any(m.geom_contype) and m.ngeom > 1),
+            "Tendons": m.ntendon > 0,
+            "Actuators, but for the joints that they drive": m.nu > 0,
+            "Keyframes": m.nkey > 0,
+        }
+        notes += [f"{what}: not read." for what, there in told.items() if there]

@@ -1,0 +1,270 @@
+"""Models as SDF: links, frames and joints of Gazebo; loops are joints like others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..base.arrays import Array
+from ..errors import shown
+from .record import (
+    GROUND,
+    Body,
+    Coupling,
+    Frame,
+    Joint,
+    Model,
+    about_axis,
+    number,
+    numbers,
+    rotation,
+    rpy,
+)
+from .xml_tree import Element, attribute, needed, parsed
+
+KINDS: dict[str, str] = {
+    "revolute": "revolute",
+    "continuous": "revolute",
+    "prismatic": "prismatic",
+    "ball": "spherical",
+    "universal": "universal",
+    "revolute2": "universal",
+    "screw": "screw",
+    "fixed": "weld",
+}
+"""Types of joints."""
+
+GRAVITY = (0.0, 0.0, -9.8)
+"""What a world has that tells none."""
+
+_IGNORED = ("pose", "link", "joint", "frame", "static", "self_collide", "enable_wind")
+
+
+def read(path: Path, text: str) -> Model:
+    """Return the model of a file. Raises :class:`.ModelFileError`, which names line and element."""
+    model = Model(path.stem, path.name, gravity=GRAVITY)
+    root = parsed(model, text, "sdf")
+    world = root.first("world")
+    if world is not None and (line := world.first("gravity")) is not None:
+        x, y, z = numbers(model, line.where, line.text, "gravity", 3)
+        model.gravity = (float(x), float(y), float(z))
+    line = needed(model, world or root, "model")
+    others = [one for one in (world or root).all("model") if one is not line]
+    model.notes += [f"Model {shown(one.given.get('name'))} of line {one.line} is not read."
+                    for one in others]  # fmt: skip
+    model.name = model.name_of("mechanism", attribute(model, line, "name"), line.where, {})
+    return _Reader(model, line).read()
+
+
+class _Reader:
+    """A model under way: its links, frames and joints by name."""
+
+    def __init__(self, model: Model, line: Element) -> None:
+        self.model, self.line = model, line
+        self.named: dict[str, Element] = {}
+        for one in line.all("link", "frame", "joint"):
+            name = attribute(model, one, "name")
+            if name in self.named:
+                raise model.refuse(one.where, "the name is taken")
+            self.named[name] = one
+        self.own = self.pose(line.first("pose"))
+        self.bodies: dict[str, str] = {}
+        self.joints: dict[str, str] = {}
+
+    def read(self) -> Model:
+        """Return the model."""
+        for link in self.line.all("link"):
+            self.body(link)
+        for joint in self.line.all("joint"):
+            if attribute(self.model, joint, "type") != "gearbox":
+                self.joint(joint)
+        for joint in self.line.all("joint"):
+            self.couplings(joint)
+        hung = {name for one in self.model.joints.values() for name in (one.parent, one.child)}
+        if GROUND not in hung and self.model.bodies:
+            first = next(iter(self.model.bodies.values()))
+            name = self.model.name_of("joint", f"{first.name}_fixed", "", self.model.joints)
+            self.model.joints[name] = Joint(
+                name, "weld", GROUND, first.name, first.frame, Frame(), where=first.where
+            )
+            self.model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
+        for one in self.line.inside:
+            if one.name in ("model", "include"):
+                raise self.model.refuse(one.where, "is not read: put its links into the model")
+            if one.name not in _IGNORED:
+                self.model.notes.append(f"<{one.name}> of line {one.line} is not read.")
+        return self.model
+
+    def body(self, link: Element) -> None:
+        """Declare a link as a body."""
+        model, told = self.model, attribute(self.model, link, "name")
+        name = self.bodies[told] = model.name_of("body", told, link.where, model.bodies)
+        inertial, inertia = link.first("inertial"), None
+        mass, centre = 1.0, Frame()
+        if inertial is None or inertial.first("inertia") is None:
+            words = "lacks <inertia>, in place of which Gazebo has 1 kg and 1 kg m^2"
+            raise model.refuse((inertial or link).where, words)
+        if (line := inertial.first("mass")) is not None:
+            mass = number(model, line.where, line.text.strip(), "mass")
+        centre = self.pose(inertial.first("pose"))
+        moments = needed(model, inertial, "inertia")
+        xx, xy, xz, yy, yz, zz = (
+            self.value(moments, key, 1.0 if key[1] == key[2] else 0.0)
+            for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+        )
+        rows = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        inertia = centre.axes @ rows @ centre.axes.T
+        frame = self.frame(told, ())
+        model.bodies[name] = Body(name, mass, centre.place, inertia, frame, where=link.where)
+
+    def joint(self, line: Element) -> None:
+        """Declare a joint, whose frames coincide as the model stands."""
+        model, told = self.model, attribute(self.model, line, "name")
+        kind = KINDS.get(attribute(model, line, "type"))
+        if kind is None:
+            words = f"unknown type {shown(line.given['type'])}; valid: {', '.join(KINDS)}, gearbox"
+            raise model.refuse(line.where, words)
+        name = self.joints[told] = model.name_of("joint", told, line.where, model.joints)
+        parent, child = self.end(line, "parent"), self.end(line, "child")
+        frame = self.frame(told, ())
+        near = far = frame
+        if kind in ("revolute", "prismatic", "screw", "universal"):
+            first = self.axis(line, "axis", frame)
+            near = far = Frame(frame.place, about_axis(first))
+            if kind == "universal":
+                second = self.axis(line, "axis2", frame)
+                if abs(first @ second) > 1e-6:
+                    raise model.refuse(line.where, "its two axes are not at right angles")
+                far = Frame(frame.place, about_axis(second))
+        lead = 0.0
+        if kind == "screw":
+            lead = self.value(needed(model, line, "screw_thread_pitch"), "", 0.0)
+        model.joints[name] = Joint(
+            name,
+            kind,
+            parent,
+            child,
+            model.frame_of(parent).seen(near),
+            model.frame_of(child).seen(far),
+            lead,
+            line.where,
+        )
+
+    def couplings(self, line: Element) -> None:
+        """Declare what ties a joint to another one: a mimic, a gearbox."""
+        model, told = self.model, attribute(self.model, line, "name")
+        axis = line.first("axis")
+        if axis is not None and (mimic := axis.first("mimic")) is not None:
+            other = attribute(model, mimic, "joint")
+            ratio, offset, reference = (
+                self.value(mimic, key, usual)
+                for key, usual in (("multiplier", 0.0), ("offset", 0.0), ("reference", 0.0))
+            )
+            self.coupling(mimic, f"{told}_mimic", (other, told), ratio, offset - ratio * reference)
+        if line.given["type"] != "gearbox":
+            return
+        ratio = self.value(line, "gearbox_ratio", 1.0)
+        carrier = needed(model, line, "gearbox_reference_body").text.strip()
+        ends = []
+        for side in ("parent", "child"):
+            body = self.end(line, side)
+            found = [
+                name
+                for name, own in self.joints.items()
+                if {model.joints[own].parent, model.joints[own].child}
+                == {body, self.bodies.get(carrier, GROUND)}
+            ]
+            if len(found) != 1:
+                words = f"its {side} has no joint on the reference body {shown(carrier)}"
+                raise model.refuse(line.where, words)
+            ends.append(found[0])
+        self.coupling(line, told, (ends[0], ends[1]), -ratio, 0.0)
+
+    def coupling(
+        self, line: Element, told: str, joints: tuple[str, str], ratio: float, offset: float
+    ) -> None:
+        """Declare second = ratio first + offset."""
+        model = self.model
+        for joint in joints:
+            if joint not in self.joints:
+                words = f"unknown joint {shown(joint)}; valid: {', '.join(self.joints)}"
+                raise model.refuse(line.where, words)
+        name = model.name_of("coupling", told, line.where, model.couplings)
+        first, second = (self.joints[joint] for joint in joints)
+        model.couplings[name] = Coupling(name, first, second, ratio, offset, line.where)
+
+    def axis(self, line: Element, key: str, frame: Frame) -> Array:
+        """Return the direction of a joint's axis, on the ground's axes."""
+        told = needed(self.model, line, key)
+        xyz, given = told.first("xyz"), np.array([0.0, 0.0, 1.0])
+        on = frame
+        if xyz is not None:
+            given = numbers(self.model, xyz.where, xyz.text, "xyz", 3)
+            if expressed := xyz.given.get("expressed_in"):
+                on = self.known(xyz, expressed, ())
+        legacy = told.first("use_parent_model_frame")
+        if legacy is not None and legacy.text.strip() in ("1", "true"):
+            on = self.own
+        if not np.any(given):
+            raise self.model.refuse(told.where, "expected a direction, got zero")
+        return np.asarray(on.axes @ given / np.linalg.norm(given))
+
+    def end(self, line: Element, key: str) -> str:
+        """Return the body of a joint's parent or child, which may be told by a frame on it."""
+        told = needed(self.model, line, key)
+        name = told.text.strip()
+        for _ in range(len(self.named) + 1):
+            if name == "world":
+                return GROUND
+            if name in self.bodies:
+                return self.bodies[name]
+            frame = self.named.get(name)
+            if frame is None or frame.name != "frame":
+                break
+            name = frame.given.get("attached_to", "")
+        words = f"unknown link {shown(told.text.strip())}; valid: world, {', '.join(self.bodies)}"
+        raise self.model.refuse(told.where, words)
+
+    def frame(self, name: str, above: tuple[str, ...]) -> Frame:
+        """Return where a link, frame or joint is; poses may be told on each other."""
+        line = self.named[name]
+        if name in above:
+            raise self.model.refuse(line.where, "its pose is told on itself")
+        pose, on = line.first("pose"), ""
+        if pose is not None:
+            on = pose.given.get("relative_to", "") or pose.given.get("frame", "")
+        if not on and line.name == "joint":
+            on = needed(self.model, line, "child").text.strip()
+        elif not on and line.name == "frame":
+            on = line.given.get("attached_to", "")
+        return self.known(line, on, (*above, name)).then(self.pose(pose))
+
+    def known(self, line: Element, name: str, above: tuple[str, ...]) -> Frame:
+        """Return the frame of a name."""
+        if name in ("", "__model__"):
+            return self.own
+        if name == "world":
+            return Frame()
+        if name not in self.named:
+            words = f"unknown frame {shown(name)}; valid: {', '.join(self.named)}"
+            raise self.model.refuse(line.where, words)
+        return self.frame(name, above)
+
+    def pose(self, line: Element | None) -> Frame:
+        """Return the frame of a pose: a place, and roll, pitch and yaw."""
+        if line is None or not line.text.strip():
+            return Frame()
+        told = line.text
+        if line.given.get("rotation_format", "euler_rpy") != "euler_rpy":
+            raise self.model.refuse(line.where, "rotation_format: expected euler_rpy")
+        six = numbers(self.model, line.where, told, "pose", 6)
+        angles = np.radians(six[3:]) if line.given.get("degrees") in ("true", "1") else six[3:]
+        return Frame(six[:3], rotation(self.model, line.where, rpy(angles)))
+
+    def value(self, line: Element, key: str, usual: float) -> float:
+        """Return the number in an element, or in one that is in it."""
+        found = line if not key else line.first(key)
+        if found is None:
+            return usual
+        return number(self.model, found.where, found.text.strip(), key or line.name)
