@@ -332,7 +332,7 @@ def cases(**given: Any) -> None:
     "source",
     type=PATH,
     metavar="FILE",
-    help="Begin with a model of another program: .json, .asmt or .urdf.",
+    help="Begin with a model of another program: .json, .asmt, .urdf, .sdf or .xml (MuJoCo).",
 )
 def new(**given: Any) -> None:
     """Begin a case of your own in a new FOLDER.
