@@ -24,6 +24,8 @@ from lagrange_casadi import (
     sweep,
 )
 
+PRESS = Path(__file__).parents[1] / "cases" / "cad_press" / "press.asmt"
+
 DOORS = (
     "lagrange_casadi",
     *(
@@ -104,6 +106,8 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         "check": {"path": "run.h5"},
         "save": {"solution": solution, "path": "saved.h5"},
         "load_case": {"path": "slider_crank"},
+        "read": {"path": str(PRESS)},
+        "save_model": {"scene": scene, "path": "model.json"},
         "export": {"scene": scene, "out": "exported", "wanted": ["effort"], "force": True},
     }.items():
         yield name, (getattr(root, name), given)

@@ -35,12 +35,14 @@ INSTANT = {
     "stewart_gough": 5322,
     "arm6": 1434,
     "cardan_shaft": 771,
+    "cad_press": 366,
+    "parallel_leg": 5334,
     "five_link_suspension": 2601,
     "delta": 4560,
     "bricard": 2044,
 }
 LOOPS = {"rrr3": 239, "beam_pump": 50, "cardan_shaft": 62}
-LOOPS |= {"five_link_suspension": 783, "delta": 1002, "bricard": 338}
+LOOPS |= {"parallel_leg": 1267, "five_link_suspension": 783, "delta": 1002, "bricard": 338}
 
 
 @pytest.mark.parametrize("name", INSTANT)

@@ -21,13 +21,13 @@ from internals import (
     check_sweep,
     dump_specs,
     parse_specs,
-    parsed,
     progress,
     reported_as,
     sweep,
 )
 from internals import ListingListed as Listed
 from internals import runs as store
+from internals import untrusted_parsed as parsed
 
 from lagrange_casadi import Sweep, best, check, evaluate, load, save
 from lagrange_casadi.cli import main
