@@ -36,7 +36,7 @@ KINDS: dict[str, str] = {
 """Types of joints."""
 
 GRAVITY = (0.0, 0.0, -9.8)
-"""What a world has that tells none."""
+"""Elements of a world that say none."""
 
 _IGNORED = ("pose", "link", "joint", "frame", "static", "self_collide", "enable_wind")
 
