@@ -36,7 +36,7 @@ KINDS: dict[str, str] = {
 """Types of joints."""
 
 GRAVITY = (0.0, 0.0, -9.8)
-"""Elements of a world that say none."""
+"""Gravity of a world whose file gives none."""
 
 _IGNORED = ("pose", "link", "joint", "frame", "static", "self_collide", "enable_wind")
 
