@@ -271,6 +271,10 @@ MISUSE = {
         robot(BASE, link("a", "heavy"), joint("p", "base", "a")),
         "<mass>: mass: expected a number, got 'heavy'",
     ),
+    "no damping": (
+        robot(BASE, link("a"), joint("p", "base", "a", more='<dynamics damping="much"/>')),
+        "line 4, <dynamics>: damping: expected a number, got 'much'",
+    ),
     "mimic of none": (
         robot(BASE, link("a"), joint("p", "base", "a", more='<mimic joint="q"/>')),
         "line 4, <mimic>: unknown joint 'q'; valid: p",

@@ -11,7 +11,6 @@ import click
 
 from ..base.space import MOST_THREADS
 from ..base.vocabulary import (
-    BACKENDS,
     CRITERIA,
     KEEPS,
     POINTS,
@@ -26,6 +25,7 @@ from .options import (
     EVEN_POINTS,
     PATH,
     axis,
+    backend,
     bounds,
     even_points,
     instants,
@@ -252,14 +252,7 @@ def table(**given: Any) -> None:
 )
 @settings_by("Set a parameter that is not chosen, as l=0.25 or phi=30deg; repeatable.")
 @instants()
-@click.option(
-    "--backend",
-    type=click.Choice(BACKENDS),
-    default="auto",
-    show_default=True,
-    help="Evaluate designs with SIMD in C++ (lanes), with C, or with CasADi's virtual machine"
-    " (vm).",
-)
+@backend(" designs")
 @click.option(
     "--dask",
     metavar="ADDRESS",
@@ -440,14 +433,7 @@ def drive(**given: Any) -> None:
     metavar="NUMBER",
     help="Draw this number of designs at random.",
 )
-@click.option(
-    "--backend",
-    type=click.Choice(BACKENDS),
-    default="auto",
-    show_default=True,
-    help="Evaluate designs with SIMD in C++ (lanes), with C, or with CasADi's virtual machine"
-    " (vm).",
-)
+@backend(" designs")
 @click.option(
     "--csv",
     "out",

@@ -252,13 +252,18 @@ def _together(*options: Callable[..., Any]) -> Callable[[Callable[..., Any]], Ca
     return decorate
 
 
-_BACKEND = click.option(
-    "--backend",
-    type=click.Choice(BACKENDS),
-    default="auto",
-    show_default=True,
-    help="Evaluate with SIMD in C++ (lanes), with C, or with CasADi's virtual machine (vm).",
-)
+def backend(designs: str = "") -> Option:
+    """Backend of an evaluation, or of ``" designs"``."""
+    return click.option(
+        "--backend",
+        type=click.Choice(BACKENDS),
+        default="auto",
+        show_default=True,
+        help=f"Evaluate{designs} with SIMD in C++ (lanes), with C, or with CasADi's virtual machine"
+        " (vm).",
+    )
+
+
 _PRECISION = click.option(
     "--precision",
     type=click.Choice(PRECISIONS),
@@ -328,10 +333,10 @@ over = click.option(
 )
 """Instants by a drive."""
 
-method = _together(_BACKEND, _PRECISION, _NEWTON, _TABLE, _FLAGS)
+method = _together(backend(), _PRECISION, _NEWTON, _TABLE, _FLAGS)
 """The options of a :class:`.EvaluationMethod`."""
 
-untabled_method = _together(_BACKEND, _PRECISION, _NEWTON, _FLAGS)
+untabled_method = _together(backend(), _PRECISION, _NEWTON, _FLAGS)
 """Options of an evaluation without a table."""
 
 arithmetic = _together(_PRECISION, _NEWTON, _TABLE)

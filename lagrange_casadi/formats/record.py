@@ -344,6 +344,16 @@ def rotation(model: Model, where: str, axes: Array) -> Array:
     return np.asarray(np.where(np.abs(np.abs(exact) - 1.0) < 1e-15, np.sign(exact), exact))
 
 
+MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+"""Names of the moments of inertia in URDF and SDF."""
+
+
+def inertia_of(moments: Sequence[float], axes: Array) -> Array:
+    """Return the inertia of six :data:`MOMENTS` about axes, on the axes that these are told on."""
+    xx, xy, xz, yy, yz, zz = moments
+    return np.asarray(axes @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ axes.T)
+
+
 def about_axis(axis: Array) -> Array:
     """Return axes whose third is along a direction."""
     z = axis / np.linalg.norm(axis)

@@ -10,12 +10,14 @@ from ..base.arrays import Array
 from ..errors import shown
 from .record import (
     GROUND,
+    MOMENTS,
     Body,
     Coupling,
     Frame,
     Joint,
     Model,
     about_axis,
+    inertia_of,
     number,
     numbers,
     rotation,
@@ -100,8 +102,7 @@ class _Reader:
         """Declare a link as a body."""
         model, told = self.model, attribute(self.model, link, "name")
         name = self.bodies[told] = model.name_of("body", told, link.where, model.bodies)
-        inertial, inertia = link.first("inertial"), None
-        mass, centre = 1.0, Frame()
+        inertial, mass = link.first("inertial"), 1.0
         if inertial is None or inertial.first("inertia") is None:
             words = "lacks <inertia>, in place of which Gazebo has 1 kg and 1 kg m^2"
             raise model.refuse((inertial or link).where, words)
@@ -109,12 +110,8 @@ class _Reader:
             mass = number(model, line.where, line.text.strip(), "mass")
         centre = self.pose(inertial.first("pose"))
         moments = needed(model, inertial, "inertia")
-        xx, xy, xz, yy, yz, zz = (
-            self.value(moments, key, 1.0 if key[1] == key[2] else 0.0)
-            for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-        )
-        rows = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        inertia = centre.axes @ rows @ centre.axes.T
+        six = [self.value(moments, key, 1.0 if key[1] == key[2] else 0.0) for key in MOMENTS]
+        inertia = inertia_of(six, centre.axes)
         frame = self.frame(told, ())
         model.bodies[name] = Body(name, mass, centre.place, inertia, frame, where=link.where)
 

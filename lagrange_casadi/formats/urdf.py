@@ -16,12 +16,14 @@ from ..base.arrays import Array
 from ..errors import shown
 from .record import (
     GROUND,
+    MOMENTS,
     Body,
     Coupling,
     Frame,
     Joint,
     Model,
     about_axis,
+    inertia_of,
     number,
     numbers,
     rotation,
@@ -146,7 +148,7 @@ class _Robot:
         near = near.then(self.axes(line, kind, "parent_axis", "axis"))
         if kind == "universal" or line.first("child_axis") is not None:
             far = far.then(self.axes(line, kind, "child_axis", "axis"))
-        elif near.axes is not None and line.first(*_ONE) is not None:
+        else:
             given = line.first("parent_axis", "axis")
             if given is not None and given.given.get("frame") == "parent":
                 # The axis is told on the parent alone: the child's is where it is at zero.
@@ -172,19 +174,14 @@ class _Robot:
         """Read that a joint follows another one."""
         if (mimic := joint.first("mimic")) is None:
             return
-        model, told = self.model, attribute(self.model, mimic, "joint")
-        if told not in self.names:
-            words = f"unknown joint {shown(told)}; valid: {', '.join(self.names)}"
-            raise model.refuse(mimic.where, words)
-        second = self.names[attribute(model, joint, "name")]
+        model, first = self.model, self.joint(mimic, "joint")
+        second = self.joint(joint, "name")
         ratio, offset = (
             number(model, mimic.where, mimic.given.get(key, usual), key)
             for key, usual in (("multiplier", "1"), ("offset", "0"))
         )
         name = f"{second}_mimic"
-        model.couplings[name] = Coupling(
-            name, self.names[told], second, ratio, offset, where=mimic.where
-        )
+        model.couplings[name] = Coupling(name, first, second, ratio, offset, where=mimic.where)
 
     def coupling(self, line: Element, joints: list[Element]) -> None:
         """Read a coupling of two links' joints."""
@@ -217,11 +214,7 @@ class _Robot:
             if joint.first("command_interface") is not None
         ]
         for joint in lines:
-            told = attribute(self.model, joint, "name")
-            if told not in self.names:
-                words = f"unknown joint {shown(told)}; valid: {', '.join(self.names)}"
-                raise self.model.refuse(joint.where, words)
-            self.model.preferred.append(self.names[told])
+            self.model.preferred.append(self.joint(joint, "name"))
         if any(group.first("actuator") for group in self.root.all("transmission")):
             self.model.notes.append(
                 "Reductions of transmissions are not read: efforts are at joints."
@@ -234,9 +227,8 @@ class _Robot:
             for joint in joints
             if (one := joint.first("dynamics"))
             and any(
-                float(value or 0)
-                for key, value in one.given.items()
-                if key in ("damping", "friction")
+                number(self.model, one.where, one.given.get(key) or "0", key)
+                for key in ("damping", "friction")
             )
         ]
         if losses:
@@ -263,13 +255,9 @@ class _Robot:
         mass = number(model, line.where, attribute(model, line, "value"), "mass")
         origin, inertia = self.origin(inertial.first("origin")), None
         if (told_inertia := inertial.first("inertia")) is not None:
-            where = told_inertia.where
-            xx, xy, xz, yy, yz, zz = (
-                number(model, where, told_inertia.given.get(key, "0"), key)
-                for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-            )
-            moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-            inertia = origin.axes @ moments @ origin.axes.T
+            where, given = told_inertia.where, told_inertia.given
+            six = [number(model, where, given.get(key, "0"), key) for key in MOMENTS]
+            inertia = inertia_of(six, origin.axes)
         model.bodies[name] = Body(name, mass, origin.place, inertia, frame, where=link.where)
         return name
 
@@ -313,6 +301,16 @@ class _Robot:
         link = self.known(found, attribute(self.model, found, "link"))
         beside = line.first(f"{found.name}_origin")
         return link, self.origin(found.first("origin") or beside or found)
+
+    def joint(self, line: Element, key: str) -> str:
+        """Return a joint's name in the record. Raises :class:`.ModelFileError` for one that is not
+        there.
+        """
+        told = attribute(self.model, line, key)
+        if told not in self.names:
+            words = f"unknown joint {shown(told)}; valid: {', '.join(self.names)}"
+            raise self.model.refuse(line.where, words)
+        return self.names[told]
 
     def known(self, line: Element, link: str) -> str:
         """Return a link's name. Raises :class:`.ModelFileError` for one that is not there."""
