@@ -60,12 +60,12 @@ def assemblies(scene: Scene) -> Iterator[tuple[str, Solution]]:
             one = replace(scene, posture=posture, t=(scene.t[0], scene.t[0], 1), wanted=("motion",))
             solution = evaluate(one, backend="vm", certificate=False)
         except PostureError as error:
-            if error.ways and not any(
+            if error.assembly_modes and not any(
                 name in posture and name not in scene.posture
-                for way in error.ways[0]
+                for way in error.assembly_modes[0]
                 for name in way
             ):
-                waiting = [dict(posture) | dict(way) for way in error.ways[0]] + waiting
+                waiting = [dict(posture) | dict(way) for way in error.assembly_modes[0]] + waiting
             continue
         except AssemblyError:
             continue
