@@ -121,7 +121,7 @@ def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
         return [], 0
     first, possible, levels = _closed(scene, scene.posture), 1, math.inf
     if isinstance(first, PostureError):
-        counts = [len(ways) for ways in first.ways]
+        counts = [len(ways) for ways in first.assembly_modes]
         possible = math.prod(counts)
         if possible > _ALL:
             levels = sum(math.prod(counts[: k + 1]) <= _SOME for k in range(len(counts)))
