@@ -25,7 +25,7 @@ def course(q, qd, qdd, time=None, tangent=None, drift=None):
         ca.SX.eye(n) if tangent is None else tangent,
         ca.SX(q.numel(), 1) if drift is None else drift,
     )
-    return Course(q, qd, qdd, ca.SX(0, 1) if time is None else time, tangent, drift)
+    return Course(q, qd, qdd, ca.SX(0, 1) if time is None else time, tangent @ qd + drift)
 
 
 def wrong(graphs, *args, **more):
@@ -223,3 +223,18 @@ def test_a_drift_that_belongs_to_no_motion_is_refused():
         match=r"tangent and drift: coordinate 1 \(counted from 0\) is not integrable",
     ):
         LagrangeSystem(qd**2, p[0], p, qd, qdd, tangent=tangent, drift=ca.vertcat(1, 0), time=t)
+
+
+def test_the_rates_of_coordinates_may_be_a_graph_in_place_of_a_matrix():
+    p, qd, qdd, t = ca.SX.sym("p", 2), ca.SX.sym("qd"), ca.SX.sym("qdd"), ca.SX.sym("t")
+    tangent, drift = ca.vertcat(-p[1], p[0]), 3.0 * ca.vertcat(-p[1], p[0])
+    given = qd**2 * p[0], p[1], p, qd, qdd
+    by_matrix = LagrangeSystem(*given, tangent=tangent, drift=drift, time=t)
+    by_graph = LagrangeSystem(*given, coordinate_rates=tangent * qd + drift, time=t)
+    either = ca.vertcat(by_matrix.terms()[0], by_graph.terms()[0])
+    first, second = ca.Function("f", [p, qd, qdd], [either])([0.6, 0.8], 2.0, -1.0).full().ravel()
+    assert first == second
+    with pytest.raises(DeclarationError, match="either it, or tangent and drift"):
+        LagrangeSystem(*given, tangent=tangent, coordinate_rates=tangent * qd)
+    with pytest.raises(DeclarationError, match="coordinate_rates: coordinate 0 "):
+        LagrangeSystem(*given, coordinate_rates=ca.vertcat(p[1] * qd, 1), time=t)

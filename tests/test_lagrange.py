@@ -202,6 +202,11 @@ def test_one_reverse_sweep_serves_any_number_of_mobilities():
         ({"mobility_rates": lambda s: ca.SX(0, 1)}, "mobility_rates must have 1 entries, got 0"),
         ({"coordinates": lambda s: s.coordinates[0]}, "set 'tangent'"),
         ({"tangent": lambda s: ca.SX.eye(3)}, "tangent must have shape"),
+        ({"coordinate_rates": lambda s: s.rates[0]}, "coordinate_rates must have 2 entries, got 1"),
+        (
+            {"coordinate_rates": lambda s: s.rates**2},
+            "coordinate_rates must be linear in the rates",
+        ),
         ({"rates": lambda s: 2 * s.rates}, "rates must be symbols"),
         ({"forces": lambda s: ca.SX.zeros(3)}, "forces must have 2 entries"),
         ({"constraints": lambda s: s.coordinates}, "multipliers must have 2 entries"),

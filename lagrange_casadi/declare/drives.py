@@ -25,11 +25,12 @@ def weighed(
         raise DeclarationError(
             f"drives: expected a list of joints, or weights by joint, got {shown(drives)}"
         )
+    coordinates = mechanism.coordinates
     weights = dict(drives) if isinstance(drives, Mapping) else dict.fromkeys(drives, 1.0)
     if len(weights) < len(drives):
         raise DeclarationError(f"drives: a joint is listed twice in {', '.join(drives)}")
     for name, weight in weights.items():
-        if name in mechanism.joints and name not in mechanism.coordinates:
+        if name in mechanism.joints and name not in coordinates:
             axes = ", ".join(axis.coordinate for axis in mechanism.joints[name].axes)
             why = (
                 f"has several coordinates; expected one of {axes}"
@@ -37,8 +38,8 @@ def weighed(
                 else "has no coordinate for an effort"
             )
             raise DeclarationError(f"drives: joint '{name}' {why}")
-        if name not in mechanism.coordinates:
-            raise UnknownNameError("joint in drives", name, mechanism.coordinates)
+        if name not in coordinates:
+            raise UnknownNameError("joint in drives", name, coordinates)
         if not isinstance(weight, ca.SX):
             if not isinstance(weight, (int, float)) or not 0.0 < weight < float("inf"):
                 raise DeclarationError(
@@ -57,4 +58,4 @@ def weighed(
             f" least {len(moved)} joints for the motion of {', '.join(moved)}, got"
             f" {', '.join(weights) or 'none'}"
         )
-    return {name: weights[name] for name in mechanism.coordinates if name in weights}
+    return {name: weights[name] for name in coordinates if name in weights}

@@ -61,7 +61,7 @@ def laws_of(
             raise UnknownNameError(
                 "joint, path or body in motion",
                 name,
-                [*mechanism.coordinates, *mechanism.paths, *bodies],
+                [*coordinates, *mechanism.paths, *bodies],
             )
         for law in given:
             if not isinstance(law, Motion):
@@ -81,9 +81,7 @@ def laws_of(
         found |= {f"{name}{end}": law for end, law in zip(_NAMES[expected], given, strict=True)}
     for name, law in found.items():
         turns = (
-            mechanism.coordinates[name][1].kind == "angle"
-            if name in mechanism.coordinates
-            else name.endswith(".angle")
+            coordinates[name][1].kind == "angle" if name in coordinates else name.endswith(".angle")
         )
         unit = ANGLE if turns else LENGTH
         if law.unit not in ("", unit):
@@ -120,11 +118,8 @@ def guided(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]
     """The mechanism with the guides of what moves as given, and with the same symbols; itself where
     only joints do.
     """
-    names = [
-        name
-        for name in motion
-        if name not in mechanism.joints and name not in mechanism.coordinates
-    ]
+    coordinates = mechanism.coordinates
+    names = [name for name in motion if name not in mechanism.joints and name not in coordinates]
     if not names:
         return mechanism
     found = copy.copy(mechanism)

@@ -33,14 +33,17 @@ def check_connected(
     name: str, ground: Ground, bodies: Iterable[Body], joints: Iterable[Joint]
 ) -> None:
     """Raise :class:`DeclarationError` for bodies that no chain of joints connects to the ground."""
-    joined, reached = list(joints), {ground.name}
-    while new := {
-        body.name
-        for joint in joined
-        for body in joint.bodies
-        if body.name not in reached and reached & {other.name for other in joint.bodies}
-    }:
+    joined = list(joints)
+    neighbours: dict[str, set[str]] = {}
+    for joint in joined:
+        parent, child = (body.name for body in joint.bodies)
+        neighbours.setdefault(parent, set()).add(child)
+        neighbours.setdefault(child, set()).add(parent)
+    reached, waiting = {ground.name}, [ground.name]
+    while waiting:
+        new = neighbours.get(waiting.pop(), set()) - reached
         reached |= new
+        waiting += new
     apart = [f"'{body.name}'" for body in bodies if body.name not in reached]
     if apart:
         raise DeclarationError(

@@ -15,29 +15,24 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array, Expression
+from ..base.symbolic import symbolic_property
 from ..errors import DeclarationError
 
-_POINTS, _TRIALS = 3, 1000
+_POINTS, _TRIALS, _WAYS = 3, 1000, 3
 _SAME, _NOTHING = 1e-8, 1e-13
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """Motion of a system: symbols of coordinates p, rates q', accelerations q'' and time t, and p'
-    = tangent q' + drift.
+    """Motion of a system: symbols of coordinates p, rates q', accelerations q'' and time t, and
+    ``coordinate_rates`` p' over all but the accelerations, linear in q'.
     """
 
     coordinates: Any
     rates: Any
     accelerations: Any
     time: Any
-    tangent: Any
-    drift: Any
-
-    @property
-    def coordinate_rates(self) -> Expression:
-        """The total time derivative of the coordinates p."""
-        return self.tangent @ self.rates + self.drift
+    coordinate_rates: Any
 
     def derivative(self, graphs: ca.SX) -> ca.SX:
         """The total time derivative of graphs over coordinates, rates and time."""
@@ -46,6 +41,38 @@ class Course:
             self.coordinate_rates, self.accelerations, ca.SX.ones(self.time.numel())
         )
         return ca.jtimes(graphs, state, change)
+
+    def along_rates(self, slopes: ca.SX) -> ca.SX:
+        """Slopes along the rates q', from those along the coordinates p."""
+        return ca.jtimes(self.coordinate_rates, self.rates, slopes, True)
+
+    @symbolic_property
+    def circles(self) -> list[tuple[int, int]]:
+        """Pairs of coordinates that stay on a circle, such as a cosine and a sine: graphs may rely
+        on its radius of one.
+        """
+        generator, size = np.random.default_rng(1), self.coordinates.numel()
+        # A few ways to move tell as much as every rate by itself.
+        ways = ca.DM(generator.normal(size=(self.rates.numel(), _WAYS)))
+        moved = ca.densify(ca.jtimes(ca.SX(self.coordinate_rates), self.rates, ways))
+        others = _others(moved, self.coordinates)
+        at = generator.uniform(0.2, 2.0, size)
+        speeds = ca.Function("moved", [self.coordinates, others], [moved])(
+            at, generator.uniform(0.2, 2.0, others.numel())
+        ).full()
+        radial = at[:, None] * speeds
+        found: list[tuple[int, int]] = []
+        free = np.flatnonzero(np.abs(radial).max(axis=1, initial=0.0))
+        while free.size:
+            i, free = int(free[0]), free[1:]
+            meets = np.flatnonzero(
+                np.abs(radial[free] + radial[i]).max(axis=1, initial=0.0)
+                < _SAME * np.abs(radial[i]).max()
+            )
+            if meets.size:
+                found.append((i, int(free[meets[0]])))
+                free = np.delete(free, meets[0])
+        return found
 
 
 def no_rates(
@@ -65,7 +92,7 @@ def no_rates(
     weights = ca.SX.sym("weights", k)
     slopes = ca.gradient(ca.dot(weights, graphs), ca.vertcat(course.coordinates, course.rates))
     by_place, by_rate = ca.vertsplit(slopes, [0, p, p + n])
-    along = [course.derivative(by_rate), course.tangent.T @ by_place]
+    along = [course.derivative(by_rate), course.along_rates(by_place)]
     across = [ca.SX(k, 0), ca.SX(k, 0)]
     for e, e_rate in zip(_split(mobilities), _split(mobility_rates), strict=False):
         by_mobility = ca.jacobian(graphs, e)
@@ -96,7 +123,7 @@ def no_rates(
             *(across_residual > _SAME * (1.0 + across_largest)),
         ]
 
-    generator, circles = np.random.default_rng(0), _circles(course)
+    generator, circles = np.random.default_rng(0), course.circles
     found: set[int] = set()
     points = 0
     for trial in range(_TRIALS):
@@ -132,32 +159,6 @@ def no_rates(
             " cannot be checked; expected expressions that are finite for most coordinates"
         )
     return sorted(found)
-
-
-def _circles(course: Course) -> list[tuple[int, int]]:
-    """Pairs of coordinates that stay on a circle, such as a cosine and a sine: graphs may rely on
-    its radius of one.
-    """
-    generator, size = np.random.default_rng(1), course.coordinates.numel()
-    tangent = ca.densify(course.tangent)
-    others = _others(tangent, course.coordinates)
-    at = generator.uniform(0.2, 2.0, size)
-    slopes = ca.Function("tangent", [course.coordinates, others], [tangent])(
-        at, generator.uniform(0.2, 2.0, others.numel())
-    ).full()
-    radial = at[:, None] * slopes
-    found: list[tuple[int, int]] = []
-    free = np.flatnonzero(np.abs(radial).max(axis=1, initial=0.0))
-    while free.size:
-        i, free = int(free[0]), free[1:]
-        meets = np.flatnonzero(
-            np.abs(radial[free] + radial[i]).max(axis=1, initial=0.0)
-            < _SAME * np.abs(radial[i]).max()
-        )
-        if meets.size:
-            found.append((i, int(free[meets[0]])))
-            free = np.delete(free, meets[0])
-    return found
 
 
 def _others(graphs: ca.SX, known: ca.SX) -> ca.SX:

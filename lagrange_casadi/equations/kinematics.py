@@ -149,10 +149,15 @@ class _Solver:
         self.numbers.note(multibody.mechanism.symbols, start.parameters)
         self.numbers.note(self.d, start.driven)
         self.known: dict[Coordinate, Any] = {}
-        values = column(c.value for c in driven)
-        for coordinate in driven:
-            self._know(coordinate, coordinate.placed(values, self.d))
-            self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
+        # All of them at once: directions are sums of many of them.
+        variables = column(c.variables for c in driven)
+        ends = [0, *itertools.accumulate(c.variables.numel() for c in driven)]
+        placed = ca.substitute(
+            column(c.by_values for c in driven), column(c.value for c in driven), self.d
+        )
+        self.found.note(variables, placed)
+        self.numbers.note(variables, self.numbers.of(placed))
+        self.known |= zip(driven, ca.vertsplit(placed, ends), strict=False)
 
     def beginning(self) -> dict[str, Any]:
         """Data for the count of degrees of freedom: the rough posture, drives included, and the

@@ -68,6 +68,9 @@ class LagrangeSystem:
         q: a rotation carried as p = (cos q, sin q) has T = (-p[1], p[0]), and no sine is ever
         taken; p = (cos(q + W t), sin(q + W t)) has r = W T as well. The defaults are the identity
         and zero.
+    coordinate_rates
+        p' itself, in place of T and r: a graph that is linear in q', shorter than T where many
+        rates move each of p.
     mobilities, mobility_rates
         Symbols e and e' of extra mobilities, columns of k. To first order in e is enough, and where
         only velocities depend on them, e may be left out.
@@ -113,6 +116,7 @@ class LagrangeSystem:
     velocity_forces: Graph | None = None
     drift: Graph | None = None
     time: Graph | None = None
+    coordinate_rates: Graph | None = None
 
     def __post_init__(self) -> None:
         n, p, k = self.rates.numel(), self.coordinates.numel(), self.mobility_rates.numel()
@@ -135,7 +139,7 @@ class LagrangeSystem:
         for name, size in (sizes | {"velocity_forces": self.velocities.numel()}).items():
             if getattr(self, name) is not None:
                 _expect(name, getattr(self, name), size)
-        if self.tangent is None and p != n:
+        if self.tangent is None and self.coordinate_rates is None and p != n:
             raise DeclarationError(
                 f"{p} coordinates and {n} rates: set 'tangent', the derivatives of coordinates by"
                 " the rates"
@@ -146,8 +150,20 @@ class LagrangeSystem:
             )
         if self.drift is not None:
             _expect("drift", self.drift, p)
+        if self.coordinate_rates is not None:
+            self._check_coordinate_rates(ca.SX(self.coordinate_rates))
         self._check_graphs()
         self._check_rates()
+
+    def _check_coordinate_rates(self, graph: ca.SX) -> None:
+        """Raise for p' that is given twice, or is not linear in the rates."""
+        _expect("coordinate_rates", graph, self.coordinates.numel())
+        if self.tangent is not None or self.drift is not None:
+            raise DeclarationError(
+                "coordinate_rates: expected either it, or tangent and drift, and both are given"
+            )
+        if not ca.is_linear(graph, self.rates):
+            raise DeclarationError("coordinate_rates must be linear in the rates")
 
     def _check_roles(self) -> None:
         """Raise for a symbol that is to be two things."""
@@ -174,6 +190,7 @@ class LagrangeSystem:
             "constraints": others,
             "tangent": others,
             "drift": others,
+            "coordinate_rates": ("mobility_rates", "velocities", *accelerations),
             "velocity_graphs": ("velocities", *accelerations),
         }
         for name, kinds in barred.items():
@@ -202,20 +219,24 @@ class LagrangeSystem:
     def _check_rates(self) -> None:
         """Raise for coordinates, or velocities, that are no functions' rates."""
         course = self._course
-        carried = self.tangent is not None or self.drift is not None
-        wrong = no_rates(course.coordinate_rates, course, _none(), _none()) if carried else []
+        carried = {
+            "coordinate_rates": self.coordinate_rates,
+            "tangent": self.tangent,
+            "drift": self.drift,
+        }
+        named = " and ".join(name for name, graph in carried.items() if graph is not None)
+        wrong = no_rates(course.coordinate_rates, course, _none(), _none()) if named else []
         if wrong:
             raise DeclarationError(
-                f"tangent{'' if self.drift is None else ' and drift'}:"
-                f" {_listed('coordinate', wrong)} not integrable to coordinates; the angular"
-                " velocity of a body in space, for example, is not the rate of coordinates"
+                f"{named}: {_listed('coordinate', wrong)} not integrable to coordinates; the"
+                " angular velocity of a body in space, for example, is not the rate of coordinates"
             )
         # Along what bears no energy, forces do work whatever it is.
         symbols = {symbol.element_hash() for symbol in ca.symvar(ca.SX(self.kinetic))}
         bearing = [
             k
-            for k in range(self.velocities.numel())
-            if self.velocities[k].element_hash() in symbols
+            for k, velocity in enumerate(self.velocities.nonzeros())
+            if velocity.element_hash() in symbols
         ]
         own = no_rates(
             ca.SX(self.velocity_graphs)[bearing], course, self.mobilities, self.mobility_rates
@@ -232,11 +253,12 @@ class LagrangeSystem:
 
     @property
     def _course(self) -> Course:
-        n, p = self.rates.numel(), self.coordinates.numel()
-        tangent = ca.SX.eye(n) if self.tangent is None else ca.SX(self.tangent)
-        drift = ca.SX(p, 1) if self.drift is None else ca.SX(self.drift)
         time = ca.SX(0, 1) if self.time is None else self.time
-        return Course(self.coordinates, self.rates, self.accelerations, time, tangent, drift)
+        speed = self.coordinate_rates
+        if speed is None:
+            speed = self.rates if self.tangent is None else ca.SX(self.tangent) @ self.rates
+            speed = speed if self.drift is None else speed + self.drift
+        return Course(self.coordinates, self.rates, self.accelerations, time, ca.SX(speed))
 
     def terms(self) -> tuple[Any, Any]:
         """R along the coordinates (n) and along the mobilities (k), at e = e' = e'' = 0, as CasADi
@@ -283,7 +305,7 @@ class LagrangeSystem:
             + self._at_rest(ca.jtimes(graphs, rates, forces, True))
         )
         terms -= ca.vertcat(
-            course.tangent.T @ by_place, by_mobility if self.mobilities.numel() else ca.SX.zeros(k)
+            course.along_rates(by_place), by_mobility if self.mobilities.numel() else ca.SX.zeros(k)
         )
         along, across = ca.vertsplit(ca.substitute(terms, w, seen), [0, n, n + k])
         if self.forces is not None:

@@ -167,11 +167,8 @@ class Moving:
             if output.member in ("", "angle") and output.unit(kinds) == ANGLE
         }
         loop_angles = {
-            output: _turns(value, wrapped | counted) for output, value in reported.items()
-        }
-        loop_angles = {
             output: turns
-            for output, turns in loop_angles.items()
+            for output, turns in _turns(reported if wrapped else {}, wrapped | counted).items()
             if not wrapped.keys().isdisjoint(turns)
         }
         loop_angles |= {output: {output: 1} for output in _within_a_turn(mechanism, body, motions)}
@@ -348,11 +345,12 @@ def _known_by(coordinate: Coordinate) -> Output:
     )
 
 
-def _turns(angle: Expression, parts: dict[Column, Expression]) -> dict[Column, int]:
-    """Multiple with which each coordinate's angle enters another angle."""
-    if not parts:
-        return {}
-    slopes = (
-        ca.evalf(ca.densify(ca.jacobian(ca.SX(angle), ca.vertcat(*parts.values())))).full().ravel()
-    )
-    return {part: int(slope) for part, slope in zip(parts, slopes, strict=True) if slope}
+def _turns(
+    angles: Mapping[Output, Expression], parts: Mapping[Column, Expression]
+) -> dict[Output, dict[Column, int]]:
+    """Multiples with which coordinates' angles enter other angles, by angle."""
+    slopes = ca.evalf(ca.jacobian(column(angles.values()), column(parts.values()))).full()
+    return {
+        output: {part: int(slope) for part, slope in zip(parts, row, strict=True) if slope}
+        for output, row in zip(angles, slopes, strict=True)
+    }

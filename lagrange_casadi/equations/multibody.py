@@ -83,14 +83,16 @@ class Coordinate:
         """Name in a posture if it is not driven: the link whose direction it is, or its own."""
         return self.body if self.kind == "angle" and not self.relative else self.name
 
+    @property
+    def by_values(self) -> Expression:
+        """Variables over coordinates: over its own value, and those of others in its ``turn``."""
+        if self.kind == "slide":
+            return self.value
+        return ca.vertcat(ca.cos(self.turn), ca.sin(self.turn), self.value)
+
     def placed(self, symbols: ca.SX, values: ca.SX) -> ca.SX:
         """Variables for values of the coordinates ``symbols``."""
-        if self.kind == "slide":
-            return ca.substitute(self.value, symbols, values)
-        turn, angle = ca.vertsplit(
-            ca.substitute(ca.vertcat(self.turn, self.value), symbols, values)
-        )
-        return ca.vertcat(ca.cos(turn), ca.sin(turn), angle)
+        return ca.substitute(self.by_values, symbols, values)
 
     @cached_property
     def keys(self) -> tuple[int, ...]:
@@ -269,7 +271,7 @@ class Multibody:
             coordinates=column(c.variables for c in integrable),
             rates=self.rates,
             accelerations=self.accelerations,
-            tangent=ca.jacobian(column(c.change for c in integrable), self.rates),
+            coordinate_rates=column(c.change for c in integrable),
             mobility_rates=self.mobility_rates,
             velocities=column(self.velocities.symbols),
             velocity_graphs=ca.substitute(column(self.velocities.graphs), moving, still),

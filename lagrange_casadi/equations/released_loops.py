@@ -74,7 +74,8 @@ class ReleasedLoops:
         turned = {spherical: ca.SX.sym("quaternion", 4) for spherical in quaternions}
         free = ca.SX.sym("u", len(coordinates))
         symbols = column(c.value for c in coordinates)
-        placed = [c.placed(symbols, free) for c in coordinates if c.spherical is None]
+        counted = column(c.by_values for c in coordinates if c.spherical is None)
+        placed = [ca.substitute(counted, symbols, free)]
         # Of balls a step is a small rotation of where they are.
         own = {
             spherical: ca.vertcat(

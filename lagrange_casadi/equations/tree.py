@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from heapq import heappop, heappush
 from typing import NoReturn
 
 from ..declare.joints import Axis, Joint
@@ -75,39 +76,47 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
     Raises :class:`DeclarationError` for drives that close a loop among themselves, and for a link
     that only slides on a point.
     """
-    depth: dict[Body, int] = {mechanism.ground: 0}
-    branches: list[Branch] = []
     two_force_links = find_two_force_links(mechanism, driven)
     barred = {joint for two_force_link in two_force_links for joint in two_force_link.joints}
-    waiting = [joint for joint in mechanism.joints.values() if joint not in barred]
+    joints = [joint for joint in mechanism.joints.values() if joint not in barred]
     given, driven = (
         driven,
         {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven},
     )
-    while reachable := [
-        Branch(joint, joint.parent.body not in depth)
-        for joint in waiting
-        if (joint.parent.body in depth) != (joint.child.body in depth)
-        and _can_carry(joint, joint.parent.body not in depth)
-    ]:
-        # What a driven joint can carry one way only is left to it, for its motion would else close
-        # a loop.
-        kept = {
-            j.child.body
-            for j in waiting
-            if j.name in driven and (_can_carry(j, False), _can_carry(j, True)) == (True, False)
-        }
-        best = min(
-            reachable,
-            key=lambda branch: (
-                branch.far.body in kept and branch.joint.name not in driven,
-                -_rank(branch.joint, driven),
-                depth[branch.near.body],
-            ),
-        )
-        depth[best.far.body] = depth[best.near.body] + 1
-        branches.append(best)
-        waiting.remove(best.joint)
+    # What a driven joint can carry one way only is left to it, for its motion would else close a
+    # loop.
+    kept = {
+        j.child.body
+        for j in joints
+        if j.name in driven and (_can_carry(j, False), _can_carry(j, True)) == (True, False)
+    }
+    at: dict[Body, list[int]] = {}
+    for number, joint in enumerate(joints):
+        for body in joint.bodies:
+            at.setdefault(body, []).append(number)
+    depth: dict[Body, int] = {}
+    branches: list[Branch] = []
+    reachable: list[tuple[bool, int, int, int]] = []
+
+    def place(body: Body, far: int) -> None:
+        """Place a body, and note the joints that then are in reach, the best first."""
+        depth[body] = far
+        for number in at.get(body, ()):
+            branch = Branch(joints[number], joints[number].parent.body not in depth)
+            if branch.far.body not in depth and _can_carry(branch.joint, branch.reverse):
+                free = branch.joint.name not in driven
+                rank = _rank(branch.joint, driven)
+                heappush(reachable, (branch.far.body in kept and free, -rank, far, number))
+
+    place(mechanism.ground, 0)
+    while reachable:
+        *_, number = heappop(reachable)
+        branch = Branch(joints[number], joints[number].parent.body not in depth)
+        if branch.far.body not in depth:
+            branches.append(branch)
+            place(branch.far.body, depth[branch.near.body] + 1)
+    taken = {branch.joint for branch in branches}
+    waiting = [joint for joint in joints if joint not in taken]
     _refuse_unplaced(mechanism, depth, two_force_links)
     _refuse_unused(mechanism, two_force_links)
     for joint in waiting:
