@@ -71,9 +71,9 @@ def read_rows(path: str | os.PathLike[str], expected: str) -> Iterator[Row]:
     """The rows of a table in UTF-8, the head first where it has one; lines that are empty or begin
     with ``#`` are passed over.
 
-    Cells are parted by semicolons, tabs or commas: the first of these that the first row has. Where
-    they are not parted by commas, the decimal mark may be one, in all numbers or in none. Cells may
-    be quoted; a row is one line, and all rows have as many cells.
+    Cells are parted by semicolons, tabs or commas: the first of these that the first row has, if
+    it has any. Where they are not parted by commas, the decimal mark may be one, in all numbers or
+    in none. Cells may be quoted; a row is one line, and all rows have as many cells.
 
     Raises :class:`.PathError` for what is no regular file, or cannot be read as text, and
     :class:`.DeclarationError` for a row that is longer or shorter than the first, for a quote that
@@ -90,7 +90,7 @@ def read_rows(path: str | os.PathLike[str], expected: str) -> Iterator[Row]:
                     continue
                 if not first:
                     unquoted = _QUOTED.sub("", line)
-                    delimiter = next((mark for mark in _DELIMITERS if mark in unquoted), ",")
+                    delimiter = next((mark for mark in _DELIMITERS if mark in unquoted), ";")
                     marks = None if delimiter == "," else {}
                 where = f"{path}, line {number}"
                 cells = _cells(where, line, delimiter)
