@@ -36,6 +36,7 @@ from lagrange_casadi.base.seal import SIZE, kind_of, verify
 from lagrange_casadi.base.seal import seal as seal_seal
 from lagrange_casadi.base.space import cores
 from lagrange_casadi.base.status import Status
+from lagrange_casadi.base.table_file import TableFile
 from lagrange_casadi.base.tables import CONVENTIONS, PLANE, QUANTITIES, SPACE, SPATIAL_QUANTITIES
 from lagrange_casadi.base.units import angle, typed
 from lagrange_casadi.base.units import number as units_number

@@ -218,6 +218,9 @@ def test_profiles_are_written_for_workshops(here):
     assert (here / "cam.csv").read_text().splitlines()[
         0
     ] == "angle [deg],x [m],y [m],pressure angle [deg],radius [m]"
+    profile.save_csv("commas.csv", decimal_comma=True)
+    commas = (here / "commas.csv").read_text().replace(";", " ").replace(",", ".")
+    np.testing.assert_array_equal(np.loadtxt(commas.splitlines()[1:]), rows)
     with pytest.raises(PathError, match="does not exist"):
         profile.save_csv("nowhere/cam.csv")
     ezdxf = pytest.importorskip("ezdxf")

@@ -73,7 +73,7 @@ def test_tables_have_the_axis_as_a_column(over, tmp_path):
     ]
     assert CliRunner().invoke(program, words).exit_code == 0
     lines = (tmp_path / "x.csv").read_text().splitlines()
-    assert lines[0] == "rpm,l,over,history:t,history:effort:O"
+    assert lines[0] == "rpm [1/min],l [m],over [rad],history:t [s],history:effort:O [N m]"
     assert len(lines) == 1 + 6 * 37
     told = CliRunner().invoke(program, ["info", str(over.path)]).output
     assert "O [rad]: 0 to 6.28319, 37 points" in told

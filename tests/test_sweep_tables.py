@@ -93,7 +93,11 @@ def test_best(file, capfd):
         == 0
     )
     assert capfd.readouterr().out.endswith("wrote front.csv: 4 designs\n")
-    assert Path("front.csv").read_text().startswith(f"design,l,r,{BENDING},peak:effort:O\n")
+    assert (
+        Path("front.csv")
+        .read_text()
+        .startswith(f"design,l [m],r [m],{BENDING} [N m],peak:effort:O [N m]\n")
+    )
     assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l>1"]) == 1
     said = (
         "error: s.h5: no design has a result and meets the conditions: of 8 designs, {}, {} of"
@@ -124,7 +128,7 @@ def test_best_as_csv_names_the_design(file, capfd):
     found = Sweep.open("s.h5")
     sizes = np.abs(found[BENDING]).ravel()
     assert int(row["design"]) == np.nanargmin(sizes)
-    assert float(row[BENDING]) == found[BENDING].ravel()[np.nanargmin(sizes)]
+    assert float(row[f"{BENDING} [N m]"]) == found[BENDING].ravel()[np.nanargmin(sizes)]
     assert row["status"] == "0"
 
 
@@ -180,7 +184,9 @@ def test_columns_over_ratios_are_a_row_for_each(file, capfd):
     assert capfd.readouterr() == ("wrote long.csv: 24 rows\n", "")
     with open("long.csv", newline="") as text:
         head, *rows = csv.reader(text)
-    assert head == ["l", "r", "xi", "peak:effort:O", *AT]
+    units = ["N", "N", "N m"]
+    forces = [f"{name} [{unit}]" for name, unit in zip(AT, units, strict=True)]
+    assert head == ["l [m]", "r [m]", "xi", "peak:effort:O [N m]", *forces]
     found = Sweep.open("s.h5")
     values = np.array(rows, float).T.reshape(7, 4, 2, 3)
     for k, name in enumerate(AT):
@@ -293,7 +299,7 @@ def test_columns_of_different_axes_need_a_table_each(here, capfd):
     assert main(["table", "h.h5", *columns("history:section:rod:bending"), "--csv", "x.csv"]) == 0
     assert capfd.readouterr().out == "wrote x.csv: 126 rows\n"
     with open("x.csv", newline="") as text:
-        assert next(text) == "l,t,xi,history:section:rod:bending\n"
+        assert next(text) == "l [m],t [s],xi,history:section:rod:bending [N m]\n"
         values = np.loadtxt(text, delimiter=",")
     np.testing.assert_array_equal(
         values[:, 3], Sweep.open("h.h5")["history:section:rod:bending"].ravel()
@@ -335,11 +341,13 @@ def test_csv_has_every_digit_and_is_a_list_of_designs_again(file, capfd):
         rows = list(csv.DictReader(text))
     found = Sweep.open("s.h5")
     for name in ("status", BENDING, "peak_xi:section:rod:shear", "mean:effort:O"):
-        np.testing.assert_array_equal([float(row[name]) for row in rows], found[name].ravel())
+        unit = found.unit(name)
+        key = name if unit == "1" else f"{name} [{unit}]"
+        np.testing.assert_array_equal([float(row[key]) for row in rows], found[name].ravel())
     assert (
         main(["table", "s.h5", "--csv", "list.csv", "--column", "l", "--where", "status==0"]) == 0
     )
-    assert Path("list.csv").read_text().startswith("l,r\n0.06,0.05\n")
+    assert Path("list.csv").read_text().startswith("l [m],r [m]\n0.06,0.05\n")
     assert main([*ASKED, "--designs", "list.csv", "--set", "m3=0.2", "--out", "again.h5"]) == 0
     there = found["status"] == 0
     np.testing.assert_array_equal(Sweep.open("again.h5")[BENDING], found[BENDING][there])

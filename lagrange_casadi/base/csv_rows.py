@@ -71,10 +71,10 @@ def read_rows(path: str | os.PathLike[str], expected: str, skip: int = 0) -> Ite
     """The rows of a table in UTF-8, the head first where it has one; lines that are empty or begin
     with ``#``, and the first ``skip`` lines, are passed over.
 
-    Cells are parted by semicolons, tabs or commas: the first of these that the first row has; below
-    lines that were skipped, which other programs wrote, by spaces if it has none of them. Where
-    they are not parted by commas, the decimal mark may be one, in all numbers or in none. Cells may
-    be quoted; a row is one line, and all rows have as many cells.
+    Cells are parted by semicolons, tabs or commas: the first of these that the first row has, if
+    it has any; below lines that were skipped, which other programs wrote, by spaces if it has none.
+    Where they are not parted by commas, the decimal mark may be one, in all numbers or in none.
+    Cells may be quoted; a row is one line, and all rows have as many cells.
 
     Raises :class:`.PathError` for what is no regular file, or cannot be read as text, and
     :class:`.DeclarationError` for a row that is longer or shorter than the first, for a quote that
@@ -91,7 +91,7 @@ def read_rows(path: str | os.PathLike[str], expected: str, skip: int = 0) -> Ite
                     continue
                 if not first:
                     unquoted = _QUOTED.sub("", line)
-                    usual = " " if skip else ","
+                    usual = " " if skip else ";"
                     delimiter = next((mark for mark in _DELIMITERS if mark in unquoted), usual)
                     marks = None if delimiter == "," else {}
                 where = f"{path}, line {number}"

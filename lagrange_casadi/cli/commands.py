@@ -31,6 +31,7 @@ from .options import (
     over,
     place,
     settings_by,
+    table_file,
     wanted,
 )
 
@@ -67,12 +68,7 @@ from .options import (
     "--figures", type=PATH, help="Draw the figures into this folder; default: <case>_figures here."
 )
 @click.option("--no-figures", is_flag=True, help="Draw no figures.")
-@click.option(
-    "--csv",
-    type=PATH,
-    metavar="FILE.csv",
-    help="Also write the results as CSV, one row per instant.",
-)
+@table_file("Also write the results as CSV, one row per instant.")
 @click.option(
     "--grids/--no-grids",
     default=None,

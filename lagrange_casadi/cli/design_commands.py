@@ -34,6 +34,7 @@ from .options import (
     ratios,
     settings_by,
     share,
+    table_file,
     tolerance,
     untabled_method,
     wanted,
@@ -141,7 +142,7 @@ def sweep(**given: Any) -> None:
 @click.option(
     "--column", "columns", multiple=True, metavar="COLUMN", help="List this column too; repeatable."
 )
-@click.option("--csv", type=PATH, metavar="OUT.csv", help="Also write the designs as CSV.")
+@table_file("Also write the designs as CSV.")
 def best(**given: Any) -> None:
     """List the best designs of the sweep FILE.h5.
 
@@ -175,12 +176,7 @@ def best(**given: Any) -> None:
     metavar="N",
     help="List this number of rows.",
 )
-@click.option(
-    "--csv",
-    type=PATH,
-    metavar="OUT.csv",
-    help="Write all rows as CSV; default: all columns without axes.",
-)
+@table_file("Write all rows as CSV; default: all columns without axes.")
 def table(**given: Any) -> None:
     """List the designs of the sweep FILE.h5, or write them as CSV.
 
@@ -434,13 +430,7 @@ def drive(**given: Any) -> None:
     help="Draw this number of designs at random.",
 )
 @backend(" designs")
-@click.option(
-    "--csv",
-    "out",
-    type=PATH,
-    metavar="FILE.csv",
-    help="Write the peaks of all designs as CSV, one row per design.",
-)
+@table_file("Write the peaks as CSV, one row per quantity.")
 def tolerances(**given: Any) -> None:
     """Compute the scatter of the peaks of CASE within tolerances.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from collections.abc import Callable, Sequence
@@ -319,6 +320,34 @@ def wanted(
 ) -> Option:
     """Names of outputs: ``want``."""
     return click.option("--want", multiple=True, callback=separated, metavar="OUTPUT", help=says)
+
+
+def table_file(says: str) -> Option:
+    """Place of a table, ``csv``, and the marks in it."""
+
+    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+        @click.option(
+            "--csv",
+            type=PATH,
+            metavar="FILE.csv|FILE.xlsx",
+            help=f"{says} A name that ends in .xlsx makes a workbook.",
+        )
+        @click.option(
+            "--decimal-comma",
+            is_flag=True,
+            help="With --csv: write commas in numbers, and semicolons between cells.",
+        )
+        @functools.wraps(command)
+        def with_table(csv: Path | None, decimal_comma: bool, **given: Any) -> None:
+            if decimal_comma and csv is None:
+                raise click.UsageError("--decimal-comma goes with --csv FILE.csv")
+            from ..base.table_file import TableFile
+
+            command(csv=csv and TableFile(csv, decimal_comma), **given)
+
+        return with_table
+
+    return decorate
 
 
 over = click.option(

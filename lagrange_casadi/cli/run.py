@@ -13,6 +13,7 @@ import numpy as np
 
 from ..base.publish import check_writable
 from ..base.streams import is_standard_output
+from ..base.table_file import TableFile
 from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare import revolutions
@@ -36,7 +37,7 @@ from .elastic_lines import elastic_card, elastic_lines
 from .options import parameters
 from .replaced import figures_in, replaced_lines
 from .report import Rows
-from .rows import csv_written, rows_of
+from .rows import rows_of
 from .slope_lines import slope_lines
 from .strength_lines import strength_cards, strength_lines, untold_lines
 
@@ -62,7 +63,7 @@ def run(
     out: Path | None,
     figures: Path | None,
     no_figures: bool,
-    csv: Path | None,
+    csv: TableFile | None,
     grids: bool | None,
     refine_peaks: bool,
     elastic: bool,
@@ -100,7 +101,7 @@ def run(
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
     heads = columns(solution) if csv else {}
     written = (
-        csv_written([TIME, *heads], rows_of([solution.t, *heads.values()]), csv)
+        csv.written([TIME, *heads], rows_of([solution.t, *heads.values()]))
         if csv
         else nullcontext()
     )
@@ -109,7 +110,7 @@ def run(
             draw_with_progress(solution, loaded.figures, draft)
             drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures), grids=_grids(solution, grids, want))
-    say = partial(echo, err=csv is not None and is_standard_output(csv))
+    say = partial(echo, err=csv is not None and is_standard_output(csv.path))
     asked = want or scene.wanted
     names = [*forces(solution), *resultants(solution)] if refine_peaks else ()
     rows = Rows.of(solution, refine(scene, solution, names) if names else (), want, verbose)
@@ -132,7 +133,7 @@ def run(
     rest.append(
         f"wrote {out}"
         + (f" and the figures in {folder}/" if folder else "")
-        + (f", and {csv}" if csv else "")
+        + (f", and {csv.path}" if csv else "")
     )
     capacity = None if verbose else max(_SCREEN - len(head) - len(rest) - 1, _FEWEST)
     for line in (*head, *rows.table(capacity), *rest):
@@ -151,7 +152,7 @@ def _grids(solution: Solution, grids: bool | None, want: Sequence[str]) -> bool 
     return [link for link in links if link not in pieces or link in asked]
 
 
-def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:
+def _check_places(out: Path, folder: Path | None, csv: TableFile | None) -> None:
     """Raise ``click.UsageError`` for places that are the same, and what says that one cannot be
     written.
     """
@@ -162,11 +163,13 @@ def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:
         check_writable(folder, folder=True)
         MANIFEST.check(folder)
     if csv:
-        if os.path.realpath(csv) in [os.path.realpath(other) for other in (out, folder) if other]:
+        if os.path.realpath(csv.path) in [
+            os.path.realpath(other) for other in (out, folder) if other
+        ]:
             raise click.UsageError(
-                f"--csv {csv}: expected another place than the file's and the figures'"
+                f"--csv {csv.path}: expected another place than the file's and the figures'"
             )
-        check_writable(csv)
+        csv.check()
 
 
 def _head(solution: Solution, refined: bool | None) -> str:

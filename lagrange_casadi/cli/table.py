@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
 
-from ..base.publish import check_writable
 from ..base.streams import is_standard_output
+from ..base.table_file import TableFile
 from ..errors import NoDesignError
 from ..studies.sweep import Sweep, chosen
 from ..studies.sweep.axes import counted, grouped
@@ -16,18 +16,18 @@ from ..studies.sweep.best import conditions_in, counts, missed
 from ..studies.sweep.instant_axis import in_words
 from ..studies.sweep.meanings import STATUS
 from .echo import echo
-from .rows import show, write_csv
+from .rows import heads_of, show
 
 _WIDE = 6
 _TOLD = 6
 
 
 def table(
-    file: Path, where: Sequence[str], columns: Sequence[str], rows: int, csv: Path | None
+    file: Path, where: Sequence[str], columns: Sequence[str], rows: int, csv: TableFile | None
 ) -> None:
     """See :func:`.commands.table`."""
     if csv:
-        check_writable(csv)
+        csv.check()
     sweep = Sweep.open(file)
     along = sweep.axes_of([*columns, *(condition.name for condition in conditions_in(where))])
     single = [name for name, kept in sweep.columns.items() if not kept.axes]
@@ -45,8 +45,8 @@ def table(
         raise NoDesignError(f"{file}: no {what} meets the conditions{missed(sweep, where, along)}")
     found = chain([first], found)
     if csv:
-        count = write_csv(names, (values for _, values in found), csv)
-        echo(f"wrote {csv}: {counted(count, what)}", err=is_standard_output(csv))
+        count = csv.write(heads_of(sweep, names), (values for _, values in found))
+        echo(f"wrote {csv.path}: {counted(count, what)}", err=is_standard_output(csv.path))
     elif show(sweep, names, islice(found, min(rows, sys.maxsize))) == rows:
         satisfied, with_result = counts(sweep, where, along)
         if satisfied > rows:

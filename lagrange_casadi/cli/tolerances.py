@@ -4,13 +4,11 @@ of them is to blame.
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 
-from ..base.publish import check_writable, writing
+from ..base.table_file import Cell, TableFile
 from ..base.vocabulary import Backend
 from ..case import load_case
 from ..declare.even_points import EvenPoints
@@ -34,14 +32,14 @@ def tolerances(
     want: Sequence[str],
     samples: int,
     backend: Backend,
-    out: Path | None,
+    csv: TableFile | None,
 ) -> None:
     """See :func:`.commands.tolerances`."""
     widths = dict(within)
     if len(widths) < len(within):
         raise DeclarationError("tolerance: a parameter has one twice")
-    if out is not None:
-        check_writable(out)
+    if csv:
+        csv.check()
     loaded = load_case(case)
     found = distributed_loads_of(
         loaded.scene,
@@ -54,10 +52,9 @@ def tolerances(
         backend=backend,
     )
     _print(found)
-    if out is not None:
-        with writing(out) as (file,):
-            file.write(_rows(found).encode())
-        echo(f"wrote {out}")
+    if csv:
+        csv.write(*_rows(found))
+        echo(f"wrote {csv.path}")
 
 
 def _print(found: Spreads) -> None:
@@ -85,18 +82,16 @@ def _print(found: Spreads) -> None:
         )
 
 
-def _rows(found: Spreads) -> str:
+def _rows(found: Spreads) -> tuple[list[str], list[list[Cell]]]:
+    """Heads and rows; a row has a unit of its own."""
     names = [
         entry.name for entry in fields(next(iter(found.peaks.values()))) if entry.name != "shares"
     ]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([*names, *(f"share of {name}" for name in found.tolerances)])
-    for spread in found.peaks.values():
-        writer.writerow(
-            [
-                *(getattr(spread, name) for name in names),
-                *(spread.shares[name] for name in found.tolerances),
-            ]
-        )
-    return text.getvalue()
+    rows = [
+        [
+            *(getattr(spread, name) for name in names),
+            *(spread.shares[name] for name in found.tolerances),
+        ]
+        for spread in found.peaks.values()
+    ]
+    return [*names, *(f"share of {name}" for name in found.tolerances)], rows

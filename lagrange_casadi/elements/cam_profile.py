@@ -16,7 +16,8 @@ import numpy.typing as npt
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.publish import check_writable, writing
+from ..base.publish import writing
+from ..base.table_file import TableFile
 from ..errors import DeclarationError, LagrangeCasadiError, shown
 from ..renamed import renamed
 
@@ -64,20 +65,20 @@ class CamProfile:
             else ""
         )
 
-    def save_csv(self, path: str | Path) -> None:
+    def save_csv(self, path: str | Path, decimal_comma: bool = False) -> None:
         """Write a row for every angle: cam angle [deg], x [m], y [m], pressure angle [deg], radius
         of curvature [m].
 
-        Raises :class:`.LagrangeCasadiError` for an undercut profile, and :class:`.PathError` where
-        nothing can be written.
+        With ``decimal_comma`` numbers have one, and semicolons are between cells; a path that ends
+        in .xlsx becomes a workbook. Raises :class:`.LagrangeCasadiError` for an undercut profile
+        and where openpyxl is missing, and :class:`.PathError` where nothing can be written.
         """
         self._refuse_undercut()
         rows = np.column_stack(
             [np.degrees(self.angle), self.x, self.y, np.degrees(self.pressure_angle), self.radius]
         )
-        lines = ["angle [deg],x [m],y [m],pressure angle [deg],radius [m]"]
-        lines += [",".join(f"{number:.17g}" for number in row) for row in rows.tolist()]
-        self._write(path, "\n".join(lines) + "\n")
+        heads = ["angle [deg]", "x [m]", "y [m]", "pressure angle [deg]", "radius [m]"]
+        TableFile(Path(path), decimal_comma).write(heads, rows.tolist())
 
     def save_dxf(self, path: str | Path) -> None:
         """Write the profile as a closed polyline of DXF R12, in mm, for a workshop; the package
@@ -97,18 +98,14 @@ class CamProfile:
         points = (_MILLIMETRES * np.column_stack([self.x, self.y])).tolist()
         drawing.add_polyline([tuple(point) for point in points], closed=True, layer="PROFILE")
         drawing.close()
-        self._write(path, text.getvalue())
+        with writing(Path(path)) as (file,):
+            file.write(text.getvalue().encode())
 
     def _refuse_undercut(self) -> None:
         if self.undercut.any():
             raise LagrangeCasadiError(
                 f"cam '{self.name}': {self.undercut_summary}; no profile has this motion"
             )
-
-    def _write(self, path: str | Path, text: str) -> None:
-        check_writable(Path(path))
-        with writing(Path(path)) as (file,):
-            file.write(text.encode())
 
 
 def turn_in(name: str, count: int) -> Array:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..base.arrays import Array
+from ..base.table_file import head
 from ..errors import LagrangeCasadiError
 from .derivatives import derivatives
 
@@ -80,19 +81,18 @@ def columns(solution: Solution) -> dict[str, Array]:
     """
     found: dict[str, Array] = {}
     if solution.over:
-        found[f"over:{solution.over.joint} [{solution.over.unit}]"] = solution.over.values
+        found[head(f"over:{solution.over.joint}", solution.over.unit)] = solution.over.values
     named = [
         (str(output), solution.unit(output), solution.array(output))
         for output in solution.quantities()
     ]
     named += [(found.name, found.unit, found.values) for found in derivatives(solution)]
     for output, unit, values in named:
-        ending = "" if unit == "1" else f" [{unit}]"
         if values.ndim == 1:
-            found[f"{output}{ending}"] = values
+            found[head(output, unit)] = values
         else:
             found |= {
-                f"{output} xi/l={xi:.10g}{ending}": column
+                head(f"{output} xi/l={xi:.10g}", unit): column
                 for xi, column in zip(solution.xi, values.T, strict=True)
             }
     return found

@@ -1,11 +1,14 @@
-"""A list of designs from CSV: a head of parameters' names, and a line a design."""
+"""A list of designs from CSV: a head of parameters' names, which may have units, and a line a
+design.
+"""
 
 from __future__ import annotations
 
 import math
 import os
+import re
 from array import array
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -15,14 +18,17 @@ from ...base.units import typed
 from ...errors import DeclarationError
 from .axes import Listed, check_known, not_parameter
 
+_HEAD = re.compile(r"(.*?) *\[([^]]+)\]")
+"""A name, and its unit in brackets."""
+
 
 @public
 def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | None = None) -> Listed:
     """Read a list of designs, for :func:`.sweep`: a first line of parameters' names, then a line of
     values for each design.
 
-    Cells are parted as :func:`.read_rows` says. Angles may have a unit, as ``30 deg``. Returns a
-    :class:`.Listed`.
+    Cells are parted as :func:`.read_rows` says. Values may have a unit, as ``30 deg``, or the head
+    has that of its column, as ``l [mm]``. Returns a :class:`.Listed`.
 
     With the names of ``parameters``, as of a mechanism, the head is checked against them before any
     number is read; without, a sweep checks it.
@@ -32,14 +38,22 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
     """
     rows = read_rows(path, "a first line of parameters' names")
     head = next(rows)
-    _check_head(head)
+    parted = [_HEAD.fullmatch(cell) for cell in head.cells]
+    names = tuple(
+        found[1] if found else cell for found, cell in zip(parted, head.cells, strict=True)
+    )
+    in_head = [found[2] if found else "" for found in parted]
+    _check_head(head, names)
     if parameters is not None:
-        check_known(head.cells, parameters, head.where)
+        check_known(names, parameters, head.where)
     values, lines, units = array("d"), array("q"), dict[str, str]()
     for row in rows:
-        for name, cell in zip(head.cells, row.cells, strict=True):
+        for name, column_unit, cell in zip(names, in_head, row.cells, strict=True):
             value, unit = typed(row.pointed(cell))
+            if column_unit and not unit:
+                value, unit = typed(f"{value} {column_unit}")
             values.append(value if unit else _number(row, name, cell))
+            unit = unit or column_unit
             if unit and units.setdefault(name, unit) != unit:
                 raise DeclarationError(
                     f"{row.where}: {name}: expected a value in {units[name]}, got '{cell}'"
@@ -47,13 +61,12 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
         lines.append(row.line)
     if not lines:
         raise DeclarationError(f"{path}: no designs below its head {', '.join(head.cells)}")
-    return Listed(
-        head.cells, np.array(values).reshape(-1, len(head.cells)), np.array(lines), str(path), units
-    )
+    rows_of_values = np.array(values).reshape(-1, len(names))
+    return Listed(names, rows_of_values, np.array(lines), str(path), units)
 
 
-def _check_head(head: Row) -> None:
-    for column, name in enumerate(head.cells, 1):
+def _check_head(head: Row, names: Sequence[str]) -> None:
+    for column, name in enumerate(names, 1):
         place = f"{head.where}, column {column}"
         if not name:
             raise DeclarationError(f"{place}: expected a parameter's name, got an empty cell")
@@ -64,9 +77,9 @@ def _check_head(head: Row) -> None:
             )
         if ":" in name:
             raise DeclarationError(f"{place}: {not_parameter(name)}")
-        if head.cells.index(name) != column - 1:
+        if names.index(name) != column - 1:
             raise DeclarationError(
-                f"{place}: '{name}' stands there already as column {head.cells.index(name) + 1}"
+                f"{place}: '{name}' stands there already as column {names.index(name) + 1}"
             )
 
 

@@ -1,0 +1,163 @@
+"""Tables for spreadsheets: rows below a line of heads, as CSV or as a workbook."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from io import TextIOWrapper
+from pathlib import Path
+from typing import Any, BinaryIO
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+from ..errors import DeclarationError
+from .packages import check_installed
+from .publish import check_writable, writing
+
+Cell = float | str
+
+_ROWS, _COLUMNS = 1_048_576, 16_384
+"""Rows and columns of a workbook at most, heads included."""
+_WIDTH = 12
+_TIMES = re.compile(rb"(<dcterms:\w+[^>]*>)[^<]*")
+_NO_TIME = (1980, 1, 1, 0, 0, 0)
+_UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f]")
+
+
+def head(name: str, unit: str) -> str:
+    """The head of a column: its name, and its unit in brackets if it has one."""
+    return name if unit in ("", "1") else f"{name} [{unit}]"
+
+
+@dataclass(frozen=True)
+class TableFile:
+    """Place of a table: a workbook where ``path`` ends in .xlsx, else CSV.
+
+    CSV has commas between cells and points in numbers; with ``decimal_comma`` it has semicolons
+    and commas. Numbers in CSV have every digit they have, in a workbook 16.
+    """
+
+    path: Path
+    decimal_comma: bool = False
+
+    def check(self) -> None:
+        """Raise where the table cannot be written, before anything is computed.
+
+        Raises :class:`.DeclarationError` for a workbook with decimal commas,
+        :class:`.LagrangeCasadiError` where openpyxl is missing, :class:`.PathError` where no file
+        can be put.
+        """
+        if self._is_workbook:
+            if self.decimal_comma:
+                raise DeclarationError(
+                    f"{self.path}: decimal commas are for CSV; a workbook holds numbers, which"
+                    " spreadsheets show as they are set"
+                )
+            check_installed("openpyxl", "a workbook", "xlsx")
+        check_writable(self.path)
+
+    def write(self, heads: Sequence[str], rows: Iterable[Sequence[Cell]]) -> int:
+        """Write rows, which are put into their place at the end; returns how many there are."""
+        with self.written(heads, rows) as count:
+            return count
+
+    @contextmanager
+    def written(self, heads: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Iterator[int]:
+        """Write rows, which are put into their place at the end, unless something fails; yields how
+        many there are.
+        """
+        self.check()
+        with writing(self.path) as (file,):
+            write = self._write_workbook if self._is_workbook else self._write_csv
+            yield write(file, heads, rows)
+
+    @property
+    def _is_workbook(self) -> bool:
+        return self.path.suffix.lower() == ".xlsx"
+
+    def _write_csv(
+        self, file: BinaryIO, heads: Sequence[str], rows: Iterable[Sequence[Cell]]
+    ) -> int:
+        text = TextIOWrapper(file, encoding="utf-8", newline="")
+        writer = csv.writer(text, delimiter=";" if self.decimal_comma else ",", lineterminator="\n")
+        told = _with_comma if self.decimal_comma else _with_point
+        writer.writerow(heads)
+        count = 0
+        for row in rows:
+            writer.writerow(map(told, row))
+            count += 1
+        text.detach()
+        file.flush()
+        return count
+
+    def _write_workbook(
+        self, file: BinaryIO, heads: Sequence[str], rows: Iterable[Sequence[Cell]]
+    ) -> int:
+        if len(heads) > _COLUMNS:
+            raise DeclarationError(
+                f"{self.path}: {len(heads)} columns, but a workbook has {_COLUMNS} at most; write"
+                " CSV"
+            )
+        import openpyxl
+        from openpyxl.cell import WriteOnlyCell
+
+        book = openpyxl.Workbook(write_only=True)
+        sheet = book.create_sheet("table")
+        sheet.freeze_panes = "A2"
+        letter = openpyxl.utils.get_column_letter
+        for column, words in enumerate(heads, 1):
+            sheet.column_dimensions[letter(column)].width = max(len(words) + 2, _WIDTH)
+        made = _cell_maker(sheet, WriteOnlyCell)
+        count = 0
+        try:
+            sheet.append(list(map(made, heads)))
+            for row in rows:
+                count += 1
+                if count == _ROWS:
+                    raise DeclarationError(
+                        f"{self.path}: a workbook has {_ROWS} rows at most; write CSV"
+                    )
+                sheet.append(list(map(made, row)))
+        finally:
+            sheet.close()
+        with tempfile.TemporaryFile() as draft:
+            book.save(draft)
+            _copy_without_times(draft, file)
+        return count
+
+
+def _with_point(cell: Cell) -> str:
+    return cell if isinstance(cell, str) else repr(cell)
+
+
+def _with_comma(cell: Cell) -> str:
+    return cell if isinstance(cell, str) else repr(cell).replace(".", ",")
+
+
+def _cell_maker(sheet: Any, cell_of: Callable[..., Any]) -> Callable[[Cell], Any]:
+    """Make cells of a sheet: what is no finite number is a text, and NaN is nothing."""
+
+    def made(cell: Cell) -> Any:
+        if not isinstance(cell, str):
+            if math.isfinite(cell):
+                return cell
+            cell = "" if math.isnan(cell) else str(cell)
+        found = cell_of(sheet, _UNPRINTABLE.sub("", cell))
+        found.data_type = "s"  # else what begins with = is a formula
+        return found
+
+    return made
+
+
+def _copy_without_times(draft: Any, file: BinaryIO) -> None:
+    """Copy a workbook, so that the same table has the same bytes at any time."""
+    with ZipFile(draft) as source, ZipFile(file, "w", ZIP_DEFLATED) as target:
+        for entry in source.infolist():
+            content = source.read(entry)
+            if entry.filename == "docProps/core.xml":
+                content = _TIMES.sub(rb"\g<1>2000-01-01T00:00:00Z", content)
+            target.writestr(ZipInfo(entry.filename, _NO_TIME), content, ZIP_DEFLATED)
