@@ -42,7 +42,20 @@ SCRIPTS = (
         "stage",
         "gestures",
     ),
-    *("player", "axes", "chart", "polar", "heat", "cards", "sorted", "tables", "sliders", "page"),
+    *(
+        "player",
+        "axes",
+        "chart",
+        "polar",
+        "heat",
+        "diagrams",
+        "save",
+        "cards",
+        "sorted",
+        "tables",
+        "sliders",
+        "page",
+    ),
 )
 """The viewer's sources, in the order in which they stand in a page."""
 
