@@ -23,6 +23,7 @@ METHODS: dict[str, str] = {
     "Solution.life": "strength:life",
     "Solution.notes": "elastic.vibration:swinging",
     "Solution.report": "report:write_report",
+    "Solution.report_beside": "report:write_comparison",
     "Solution.safety": "strength.parts:part_safety",
     "Solution.stress": "strength:stress",
     "Solution.view": "report:view",

@@ -143,19 +143,21 @@ class Browser:
             raise RuntimeError(details.get("exception", {}).get("description") or details["text"])
         return answer["result"].get("value")
 
-    def run_within(self, expression: str) -> object:
-        """What an expression is in the page's one frame, which is a page of its own."""
-        (frame,) = (
-            one for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "iframe"
-        )
+    def run_within(self, expression: str, name: str = "") -> object:
+        """What an expression is in the page's frame of a name, which is a page of its own."""
+        targets = self.call("Target.getTargets")["targetInfos"]
+        frames = [one["targetId"] for one in targets if one["type"] == "iframe"]
         own = self._session
-        self._session = self.call(
-            "Target.attachToTarget", targetId=frame["targetId"], flatten=True
-        )["sessionId"]
         try:
-            return self.run(expression)
+            for frame in frames:
+                found = self.call("Target.attachToTarget", targetId=frame, flatten=True)
+                self._session = found["sessionId"]
+                if self.run("window.name") == name:
+                    return self.run(expression)
+                self._session = own
         finally:
             self._session = own
+        raise RuntimeError(f"no frame '{name}' among {len(frames)}")
 
     def size(self, width: int, height: int, scale: float = 1.0, mobile: bool = False) -> None:
         """Give the page a size."""

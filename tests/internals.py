@@ -145,9 +145,12 @@ from lagrange_casadi.exports.fatigue import counter
 from lagrange_casadi.exports.folder import MANIFEST as FOLDER_MANIFEST
 from lagrange_casadi.exports.units import BASE, base_unit
 from lagrange_casadi.figures import figures
+from lagrange_casadi.figures.diagrams import governing, marks
 from lagrange_casadi.figures.drawing import draw_mechanism
 from lagrange_casadi.figures.figures import (
     MechanismDrawing,
+    PolarPlots,
+    SectionDiagrams,
     SectionMaps,
     SpanPlot,
     TimePlot,
@@ -177,7 +180,7 @@ from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.instants.grids import GRID, LARGEST
 from lagrange_casadi.instants.laws import law_of, made_of
 from lagrange_casadi.instants.loads import DistributedLoad, SpatialPointLoad
-from lagrange_casadi.instants.ordering import ordered
+from lagrange_casadi.instants.ordering import ordered, vanishes
 from lagrange_casadi.instants.refusal import refusal as refusal_refusal
 from lagrange_casadi.instants.section_law import PointLoad, SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution

@@ -5,6 +5,7 @@ What a command does is imported when it is run.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import click
@@ -30,6 +31,7 @@ from .options import (
     method,
     over,
     place,
+    setting,
     settings_by,
     table_file,
     wanted,
@@ -191,7 +193,9 @@ def plot(**given: Any) -> None:
 
 
 @command()
-@click.argument("target", metavar="FILE.h5|CASE", type=CASE)
+@click.argument(
+    "targets", metavar="FILE.h5|CASE [FILE.h5|CASE]", type=CASE, nargs=-1, required=True
+)
 @click.option(
     "--out",
     type=PATH,
@@ -208,9 +212,22 @@ def plot(**given: Any) -> None:
     help="For a case: put the evaluation into the page, with sliders for the parameters; needs"
     " ziglang.",
 )
+@click.option(
+    "--beside",
+    type=setting,
+    metavar="NAME=VALUE",
+    multiple=True,
+    help="For a case: show a second design beside it, with this parameter changed; repeatable.",
+)
 @click.option("--case", type=CASE, help="For a sweep: show the mechanism of this case in motion.")
-def report(**given: Any) -> None:
-    """Write a page for browsers about FILE.h5 or CASE.
+def report(
+    targets: tuple[Path, ...],
+    out: Path | None,
+    beside: tuple[tuple[str, float | str], ...],
+    case: Path | None,
+    **given: Any,
+) -> None:
+    """Write a page for browsers about FILE.h5 or CASE, or about two of them side by side.
 
     It is one file, which needs no network and no Python. The mechanism moves with its forces drawn
     on it, next to charts and tables. For a sweep there are maps, fronts and a table of designs;
@@ -220,9 +237,9 @@ def report(**given: Any) -> None:
         # What is imported takes a second or more.
         check_installed("ziglang", "a live report", "live")
         say_step(1, "loading the program")
-    from .report_page import report
+    from .report_page import Asked, report
 
-    report(**given)
+    report(targets, out, beside, case, Asked(**given))
 
 
 @command()

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
 from ..base.publish import check_writable
-from ..case import load_case
+from ..case import Case, load_case
 from ..codegen.compiler import statements
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, one_line
 from ..instants.solution import Solution
 from ..portable.wasm import check_zig
-from ..report import ENDINGS, Live, with_motion, write_report
+from ..report import ENDINGS, Live, with_motion, write_comparison, write_report
 from ..report.instants import shown_instants
 from ..report.live import run_of
 from ..report.of_sweep import is_of, write_sweep_report
@@ -33,26 +34,41 @@ _FILES = (".h5", ".hdf5")
 _UNSHOWN = "cannot be shown"
 
 
+@dataclass(frozen=True)
+class Asked:
+    """Options that go with a case: parameters, instants, outputs, and whether the page is live."""
+
+    settings: Sequence[tuple[str, float | str]]
+    t: EvenPoints | None
+    over: Over | None
+    want: Sequence[str]
+    live: bool
+
+    def __bool__(self) -> bool:
+        return bool(self.settings or self.t or self.over or self.want or self.live)
+
+
 def report(
-    target: Path,
+    targets: Sequence[Path],
     out: Path | None,
-    settings: Sequence[tuple[str, float | str]],
-    t: EvenPoints | None,
-    over: Over | None,
-    want: Sequence[str],
-    live: bool,
+    beside: Sequence[tuple[str, float | str]],
     case: Path | None,
+    asked: Asked,
 ) -> None:
     """See :func:`.commands.report`."""
+    target, *others = targets
     file = target.suffix in _FILES
-    if file and (settings or t or over or want or live):
+    if asked and all(one.suffix in _FILES for one in targets):
         raise click.UsageError(
             "--set, --t, --over, --want and --live go with a case, not with a file"
         )
     if out and out.suffix.lower() not in ENDINGS:
         raise click.UsageError(f"--out {out}: expected a name that ends in {' or '.join(ENDINGS)}")
-    if case and not (file and is_sweep(target)):
+    if case and (others or not (file and is_sweep(target))):
         raise click.UsageError("--case goes with a sweep's file")
+    if others or beside:
+        _of_two(targets, out, beside, asked)
+        return
     if file:
         out = out or Path(f"{target.stem}.html")
         check_writable(out)
@@ -67,23 +83,70 @@ def report(
         scene = loaded.scene
         out = out or Path(f"{loaded.name}.html")
         check_writable(out)
-        wanted = with_motion(want or scene.wanted)
-        given, timing = parameters(settings), scene.timing(t, over)
+        wanted = with_motion(asked.want or scene.wanted)
+        given, timing = parameters(asked.settings), scene.timing(asked.t, asked.over)
         engine = None
-        if live:
+        if asked.live:
             say_step(2, f"deriving the equations of {loaded.name}")
             engine = Live.of(scene, timing, wanted, run_of(loaded.name), given)
             size = grouped(statements(engine.source.code))
             say_step(3, f"compiling {size} statements for this machine and for the browser at once")
-        # What a page computes anew is what equilibrium tells.
-        live_only = False if live else None
-        solution = evaluate(
-            scene, parameters=given, t=t, over=over, wanted=wanted, elastic=live_only
-        )
-        if live:
+        solution = _evaluated(loaded, asked, given)
+        if asked.live:
             say_step(4, f"writing {out}")
         write_report(solution, out, engine)
     _announce(solution, out)
+
+
+def _of_two(
+    targets: Sequence[Path],
+    out: Path | None,
+    beside: Sequence[tuple[str, float | str]],
+    asked: Asked,
+) -> None:
+    """Write the page of two runs, or of a case and the design ``beside`` it."""
+    first, *others = targets
+    if len(others) > 1:
+        raise click.UsageError("expected one or two of FILE.h5 and CASE")
+    if asked.live:
+        raise click.UsageError("--live goes with one case, and not with --beside")
+    if beside and (others or first.suffix in _FILES):
+        raise click.UsageError("--beside goes with one case")
+    name = "_and_".join(one.stem for one in targets) if others else f"{first.stem}_beside"
+    out = out or Path(f"{name}.html")
+    check_writable(out)
+    solutions = []
+    for target, more in zip((first, *(others or (first,))), ((), beside), strict=True):
+        if target.suffix not in _FILES:
+            given = parameters(asked.settings) | parameters(more)
+            solutions.append(_evaluated(load_case(target), asked, given))
+        elif is_sweep(target):
+            raise click.UsageError(f"{target} is a sweep, whose page is of itself alone")
+        else:
+            solutions.append(load(target))
+    stems = [target.stem for target in targets]
+    with reported_as(_UNSHOWN, first):
+        write_comparison(solutions, out, stems if len(set(stems)) == 2 else ())
+    for solution in solutions:
+        for line in untold_lines(solution):
+            echo(line, err=True)
+    echo(f"wrote {out}: open it in a browser")
+    for solution in solutions:
+        if solution.failed:
+            raise CertificateError(f"{failure(solution)}; {out} says so")
+
+
+def _evaluated(loaded: Case, asked: Asked, given: Mapping[str, float]) -> Solution:
+    """A case as a page shows it."""
+    return evaluate(
+        loaded.scene,
+        parameters=given,
+        t=asked.t,
+        over=asked.over,
+        wanted=with_motion(asked.want or loaded.scene.wanted),
+        # What a live page computes anew is what equilibrium tells.
+        elastic=False if asked.live else None,
+    )
 
 
 def _of_sweep(target: Path, out: Path, case: Path | None) -> None:

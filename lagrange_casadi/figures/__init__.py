@@ -3,6 +3,8 @@
 from ..shapes.specs import (
     DeflectionPlot,
     MechanismDrawing,
+    PolarPlots,
+    SectionDiagrams,
     SectionMaps,
     SpanPlot,
     Spec,
@@ -15,6 +17,8 @@ from .figures import default_figures, draw
 __all__ = [
     "DeflectionPlot",
     "MechanismDrawing",
+    "PolarPlots",
+    "SectionDiagrams",
     "SectionMaps",
     "SpanPlot",
     "Spec",

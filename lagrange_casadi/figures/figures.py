@@ -8,6 +8,7 @@ import os
 import re
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,12 +20,15 @@ from ..base.quantities import Output
 from ..base.tables import PLANE, SPACE
 from ..declare.description import parts_of
 from ..errors import DeclarationError, PathError, UnknownNameError, shown
+from ..instants.ordering import vanishes
 from ..instants.solution import Peak, Solution
 from ..shapes.pictures import one_at_a_time, save
 from ..shapes.readable import scale_for
 from ..shapes.specs import (
     DeflectionPlot,
     MechanismDrawing,
+    PolarPlots,
+    SectionDiagrams,
     SectionMaps,
     SpanPlot,
     Spec,
@@ -33,6 +37,7 @@ from ..shapes.specs import (
     UtilisationPlot,
 )
 from ..strength.parts import NEEDED, bending_of, fitted_in, strong_of
+from .diagrams import draw_polar, draw_section_diagrams, polar_members
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -78,6 +83,15 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     for link in solution.links_with_sections:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
+    if diagrams := tuple(spec.link for spec in specs if isinstance(spec, SectionMaps)):
+        specs.append(SectionDiagrams("diagrams", diagrams))
+    bearings = tuple(
+        name
+        for name, joint in solution.description["joints"].items()
+        if joint["kind"] in ("revolute", "cylindrical") and polar_members(solution, name)
+    )
+    if bearings:
+        specs.append(PolarPlots("bearings", bearings))
     specs += [StrengthPlot(f"strength_{link}", link) for link in strong_of(solution)]
     links, joints = strong_of(solution, *NEEDED), fitted_in(solution)
     if links or joints:
@@ -184,9 +198,10 @@ def _draw_time(spec: TimePlot, axes: Any, solution: Solution, name: str) -> None
         axes.plot(_along(solution)[0], spec.factor * solution.array(output), label=label)
         return
     values = solution.section(output.part).law.on_grid(output.member, np.array(spec.xi))
+    factor = 0.0 if vanishes(solution, output) else spec.factor
     for xi, curve in zip(spec.xi, values.T, strict=True):
         of = f"{label}, " if label else ""
-        axes.plot(_along(solution)[0], spec.factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
+        axes.plot(_along(solution)[0], factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
 
 
 def _span(spec: SpanPlot, solution: Solution, si: bool) -> Figure:
@@ -198,7 +213,7 @@ def _span(spec: SpanPlot, solution: Solution, si: bool) -> Figure:
         .law.during(slice(i, i + 1))
         .on_grid(output.member, solution.xi)
     )
-    axes.plot(solution.xi, spec.factor * values[0])
+    axes.plot(solution.xi, (0.0 if vanishes(solution, output) else spec.factor) * values[0])
     at = f"t = {solution.t[i]:.4g} s" + (
         f", {solution.over.shown(solution.over.values[i])}" if solution.over else ""
     )
@@ -224,6 +239,9 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
     plots = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
     for axes, name in zip(plots, names, strict=False):
         values, peak = law.on_grid(name.member, basis), solution.peak(name)
+        nothing = vanishes(solution, name)
+        if nothing:
+            values, peak = np.zeros_like(values), replace(peak, value=0.0)
         bound, signed = abs(peak.value) or 1.0, len(name.components(solution.table)) == 1
         colours, least = ("RdBu_r", -bound) if signed else ("viridis", 0.0)
         picture = axes.pcolormesh(
@@ -238,16 +256,17 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
         )
         scale = scale_for(peak.unit, abs(peak.value), si)
         x, at = _place_of(peak, solution)
-        axes.plot(x, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
-        axes.set_title(
-            f"{name.meant(solution.table).long_name}: peak {scale.said(peak.value)} at {at}, "
-            rf"$\xi/l$ = {peak.xi:.3f}",
-            fontsize=10,
-        )
+        what = name.meant(solution.table).long_name
+        if nothing:
+            axes.set_title(f"{what}: zero everywhere", fontsize=10)
+        else:
+            axes.plot(x, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
+            axes.set_title(
+                rf"{what}: peak {scale.said(peak.value)} at {at}, $\xi/l$ = {peak.xi:.3f}",
+                fontsize=10,
+            )
         axes.set_ylabel(r"$\xi/l$")
-        bar = figure.colorbar(
-            picture, ax=axes, label=f"{name.meant(solution.table).long_name} [{scale.unit}]"
-        )
+        bar = figure.colorbar(picture, ax=axes, label=f"{what} [{scale.unit}]")
         scale.put(bar.ax.yaxis)
     for axes in plots[-across:]:
         axes.set_xlabel(along)
@@ -267,6 +286,14 @@ def _mechanism(spec: MechanismDrawing, solution: Solution, si: bool) -> Figure:
     if solution.table is SPACE:
         return draw_in_space(solution, spec.count, spec.azimuth, spec.elevation, si)
     return draw_mechanism(solution, spec.count, spec.overlay, si)
+
+
+def _diagrams(spec: SectionDiagrams, solution: Solution, si: bool) -> Figure:
+    return draw_section_diagrams(solution, spec.links, si)
+
+
+def _polar(spec: PolarPlots, solution: Solution, si: bool) -> Figure:
+    return draw_polar(solution, spec.joints, si)
 
 
 def _strength(spec: StrengthPlot, solution: Solution, si: bool) -> Figure:
@@ -291,6 +318,8 @@ _FIGURES: dict[type[Spec], Callable[[Any, Solution, bool], Figure]] = {
     TimePlot: _time,
     SpanPlot: _span,
     SectionMaps: _maps,
+    SectionDiagrams: _diagrams,
+    PolarPlots: _polar,
     MechanismDrawing: _mechanism,
     StrengthPlot: _strength,
     UtilisationPlot: _utilisation,

@@ -76,3 +76,9 @@ def error_of(solution: Solution, name: str | Output) -> float | None:
     ]
     known = [error for error in errors if error is not None]
     return math.hypot(*known) if len(known) == len(errors) else None
+
+
+def vanishes(solution: Solution, name: str | Output) -> bool:
+    """Return whether a quantity is zero but for rounding, by the estimate of its error."""
+    error = error_of(solution, name)
+    return error is not None and abs(solution.peak(name).value) <= 2.0 * error

@@ -411,14 +411,19 @@ class Solution:
             )
         return Statistics.over(str(output), self.unit(output), self.t, self.array(output))
 
-    def report(self, path: str | os.PathLike[str]) -> None:
+    def report(self, path: str | os.PathLike[str], beside: Solution | None = None) -> None:
         """Write a page that shows the mechanism moving, its forces on it, charts and tables: one
         HTML file for any browser.
+
+        With another solution ``beside`` it the page shows both side by side, and how they differ.
 
         Raises :class:`.DeclarationError` where ``motion`` was not wanted, or the path does not end
         in .html; :class:`.PathError` and :class:`.StoreError` where the file cannot be written.
         """
-        method("Solution.report")(self, path)
+        if beside is None:
+            method("Solution.report")(self, path)
+        else:
+            method("Solution.report_beside")((self, beside), path)
 
     def animate(self, path: str | os.PathLike[str], film: Film | None = None) -> Animation:
         """Write one cycle in motion, as a GIF, an MP4, an animated SVG or glTF, as the path ends:

@@ -2,6 +2,7 @@
 one file.
 """
 
+from .comparison import write_comparison
 from .live import Live
 from .notebook import View, scene_summary, summary, view
 from .of_scene import scene_report, with_motion
@@ -19,6 +20,7 @@ __all__ = [
     "summary",
     "view",
     "with_motion",
+    "write_comparison",
     "write_page",
     "write_report",
 ]

@@ -99,7 +99,7 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
         "joints": [asdict(joint) for joint in joint_shapes(description)],
         "loads": [asdict(load) for load in load_shapes(description)],
         "paths": [{"name": name} | asdict(spot) for name, spot in path_spots(description).items()],
-        "series": [asdict(one) for one in _series(solution, chosen, arrays)],
+        "series": [asdict(one) for one in series_of(solution, chosen, arrays)],
         "sections": list(section_entries(solution, chosen, arrays)),
         "maps": list(map_entries(solution, arrays)),
         "groups": GROUPS,
@@ -164,7 +164,8 @@ def _whole_axes(axes: Array | None, count: int) -> Array:
     return np.stack([x, y, np.cross(x, y)], axis=1)
 
 
-def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[Series]:
+def series_of(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[Series]:
+    """The quantities of a solution that can be charted, at the instants that are chosen."""
     resultants = (
         output
         for output in ordered(solution)

@@ -42,7 +42,20 @@ SCRIPTS = (
         "stage",
         "gestures",
     ),
-    *("player", "axes", "chart", "polar", "heat", "cards", "sorted", "tables", "sliders", "page"),
+    *(
+        "player",
+        "axes",
+        "chart",
+        "polar",
+        "heat",
+        "diagrams",
+        "save",
+        "cards",
+        "sorted",
+        "tables",
+        "sliders",
+        "page",
+    ),
 )
 """The viewer's sources, in the order in which they stand in a page."""
 
@@ -61,6 +74,17 @@ SWEEP_SCRIPTS = (
     "designs_page",
 )
 """Scripts of the page of a sweep."""
+
+COMPARISON_SCRIPTS = (
+    "data",
+    "dom",
+    "units",
+    "axes",
+    "sorted",
+    "save",
+    "comparison",
+)
+"""Scripts of the page of two runs."""
 
 ENDINGS = (".html", ".htm")
 
@@ -134,6 +158,11 @@ def assembled(
 def live_digest() -> str:
     """The digest of the script of a live page."""
     return _digest(_whole([engine(), *map(script, (*LIVE_SCRIPTS, *SCRIPTS))]))
+
+
+def page_digest() -> str:
+    """The digest of the script of a page that is not live."""
+    return _digest(_whole([script(name) for name in SCRIPTS]))
 
 
 def script(name: str) -> str:

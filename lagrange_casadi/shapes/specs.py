@@ -93,6 +93,43 @@ class SectionMaps(_Drawn):
 
 @public
 @dataclass(frozen=True)
+class SectionDiagrams(_Drawn):
+    """The section forces along links, each at the instant that governs it, as textbooks draw them:
+    N, V and M, with values at ends and peaks.
+
+    The instant is that of the largest stress where stresses were wanted, else of the largest
+    bending moment.
+    """
+
+    kind: ClassVar[str] = "diagrams"
+    name: str
+    links: tuple[str, ...]
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return tuple(name for link in self.links for name in SectionMaps(self.name, link).needs())
+
+
+@public
+@dataclass(frozen=True)
+class PolarPlots(_Drawn):
+    """The forces in joints over all instants, each as a polar plot: in the plane in ground axes, in
+    space on axes across that of the joint.
+    """
+
+    kind: ClassVar[str] = "polar"
+    name: str
+    joints: tuple[str, ...]
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return tuple(
+            f"reaction:{joint}:{member}" for joint in self.joints for member in ("fx", "fy")
+        )
+
+
+@public
+@dataclass(frozen=True)
 class MechanismDrawing(_Drawn):
     """The mechanism at ``count`` instants, evenly spread over the motion until it repeats itself;
     postures that are the same once.
@@ -176,6 +213,8 @@ Spec = (
     TimePlot
     | SpanPlot
     | SectionMaps
+    | SectionDiagrams
+    | PolarPlots
     | MechanismDrawing
     | StrengthPlot
     | UtilisationPlot
@@ -187,6 +226,8 @@ KINDS: dict[str, type[Spec]] = {
         TimePlot,
         SpanPlot,
         SectionMaps,
+        SectionDiagrams,
+        PolarPlots,
         MechanismDrawing,
         StrengthPlot,
         UtilisationPlot,

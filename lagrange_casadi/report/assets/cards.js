@@ -11,7 +11,7 @@ class Card {
     this.choices = element("div", { class: "choices" });
     this.legend = element("ul", { class: "legend" });
     const close = signButton("✕", "Take this plot away", () => this.remove(), { class: "sign small" });
-    this.body = element("section", { class: "card" }, element("header", {}, this.title, this.choices, close), this.legend, this.field);
+    this.body = element("section", { class: "card" }, element("header", {}, this.title, this.choices, saveList(this), close), this.legend, this.field);
     this.seen = true;
     // What is out of sight need not go with the motion.
     this.watcher = new IntersectionObserver(([entry]) => {
@@ -221,6 +221,26 @@ function mapCard(link, name, focus = false) {
   return addCard(card, focus);
 }
 
+/** N, V and M along a link, at the instant that governs it or at that which is shown. */
+function diagramCard(link, focus = false) {
+  const state = { link, when: "governs" };
+  const card = new Card(
+    "Diagrams",
+    (own) => {
+      const choose = (key, label, entries) => chooser(label, entries, state[key], (value) => {
+        state[key] = value;
+        own.renew();
+      });
+      own.choices.append(
+        choose("link", "Link", diagramLinks().map((one) => [one.link, one.link])),
+        choose("when", "Instant", [["governs", "at the instant that governs"], ["shown", "at the instant shown"]]),
+      );
+    },
+    () => new Diagram(sectionByLink.get(state.link), state.when),
+  );
+  return addCard(card, focus);
+}
+
 function polarCard(joint, focus = false) {
   const state = { joint, way: 0 };
   const card = new Card(
@@ -260,6 +280,7 @@ function firstCards() {
   const bent = forces.filter(([, force]) => force && !force.open).map(([section, force]) => [section, force, peakOf(`section:${section.link}:${force.name}`)]);
   const worst = bent.filter(([, force]) => force.name === bent[0][1].name).sort((a, b) => b[2] - a[2])[0];
   if (worst) {
+    diagramCard(worst[0].link);
     mapCard(worst[0].link, worst[1].name);
     const peak = rowByName.get(`section:${worst[0].link}:${worst[1].name}`)?.peak;
     sectionCard(worst[0], Math.round((peak?.xi ?? 0.5) * (worst[0].xi.length - 1)));
@@ -288,6 +309,7 @@ function addingBar() {
     effort && button("chart", () => chartCard([effort.name], alongInstants, true)),
     effort && driven && button("cross-plot", () => chartCard([effort.name], driven.name, true)),
     section && button("section", () => pinSection({ section, ratio: 50 })),
+    section && diagramLinks().length > 0 && button("diagrams", () => diagramCard(diagramLinks()[0].link, true)),
     section && button("section map", () => mapCard(section.link, knownForces(section)[0].name, true)),
     joint && button("polar plot", () => polarCard(joint, true)),
   );

@@ -105,6 +105,12 @@ class Chart {
     showTip(event, whenIs(found), [...lines, ...this.curves.map((curve) => [curve.title, this.reads(curve, found)])]);
   }
 
+  /** What is saved as CSV: of all instants that are shown, in SI. */
+  table() {
+    const curves = [this.x, ...this.curves];
+    return { heads: curves.map(headOfCurve), rows: Array.from(this.x.values, (_, i) => curves.map((curve) => curve.values[i])) };
+  }
+
   /** What a curve is at an instant, in words. */
   reads(curve, instant) {
     const value = shownOf(curve.values[instant], curve.unit, largestOf(curve.values));

@@ -130,7 +130,7 @@ function lookedAt(body) {
     setTimeout(() => (copy.textContent = "copy as --set"), 1500);
   } }, "copy as --set");
   body.append(element("header", {}, words, copy), list);
-  const frame = contents.frame && element("iframe", { sandbox: "allow-scripts allow-modals", title: "The mechanism of the design, in motion", srcdoc: contents.frame });
+  const frame = contents.frame && element("iframe", { sandbox: "allow-scripts allow-modals allow-downloads", title: "The mechanism of the design, in motion", srcdoc: contents.frame });
   const send = () => frame?.contentWindow?.postMessage({ design: Object.fromEntries(contents.parameters.map((one) => [one.name, columnOf.get(one.name).values[picked.row]])) }, "*");
   // The page within says when its engine is ready.
   window.addEventListener("message", (event) => event.source === frame?.contentWindow && event.data === "alive" && send());

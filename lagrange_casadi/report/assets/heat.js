@@ -6,9 +6,9 @@ function fieldOfForce(section, force) {
   const { values } = curveOf(alongInstants);
   return {
     link: section.link, what: force.what, unit: force.unit, signed: signed(force), xi: section.xi, where: "",
-    peak: () => (row && !row.open ? row.peak : null),
+    peak: () => (!row || row.open ? null : isNothing(row) ? { ...row.peak, value: 0 } : row.peak),
     column: (place, near) => (over ? nearest(values, place, near) : instantAt(place)),
-    fill: (column, found, step) => sectionForces(section, force.name, column, found, step),
+    fill: (column, found, step) => (row && isNothing(row) ? found.fill(0) : sectionForces(section, force.name, column, found, step)),
     tell: (column, ratio) => [whenIs(column), sectionLines(section, ratio, column)],
     show: () => showRow(row),
   };
@@ -148,6 +148,18 @@ class Heat {
       for (let row = 0; row < high; row += 1) pixels[row * wide + column] = pixelOf(values[places[row]] / this.most, column + row, colours);
     }
     context.putImageData(this.image, 0, 0);
+  }
+
+  /** What is saved as CSV: a row an instant, a column a ratio xi/l. */
+  table() {
+    const { field, x } = this;
+    const found = new Float64Array(field.xi.length);
+    const rows = Array.from(x.values, (value) => {
+      found.fill(0);
+      field.fill(field.column(value, 0), found, 1);
+      return [value, ...found];
+    });
+    return { heads: [headOfCurve(x), ...Array.from(field.xi, (xi) => `${field.what} [${field.unit}] at xi/l = ${Number(xi.toFixed(6))}`)], rows };
   }
 
   mark(instant) {

@@ -1,9 +1,12 @@
 // The page: its head, the picture with what it shows, the cards, the tables; light and dark, units, print.
 
+/** Whether the page is one of two runs within another page. */
+const together = window.parent !== window && /^run [12]$/.test(window.name);
+
 function buildPage() {
   const canvas = element("canvas", { class: "picture", tabindex: 0, role: "img", "aria-label": `The mechanism ${contents.case} in motion` });
   const root = document.getElementById("report");
-  root.classList.toggle("within", window.parent !== window && Boolean(contents.live));
+  root.classList.toggle("within", together || (window.parent !== window && Boolean(contents.live)));
   deck.list = element("div", { class: "cards" });
   const frame = element("div", { class: "frame" }, canvas);
   const left = element("div", { class: "left" }, frame);
@@ -25,7 +28,23 @@ function buildPage() {
   firstCards();
   watch(stage, canvas);
   player.seek(0);
-  if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
+  if (together) goTogether();
+  if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches && window.name !== "run 2") player.play();
+}
+
+/** Go through the cycle with the other run: tell the page around how far this one is, and go where it says. */
+function goTogether() {
+  let following = false;
+  player.watchers.add(() => {
+    if (!following && player.span > 0) window.parent.postMessage({ share: (instants.t[player.instant] - instants.t[0]) / player.span }, "*");
+  });
+  window.addEventListener("message", (event) => {
+    if (event.source !== window.parent || typeof event.data?.share !== "number") return;
+    following = true;
+    player.pause();
+    player.seek(instantAt(instants.t[0] + event.data.share * player.span));
+    following = false;
+  });
 }
 
 /** The name, what was evaluated, whether it was certified, and the switches. */

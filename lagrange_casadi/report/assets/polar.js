@@ -105,6 +105,12 @@ class Polar {
     this.mark(player.instant);
   }
 
+  /** What is saved as CSV. */
+  table() {
+    const x = curveOf(alongInstants);
+    return { heads: [headOfCurve(x), ...this.way.pair.map((one) => `reaction:${this.joint.name}, ${one} [N]`)], rows: this.points.map((point, i) => [x.values[i], ...point]) };
+  }
+
   mark(instant, group = this.sheet.cursor) {
     const [x, y] = this.points[instant];
     const [cx, cy] = this.middle;

@@ -1,0 +1,129 @@
+// Axial force, shear force and bending moment along a link, as textbooks draw them: below each other, with values at ends and peaks.
+
+/** The row whose instant governs a link: of the largest stress, else of the bending moment, or of the axial force where nothing bends it. */
+function governing(link) {
+  const rows = [`stress:${link}:von_mises`, `section:${link}:bending`, `section:${link}:axial`].map((name) => rowByName.get(name));
+  const known = rows.filter((row) => row && !row.open);
+  return known.find((row) => !isNothing(row)) ?? known[0] ?? null;
+}
+
+/** The links that have diagrams. */
+function diagramLinks() {
+  return sections.filter((section) => knownForces(section).some(signed) && governing(section.link));
+}
+
+/** Values of a force that are told: at ends, on both sides of jumps, and where it turns; the largest first, those of ends next. */
+function marksOf({ ratios, values }) {
+  const last = ratios.length - 1;
+  const found = [];
+  for (let k = 0; k <= last; k += 1) {
+    const jump = (k > 0 && ratios[k] === ratios[k - 1]) || (k < last && ratios[k] === ratios[k + 1]);
+    if (k === 0 || k === last || jump) {
+      const tip = k > 0 && ratios[k] === ratios[k - 1];
+      found.push({ xi: ratios[k], value: values[k], anchor: jump ? (tip ? "start" : "end") : "middle" });
+      continue;
+    }
+    const [a, b, c] = [values[k - 1], values[k], values[k + 1]];
+    if ((b - a) * (c - b) >= 0) continue;
+    // The parabola through three points, evenly apart but beside a jump.
+    const h = ratios[k + 1] - ratios[k];
+    const [slope, bend] = [(c - a) / 2, a - 2 * b + c];
+    const even = Math.abs(ratios[k] - ratios[k - 1] - h) < 1e-9;
+    found.push(even ? { xi: ratios[k] - (h * slope) / bend, value: b - (slope * slope) / (2 * bend), anchor: "middle" } : { xi: ratios[k], value: b, anchor: "middle" });
+  }
+  const size = (mark) => Math.abs(mark.value);
+  const ends = found.filter((mark) => mark.xi === 0 || mark.xi === 1);
+  found.sort((a, b) => size(b) - size(a));
+  return [...new Set([found[0], ...ends.filter((mark) => mark.value), ...found])].filter((mark) => mark.value || ends.includes(mark));
+}
+
+class Diagram {
+  constructor(section, when) {
+    Object.assign(this, { section, middle: when === "shown" });
+    this.forces = knownForces(section).filter(signed);
+    this.sheet = new Sheet("diagram", `${section.link}: ${this.forces.map((force) => force.what).join(", ")} along the link`, {
+      hover: (event) => this.hover(event),
+      press: () => seekTo(this.instant),
+    });
+  }
+
+  get instant() {
+    return this.middle ? player.instant : instantAt(governing(this.section.link).peak.t);
+  }
+
+  /** A force along the link; the rounding of nothing is nothing. */
+  along(force) {
+    const row = rowByName.get(`section:${this.section.link}:${force.name}`);
+    const found = forceAlong(this.section, force.name, this.instant, 1);
+    const most = row && isNothing(row) ? Infinity : largestOf(found.values);
+    return { ratios: found.ratios, values: found.values.map((value) => (Math.abs(value) <= ROUNDING * most ? 0 : value)) };
+  }
+
+  draw(width) {
+    const high = this.forces.length > 3 ? 84 : 100;
+    const [from, to] = [FIELD.left - 14, width - 46];
+    const across = (xi) => from + xi * (to - from);
+    const height = high * this.forces.length + 14;
+    this.across = { from, to };
+    this.sheet.fill(width, height, ...this.forces.flatMap((force, k) => this.panel(force, high * (k + 0.5) + 8, 0.26 * high, across)),
+      drawn("text", { x: from, y: height - 3, class: "x" }, "base"), drawn("text", { x: to, y: height - 3, class: "x" }, "tip"));
+  }
+
+  panel(force, y0, half, across) {
+    const { ratios, values } = this.along(force);
+    const most = largestOf(values);
+    const { factor, unit } = scaleFor(force.unit, most);
+    const at = (value) => y0 - (most ? (half * value) / most : 0);
+    const path = (sign) => `M${across(0)} ${y0}${values.map((value, k) => `L${across(ratios[k])} ${at(sign * value > 0 ? value : 0)}`).join("")}L${across(1)} ${y0}Z`;
+    const parts = [drawn("text", { x: 4, y: y0 - half - 12, class: "name" }, labelled(force.what, unit))];
+    for (const [sign, kind] of [[1, "positive"], [-1, "negative"]]) if (values.some((value) => sign * value > 0)) parts.push(drawn("path", { d: path(sign), class: `area ${kind}` }));
+    parts.push(
+      drawn("path", { d: `M${across(0)} ${y0}${values.map((value, k) => `L${across(ratios[k])} ${at(value)}`).join("")}L${across(1)} ${y0}`, class: "outline" }),
+      drawn("line", { x1: across(0), x2: across(1), y1: y0, y2: y0, class: "beam" }),
+    );
+    if (!most) return [...parts, drawn("text", { x: across(0.5), y: y0 - 5, class: "x" }, "0")];
+    const taken = [];
+    for (const mark of marksOf({ ratios, values })) {
+      const [x, y, up] = [across(mark.xi), at(mark.value), mark.value >= 0];
+      const hidden = (one) => one.up === up && Math.abs(one.x - x) < (one.x === x ? 0 : 52) && Math.abs(one.y - y) < 13;
+      if (taken.some(hidden)) continue;
+      taken.push({ x, y, up });
+      const beside = { start: 3, end: -3, middle: 0 }[mark.anchor];
+      parts.push(drawn("text", { x: x + beside, y: y + (up ? -4 : 13), class: "value", "text-anchor": mark.anchor }, format(mark.value * factor, 4)));
+    }
+    return parts;
+  }
+
+  follow(width) {
+    this.draw(width);
+  }
+
+  mark() {
+    if (this.middle && this.sheet.width) this.draw(this.sheet.width);
+  }
+
+  /** At which instant, and why then. */
+  told() {
+    const row = governing(this.section.link);
+    const words = this.middle ? "at the instant that is shown" : `at ${whenIs(this.instant)}: largest ${row.what}`;
+    return [element("li", {}, words), element("li", {}, "action of the tip's side on the base's")];
+  }
+
+  hover(event) {
+    if (!event) {
+      showTip(null);
+      return;
+    }
+    const { from, to } = this.across;
+    const last = this.section.xi.length - 1;
+    const ratio = Math.round(Math.max(0, Math.min(1, (this.sheet.at(event)[0] - from) / (to - from))) * last);
+    showTip(event, `${this.section.link} at ξ/l = ${format(this.section.xi[ratio], 3)}; ${whenIs(this.instant)}`, sectionLines(this.section, ratio, this.instant));
+  }
+
+  /** What is saved as CSV. */
+  table() {
+    const all = this.forces.map((force) => this.along(force));
+    const { ratios } = all[0];
+    return { heads: ["xi/l", ...this.forces.map((force) => `section:${this.section.link}:${force.name} [${force.unit}]`)], rows: ratios.map((xi, k) => [xi, ...all.map(({ values }) => values[k])]) };
+  }
+}

@@ -1,0 +1,133 @@
+"""Two runs, or two designs, side by side on one page: what is largest in each, their curves in one
+chart, and both mechanisms in motion.
+
+Each mechanism is a report within the page; both go through their cycles together.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from ..errors import DeclarationError, shown
+from ..instants.ordering import error_of, ordered
+from ..instants.solution import Solution
+from .arrays import Arrays
+from .contents import series_of
+from .instants import shown_instants
+from .page import COMPARISON_SCRIPTS, assembled, page, page_digest, script, write_page
+from .words import GROUPS, what
+
+
+def write_comparison(
+    solutions: Sequence[Solution], path: str | os.PathLike[str], names: Sequence[str] = ()
+) -> None:
+    """Write a page that shows two solutions side by side.
+
+    Parameters
+    ----------
+    solutions
+        Two solutions, with the motion of their bodies.
+    path
+        A file whose name ends in .html; it is replaced whole or not at all.
+    names
+        Names of the two on the page; by default their cases, or the parameters that differ.
+
+    Raises
+    ------
+    DeclarationError
+        For anything but two solutions, and for two that have no quantity in common.
+    """
+    if len(solutions) != 2 or not all(isinstance(one, Solution) for one in solutions):
+        raise DeclarationError(f"report: expected two solutions, got {shown(solutions)}")
+    first, second = solutions
+    words = tuple(names) or _names(first, second)
+    write_page(Path(path), lambda: _page((first, second), words))
+
+
+def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
+    rows = list(_rows(solutions))
+    if not rows:
+        raise DeclarationError(
+            "report: nothing to compare: the two runs have no quantity in common"
+        )
+    arrays, runs = Arrays(), []
+    for solution, name in zip(solutions, names, strict=True):
+        chosen = shown_instants(solution)
+        over = solution.over
+        runs.append(
+            {
+                "name": name,
+                "case": solution.case,
+                "certified": solution.certified,
+                "t": arrays.add(solution.t[chosen]),
+                "over": over
+                and {
+                    "joint": over.joint,
+                    "unit": over.unit,
+                    "values": arrays.add(over.values[chosen]),
+                },
+                "series": [asdict(one) for one in series_of(solution, chosen, arrays)],
+                "parameters": {
+                    parameter: [entry["value"], entry["unit"]]
+                    for parameter, entry in solution.description["parameters"].items()
+                },
+                "frame": page(solution),
+            }
+        )
+    cases = " and ".join(dict.fromkeys(solution.case for solution in solutions))
+    content = {"case": cases, "runs": runs, "rows": rows, "groups": GROUPS}
+    content |= {"arrays": arrays.places, "numbers": arrays.block()}
+    return assembled(
+        f"{cases}: two runs",
+        content,
+        [script(name) for name in COMPARISON_SCRIPTS],
+        wasm=False,
+        others=[page_digest()],
+    )
+
+
+def _rows(solutions: tuple[Solution, Solution]) -> Iterator[dict[str, Any]]:
+    """The quantities that both have, each with its peaks and how far these may be off."""
+    first, second = solutions
+    others = {str(output) for output in ordered(second)}
+    for output in ordered(first):
+        if str(output) not in others or first.unit(output) != second.unit(output):
+            continue
+        if not all(one.determined(output) for one in solutions):
+            continue
+        peaks = [solution.peak(output) for solution in solutions]
+        yield {
+            "name": str(output),
+            "group": output.group,
+            "part": output.part,
+            "what": what(output, first.table),
+            "unit": first.unit(output),
+            "values": [peak.value + 0.0 for peak in peaks],
+            "t": [peak.t for peak in peaks],
+            "xi": [peak.xi for peak in peaks],
+            "errors": [error_of(solution, output) for solution in solutions],
+        }
+
+
+def _names(first: Solution, second: Solution) -> tuple[str, str]:
+    """Names by which two solutions are told apart: their cases, else the parameters that differ,
+    else numbers.
+    """
+    if first.case != second.case:
+        return first.case, second.case
+    values = [
+        {name: entry["value"] for name, entry in one.description["parameters"].items()}
+        for one in (first, second)
+    ]
+    differ = [name for name, value in values[0].items() if value != values[1].get(name)]
+    if not differ:
+        return "first run", "second run"
+    one, other = (
+        ", ".join(f"{name} = {own[name]:.5g}" for name in differ[:3] if name in own)
+        for own in values
+    )
+    return one, other
