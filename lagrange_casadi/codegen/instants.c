@@ -1,59 +1,50 @@
 /* One design over all instants: its rows, whether it has a result, and means.
 
    Instants are evaluated in packs. Nothing here depends on another design. What the scene is made of stands before this text:
-   scene_columns, designs_curves, tables, and sizes as macros. */
-typedef DESIGNS_REAL designs_real;
-
+   scene.c, designs_curves, tables, and sizes as macros. */
 typedef struct {
   const lagrange_casadi_designs_call* call;
+  lagrange_casadi_instants instants;
+  scene_design scene;
   casadi_int n, stride;
   const double* t;
-  const designs_real* p;
-  designs_real *times, *rows, *z, most[DESIGNS_CURVES];
+  lanes_real *rows, most[DESIGNS_CURVES], p[SCENE_SOME(SCENE_NT*SCENE_NP)];
   double half;
-  int *status, rests;
+  int rests;
   const signed char* bent;
   double* tops;
-  casadi_real parameters[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], constants[DESIGNS_SOME(DESIGNS_CONSTANTS)], matter[DESIGNS_MATTER];
-  casadi_real terms[DESIGNS_SOME(DESIGNS_BOUNDS)];
+  casadi_real matter[DESIGNS_MATTER], terms[SCENE_SOME(DESIGNS_BOUNDS)];
 } designs_now;
 
-static designs_real designs_lane(const casadi_real* pack, int lane) {
-  designs_real x;
+static lanes_real designs_lane(const casadi_real* pack, int lane) {
+  lanes_real x;
   memcpy(&x, (const char*) pack + (size_t) lane*sizeof x, sizeof x);
   return x;
 }
 
-static designs_real* designs_row(const designs_now* now, int k) { return now->rows + k*now->stride + LANES; }
+static lanes_real* designs_row(const designs_now* now, int k) { return now->rows + k*now->stride + LANES; }
 
-static void designs_split(double t, designs_real* moment) {
-  moment[0] = (designs_real) t;
-  if (DESIGNS_NT > 1) moment[DESIGNS_NT - 1] = (designs_real) (t - moment[0]);
+static void designs_split(double t, lanes_real* moment) {
+  moment[0] = (lanes_real) t;
+  if (SCENE_NT > 1) moment[SCENE_NT - 1] = (lanes_real) (t - moment[0]);
 }
 
 /* The columns at LANES times, each near an instant. */
 static void designs_at(const designs_now* now, const double* t, const casadi_int* near, casadi_real* y) {
-  designs_real lane[DESIGNS_NT][LANES], moment[DESIGNS_NT], place[DESIGNS_SOME(DESIGNS_NZ)][LANES], z[DESIGNS_SOME(DESIGNS_NZ)];
-  casadi_real at[DESIGNS_INPUTS];
-  lagrange_casadi_instants follow;
-  int j, k, status = 0;
-  (void) follow;
+  const lagrange_casadi_instants* instants = &now->instants;
+  lanes_real lane[SCENE_NT][LANES], moment[SCENE_NT], place[SCENE_SOME(SCENE_NZ)][LANES], z[SCENE_SOME(SCENE_NZ)];
+  casadi_real at[SCENE_PLACE + SCENE_NZ];
+  int j, k, status;
   for (j = 0; j < LANES; ++j) {
     designs_split(t[j], moment);
-    for (k = 0; k < DESIGNS_NT; ++k) lane[k][j] = moment[k];
-    if (DESIGNS_NZ == 0) continue;
-    for (k = 0; k < DESIGNS_NZ; ++k) z[k] = now->z[k*now->stride + near[j]];
-    follow.n = follow.stride = 1;
-    follow.t = moment;
-    follow.p = now->p;
-    follow.guess = follow.z = z;
-    follow.status = &status;
-    DESIGNS_FOLLOW(&follow);
-    for (k = 0; k < DESIGNS_NZ; ++k) place[k][j] = status == DESIGNS_NOT_CONVERGED ? (designs_real) NAN : z[k];
+    for (k = 0; k < SCENE_NT; ++k) lane[k][j] = moment[k];
+    for (k = 0; k < SCENE_NZ; ++k) z[k] = instants->z[k*now->stride + near[j]];
+    status = scene_close(0, moment, instants->p, z);
+    for (k = 0; k < SCENE_NZ; ++k) place[k][j] = status == SCENE_NOT_CONVERGED ? (lanes_real) NAN : z[k];
   }
   memcpy(at, lane, sizeof lane);
-  if (DESIGNS_NZ) memcpy(at + DESIGNS_PLACE, place, sizeof place);
-  scene_columns(now->parameters, now->constants, at, y);
+  if (SCENE_NZ) memcpy(at + SCENE_PLACE, place, sizeof place);
+  scene_columns(&now->scene, at, y);
 }
 
 /* The instant that is nearest to a time. */
@@ -64,9 +55,9 @@ static casadi_int designs_near(const designs_now* now, double t) {
 }
 
 /* Curves, their places and what is watched at up to LANES times, into rows that are as far apart: what the search asks for. */
-static int designs_asked(void* of, long long count, const double* t, unsigned long long need, designs_real* out, long long apart) {
+static int designs_asked(void* of, long long count, const double* t, unsigned long long need, lanes_real* out, long long apart) {
   const designs_now* now = (const designs_now*) of;
-  casadi_real y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)];
+  casadi_real y[SCENE_COLUMNS], value[DESIGNS_CURVES], place[SCENE_SOME(DESIGNS_PLACES)];
   double times[LANES];
   casadi_int near[LANES];
   int j, k;
@@ -78,21 +69,20 @@ static int designs_asked(void* of, long long count, const double* t, unsigned lo
   designs_curves(y, now->matter, need, value, place);
   for (k = 0; k < DESIGNS_CURVES; ++k) scene_store(out + k*apart, value[k]);
   for (k = 0; k < DESIGNS_PLACES; ++k) scene_store(out + (DESIGNS_CURVES + k)*apart, place[k]);
-  for (k = 0; k < DESIGNS_WATCHES; ++k) scene_store(out + (DESIGNS_CHECKED + k)*apart, y[DESIGNS_OUTPUTS + k]);
+  for (k = 0; k < DESIGNS_WATCHES; ++k) scene_store(out + (DESIGNS_CHECKED + k)*apart, y[SCENE_OUTPUTS + k]);
   return 0;
 }
 
 /* All instants, as rows of curves, of their places along links, of what is checked, and of what is watched. */
-static void designs_sample(designs_now* now, const lagrange_casadi_instants* given) {
-  const lagrange_casadi_instants instants = *given;
-  casadi_real y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], most[DESIGNS_CURVES];
+static void designs_sample(designs_now* now) {
+  casadi_real y[SCENE_COLUMNS], value[DESIGNS_CURVES], place[SCENE_SOME(DESIGNS_PLACES)], most[DESIGNS_CURVES];
   const casadi_int stride = now->stride;
-  designs_real* row;
+  lanes_real* row;
   casadi_int i, j;
   int k;
   for (k = 0; k < DESIGNS_CURVES; ++k) most[k] = 0;
   for (i = 0; i < now->n; i += LANES) {
-    scene_pack(&instants, now->parameters, now->constants, i, y);
+    scene_pack(&now->scene, i, y);
     designs_curves(y, now->matter, ~0ull, value, place);
     row = now->rows + LANES + i;
     for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
@@ -101,7 +91,7 @@ static void designs_sample(designs_now* now, const lagrange_casadi_instants* giv
     }
     for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) scene_store(row, place[k]);
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) scene_store(row, y[designs_checked[k]]);
-    for (k = 0; k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[DESIGNS_OUTPUTS + k]);
+    for (k = 0; k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[SCENE_OUTPUTS + k]);
   }
   for (k = 0; k < DESIGNS_CURVES; ++k) {
     now->most[k] = 0;
@@ -113,8 +103,8 @@ static void designs_sample(designs_now* now, const lagrange_casadi_instants* giv
 static int designs_dead_between(const designs_now* now, int check, casadi_int i) {
   double start = now->t[i], stop = now->t[i + 1], t[DESIGNS_INSIDE + LANES], width;
   casadi_int near[LANES];
-  casadi_real y[DESIGNS_COLUMNS];
-  designs_real lowest = DESIGNS_LARGEST, low, x;
+  casadi_real y[SCENE_COLUMNS];
+  lanes_real lowest = DESIGNS_LARGEST, low, x;
   int round, j, k, best;
   for (j = 0; j < LANES; ++j) near[j] = i;
   for (round = 0; round < DESIGNS_ROUNDS; ++round) {
@@ -140,9 +130,9 @@ static int designs_dead_between(const designs_now* now, int check, casadi_int i)
 }
 
 /* The largest of what is checked over all instants. */
-static designs_real designs_most(const designs_now* now, int check) {
-  const designs_real* row = designs_row(now, DESIGNS_CHECKED + check);
-  designs_real most = 0;
+static lanes_real designs_most(const designs_now* now, int check) {
+  const lanes_real* row = designs_row(now, DESIGNS_CHECKED + check);
+  lanes_real most = 0;
   casadi_int i;
   for (i = 0; i < now->n; ++i) most = row[i] > most ? row[i] : most;
   return most;
@@ -153,9 +143,9 @@ static int designs_bind(designs_now* now) {
   int k, kind, near = 0;
   casadi_int i;
   for (k = 0; k < DESIGNS_BOUNDS; ++k) {
-    designs_real* row = designs_row(now, DESIGNS_CHECKED + k);
+    lanes_real* row = designs_row(now, DESIGNS_CHECKED + k);
     kind = designs_kind[k];
-    now->terms[k] = kind == DESIGNS_IS_ROW ? designs_most(now, designs_sized[k]) : (designs_real) 0;
+    now->terms[k] = kind == DESIGNS_IS_ROW ? designs_most(now, designs_sized[k]) : (lanes_real) 0;
     row[-1] = row[now->n] = row[now->n + 1] = kind == DESIGNS_IS_TURNED ? row[now->n - 1] : DESIGNS_OUTSIDE;
     near |= kind == DESIGNS_IS_TURNED;
     if (kind != DESIGNS_IS_CLOSURE && kind != DESIGNS_IS_BRANCH) continue;
@@ -165,9 +155,9 @@ static int designs_bind(designs_now* now) {
 }
 
 /* The first rule that each of a pack of instants breaks, by number, or zero; the pack begins at i, near is what designs_bind tells. */
-DESIGNS_INLINE casadi_real designs_broken(const designs_now* now, int near, casadi_int i) {
-  casadi_real seen[4][DESIGNS_SOME(DESIGNS_BOUNDS)], beside[DESIGNS_SOME(DESIGNS_BOUNDS)], iterated = (designs_real) 0, rule;
-  designs_real lane[LANES];
+LANES_INLINE casadi_real designs_broken(const designs_now* now, int near, casadi_int i) {
+  casadi_real seen[4][SCENE_SOME(DESIGNS_BOUNDS)], beside[SCENE_SOME(DESIGNS_BOUNDS)], iterated = (lanes_real) 0, rule;
+  lanes_real lane[LANES];
   const casadi_real* arg[5];
   casadi_real* res[1];
   int j, k, side;
@@ -185,14 +175,14 @@ DESIGNS_INLINE casadi_real designs_broken(const designs_now* now, int near, casa
     beside_of(arg, res);
   }
   /* The closed forms can be asked. */
-  for (k = 0; near && DESIGNS_NZ == 0 && k < DESIGNS_BOUNDS; ++k) {
+  for (k = 0; near && SCENE_NZ == 0 && k < DESIGNS_BOUNDS; ++k) {
     if (designs_kind[k] != DESIGNS_IS_CLOSURE) continue;
     scene_store(lane, beside[k]);
     for (j = 0; j < LANES && i + j < now->n; ++j) lane[j] = lane[j] > 0 && designs_dead_between(now, k, i + j);
     beside[k] = scene_load(lane);
   }
-  for (j = 0; DESIGNS_NZ && j < LANES; ++j) lane[j] = i + j < now->n ? (designs_real) now->status[i + j] : 0;
-  if (DESIGNS_NZ) iterated = scene_load(lane);
+  for (j = 0; SCENE_NZ && j < LANES; ++j) lane[j] = i + j < now->n ? (lanes_real) now->instants.status[i + j] : 0;
+  if (SCENE_NZ) iterated = scene_load(lane);
   arg[0] = seen[1];
   arg[1] = now->matter + DESIGNS_LIMITS;
   arg[2] = beside;
@@ -204,29 +194,29 @@ DESIGNS_INLINE casadi_real designs_broken(const designs_now* now, int near, casa
 
 /* Why a design has no result: that of its first instant without one. At rest it has one beside what friction reaches. */
 static int designs_refused(designs_now* now) {
-  const casadi_real none = (designs_real) 0;
+  const casadi_real none = (lanes_real) 0;
   const int near = designs_bind(now);
   casadi_real rule;
   casadi_int i;
   int j, why, finite = 1;
   now->rests = 0;
-  for (i = 0; i < now->n; ++i) finite &= now->status[i] != DESIGNS_NOT_FINITE;
+  for (i = 0; i < now->n; ++i) finite &= now->instants.status[i] != SCENE_NOT_FINITE;
   for (i = 0; i < now->n; i += LANES) {
     rule = designs_broken(now, near, i);
     if (finite && !lanes_where_less(none, rule)) continue;
     for (j = 0; j < LANES && i + j < now->n; ++j) {
       why = designs_status[(int) designs_lane(&rule, j)];
-      if (why == DESIGNS_OK && now->status[i + j] == DESIGNS_NOT_FINITE) why = DESIGNS_NOT_FINITE;
-      if (why != DESIGNS_OK && why != DESIGNS_AT_REST) return why;
-      now->rests |= why == DESIGNS_AT_REST;
+      if (why == SCENE_OK && now->instants.status[i + j] == SCENE_NOT_FINITE) why = SCENE_NOT_FINITE;
+      if (why != SCENE_OK && why != SCENE_AT_REST) return why;
+      now->rests |= why == SCENE_AT_REST;
     }
   }
-  return DESIGNS_OK;
+  return SCENE_OK;
 }
 
 /* Whether equilibrium leaves open, at any instant, what a check tells of. */
 static int designs_is_open(const designs_now* now, int check) {
-  const designs_real *row = designs_row(now, DESIGNS_CHECKED + check), limit = designs_lane(now->matter + DESIGNS_LIMITS + check, 0);
+  const lanes_real *row = designs_row(now, DESIGNS_CHECKED + check), limit = designs_lane(now->matter + DESIGNS_LIMITS + check, 0);
   casadi_int i;
   int open = 0;
   for (i = 0; i < now->n; ++i) open |= !(row[i] <= limit);
@@ -235,7 +225,7 @@ static int designs_is_open(const designs_now* now, int check) {
 
 /* The mean of a row of which not all values count, or of its square: over the steps whose two ends are numbers, else over values. */
 static double designs_mean_of_counted(const designs_now* now, int k, int squared) {
-  const designs_real* row = designs_row(now, k);
+  const lanes_real* row = designs_row(now, k);
   double sum = 0, alone = 0, x, y;
   casadi_int i, steps = 0, many = 0;
   for (i = 0; i < now->n; ++i) {
@@ -253,7 +243,7 @@ static double designs_mean_of_counted(const designs_now* now, int k, int squared
 
 /* The time mean of a row, or of its square, by trapezia. */
 static double designs_mean(const designs_now* now, int k, int squared) {
-  const designs_real* row = designs_row(now, k);
+  const lanes_real* row = designs_row(now, k);
   const casadi_int n = now->n;
   casadi_real part, sum = 0;
   double whole = 0, first = row[0], last = row[n - 1];

@@ -7,7 +7,7 @@ from __future__ import annotations
 import functools
 import math
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -90,21 +90,15 @@ def run(
     """
     method = method or EvaluationMethod()
     stages = stages_for(program, method.precision, t, p)
-    found = _compiled(program, stages, method)
+    library, made = evaluator(program, stages, method)
     evaluated = into or unevaluated(program, stages, t.size)
-    begin = _begin(program, method.newton is not None, t[0], tuple(p))
-    if found is None:
-        _interpret(program, t, p, evaluated, begin, method.newton)
-        return evaluated, provenance("vm", "", "", method)
-    compiler, library = found
     dtype = DTYPES[method.precision]
-    guess = np.array(begin, dtype)
+    guess = np.array(_begin(program, method.newton is not None, t[0], tuple(p)), dtype)
     if method.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
-    library.follow(t, p, guess, evaluated.iterated, evaluated.status)
-    library.evaluate(t, p, evaluated.iterated, evaluated.out, evaluated.status, threads or cores())
-    used = "lanes" if compiler.language == "c++" else "c"
-    return evaluated, provenance(used, compiler.version, " ".join(library.flags), method)
+    z, out, status = evaluated.iterated, evaluated.out, evaluated.status
+    library.evaluate(t, p, guess, z, out, status, threads or cores())
+    return evaluated, made
 
 
 def begun(program: Program, t: float, p: Array) -> tuple[float, ...]:
@@ -147,13 +141,15 @@ def _paired(values: Array, out: Array) -> Array:
     return out
 
 
-def _compiled(
+def evaluator(
     program: Program, stages: Stages, method: EvaluationMethod
-) -> tuple[codegen.Compiler, codegen.Library] | None:
-    """The library that a backend takes, and what built it; None for the virtual machine."""
-    return compiled(
+) -> tuple[codegen.Library | Interpreter, Provenance]:
+    """The code that a backend takes for instants, or what interprets them in its place."""
+    found = compiled(
         method, lambda compiler: _library(program, stages, method.newton, method.flags, compiler)
     )
+    made = provenance(method, found)
+    return (Interpreter(program, stages, method.newton) if found is None else found[1]), made
 
 
 def compiled(
@@ -226,8 +222,12 @@ def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
     return grids.empty("the outputs over time", (count, stride), dtype)[:, :size]
 
 
-def provenance(backend: str, compiler: str, flags: str, method: EvaluationMethod) -> Provenance:
-    """Provenance of numbers, with the versions of the programs involved."""
+def provenance(
+    method: EvaluationMethod, found: tuple[codegen.Compiler, codegen.Library] | None
+) -> Provenance:
+    """Provenance of numbers, with the versions of the programs involved; ``found`` as
+    :func:`compiled` gives it.
+    """
     import h5py  # which takes its time, and is needed for files alone
 
     versions = {
@@ -237,31 +237,47 @@ def provenance(backend: str, compiler: str, flags: str, method: EvaluationMethod
         "h5py": h5py.__version__,
         "hdf5": h5py.version.hdf5_version,
     }
+    backend, compiler, flags = "vm", "", ""
+    if found is not None:
+        backend = "lanes" if found[0].language == "c++" else "c"
+        compiler, flags = found[0].version, " ".join(found[1].flags)
     return Provenance(backend, method.precision, compiler, flags, method.options, versions)
 
 
-def _interpret(
-    program: Program,
-    t: Array,
-    p: Array,
-    evaluated: Evaluated,
-    begin: Sequence[float],
-    newton: int | None,
-) -> None:
-    """Evaluate by CasADi's virtual machine, as the emitted C does."""
-    stages = evaluated.stages
-    guess = np.array(begin)
-    evaluated.iterated[:], evaluated.status[:] = follow(
-        program, t, p, guess, stages=stages, newton=newton
-    )
-    for start in range(0, t.size, _VM_BLOCK):
-        block = slice(start, min(start + _VM_BLOCK, t.size))
-        counted, rate, acceleration = stages.drive(t[None, block], p)
-        evaluated.out[:, block] = stages.instant(
-            counted, rate, acceleration, evaluated.iterated[:, block], p
-        ).full()
-    unclean = ~np.isfinite(evaluated.out).all(axis=0) & (evaluated.status == Status.OK)
-    evaluated.status[unclean] = Status.NOT_FINITE
+@dataclass(frozen=True, eq=False)
+class Interpreter:
+    """CasADi's virtual machine in the place of a :class:`.codegen.Library`, for doubles."""
+
+    program: Program
+    stages: Stages
+    newton: int | None = None
+
+    def follow(
+        self, t: Array, p: Array, guess: Array, z: Array, status: npt.NDArray[np.int32]
+    ) -> None:
+        """Fill the iterated coordinates as :meth:`.Library.follow` does."""
+        z[:], status[:] = follow(self.program, t, p, guess, stages=self.stages, newton=self.newton)
+
+    def evaluate(
+        self,
+        t: Array,
+        p: Array,
+        guess: Array,
+        z: Array,
+        out: Array,
+        status: npt.NDArray[np.int32],
+        threads: int = 1,
+    ) -> None:
+        """Fill columns and iterated coordinates as :meth:`.Library.evaluate` does, by one
+        thread.
+        """
+        self.follow(t, p, guess, z, status)
+        for start in range(0, t.size, _VM_BLOCK):
+            block = slice(start, min(start + _VM_BLOCK, t.size))
+            drives = self.stages.drive(t[None, block], p)
+            out[:, block] = self.stages.instant(*drives, z[:, block], p).full()
+        unclean = ~np.isfinite(out).all(axis=0) & (status == Status.OK)
+        status[unclean] = Status.NOT_FINITE
 
 
 def follow(

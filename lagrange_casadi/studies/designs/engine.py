@@ -67,7 +67,7 @@ class DesignEngine:
     kept: KeptOutputs
     program: Program
     stages: Stages
-    library: codegen.DesignsLibrary | None
+    library: codegen.Library | None
     provenance: Provenance
 
     @classmethod
@@ -105,32 +105,19 @@ class DesignEngine:
         watched = with_watched(program, kept.sharpness)
         stages = stages_of(watched, method, even, alike=times.common)
 
-        def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
-            source = codegen.emit_designs(watched, stages, method.newton, kept.reduction)
-            guess = (
-                begun(program, float(even[0]), p)
-                if times.timing.joint
-                else program.newton.guess
-                if program.newton
-                else ()
-            )
-            return codegen.load_designs(
-                source,
-                compiler,
-                tuple(shlex.split(method.flags)),
-                kept.reduction,
-                even.size,
-                np.array(guess, float),
-                method.precision,
-            )
+        guess: Sequence[float] = program.newton.guess if program.newton else ()
+        if timing.joint:
+            guess = begun(program, float(even[0]), p)
+
+        def build(compiler: codegen.Compiler) -> codegen.Library:
+            source = codegen.emit(watched, stages, method.newton, kept.reduction)
+            extra = tuple(shlex.split(method.flags))
+            designs = codegen.Designs.of(kept.reduction, guess, compiler, extra, method.precision)
+            return codegen.load(source, compiler, extra, designs=designs)
 
         found = compiled(method, build)
-        if found is None:
-            return cls(method, times, kept, program, stages, None, provenance("vm", "", "", method))
-        compiler, library = found
-        backend = "lanes" if compiler.language == "c++" else "c"
-        made = provenance(backend, compiler.version, " ".join(library.flags), method)
-        return cls(method, times, kept, program, stages, library, made)
+        made = provenance(method, found)
+        return cls(method, times, kept, program, stages, found[1] if found else None, made)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -348,7 +335,7 @@ class DesignEngine:
         where peaks are.
         """
         if self.library is not None:
-            self.library.evaluate(t, self.bent(p, t), p, found, threads, listed)
+            self.library.designs(t, self.bent(p, t), p, found, threads, listed)
             return
         for i, row in enumerate(p):
             status, design = outcome(
@@ -362,9 +349,7 @@ class DesignEngine:
     def _series(self, p: Array, t: Array, found: Results, threads: int) -> None:
         """The columns of designs at any instants, without peaks."""
         if self.library is not None:
-            self.library.evaluate(
-                t, np.zeros((1, 0), bool), p, found | dict.fromkeys(KEPT), threads
-            )
+            self.library.designs(t, np.zeros((1, 0), bool), p, found | dict.fromkeys(KEPT), threads)
             return
         for i, row in enumerate(p):
             found["status"][i], table = columns_of(
