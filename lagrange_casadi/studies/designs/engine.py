@@ -39,7 +39,7 @@ from ...sensitivity.ends import Ends
 from ...sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
 from ...sensitivity.slopes import Slopes
 from ..solving import checked_span, outputs_of
-from .interpreted import columns_of, outcome
+from .interpreted import InterpretedDesigns
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .reduction import KeptOutputs, stages_of
 from .spot_check import failures
@@ -67,7 +67,7 @@ class DesignEngine:
     kept: KeptOutputs
     program: Program
     stages: Stages
-    library: codegen.Library | None
+    library: codegen.Library | InterpretedDesigns
     provenance: Provenance
 
     @classmethod
@@ -117,7 +117,8 @@ class DesignEngine:
 
         found = compiled(method, build)
         made = provenance(method, found)
-        return cls(method, times, kept, program, stages, found[1] if found else None, made)
+        library = found[1] if found else InterpretedDesigns(program, kept, method.newton)
+        return cls(method, times, kept, program, stages, library, made)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -191,7 +192,7 @@ class DesignEngine:
             self.program,
             self.count + _SAMPLES * len(self.quantities),
             self.method,
-            interpreted=self.library is None,
+            interpreted=self.provenance.backend == "vm",
         )
 
     @property
@@ -262,7 +263,7 @@ class DesignEngine:
         if listed is None:
             self._series(p, t, found, 1)
         else:
-            self._evaluate(p, t, found | {"tops": tops}, 1, listed)
+            self.library.designs(t, self.bent(p, t), p, found | {"tops": tops}, 1, listed)
         self._refuse_motions(p, t, found)
         return History(outcome_of(found), t[0], columns[0], found["iterated"][0], tops[0])
 
@@ -318,7 +319,7 @@ class DesignEngine:
         shape = (len(p), len(self.program.columns), self.count)
         columns = series if together else np.empty(shape) if self.watch.columns else None
         own = found | {"history": columns}
-        self._evaluate(p, even, own, threads)
+        self.library.designs(even, self.bent(p, even), p, own, threads)
         self._refuse_motions(p, even, own)
         if series is None or together:
             return
@@ -328,36 +329,10 @@ class DesignEngine:
         refuse(found, failed, others["status"])
         series[found["status"] != Status.OK] = np.nan
 
-    def _evaluate(
-        self, p: Array, t: Array, found: Results, threads: int, listed: Listed | None = None
-    ) -> None:
-        """Fill what is asked for of designs ``p`` at instants ``t`` (1 or n, t), in equal steps
-        where peaks are.
-        """
-        if self.library is not None:
-            self.library.designs(t, self.bent(p, t), p, found, threads, listed)
-            return
-        for i, row in enumerate(p):
-            status, design = outcome(
-                self.program, self.kept, t[min(i, len(t) - 1)], row, self.method.newton, listed
-            )
-            found["status"][i] = status
-            for name, array in found.items():
-                if name != "status" and array is not None:
-                    array[i] = np.nan if design is None else design[name]
-
     def _series(self, p: Array, t: Array, found: Results, threads: int) -> None:
         """The columns of designs at any instants, without peaks."""
-        if self.library is not None:
-            self.library.designs(t, np.zeros((1, 0), bool), p, found | dict.fromkeys(KEPT), threads)
-            return
-        for i, row in enumerate(p):
-            found["status"][i], table = columns_of(
-                self.program, self.kept, t[min(i, len(t) - 1)], row, self.method.newton
-            )
-            found["history"][i] = np.nan if table is None else table.out
-            if "iterated" in found:
-                found["iterated"][i] = np.nan if table is None else table.iterated
+        nowhere = np.zeros((1, 0), bool)
+        self.library.designs(t, nowhere, p, found | dict.fromkeys(KEPT), threads)
 
     def bent(self, p: Array, t: Array) -> npt.NDArray[np.bool_]:
         """Steps between the instants of each design in which its motion bends more than they show;
