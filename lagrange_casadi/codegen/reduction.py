@@ -63,7 +63,6 @@ instants.
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
 
-_FILES = ("instants.c", "designs.c")
 _PLACES = {"BASE": BASE, "TIP": TIP, "OFF": OFF}
 
 
@@ -141,7 +140,7 @@ def reduced(program: Program, reduction: Reduction, precision: Precision) -> str
         + _source("sections.c")
         + turning(reduction.links)
         + _curves(reduction)
-        + "".join(map(_source, _FILES))
+        + _source("designs.c")
     )
 
 

@@ -127,7 +127,9 @@ def _begin(program: Program, counted: bool, t: float, p: tuple[float, ...]) -> t
         else math.inf
     )
     steps = math.ceil(wanted) if t != start and wanted <= _MOST_STEPS else 1
-    z, status = follow(program, np.linspace(start, t, steps + 1)[1:], np.array(p))
+    guess, times = np.array(program.newton.guess), np.linspace(start, t, steps + 1)[1:]
+    z, status = np.empty((guess.size, steps)), np.empty(steps, np.int32)
+    Interpreter(program, plain(program)).follow(times, np.array(p), guess, z, status)
     return (
         tuple(z[:, -1]) if counted or status[-1] != Status.NOT_CONVERGED else program.newton.guess
     )
@@ -246,17 +248,13 @@ def provenance(
 
 @dataclass(frozen=True, eq=False)
 class Interpreter:
-    """CasADi's virtual machine in the place of a :class:`.codegen.Library`, for doubles."""
+    """CasADi's virtual machine in the place of a :class:`.codegen.Library`, for doubles; ``newton``
+    as in :class:`.EvaluationMethod`.
+    """
 
     program: Program
     stages: Stages
     newton: int | None = None
-
-    def follow(
-        self, t: Array, p: Array, guess: Array, z: Array, status: npt.NDArray[np.int32]
-    ) -> None:
-        """Fill the iterated coordinates as :meth:`.Library.follow` does."""
-        z[:], status[:] = follow(self.program, t, p, guess, stages=self.stages, newton=self.newton)
 
     def evaluate(
         self,
@@ -272,64 +270,51 @@ class Interpreter:
         thread.
         """
         self.follow(t, p, guess, z, status)
-        for start in range(0, t.size, _VM_BLOCK):
-            block = slice(start, min(start + _VM_BLOCK, t.size))
-            drives = self.stages.drive(t[None, block], p)
-            out[:, block] = self.stages.instant(*drives, z[:, block], p).full()
+        for block in _blocks(t.size):
+            out[:, block] = self.columns(t[block], p, z[:, block])
         unclean = ~np.isfinite(out).all(axis=0) & (status == Status.OK)
         status[unclean] = Status.NOT_FINITE
 
+    def columns(self, t: Array, p: Array, z: Array) -> Array:
+        """Columns (columns, t) at times, where iterated coordinates are ``z``."""
+        found: Array = self.stages.instant(*self.stages.drive(t[None], p), z, p).full()
+        return found
 
-def follow(
-    program: Program,
-    t: Array,
-    p: Array,
-    guess: Array | None = None,
-    *,
-    stages: Stages | None = None,
-    newton: int | None = None,
-) -> tuple[Array, npt.NDArray[np.int32]]:
-    """Iterated coordinates (z, t), each instant from the one before, the first from ``guess`` or
-    the graph's own; and statuses.
+    def follow(
+        self, t: Array, p: Array, guess: Array, z: Array, status: npt.NDArray[np.int32]
+    ) -> None:
+        """Fill the iterated coordinates ``z`` (k, t) as :meth:`.Library.follow` does."""
+        status[:] = Status.OK
+        if self.stages.loops is None:
+            return
+        rule, fixed = newton_rule("double", self.newton), ca.DM(p)  # converted once
+        for block in _blocks(t.size):
+            counted = np.atleast_2d(self.stages.drive(t[None, block], p)[0].full())
+            for i, now in enumerate(counted.T, block.start):
+                status[i], guess = self._close(guess, ca.DM(now), fixed, rule)
+                z[:, i] = guess
 
-    By CasADi's virtual machine; ``newton`` as in :class:`.EvaluationMethod`.
-    """
-    stages = stages or plain(program)
-    if program.newton is None or stages.loops is None:
-        return np.zeros((0, t.size)), np.full(t.size, Status.OK, dtype=np.int32)
-    last, rule = (
-        np.array(program.newton.guess) if guess is None else guess,
-        newton_rule("double", newton),
-    )
-    z, status = rows(last.size, t.size), np.full(t.size, Status.OK, dtype=np.int32)
-    fixed = ca.DM(p)  # converted once, not at each step
-    for start in range(0, t.size, _VM_BLOCK):
-        counted = np.atleast_2d(stages.drive(t[None, start : start + _VM_BLOCK], p)[0].full())
-        for i, now in enumerate(counted.T, start):
-            z[:, i], status[i] = _iterate(program, stages.loops, last, ca.DM(now), fixed, rule)
-            last = last if status[i] == Status.NOT_CONVERGED else z[:, i]
-    return z, status
+    def _close(
+        self, guess: Array, counted: ca.DM, p: ca.DM, rule: dict[str, float]
+    ) -> tuple[Status, Array]:
+        """Close the loops at a moment: their status, and the guess where they do not converge."""
+        assert self.program.newton is not None
+        assert self.stages.loops is not None
+        z, size, before, step = guess, 1.0, 1.0, 0
+        while step < rule["steps"] and not size < rule["done"]:
+            before, step = size, step + 1
+            correction, relative = (x.full().ravel() for x in self.stages.loops(z, counted, p))
+            size = float(relative[0])
+            if not math.isfinite(size):
+                break
+            z = z + correction
+        if not size < rule["lost"]:
+            return Status.NOT_CONVERGED, guess
+        turns = np.where(self.program.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
+        slow = self.newton is None and size > rule["rate"] * before and size > rule["rounding"]
+        return Status.SLOW if slow else Status.OK, z - math.tau * turns
 
 
-def _iterate(
-    program: Program,
-    loops: ca.Function,
-    guess: Array,
-    counted: ca.DM,
-    p: ca.DM,
-    rule: dict[str, float],
-) -> tuple[Array, int]:
-    assert program.newton is not None
-    z, size, before, step = guess, 1.0, 1.0, 0
-    while step < rule["steps"] and not size < rule["done"]:
-        before, step = size, step + 1
-        correction, relative = (x.full().ravel() for x in loops(z, counted, p))
-        size = float(relative[0])
-        if not math.isfinite(size):
-            break
-        z = z + correction
-    if not size < rule["lost"]:
-        return guess, Status.NOT_CONVERGED
-    turns = np.where(program.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
-    slow = rule["done"] > 0.0 and size > rule["rate"] * before and size > rule["rounding"]
-    return z - math.tau * turns, Status.SLOW if slow else Status.OK
+def _blocks(count: int) -> list[slice]:
+    """Instants that are interpreted at once."""
+    return [slice(i, min(i + _VM_BLOCK, count)) for i in range(0, count, _VM_BLOCK)]

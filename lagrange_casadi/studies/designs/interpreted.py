@@ -13,7 +13,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...base.status import Status
 from ...equations.program import Program
-from ...instants.backends import Evaluated, run
+from ...instants.backends import Evaluated, Interpreter, run
 from ...instants.determinacy import undetermined
 from ...instants.evaluation_method import EvaluationMethod
 from ...instants.refusal import refusal
@@ -137,16 +137,9 @@ class InterpretedDesigns:
             for one in section_forces(description, link, program.outputs).values()
         ]
         quantities: list[Quantity] = [*kept.reduction.quantities, *sections]
-        return Signals(
-            program,
-            evaluated.stages,
-            kept.sharpness,
-            [quantities[k] for k in some],
-            t,
-            p,
-            evaluated.iterated,
-            self.newton,
-        )
+        interpreter = Interpreter(program, evaluated.stages, self.newton)
+        chosen = [quantities[k] for k in some]
+        return Signals(interpreter, kept.sharpness, chosen, t, p, evaluated.iterated)
 
 
 def _means(t: Array, values: Array) -> tuple[Any, Any]:
