@@ -89,7 +89,7 @@ class Library:
         """Fill the iterated coordinates ``z`` (k, n), each instant from the one before, the first
         from ``guess`` (k).
         """
-        self._follow(_instants(t, p, guess, z, None, status), t.shape[-1])
+        self._follow(_instants(t, p, guess, z, None, status), guess, status)
 
     def evaluate(
         self,
@@ -113,17 +113,20 @@ class Library:
         )
         n = t.shape[-1]
         call, entry = _instants(t, p, guess, z, out, status), self.entries[EVALUATE]
-        self._follow(call, n)
+        self._follow(call, guess, status)
         share = max(_CUT, self.share())
         shares = max(1, min(threads, n // share))
         # Between calls an interrupt comes through.
         size = min(_LONGEST * share // _CUT * _CUT, -(-n // (shares * _CUT)) * _CUT)
         _share(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
 
-    def _follow(self, call: ctypes.Structure, n: int) -> None:
+    def _follow(self, call: ctypes.Structure, guess: Array, status: Status) -> None:
+        if not guess.size:
+            status[:] = 0
+            return
         reach = max(1, _LONGEST * _WORTH_A_THREAD // (self.weight * self.steps * _SLOWER))
-        for i in range(0, n, reach):
-            self.entries[FOLLOW](call, i, min(i + reach, n))
+        for i in range(0, call.n, reach):
+            self.entries[FOLLOW](call, i, min(i + reach, call.n))
 
     def designs(
         self,

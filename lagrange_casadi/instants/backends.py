@@ -224,6 +224,7 @@ def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
     return grids.empty("the outputs over time", (count, stride), dtype)[:, :size]
 
 
+@functools.lru_cache(maxsize=32)
 def provenance(
     method: EvaluationMethod, found: tuple[codegen.Compiler, codegen.Library] | None
 ) -> Provenance:
