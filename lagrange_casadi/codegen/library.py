@@ -69,10 +69,11 @@ class Designs:
 
 @dataclass(frozen=True, eq=False)
 class Library:
-    """The loaded code of one scene: of its instants, or of many ``designs``. Its calls release the
-    interpreter and allocate nothing.
+    """The loaded code of one scene: for the instants of a design, or for ``many`` designs. Its
+    calls release the interpreter and allocate nothing.
 
-    ``weight`` are the statements of an instant, ``steps`` how often loops take theirs at most.
+    ``weight`` is the number of statements of an instant, ``steps`` the largest number of Newton
+    steps that loops take there.
     """
 
     entries: Mapping[str, Any] = field(repr=False)
@@ -82,7 +83,7 @@ class Library:
     many: Designs | None = None
 
     def share(self, instants: int = 1) -> int:
-        """How many times so many instants are worth a thread of their own."""
+        """Number of runs of so many instants that are worth a thread of their own."""
         return max(1, _WORTH_A_THREAD // (self.weight * instants))
 
     def follow(self, t: Array, p: Array, guess: Array, z: Array, status: Status) -> None:
@@ -222,7 +223,7 @@ class Library:
 def _instants(
     t: Array, p: Array, guess: Array, z: Array, out: Array | None, status: Status
 ) -> ctypes.Structure:
-    """Arguments of what runs over instants; all rows are as far apart as those of the last."""
+    """Arguments of what runs over instants; all rows are equally far apart."""
     rows = z if out is None else out
     apart = rows.strides[0] // rows.itemsize
     return INSTANTS.made(

@@ -78,7 +78,7 @@ class InterpretedDesigns:
         series = {"history": evaluated.out, "iterated": evaluated.iterated}
         if not peaks:
             return Status.OK, series
-        kept = self._kept(t, p, evaluated, method, listed)
+        kept = self._reduced(t, p, evaluated, method, listed)
         return (Status.PEAK_NOT_TOLD, None) if kept is None else (Status.OK, series | kept)
 
     def _parts(self, t: Array, p: Array) -> Status:
@@ -92,7 +92,7 @@ class InterpretedDesigns:
             return Status.IMPOSSIBLE
         return Status.OK if t[-1] >= t[0] else Status.NO_INSTANTS
 
-    def _kept(
+    def _reduced(
         self,
         t: Array,
         p: Array,
