@@ -116,7 +116,7 @@ def columns_of(program: Program, p: Array, t: Array, backend: Backend, threads: 
         if backend == "vm":
             out[:] = run(program, t, p, EvaluationMethod("vm"))[0].out
         else:
-            library.evaluate(t, p, z, out, status, threads or cores())
+            library.evaluate(t, p, z, z, out, status, threads or cores())
         return out[first:]
 
     return call

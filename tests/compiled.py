@@ -42,8 +42,7 @@ def filled(library, program, t, threads=1, precision="double"):
     out = np.full((len(program.columns), t.size), np.nan, dtype)
     if precision == "single":
         t, p = (np.array([dtype.type(x), x - dtype.type(x)], dtype) for x in (t, p))
-    library.follow(t, p, guess, z, status)
-    library.evaluate(t, p, z, out, status, threads)
+    library.evaluate(t, p, guess, z, out, status, threads)
     assert np.all(status == 0)
     assert np.isfinite(out).all()
     return out

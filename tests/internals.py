@@ -52,11 +52,11 @@ from lagrange_casadi.cluster.sweeps import Cluster
 from lagrange_casadi.codegen import compiler, find_compiler, library, printer, programs
 from lagrange_casadi.codegen.calls import Call
 from lagrange_casadi.codegen.compiler import FLAGS, LANES_PLACE
-from lagrange_casadi.codegen.designs import CALL as DESIGNS_CALL
 from lagrange_casadi.codegen.emit import INSTANTS
 from lagrange_casadi.codegen.link_curves import Along as LinkCurvesAlong
 from lagrange_casadi.codegen.link_curves import along, mass_properties_of, turning
 from lagrange_casadi.codegen.printer import literal, print_functions
+from lagrange_casadi.codegen.reduction import CALL as DESIGNS_CALL
 from lagrange_casadi.codegen.search import CALL as SEARCH_CALL
 from lagrange_casadi.codegen.search import CURVES, interface
 from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many

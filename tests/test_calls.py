@@ -63,7 +63,7 @@ def test_the_emitted_c_has_the_structs():
     program = derive(slider_crank())
     assert INSTANTS.text() in codegen.emit(program)
     engine = DesignEngine.of(slider_crank(), method=EvaluationMethod("vm"))
-    source = codegen.emit_designs(engine.program, engine.stages, None, engine.kept.reduction)
+    source = codegen.emit(engine.program, engine.stages, None, engine.kept.reduction)
     assert INSTANTS.text() in source
     assert interface("double") + DESIGNS.text() in source
 
@@ -94,7 +94,7 @@ def test_the_order_of_results_does_not_matter(backend):
         "status": np.full(1, -1, np.int8),
         "peak_t": np.full((1, q), np.nan),
     }
-    engine.library.evaluate(engine.t[None], np.zeros((1, 0), bool), p, names)
+    engine.library.designs(engine.t[None], np.zeros((1, 0), bool), p, names)
     for name, own in (
         ("status", "status"),
         ("value", "value"),
@@ -106,4 +106,4 @@ def test_the_order_of_results_does_not_matter(backend):
         assert names[name].tobytes() == getattr(expected, own).tobytes()
     found = {name: array for name, array in names.items() if name != "history"}
     with pytest.raises(TypeError, match="without history"):
-        engine.library.evaluate(engine.t[None], np.zeros((1, 0), bool), p, found)
+        engine.library.designs(engine.t[None], np.zeros((1, 0), bool), p, found)

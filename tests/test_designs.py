@@ -114,7 +114,7 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, method, monkey
     monkeypatch.setattr(library, "_WORTH_A_THREAD", 0)
     monkeypatch.setattr(library, "_LONGEST", 3)
     cut = DesignEngine.of(scene, t=(*scene.t[:2], 61), method=method)
-    assert cut.library.share == 1
+    assert cut.library.share(61) == 1
     for threads in (1, 2, 3, 7):
         other = cut.evaluate(p, threads=threads)
         assert all(getattr(other, f).tobytes() == getattr(whole, f).tobytes() for f in FIELDS)
@@ -128,7 +128,7 @@ def bare(designs, p):
         name: np.full((n, many), np.nan) for name, many in shapes.items()
     }
     history = np.full((n, len(designs.program.columns), designs.t.size), np.nan)
-    designs.library.evaluate(
+    designs.library.designs(
         designs.t[None], np.zeros((1, 0), bool), p, {**results, "history": history}
     )
     return results
@@ -152,7 +152,7 @@ def test_every_value_is_written_or_is_nan(backend):
     assert np.array_equal(np.isfinite(xi), good[:, None] & along)
     # And what held numbers holds NaN after a design without a result.
     results = {name: np.zeros_like(array) for name, array in found.items()}
-    designs.library.evaluate(
+    designs.library.designs(
         designs.t[None], np.zeros((1, 0), bool), p, {**results, "history": None}
     )
     assert all(np.isnan(array[2]).all() for name, array in results.items() if name != "status")
@@ -245,7 +245,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
             stages_of(program, method, np.linspace(*scene.span, scene.t[2])),
             KeptOutputs.of(program, method),
         )
-        source.write_text(codegen.emit_designs(program, stages, method.newton, kept.reduction))
+        source.write_text(codegen.emit(program, stages, method.newton, kept.reduction))
         command = [*compiler.command, *PEDANTIC, "-fsyntax-only", source]
         result = subprocess.run(command, capture_output=True, text=True, check=False)
         assert result.returncode == 0, result.stderr

@@ -26,7 +26,8 @@ from internals import LinkCurvesAlong as Along
 HEAD = """#include <math.h>
 #include <stdio.h>
 #define casadi_real double
-#define DESIGNS_REAL double
+#define lanes_real double
+#define LANES_INLINE static inline
 #define DESIGNS_HALF 0.5
 #define DESIGNS_SIXTH (1.0/6)
 #define DESIGNS_FABS fabs

@@ -13,8 +13,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from .calls import Call
-from .compiler import Compiler, broken, loaded, packed
-from .emit import START, WIDE
+from .compiler import WIDE, Compiler, broken, loaded, packed, start
 from .printer import print_functions
 
 CHOSEN = "chosen"
@@ -111,7 +110,7 @@ def emit_batch(function: Any) -> str:
         first += size
     call = _call(function)
     text = (
-        START
+        start("double")
         + call.text()
         + WIDE
         + print_functions({"at_once": function}, "double", prefix="batch", packs=True)

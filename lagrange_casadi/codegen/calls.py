@@ -61,9 +61,9 @@ class Call:
             )
         return made
 
-    def declare(self, entry: Any) -> Any:
-        """A function of a library that takes a pointer to this struct, and gives nothing: declared
-        so, for :mod:`ctypes`.
+    def declare(self, entry: Any, *more: Any) -> Any:
+        """A function of a library that takes a pointer to this struct, then ``more``, and gives
+        nothing: declared so, for :mod:`ctypes`.
         """
-        entry.restype, entry.argtypes = None, [ctypes.POINTER(self.type)]
+        entry.restype, entry.argtypes = None, [ctypes.POINTER(self.type), *more]
         return entry

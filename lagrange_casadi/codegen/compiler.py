@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Literal
 
 from ..base import cache
+from ..base.vocabulary import Precision
 from ..errors import CompilerError, lacking, warn
 from . import programs
 
@@ -50,6 +51,50 @@ instruction, no call. No start files: those that gcc links in where -ffast-math 
 the whole process flush to zero what is subnormal."""
 
 LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
+"""Place of ``lanes.h`` in an emitted file."""
+
+_START = f"""\
+{LANES_PLACE}#include <math.h>
+#include <string.h>
+#define casadi_int long long
+#ifndef casadi_real
+#define casadi_real double
+#endif
+#ifdef LANES
+#define LAGRANGE_CASADI_C extern "C"
+#else
+#define LANES 1
+#define LANES_INLINE static inline
+#define LAGRANGE_CASADI_C
+#ifdef LANES_SINGLE
+#define lanes_real float
+#else
+#define lanes_real double
+#endif
+#define lanes_pack lanes_real
+#define lanes_choose(where, a) ((where) ? (a) : 0)
+#define lanes_sign(x) ((x) < 0 ? -1 : (x) > 0 ? 1 : (x))
+#define lanes_less(x, y, a, b) ((x) < (y) ? (a) : (b))
+#define lanes_larger(x, y) ((x) < (y) ? (y) : (x))
+#define lanes_where_less(x, y) ((x) < (y))
+#define lanes_any_nan(x) ((x) != (x))
+#endif
+#ifdef __GNUC__
+#define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C __attribute__((visibility("default")))
+#define LAGRANGE_CASADI_PART __attribute__((noinline))
+#else
+#define LAGRANGE_CASADI_PART
+#define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C
+#endif
+"""
+_SINGLE = "#define LANES_SINGLE\n#define casadi_real float\n"
+
+WIDE = """
+#undef casadi_real
+#define casadi_real lanes_pack
+"""
+"""Definitions for packs of instants."""
+
 
 _LINE = 300
 """Characters of a compiler's message that are quoted at most."""
@@ -172,6 +217,11 @@ def _silent(error: subprocess.TimeoutExpired) -> str:
         f"did not tell its version within {error.timeout:g} s; ${programs.VARIABLE} sets {_ANSWER}"
         " times as many"
     )
+
+
+def start(precision: Precision) -> str:
+    """First lines of an emitted file; until :data:`WIDE` stands, ``casadi_real`` is one number."""
+    return (_SINGLE if precision == "single" else "") + _START
 
 
 def packed(text: str, compiler: Compiler) -> str:

@@ -6,7 +6,7 @@ import ctypes
 import functools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,10 +15,9 @@ import numpy.typing as npt
 from ..arithmetic.compensated import DTYPES
 from ..base.vocabulary import Precision
 from ..peak_search.intervals import Listed
-from .calls import Call
 from .compiler import Compiler, broken, loaded, packed, statements
-from .designs import CALL, DESIGNS, Reduction
 from .emit import EVALUATE, FOLLOW, INSTANTS
+from .reduction import CALL, DESIGNS, Reduction
 from .search import Search, Tables, load_search
 
 Array = npt.NDArray[Any]
@@ -44,125 +43,93 @@ _CUT = 64
 
 
 @dataclass(frozen=True, eq=False)
-class Library:
-    """The loaded code of one scene graph. Its calls release the interpreter and allocate nothing.
-
-    ``share`` is how many instants are worth a thread of their own, ``reach`` how many are followed
-    in a call.
+class Designs:
+    """Many designs, as the code of a scene takes them: their ``reduction``, the ``guess`` from
+    which iterated loops begin, and the search for peaks.
     """
 
-    entry: Any
-    entry_follow: Any | None
+    reduction: Reduction
+    guess: npt.NDArray[np.float64]
+    search: Search
+    tables: Tables
+
+    @classmethod
+    def of(
+        cls,
+        reduction: Reduction,
+        guess: Sequence[float],
+        compiler: Compiler,
+        extra: tuple[str, ...],
+        precision: Precision,
+    ) -> Designs:
+        """Load the search for peaks that a reduction needs."""
+        search = load_search(compiler, extra, precision)
+        return cls(reduction, np.array(guess, float), search, reduction.tables(precision))
+
+
+@dataclass(frozen=True, eq=False)
+class Library:
+    """The loaded code of one scene: for the instants of a design, or for ``many`` designs. Its
+    calls release the interpreter and allocate nothing.
+
+    ``weight`` is the number of statements of an instant, ``steps`` the largest number of Newton
+    steps that loops take there.
+    """
+
+    entries: Mapping[str, Any] = field(repr=False)
     flags: tuple[str, ...]
-    share: int
-    reach: int
+    weight: int
+    steps: int
+    many: Designs | None = None
+
+    def share(self, instants: int = 1) -> int:
+        """Number of runs of so many instants that are worth a thread of their own."""
+        return max(1, _WORTH_A_THREAD // (self.weight * instants))
 
     def follow(self, t: Array, p: Array, guess: Array, z: Array, status: Status) -> None:
-        """Fill the iterated coordinates ``z`` (k, n), each instant from the one before; ``guess``
-        (k) begins, and moves along.
+        """Fill the iterated coordinates ``z`` (k, n), each instant from the one before, the first
+        from ``guess`` (k).
         """
-        if self.entry_follow is None:
-            status[:] = 0
-            return
-        for start in range(0, t.shape[-1], self.reach):
-            cut = slice(start, start + self.reach)
-            self._call(
-                self.entry_follow,
-                z,
-                t=t[..., cut],
-                p=p,
-                guess=guess,
-                z=z[:, cut],
-                out=None,
-                status=status[cut],
-            )
+        self._follow(_instants(t, p, guess, z, None, status), guess, status)
 
     def evaluate(
-        self, t: Array, p: Array, z: Array, out: Array, status: Status, threads: int = 1
+        self,
+        t: Array,
+        p: Array,
+        guess: Array,
+        z: Array,
+        out: Array,
+        status: Status,
+        threads: int = 1,
     ) -> None:
-        """Fill ``out`` (columns, n) for the instants ``t``, where the iterated coordinates are
-        ``z`` (k, n).
+        """Fill ``out`` (columns, n) for the instants ``t``, and the iterated coordinates ``z`` as
+        :meth:`follow` does.
 
         ``t`` is (n,), in single precision (2, n): rounded, and the rest; ``p`` likewise. All rows
-        are equally far apart. ``status`` (n) is what :meth:`follow` left; what is not finite is
-        noted there. The bytes do not depend on ``threads``.
+        are equally far apart. ``status`` (n) tells where loops do not close, and what is not
+        finite. The bytes do not depend on ``threads``.
         """
         assert all(
             rows.ndim == 1 or rows.strides == out.strides or not rows.size for rows in (t, z)
         )
         n = t.shape[-1]
-        shares = max(1, min(threads, n // self.share))
-        size = min(self._stretch, -(-n // (shares * _CUT)) * _CUT)
-        if size >= n:
-            self._call(self.entry, out, t=t, p=p, guess=None, z=z, out=out, status=status)
+        call, entry = _instants(t, p, guess, z, out, status), self.entries[EVALUATE]
+        self._follow(call, guess, status)
+        share = max(_CUT, self.share())
+        shares = max(1, min(threads, n // share))
+        # Between calls an interrupt comes through.
+        size = min(_LONGEST * share // _CUT * _CUT, -(-n // (shares * _CUT)) * _CUT)
+        _share(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
+
+    def _follow(self, call: ctypes.Structure, guess: Array, status: Status) -> None:
+        if not guess.size:
+            status[:] = 0
             return
+        reach = max(1, _LONGEST * _WORTH_A_THREAD // (self.weight * self.steps * _SLOWER))
+        for i in range(0, call.n, reach):
+            self.entries[FOLLOW](call, i, min(i + reach, call.n))
 
-        def run(start: int) -> None:
-            cut = slice(start, start + size)
-            self._call(
-                self.entry,
-                out,
-                t=t[..., cut],
-                p=p,
-                guess=None,
-                z=z[:, cut],
-                out=out[:, cut],
-                status=status[cut],
-            )
-
-        _share(run, range(0, n, size), shares)
-
-    @property
-    def _stretch(self) -> int:
-        """Instants of one call: between calls an interrupt comes through."""
-        return _LONGEST * self.share // _CUT * _CUT
-
-    @staticmethod
-    def _call(
-        entry: Any,
-        rows: Array,
-        *,
-        t: Array,
-        p: Array,
-        guess: Array | None,
-        z: Array,
-        out: Array | None,
-        status: Status,
-    ) -> None:
-        """Call with :data:`INSTANTS`; all rows are as far apart as those of ``rows``."""
-        call = INSTANTS.made(
-            n=t.shape[-1],
-            stride=rows.strides[0] // rows.itemsize,
-            t=t.ctypes.data,
-            p=p.ctypes.data,
-            guess=None if guess is None else guess.ctypes.data,
-            z=z.ctypes.data,
-            out=None if out is None else out.ctypes.data,
-            apart=rows.strides[0] // rows.itemsize,
-            status=status.ctypes.data,
-        )
-        entry(call)
-
-
-@dataclass(frozen=True, eq=False)
-class DesignsLibrary:
-    """The loaded code of many designs of one scene over ``count`` instants.
-
-    Its calls release the interpreter and allocate nothing.
-
-    ``share`` is how many designs are worth a thread of their own.
-    """
-
-    entry: Any
-    flags: tuple[str, ...]
-    share: int
-    reduction: Reduction
-    count: int
-    guess: npt.NDArray[np.float64]
-    search: Search
-    tables: Tables
-
-    def evaluate(
+    def designs(
         self,
         t: npt.NDArray[np.float64],
         bent: npt.NDArray[np.bool_],
@@ -175,11 +142,9 @@ class DesignsLibrary:
 
         The bytes of a row do not depend on ``threads``.
         """
-        n = p.shape[0]
-        shares = max(1, min(threads, n // self.share))
-        size = max(
-            1, min(_LONGEST * self.share, -(-n // (_DISTRIBUTED * shares)) if shares > 1 else n)
-        )
+        n, share = p.shape[0], self.share(t.shape[1])
+        shares = max(1, min(threads, n // share))
+        size = max(1, min(_LONGEST * share, -(-n // (_DISTRIBUTED * shares)) if shares > 1 else n))
 
         def run(start: int) -> None:
             cut = slice(start, start + size)
@@ -212,18 +177,20 @@ class DesignsLibrary:
         ``tops``, of which ``listed`` tells, may be left out. The bytes of a row do not depend on
         other rows.
         """
-        stride = (-(-self.count // _LINE) | 1) * _LINE + 2 * _LINE
+        assert self.many is not None
+        many, n = self.many, t.shape[1]
+        stride = (-(-n // _LINE) | 1) * _LINE + 2 * _LINE
         hidden = np.zeros((len(bent), stride), np.int8)
         hidden[:, : bent.shape[1]] = bent
-        dtype = DTYPES[self.search.precision]
-        room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + _LINE, dtype)
+        dtype = DTYPES[many.search.precision]
+        room = np.zeros((many.reduction.rows + many.guess.size + 2) * stride + _LINE, dtype)
         room = room[-room.ctypes.data // room.itemsize % _LINE :]
         status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
         arrays: dict[str, npt.NDArray[Any] | None] = {
             "t": t,
             "bent": hidden,
             "p": p,
-            "guess": self.guess,
+            "guess": many.guess,
             "room": room,
         }
         arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None, **results}
@@ -234,14 +201,14 @@ class DesignsLibrary:
         }
         rounded = [(arrays[name], own) for name, own in single.items()]
         arrays |= single
-        search, within = self.search.call(self.tables, _CUT)
+        search, within = many.search.call(many.tables, _CUT)
         call = CALL.made(
             search=ctypes.addressof(search),
-            find=self.search.address,
+            find=many.search.address,
             designs=p.shape[0],
-            n=self.count,
+            n=n,
             stride=stride,
-            t_apart=self.count if len(t) > 1 else 0,
+            t_apart=n if len(t) > 1 else 0,
             bent_apart=stride if len(bent) > 1 else 0,
             way=listed.way if listed else 0,
             share=listed.share if listed else 0.0,
@@ -249,7 +216,27 @@ class DesignsLibrary:
                 name: None if array is None else array.ctypes.data for name, array in arrays.items()
             },
         )
-        return functools.partial(_enter, self.entry, call, rounded, (arrays, search, within))
+        kept = (arrays, search, within)
+        return functools.partial(_enter, self.entries[DESIGNS], call, rounded, kept)
+
+
+def _instants(
+    t: Array, p: Array, guess: Array, z: Array, out: Array | None, status: Status
+) -> ctypes.Structure:
+    """Arguments of what runs over instants; all rows are equally far apart."""
+    rows = z if out is None else out
+    apart = rows.strides[0] // rows.itemsize
+    return INSTANTS.made(
+        n=t.shape[-1],
+        stride=apart,
+        t=t.ctypes.data,
+        p=p.ctypes.data,
+        guess=guess.ctypes.data,
+        z=z.ctypes.data,
+        out=None if out is None else out.ctypes.data,
+        apart=apart,
+        status=status.ctypes.data,
+    )
 
 
 def _share(run: Callable[[int], None], starts: Iterable[int], threads: int) -> None:
@@ -272,52 +259,27 @@ def _enter(entry: Any, call: Any, rounded: Sequence[tuple[Any, Array]], _kept: o
         array[...] = own
 
 
-def load(source: str, compiler: Compiler, extra: tuple[str, ...] = (), steps: int = 1) -> Library:
-    """Build an emitted file, as C or with packs as C++, or take it from the cache, and load it.
-
-    ``extra`` flags come after the package's own; loops take up to so many ``steps``. Raises
-    :class:`CompilerError`.
-    """
-    library = loaded(packed(source, compiler), compiler, extra)
-    entry, follow = _entry(library, compiler, EVALUATE, INSTANTS), None
-    if hasattr(library, FOLLOW):
-        follow = _entry(library, compiler, FOLLOW, INSTANTS)
-    share, size = (
-        max(_CUT, _WORTH_A_THREAD // statements(source)),
-        statements(source) * steps * _SLOWER,
-    )
-    return Library(
-        entry,
-        follow,
-        (*compiler.flags(source), *extra),
-        share,
-        max(1, _LONGEST * _WORTH_A_THREAD // size),
-    )
-
-
-def load_designs(
+def load(
     source: str,
     compiler: Compiler,
-    extra: tuple[str, ...],
-    reduction: Reduction,
-    count: int,
-    guess: npt.NDArray[np.float64],
-    precision: Precision,
-) -> DesignsLibrary:
-    """Load a file for many designs over ``count`` instants, whose iterated loops begin from
-    ``guess``.
+    extra: tuple[str, ...] = (),
+    steps: int = 1,
+    designs: Designs | None = None,
+) -> Library:
+    """Build an emitted file, as C or with packs as C++, or take it from the cache, and load it.
+
+    ``extra`` flags come after the package's own; loops take up to so many ``steps``. A file with a
+    reduction is for ``designs``. Raises :class:`CompilerError`.
     """
-    search = load_search(compiler, extra, precision)
-    entry = _entry(loaded(packed(source, compiler), compiler, extra), compiler, DESIGNS, CALL)
-    share = max(1, _WORTH_A_THREAD // (statements(source) * count))
-    flags = (*compiler.flags(source), *extra)
-    return DesignsLibrary(
-        entry, flags, share, reduction, count, guess, search, reduction.tables(precision)
-    )
-
-
-def _entry(library: ctypes.CDLL, compiler: Compiler, name: str, call: Call) -> Any:
+    library = loaded(packed(source, compiler), compiler, extra)
+    some = (ctypes.c_longlong, ctypes.c_longlong)
     try:
-        return call.declare(getattr(library, name))
+        entries = (
+            {name: INSTANTS.declare(getattr(library, name), *some) for name in (FOLLOW, EVALUATE)}
+            if designs is None
+            else {DESIGNS: CALL.declare(getattr(library, DESIGNS))}
+        )
     except AttributeError as error:
         raise broken(compiler, error) from None
+    flags = (*compiler.flags(source), *extra)
+    return Library(entries, flags, statements(source), steps, designs)

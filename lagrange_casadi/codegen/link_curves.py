@@ -120,7 +120,7 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
     loads = [f"y[{column}]" for load_point in link.load_points for column in load_point]
     for mark in link.marks:
         place = (
-            f"(DESIGNS_REAL) {mark:.17g}"
+            f"(lanes_real) {mark:.17g}"
             if isinstance(mark, float)
             else " - ".join(f"y[{column}]" for column in mark)
         )
@@ -227,8 +227,8 @@ def turning(links: Sequence[Along]) -> str:
     for degree in degrees:
         nodes, weights = interpolation(degree)
         for name, values in (("nodes_at", nodes), ("weights", weights.ravel())):
-            numbers = ", ".join(f"(DESIGNS_REAL) {value:.17g}" for value in values.tolist())
-            text += f"static const DESIGNS_REAL designs_{name}{degree}[] = {{{numbers}}};\n"
+            numbers = ", ".join(f"(lanes_real) {value:.17g}" for value in values.tolist())
+            text += f"static const lanes_real designs_{name}{degree}[] = {{{numbers}}};\n"
         text += (
             f"static const designs_nodes designs_nodes{degree} = {{{degree},"
             f" designs_nodes_at{degree}, designs_weights{degree}}};\n"

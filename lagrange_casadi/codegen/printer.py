@@ -61,6 +61,11 @@ def function_name(name: str, precision: Precision) -> str:
     return f"{name}f" if precision == "single" else name
 
 
+def defined(prefix: str, macros: Mapping[str, object]) -> str:
+    """Return definitions of macros, by their names after the prefix."""
+    return "".join(f"#define {prefix}_{name} {value}\n" for name, value in macros.items())
+
+
 def print_functions(
     functions: Mapping[str, ca.Function], precision: Precision, *, prefix: str, packs: bool = False
 ) -> str:

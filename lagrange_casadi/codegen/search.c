@@ -163,7 +163,7 @@ static void search_list_steps(search_now* now, const search_panel* panel, int cu
 
 /* List where a curve may rise above what is known, a limit. From a value it reaches no further than half of what bends it there takes
    it; where that is towards zero, its neighbours are larger, and known. */
-SEARCH_INLINE void search_screen(search_now* now, const search_panel* panel, int curve, search_real limit, search_list* list, int depth) {
+LANES_INLINE void search_screen(search_now* now, const search_panel* panel, int curve, search_real limit, search_list* list, int depth) {
   const search_real* row = search_row(panel, curve);
   const long long n = panel->n;
   lanes_pack here, before, after, twice[SEARCH_CHUNK], most;
@@ -206,7 +206,7 @@ static void search_edge(const search_now* now, const search_panel* panel) {
 }
 
 /* Search a panel. */
-SEARCH_INLINE void search_panel_of(search_now* now, const search_panel* panel, int depth) {
+LANES_INLINE void search_panel_of(search_now* now, const search_panel* panel, int depth) {
   const signed char *step, *const steps = panel->hiding + panel->n - 1;
   search_list list;
   search_real limit;

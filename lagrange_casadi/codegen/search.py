@@ -29,8 +29,8 @@ from ..peak_search.between import Flags
 from ..peak_search.intervals import TOPS, Curves, CurveSource, Listed, Peaks, Samples
 from ..peak_search.sharpness import Kind, Watch
 from .calls import Call
-from .compiler import Compiler, broken, loaded, packed
-from .emit import START
+from .compiler import Compiler, broken, loaded, packed, start
+from .printer import defined
 
 FUNCTION = "lagrange_casadi_search"
 _CAPACITY = "lagrange_casadi_search_room"
@@ -133,15 +133,8 @@ def interface(precision: Precision) -> str:
 
 def source(precision: Precision) -> str:
     """The C of the search."""
-    text = (
-        ("#define LANES_SINGLE\n" if precision == "single" else "")
-        + START
-        + _PRELUDE
-        + interface(precision)
-    )
-    text += "".join(
-        f"#define SEARCH_{name} {value}\n" for name, value in _macros(precision).items()
-    )
+    text = start(precision) + _PRELUDE + interface(precision)
+    text += defined("SEARCH", _macros(precision))
     return text + "".join(
         "\n" + resources.files(__package__).joinpath(name).read_text() for name in _FILES
     )
@@ -154,13 +147,8 @@ typedef lanes_real search_real;
 #else
 #define SEARCH_FABS fabs
 #endif
-#ifdef __cplusplus
-#define SEARCH_INLINE LANES_INLINE
-#else
-#define SEARCH_INLINE static inline
-#endif
-SEARCH_INLINE lanes_pack search_size(lanes_pack x) { return SEARCH_FABS(x); }
-SEARCH_INLINE lanes_pack search_larger(lanes_pack x, lanes_pack y) { return lanes_larger(x, y); }
+LANES_INLINE lanes_pack search_size(lanes_pack x) { return SEARCH_FABS(x); }
+LANES_INLINE lanes_pack search_larger(lanes_pack x, lanes_pack y) { return lanes_larger(x, y); }
 """
 
 

@@ -5,28 +5,23 @@
    base, at the tip, at each station as it is on the tip's side and on the base's, and where it turns between two stations, or next to
    that: the bending moment where the shear rises through zero, then where it falls. place becomes the ratios u = xi/l of where the
    forces turn, in that order, and of the stations. */
-#ifdef __cplusplus
-#define DESIGNS_INLINE LANES_INLINE
-#else
-#define DESIGNS_INLINE static inline
-#endif
 
-DESIGNS_INLINE casadi_real designs_size(casadi_real x) { return DESIGNS_FABS(x); }
+LANES_INLINE casadi_real designs_size(casadi_real x) { return DESIGNS_FABS(x); }
 
-DESIGNS_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return lanes_larger(x, y); }
+LANES_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return lanes_larger(x, y); }
 
 /* A ratio on the link; 0 for what is none. */
-DESIGNS_INLINE casadi_real designs_on_link(casadi_real u) { return lanes_less(0, u, lanes_less(u, 1, u, 1), 0); }
+LANES_INLINE casadi_real designs_on_link(casadi_real u) { return lanes_less(0, u, lanes_less(u, 1, u, 1), 0); }
 
 /* The ratio beyond which a section feels what acts at stations, as it is on the tip's side of one that is there, and on the base's: see
    edge in equations/section_function.py. */
-DESIGNS_INLINE casadi_real designs_section_edge(casadi_real u, int side) {
+LANES_INLINE casadi_real designs_section_edge(casadi_real u, int side) {
   if (side) return lanes_less(DESIGNS_END, u - DESIGNS_END, u - DESIGNS_END, DESIGNS_END);
   return lanes_less(u + DESIGNS_END, 1 - DESIGNS_END, u + DESIGNS_END, 1 - DESIGNS_END);
 }
 
 /* Of a uniform link without stations, whose matter is its length and its mass. */
-DESIGNS_INLINE void designs_uniform(const casadi_real* matter, const casadi_real* law, casadi_real* value, casadi_real* place) {
+LANES_INLINE void designs_uniform(const casadi_real* matter, const casadi_real* law, casadi_real* value, casadi_real* place) {
   const casadi_real l = matter[0], m = matter[1];
   casadi_real u, v, a, b, q, half, first, second, rising, falling;
   int k;
@@ -69,7 +64,7 @@ DESIGNS_INLINE void designs_uniform(const casadi_real* matter, const casadi_real
    of the couple that bends, and whether it does so the other way round. Where they begin and end are stations at which nothing acts. */
 typedef struct {
   int cells, terms, stations;
-  const DESIGNS_REAL* breaks;
+  const lanes_real* breaks;
   const casadi_real *matter, *law, *loads;
   int spreads, directions, across;
   const int* powers;
@@ -77,28 +72,28 @@ typedef struct {
   int axial, couple, back;
 } designs_link;
 
-DESIGNS_INLINE const casadi_real* designs_cell(const designs_link* link, int cell) {
+LANES_INLINE const casadi_real* designs_cell(const designs_link* link, int cell) {
   return link->matter + 1 + cell*(3 + link->terms);
 }
 
 /* T0, T1 and T2 at ratios in a cell; every term is positive, so nothing cancels. */
-DESIGNS_INLINE void designs_tails(const designs_link* link, int cell, casadi_real u, casadi_real* tail) {
+LANES_INLINE void designs_tails(const designs_link* link, int cell, casadi_real u, casadi_real* tail) {
   const casadi_real *beyond = designs_cell(link, cell), *density = beyond + 3;
   const casadi_real x = link->breaks[cell + 1] - u;
   casadi_real own[3];
   int j;
   own[0] = own[1] = own[2] = 0;
   for (j = link->terms - 1; j >= 0; --j) {
-    own[0] = own[0]*x + density[j]*((DESIGNS_REAL) 1/(j + 1));
-    own[1] = own[1]*x + density[j]*((DESIGNS_REAL) 1/((j + 1)*(j + 2)));
-    own[2] = own[2]*x + density[j]*((DESIGNS_REAL) 2/((j + 1)*(j + 2)*(j + 3)));
+    own[0] = own[0]*x + density[j]*((lanes_real) 1/(j + 1));
+    own[1] = own[1]*x + density[j]*((lanes_real) 1/((j + 1)*(j + 2)));
+    own[2] = own[2]*x + density[j]*((lanes_real) 2/((j + 1)*(j + 2)*(j + 3)));
   }
   tail[0] = beyond[0] + x*own[0];
   tail[1] = beyond[1] + x*(beyond[0] + x*own[1]);
   tail[2] = beyond[2] + x*(2*beyond[1] + x*(beyond[0] + x*own[2]));
 }
 
-DESIGNS_INLINE casadi_real designs_shear(const designs_link* link, int cell, casadi_real u) {
+LANES_INLINE casadi_real designs_shear(const designs_link* link, int cell, casadi_real u) {
   const casadi_real* law = link->law;
   casadi_real tail[3];
   designs_tails(link, cell, u, tail);
@@ -120,10 +115,10 @@ static inline void designs_spread(const designs_link* link, casadi_real u, casad
     lever = l*lanes_less(0, lever, lever, 0);
     power = x;
     for (j = 0; j < many; ++j) {
-      share = reach*power*((DESIGNS_REAL) 1/(j + 1));
+      share = reach*power*((lanes_real) 1/(j + 1));
       force[0] = force[0] + along[j]*share;
       force[1] = force[1] + across[j]*share;
-      force[2] = force[2] + across[j]*(share*(reach*x*((DESIGNS_REAL) 1/(j + 2)) + lever));
+      force[2] = force[2] + across[j]*(share*(reach*x*((lanes_real) 1/(j + 2)) + lever));
       if (link->couple) force[2] = link->back ? force[2] - couple[j]*share : force[2] + couple[j]*share;
       power = power*x;
     }

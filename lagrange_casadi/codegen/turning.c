@@ -4,7 +4,7 @@
    there adds to each coefficient. */
 typedef struct {
   int degree;
-  const DESIGNS_REAL *nodes, *weights;
+  const lanes_real *nodes, *weights;
 } designs_nodes;
 
 /* What is looked at: a force of a link, by its number, or the size of both planes' forces; and where: in a part between two stations, by
@@ -21,8 +21,8 @@ static inline void designs_derived(const casadi_real* of, int degree, casadi_rea
   int j;
   for (j = 0; j <= degree; ++j) c[j] = of[j];
   for (j = degree; j > 2; --j) {
-    slope[j - 1] = (DESIGNS_REAL) (2*j)*c[j];
-    c[j - 2] = c[j - 2] + c[j]*((DESIGNS_REAL) j/(j - 2));
+    slope[j - 1] = (lanes_real) (2*j)*c[j];
+    c[j - 2] = c[j - 2] + c[j]*((lanes_real) j/(j - 2));
   }
   if (degree > 1) slope[1] = 4*c[2];
   slope[0] = c[1];

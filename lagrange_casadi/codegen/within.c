@@ -3,7 +3,7 @@
 #define SEARCH_TRIALS 3
 #define SEARCH_WATCHED 2
 
-SEARCH_INLINE void search_panel_of(search_now* now, const search_panel* panel, int depth);
+LANES_INLINE void search_panel_of(search_now* now, const search_panel* panel, int depth);
 
 /* What a panel has at a time: a column of its rows. */
 static void search_column(const search_now* now, const search_panel* panel, long long i, search_real* column) {

@@ -7,7 +7,7 @@ from __future__ import annotations
 import functools
 import math
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -91,21 +91,15 @@ def run(
     """
     method = method or EvaluationMethod()
     stages = stages_for(program, method.precision, t, p)
-    found = _compiled(program, stages, method)
+    library, made = evaluator(program, stages, method)
     evaluated = into or unevaluated(program, stages, t.size)
-    begin = _begin(program, method.newton is not None, t[0], tuple(p))
-    if found is None:
-        _interpret(program, t, p, evaluated, begin, method.newton)
-        return evaluated, provenance("vm", "", "", method)
-    compiler, library = found
     dtype = DTYPES[method.precision]
-    guess = np.array(begin, dtype)
+    guess = np.array(_begin(program, method.newton is not None, t[0], tuple(p)), dtype)
     if method.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
-    library.follow(t, p, guess, evaluated.iterated, evaluated.status)
-    library.evaluate(t, p, evaluated.iterated, evaluated.out, evaluated.status, threads or cores())
-    used = "lanes" if compiler.language == "c++" else "c"
-    return evaluated, provenance(used, compiler.version, " ".join(library.flags), method)
+    z, out, status = evaluated.iterated, evaluated.out, evaluated.status
+    library.evaluate(t, p, guess, z, out, status, threads or cores())
+    return evaluated, made
 
 
 def begun(program: Program, t: float, p: Array) -> tuple[float, ...]:
@@ -134,7 +128,9 @@ def _begin(program: Program, counted: bool, t: float, p: tuple[float, ...]) -> t
         else math.inf
     )
     steps = math.ceil(wanted) if t != start and wanted <= _MOST_STEPS else 1
-    z, status = follow(program, np.linspace(start, t, steps + 1)[1:], np.array(p))
+    guess, times = np.array(program.newton.guess), np.linspace(start, t, steps + 1)[1:]
+    z, status = np.empty((guess.size, steps)), np.empty(steps, np.int32)
+    Interpreter(program, plain(program)).follow(times, np.array(p), guess, z, status)
     return (
         tuple(z[:, -1]) if counted or status[-1] != Status.NOT_CONVERGED else program.newton.guess
     )
@@ -148,13 +144,15 @@ def _paired(values: Array, out: Array) -> Array:
     return out
 
 
-def _compiled(
+def evaluator(
     program: Program, stages: Stages, method: EvaluationMethod
-) -> tuple[codegen.Compiler, codegen.Library] | None:
-    """The library that a backend takes, and what built it; None for the virtual machine."""
-    return compiled(
+) -> tuple[codegen.Library | Interpreter, Provenance]:
+    """The code that a backend takes for instants, or what interprets them in its place."""
+    found = compiled(
         method, lambda compiler: _library(program, stages, method.newton, method.flags, compiler)
     )
+    made = provenance(method, found)
+    return (Interpreter(program, stages, method.newton) if found is None else found[1]), made
 
 
 def compiled(
@@ -227,8 +225,13 @@ def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
     return grids.empty("the outputs over time", (count, stride), dtype)[:, :size]
 
 
-def provenance(backend: str, compiler: str, flags: str, method: EvaluationMethod) -> Provenance:
-    """Provenance of numbers, with the versions of the programs involved."""
+@functools.lru_cache(maxsize=32)
+def provenance(
+    method: EvaluationMethod, found: tuple[codegen.Compiler, codegen.Library] | None
+) -> Provenance:
+    """Provenance of numbers, with the versions of the programs involved; ``found`` as
+    :func:`compiled` gives it.
+    """
     import h5py  # which takes its time, and is needed for files alone
 
     versions = {
@@ -238,83 +241,82 @@ def provenance(backend: str, compiler: str, flags: str, method: EvaluationMethod
         "h5py": h5py.__version__,
         "hdf5": h5py.version.hdf5_version,
     }
+    backend, compiler, flags = "vm", "", ""
+    if found is not None:
+        backend = "lanes" if found[0].language == "c++" else "c"
+        compiler, flags = found[0].version, " ".join(found[1].flags)
     return Provenance(backend, method.precision, compiler, flags, method.options, versions)
 
 
-def _interpret(
-    program: Program,
-    t: Array,
-    p: Array,
-    evaluated: Evaluated,
-    begin: Sequence[float],
-    newton: int | None,
-) -> None:
-    """Evaluate by CasADi's virtual machine, as the emitted C does."""
-    stages = evaluated.stages
-    guess = np.array(begin)
-    evaluated.iterated[:], evaluated.status[:] = follow(
-        program, t, p, guess, stages=stages, newton=newton
-    )
-    for start in range(0, t.size, _VM_BLOCK):
-        block = slice(start, min(start + _VM_BLOCK, t.size))
-        counted, rate, acceleration = stages.drive(t[None, block], p)
-        evaluated.out[:, block] = stages.instant(
-            counted, rate, acceleration, evaluated.iterated[:, block], p
-        ).full()
-    unclean = ~np.isfinite(evaluated.out).all(axis=0) & (evaluated.status == Status.OK)
-    evaluated.status[unclean] = Status.NOT_FINITE
-
-
-def follow(
-    program: Program,
-    t: Array,
-    p: Array,
-    guess: Array | None = None,
-    *,
-    stages: Stages | None = None,
-    newton: int | None = None,
-) -> tuple[Array, npt.NDArray[np.int32]]:
-    """Iterated coordinates (z, t), each instant from the one before, the first from ``guess`` or
-    the graph's own; and statuses.
-
-    By CasADi's virtual machine; ``newton`` as in :class:`.EvaluationMethod`.
+@dataclass(frozen=True, eq=False)
+class Interpreter:
+    """CasADi's virtual machine in the place of a :class:`.codegen.Library`, for doubles; ``newton``
+    as in :class:`.EvaluationMethod`.
     """
-    stages = stages or plain(program)
-    if program.newton is None or stages.loops is None:
-        return np.zeros((0, t.size)), np.full(t.size, Status.OK, dtype=np.int32)
-    last, rule = (
-        np.array(program.newton.guess) if guess is None else guess,
-        newton_rule("double", newton),
-    )
-    z, status = rows(last.size, t.size), np.full(t.size, Status.OK, dtype=np.int32)
-    fixed = ca.DM(p)  # converted once, not at each step
-    for start in range(0, t.size, _VM_BLOCK):
-        counted = np.atleast_2d(stages.drive(t[None, start : start + _VM_BLOCK], p)[0].full())
-        for i, now in enumerate(counted.T, start):
-            z[:, i], status[i] = _iterate(program, stages.loops, last, ca.DM(now), fixed, rule)
-            last = last if status[i] == Status.NOT_CONVERGED else z[:, i]
-    return z, status
+
+    program: Program
+    stages: Stages
+    newton: int | None = None
+
+    def evaluate(
+        self,
+        t: Array,
+        p: Array,
+        guess: Array,
+        z: Array,
+        out: Array,
+        status: npt.NDArray[np.int32],
+        threads: int = 1,
+    ) -> None:
+        """Fill columns and iterated coordinates as :meth:`.Library.evaluate` does, by one
+        thread.
+        """
+        self.follow(t, p, guess, z, status)
+        for block in _blocks(t.size):
+            out[:, block] = self.columns(t[block], p, z[:, block])
+        unclean = ~np.isfinite(out).all(axis=0) & (status == Status.OK)
+        status[unclean] = Status.NOT_FINITE
+
+    def columns(self, t: Array, p: Array, z: Array) -> Array:
+        """Columns (columns, t) at times, where iterated coordinates are ``z``."""
+        found: Array = self.stages.instant(*self.stages.drive(t[None], p), z, p).full()
+        return found
+
+    def follow(
+        self, t: Array, p: Array, guess: Array, z: Array, status: npt.NDArray[np.int32]
+    ) -> None:
+        """Fill the iterated coordinates ``z`` (k, t) as :meth:`.Library.follow` does."""
+        status[:] = Status.OK
+        if self.stages.loops is None:
+            return
+        rule, fixed = newton_rule("double", self.newton), ca.DM(p)  # converted once
+        for block in _blocks(t.size):
+            counted = np.atleast_2d(self.stages.drive(t[None, block], p)[0].full())
+            for i, now in enumerate(counted.T, block.start):
+                status[i], guess = self._close(guess, ca.DM(now), fixed, rule)
+                z[:, i] = guess
+
+    def _close(
+        self, guess: Array, counted: ca.DM, p: ca.DM, rule: dict[str, float]
+    ) -> tuple[Status, Array]:
+        """Close the loops at a moment: their status, and the guess where they do not converge."""
+        assert self.program.newton is not None
+        assert self.stages.loops is not None
+        z, size, before, step = guess, 1.0, 1.0, 0
+        while step < rule["steps"] and not size < rule["done"]:
+            before, step = size, step + 1
+            correction, relative = (x.full().ravel() for x in self.stages.loops(z, counted, p))
+            size = float(relative[0])
+            if not math.isfinite(size):
+                break
+            z = z + correction
+        if not size < rule["lost"]:
+            return Status.NOT_CONVERGED, guess
+        turns = np.where(self.program.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
+        slow = self.newton is None and size > rule["rate"] * before and size > rule["rounding"]
+        return Status.SLOW if slow else Status.OK, z - math.tau * turns
 
 
-def _iterate(
-    program: Program,
-    loops: ca.Function,
-    guess: Array,
-    counted: ca.DM,
-    p: ca.DM,
-    rule: dict[str, float],
-) -> tuple[Array, int]:
-    assert program.newton is not None
-    z, size, before, step = guess, 1.0, 1.0, 0
-    while step < rule["steps"] and not size < rule["done"]:
-        before, step = size, step + 1
-        correction, relative = (x.full().ravel() for x in loops(z, counted, p))
-        size = float(relative[0])
-        if not math.isfinite(size):
-            break
-        z = z + correction
-    if not size < rule["lost"]:
-        return guess, Status.NOT_CONVERGED
-    turns = np.where(program.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
-    slow = rule["done"] > 0.0 and size > rule["rate"] * before and size > rule["rounding"]
-    return z - math.tau * turns, Status.SLOW if slow else Status.OK
+def _blocks(count: int) -> list[slice]:
+    """Instants that are interpreted at once."""
+    return [slice(i, min(i + _VM_BLOCK, count)) for i in range(0, count, _VM_BLOCK)]

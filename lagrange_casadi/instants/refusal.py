@@ -17,7 +17,7 @@ from ..arithmetic.interpret import interpret, numpy_arithmetic
 from ..base.arrays import Array
 from ..base.status import Status
 from ..base.vocabulary import Precision
-from ..codegen.designs import INSIDE, ROUNDS
+from ..codegen.reduction import INSIDE, ROUNDS
 from ..declare.ends import share_beyond
 from ..equations.iteration import LARGEST_STEP
 from ..equations.kinematics import where

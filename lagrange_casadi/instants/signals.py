@@ -17,15 +17,13 @@ from ..base.quantities import Output
 from ..base.status import Status
 from ..base.tables import table_of
 from ..codegen.search import Search
-from ..codegen.stages import Stages
 from ..declare.density import NumericDensity
 from ..declare.description import Description, density_of, in_space
-from ..equations.program import Program
 from ..peak_search.between import Flags
 from ..peak_search.intervals import Curves, Listed, Peaks, Samples
 from ..peak_search.search import peaks
 from ..peak_search.sharpness import Sharpness, bent
-from .backends import follow
+from .backends import Interpreter
 from .laws import law_of
 from .sizes import size_of
 
@@ -87,22 +85,19 @@ link, as a section force.
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """Quantities of a graph, in its ``stages``, for parameters ``p`` over instants ``t``, with
-    iterated coordinates ``z`` there.
+    """Quantities of a graph, interpreted for parameters ``p`` over instants ``t``, with iterated
+    coordinates ``z`` there.
 
-    ``newton`` is as in :class:`.EvaluationMethod`. ``turned`` are, by the number of an angle that
-    loops set, its values at the instants, which tell its turns. ``rounding`` (watched, 1) is how
-    far from zero each of the watched counts as zero.
+    ``turned`` are, by the number of an angle that loops set, its values at the instants, which tell
+    its turns. ``rounding`` (watched, 1) is how far from zero each of the watched counts as zero.
     """
 
-    program: Program
-    stages: Stages
+    interpreter: Interpreter
     sharpness: Sharpness
     quantities: Sequence[Quantity]
     t: Array
     p: Array
     z: Array
-    newton: int | None = None
     turned: Mapping[int, Array] = field(default_factory=dict)
     rounding: Array | float = 0.0
 
@@ -134,7 +129,7 @@ class Signals:
                 curves,
                 self.t,
                 samples,
-                bent(self.program, self.sharpness, self.t, self.p),
+                bent(self.interpreter.program, self.sharpness, self.t, self.p),
                 listed,
             )
 
@@ -155,18 +150,11 @@ class Signals:
         close.
         """
         z = np.zeros((self.z.shape[0], t.size))
-        failed = np.zeros(t.size, dtype=bool)
-        for k in range(t.size if self.program.newton else 0):
-            at, status = follow(
-                self.program,
-                t[k : k + 1],
-                self.p,
-                self.z[:, near[k]],
-                stages=self.stages,
-                newton=self.newton,
-            )
-            z[:, k], failed[k] = at[:, 0], status[0] == Status.NOT_CONVERGED
-        return z, failed
+        status = np.zeros(t.size, np.int32)
+        for k in range(t.size if len(z) else 0):
+            some = slice(k, k + 1)
+            self.interpreter.follow(t[some], self.p, self.z[:, near[k]], z[:, some], status[some])
+        return z, status == Status.NOT_CONVERGED
 
     def samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
         """All curves at times next to instants, where the iterated coordinates are told."""
@@ -186,13 +174,11 @@ class Signals:
 
     def inputs(self, t: Array, z: Array) -> tuple[Operand, ...]:
         """Arguments of the graph's columns at times."""
-        return t[None], *self.program.motion(t[None], self.p), z, self.p
+        return t[None], *self.interpreter.program.motion(t[None], self.p), z, self.p
 
     def columns(self, t: Array, z: Array) -> Array:
         """The graph's columns at times, (columns, t), where the iterated coordinates are told."""
-        return np.asarray(
-            self.stages.instant(*self.stages.drive(t[None], self.p), z, self.p).full()
-        )
+        return self.interpreter.columns(t, self.p, z)
 
     def curves(self, columns: Array, near: npt.NDArray[np.intp]) -> list[tuple[Array, Array]]:
         """Curves of each quantity, as ratios and values (curves, t), from the graph's columns

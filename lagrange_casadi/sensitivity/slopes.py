@@ -19,7 +19,7 @@ from ..base.quantities import Output
 from ..base.symbolic import symbolic_property
 from ..codegen.stages import plain
 from ..equations.program import Program
-from ..instants.backends import begun, compiled, follow
+from ..instants.backends import Interpreter, begun, compiled, evaluator
 from ..instants.evaluation_method import EvaluationMethod
 from ..peak_search.sharpness import Sharpness
 from .jacobian import PointFunction
@@ -70,35 +70,27 @@ class Loops:
     """The iterated coordinates of a graph, if it has any, at places between instants."""
 
     program: Program
-    library: codegen.Library | None
+    library: codegen.Library | Interpreter | None
 
     @classmethod
     def of(cls, program: Program, method: EvaluationMethod) -> Loops:
-        """Compile what follows them by the compiler of a method."""
+        """Compile what follows them by the compiler of a method; always in doubles."""
         if program.newton is None:
             return cls(program, None)
-        found = compiled(
-            method,
-            lambda compiler: codegen.load(
-                codegen.emit(program, plain(program)), compiler, _flags(method)
-            ),
-        )
-        return cls(program, None if found is None else found[1])
+        doubles = EvaluationMethod(method.backend, flags=method.flags)
+        return cls(program, evaluator(program, plain(program), doubles)[0])
 
     def at(self, t: Array, p: Array, places: Array) -> Array:
         """Iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``, from
         which they are followed.
         """
-        if self.program.newton is None:
+        if self.library is None:
             return np.zeros((places.size, 0))
         count = self.program.instant.size1_in("z")
         times, back = np.unique(np.concatenate([t, places]), return_inverse=True)
         guess = np.array(begun(self.program, float(times[0]), p), float)
         z = np.zeros((count, times.size))
-        if self.library is not None:
-            self.library.follow(times, p, guess, z, np.zeros(times.size, np.intc))
-        else:
-            z[:] = follow(self.program, times, p, guess)[0]
+        self.library.follow(times, p, guess, z, np.zeros(times.size, np.intc))
         return np.ascontiguousarray(z[:, back[t.size :]].T)
 
 

@@ -21,7 +21,7 @@ from ..base.arrays import Array
 from ..base.quantities import Output, compared
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
-from ..codegen.stages import Stages, stages_for
+from ..codegen.stages import stages_for
 from ..declare.description import values_of
 from ..declare.even_points import EvenPoints, are_even
 from ..declare.scene import Scene
@@ -30,7 +30,7 @@ from ..equations.derive import compile_scene
 from ..equations.program import Program
 from ..equations.reciprocals import differentiable
 from ..errors import DeclarationError
-from ..instants.backends import follow, searching
+from ..instants.backends import Interpreter, searching
 from ..instants.section_law import SectionLaw, Side
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..instants.sizes import size_of
@@ -204,14 +204,18 @@ class ContinuousSolution:
     ``again`` makes that of the same parameters at other instants, for outputs that are wanted.
     """
 
-    program: Program
-    stages: Stages
+    interpreter: Interpreter
     solution: Solution
     p: Array
     z: Array
     rows: Mapping[Output, int]
     again: Callable[[EvenPoints, Sequence[str]], ContinuousSolution]
     backend: str
+
+    @property
+    def program(self) -> Program:
+        """Program of which the solution is made."""
+        return self.interpreter.program
 
     @classmethod
     def of(cls, scene: Scene, solution: Solution, backend: str = "") -> ContinuousSolution:
@@ -231,8 +235,10 @@ class ContinuousSolution:
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
         program = compile_scene(scene, wanted, parameters=values)
         p = np.array(list(values.values()))
-        stages = stages_for(program, "double", solution.t, p)
-        z, _ = follow(program, solution.t, p, stages=stages)
+        interpreter = Interpreter(program, stages_for(program, "double", solution.t, p))
+        guess = np.array(program.newton.guess if program.newton else ())
+        z, status = np.empty((guess.size, solution.t.size)), np.empty(solution.t.size, np.int32)
+        interpreter.follow(solution.t, p, guess, z, status)
         searched = backend or solution.provenance.backend
 
         def again(t: EvenPoints, names: Sequence[str]) -> ContinuousSolution:
@@ -241,7 +247,7 @@ class ContinuousSolution:
                 scene, evaluate(scene, parameters=values, t=t, wanted=names, **asked), searched
             )
 
-        found = cls(program, stages, solution, p, z, program.outputs, again, searched)
+        found = cls(interpreter, solution, p, z, program.outputs, again, searched)
         if not found.agrees():
             raise other
         return found
@@ -257,9 +263,7 @@ class ContinuousSolution:
         outputs = [output for output in outputs if output not in self.program.loop_angles]
         moving = np.flatnonzero(solution.resting.all() | ~solution.resting)
         some = moving[[0, moving.size // 2, -1]]
-        out = self.stages.instant(
-            *self.stages.drive(solution.t[None, some], self.p), self.z[:, some], self.p
-        ).full()
+        out = self.interpreter.columns(solution.t[some], self.p, self.z[:, some])
         units = [solution.unit(output) for output in outputs]
         sizes = dict.fromkeys(units, 0.0)
         for output, unit in zip(outputs, units, strict=True):
@@ -347,7 +351,7 @@ class ContinuousSolution:
         corners, t, p = self.program.data.corners, self.solution.t, self.p.tolist()
         corners.refuse_isolated_laws(t, p, between=True)
         if corners.constraints:
-            out = self.stages.instant(*self.stages.drive(t[None], self.p), self.z, self.p).full()
+            out = self.interpreter.columns(t, self.p, self.z)
             corners.refuse_constraints(lambda name: self.program.seen(name, out), p, between=True)
 
     def signals(self, quantities: Sequence[Quantity], turned: Mapping[int, Array]) -> Signals:
@@ -355,8 +359,7 @@ class ContinuousSolution:
         columns = {k for quantity in quantities for k in _columns(quantity)}
         sharpness = Sharpness.of(self.program, sorted(columns))
         signals = Signals(
-            self.program,
-            self.stages,
+            self.interpreter,
             sharpness,
             quantities,
             self.solution.t,

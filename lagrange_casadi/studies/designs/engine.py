@@ -39,7 +39,7 @@ from ...sensitivity.ends import Ends
 from ...sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
 from ...sensitivity.slopes import Slopes
 from ..solving import checked_span, outputs_of
-from .interpreted import columns_of, outcome
+from .interpreted import InterpretedDesigns
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .reduction import KeptOutputs, stages_of
 from .spot_check import failures
@@ -67,7 +67,7 @@ class DesignEngine:
     kept: KeptOutputs
     program: Program
     stages: Stages
-    library: codegen.DesignsLibrary | None
+    library: codegen.Library | InterpretedDesigns
     provenance: Provenance
 
     @classmethod
@@ -105,31 +105,19 @@ class DesignEngine:
         watched = with_watched(program, kept.sharpness)
         stages = stages_of(watched, method, even, alike=times.common)
 
-        def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
-            source = codegen.emit_designs(watched, stages, method.newton, kept.reduction)
-            guess = (
-                begun(program, float(even[0]), p)
-                if times.timing.joint
-                else program.newton.guess
-                if program.newton
-                else ()
-            )
-            return codegen.load_designs(
-                source,
-                compiler,
-                tuple(shlex.split(method.flags)),
-                kept.reduction,
-                even.size,
-                np.array(guess, float),
-                method.precision,
-            )
+        guess: Sequence[float] = program.newton.guess if program.newton else ()
+        if timing.joint:
+            guess = begun(program, float(even[0]), p)
+
+        def build(compiler: codegen.Compiler) -> codegen.Library:
+            source = codegen.emit(watched, stages, method.newton, kept.reduction)
+            extra = tuple(shlex.split(method.flags))
+            designs = codegen.Designs.of(kept.reduction, guess, compiler, extra, method.precision)
+            return codegen.load(source, compiler, extra, designs=designs)
 
         found = compiled(method, build)
-        if found is None:
-            return cls(method, times, kept, program, stages, None, provenance("vm", "", "", method))
-        compiler, library = found
-        backend = "lanes" if compiler.language == "c++" else "c"
-        made = provenance(backend, compiler.version, " ".join(library.flags), method)
+        made = provenance(method, found)
+        library = found[1] if found else InterpretedDesigns(program, kept, method.newton)
         return cls(method, times, kept, program, stages, library, made)
 
     @property
@@ -204,7 +192,7 @@ class DesignEngine:
             self.program,
             self.count + _SAMPLES * len(self.quantities),
             self.method,
-            interpreted=self.library is None,
+            interpreted=self.provenance.backend == "vm",
         )
 
     @property
@@ -275,7 +263,7 @@ class DesignEngine:
         if listed is None:
             self._series(p, t, found, 1)
         else:
-            self._evaluate(p, t, found | {"tops": tops}, 1, listed)
+            self.library.designs(t, self.bent(p, t), p, found | {"tops": tops}, 1, listed)
         self._refuse_motions(p, t, found)
         return History(outcome_of(found), t[0], columns[0], found["iterated"][0], tops[0])
 
@@ -331,7 +319,7 @@ class DesignEngine:
         shape = (len(p), len(self.program.columns), self.count)
         columns = series if together else np.empty(shape) if self.watch.columns else None
         own = found | {"history": columns}
-        self._evaluate(p, even, own, threads)
+        self.library.designs(even, self.bent(p, even), p, own, threads)
         self._refuse_motions(p, even, own)
         if series is None or together:
             return
@@ -341,38 +329,10 @@ class DesignEngine:
         refuse(found, failed, others["status"])
         series[found["status"] != Status.OK] = np.nan
 
-    def _evaluate(
-        self, p: Array, t: Array, found: Results, threads: int, listed: Listed | None = None
-    ) -> None:
-        """Fill what is asked for of designs ``p`` at instants ``t`` (1 or n, t), in equal steps
-        where peaks are.
-        """
-        if self.library is not None:
-            self.library.evaluate(t, self.bent(p, t), p, found, threads, listed)
-            return
-        for i, row in enumerate(p):
-            status, design = outcome(
-                self.program, self.kept, t[min(i, len(t) - 1)], row, self.method.newton, listed
-            )
-            found["status"][i] = status
-            for name, array in found.items():
-                if name != "status" and array is not None:
-                    array[i] = np.nan if design is None else design[name]
-
     def _series(self, p: Array, t: Array, found: Results, threads: int) -> None:
         """The columns of designs at any instants, without peaks."""
-        if self.library is not None:
-            self.library.evaluate(
-                t, np.zeros((1, 0), bool), p, found | dict.fromkeys(KEPT), threads
-            )
-            return
-        for i, row in enumerate(p):
-            found["status"][i], table = columns_of(
-                self.program, self.kept, t[min(i, len(t) - 1)], row, self.method.newton
-            )
-            found["history"][i] = np.nan if table is None else table.out
-            if "iterated" in found:
-                found["iterated"][i] = np.nan if table is None else table.iterated
+        nowhere = np.zeros((1, 0), bool)
+        self.library.designs(t, nowhere, p, found | dict.fromkeys(KEPT), threads)
 
     def bent(self, p: Array, t: Array) -> npt.NDArray[np.bool_]:
         """Steps between the instants of each design in which its motion bends more than they show;

@@ -165,7 +165,7 @@ class _Answers(threading.local):
         self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
         # Where nothing but the values changes from call to call, all that remains is the call
         # itself.
-        if engine.library is not None and engine.times.common:
+        if engine.times.common:
             even, asked = self.instants = engine.times.of(self.p)
             bind = partial(engine.library.bound, p=self.p)
             nowhere = np.zeros((1, 0), bool)

@@ -11,11 +11,10 @@ import casadi as ca
 
 from ...base.arrays import Array
 from ...base.quantities import AVERAGED, Output, compared
-from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.tables import Table, table_of
-from ...codegen.designs import Reduction
 from ...codegen.link_curves import Along, mass_properties_of
+from ...codegen.reduction import Reduction
 from ...codegen.stages import Stages, compensated, plain, stages_for
 from ...equations.distributed_loads import distributed_loads_of
 from ...equations.mobility import load_points_of
@@ -119,7 +118,6 @@ class KeptOutputs:
             mass_properties=mass_properties,
             positive=positive,
             margins=margins,
-            statuses={status.name: int(status) for status in Status},
             watches=sharpness.watches,
             knots=sharpness.knots,
         )

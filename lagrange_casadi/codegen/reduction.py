@@ -1,11 +1,8 @@
-"""The C of many designs: that of a scene, and with it what reduces the instants of a design to what
-is kept of it.
-"""
+"""The reduction of a design's instants to what is kept of it, and its C."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any
@@ -21,13 +18,11 @@ from ..equations.status import NEAR, outside
 from ..peak_search.intervals import TOPS
 from ..peak_search.sharpness import Watch
 from .calls import Call
-from .emit import FOLLOW, Parts, emit_scene, following
 from .link_curves import Along, along, turning
-from .printer import function_name, print_functions
+from .printer import defined, function_name, print_functions
 from .search import BASE, OFF, TIP, Tables, interface
-from .stages import Stages
 
-DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
+DESIGNS = "lagrange_casadi_designs"
 CALL = Call(
     "lagrange_casadi_designs_call",
     {
@@ -68,7 +63,6 @@ instants.
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
 
-_FILES = ("instants.c", "designs.c")
 _PLACES = {"BASE": BASE, "TIP": TIP, "OFF": OFF}
 
 
@@ -95,7 +89,6 @@ class Reduction:
     mass_properties: Any
     positive: int
     margins: int
-    statuses: Mapping[str, int]
     watches: tuple[Watch, ...]
     knots: tuple[float, ...]
 
@@ -131,54 +124,37 @@ class Reduction:
         return Tables.of(self.curves, self.units, self.watches, self.knots, precision)
 
 
-def emit_designs(program: Program, stages: Stages, newton: int | None, reduction: Reduction) -> str:
-    """The whole C file, as that of :func:`.emit`, with :data:`DESIGNS` in place of what evaluates
-    instants alone.
-    """
-    parts = Parts.of(program, stages, len(reduction.watches))
-    text = emit_scene(program, stages, newton, parts)
-    text += print_functions(
-        {
-            "matter_of": reduction.mass_properties,
-            "status_of": program.status,
-            "beside_of": program.beside,
-        },
-        stages.precision,
-        prefix="matter",
-        packs=True,
+def reduced(program: Program, reduction: Reduction, precision: Precision) -> str:
+    """The C that follows that of a scene's instants: :data:`DESIGNS`, and what it calls."""
+    functions = {
+        "matter_of": reduction.mass_properties,
+        "status_of": program.status,
+        "beside_of": program.beside,
+    }
+    return (
+        print_functions(functions, precision, prefix="matter", packs=True)
+        + interface(precision)
+        + CALL.text("double" if precision == "double" else "float")
+        + defined("DESIGNS", _macros(program, reduction, precision))
+        + _tables(program, reduction)
+        + _source("sections.c")
+        + turning(reduction.links)
+        + _curves(reduction)
+        + _source("designs.c")
     )
-    if stages.loops and newton is not None:
-        text += following(program, stages, None, parts.sizes | {"follow": BEGIN})
-    text += (
-        interface(stages.precision)
-        + CALL.text(parts.sizes["real"])
-        + _defined(_macros(program, stages, newton, reduction, parts))
-    )
-    text += _tables(program, reduction) + _source("sections.c") + turning(reduction.links)
-    text += _curves(reduction)
-    return text + "".join(_source(name) for name in _FILES)
 
 
-def _macros(
-    program: Program, stages: Stages, newton: int | None, reduction: Reduction, parts: Parts
-) -> dict[str, object]:
-    sizes, precision = parts.sizes, stages.precision
+def _macros(program: Program, reduction: Reduction, precision: Precision) -> dict[str, object]:
     checks, curves = len(reduction.checks), len(reduction.curves)
     quantities = len(reduction.quantities) + sum(len(link.places) for link in reduction.links)
     numbers = np.finfo(DTYPES[precision])
     return {
-        "REAL": sizes["real"],
-        "SOME(count)": "((count) > 0 ? (count) : 1)",
         "ROOT": function_name("sqrt", precision),
         "FABS": function_name("fabs", precision),
-        "HALF": "((DESIGNS_REAL) 0.5)",
-        "SIXTH": "((DESIGNS_REAL) 1/6)",
+        "HALF": "((lanes_real) 0.5)",
+        "SIXTH": "((lanes_real) 1/6)",
         "CLOSE": _real(8 * float(numbers.eps)),
         "LARGEST": _real(float(numbers.max)),
-        **{
-            name.upper(): sizes[name]
-            for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs", "outputs")
-        },
         "MATTER": max(1, reduction.mass_properties.size1_out(0)),
         "MARGINS": reduction.margins,
         "LIMITS": reduction.mass_properties.size1_out(0) - len(program.bounds),
@@ -198,21 +174,12 @@ def _macros(
         "ROUNDS": ROUNDS,
         "TOPS": TOPS,
         "END": _real(END[precision]),
-        "FOLLOW(call)": f"{FOLLOW}(call)" if stages.loops else "((void) (call))",
-        "BEGIN(call)": (
-            f"{BEGIN}(call)" if stages.loops and newton is not None else "((void) (call))"
-        ),
         **{f"IS_{kind}": k for k, kind in enumerate(CHECKS)},
-        **reduction.statuses,
     }
 
 
 def _real(value: float) -> str:
-    return f"((DESIGNS_REAL) {value:.17g})"
-
-
-def _defined(macros: Mapping[str, object]) -> str:
-    return "".join(f"#define DESIGNS_{name} {value}\n" for name, value in macros.items())
+    return f"((lanes_real) {value:.17g})"
 
 
 def _tables(program: Program, reduction: Reduction) -> str:
@@ -222,7 +189,7 @@ def _tables(program: Program, reduction: Reduction) -> str:
     statuses = [Status.OK, *(rule.status for rule in program.rules)]
     others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
     breaks = [
-        _table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others
+        _table("lanes_real", f"designs_breaks{k}", map(_real, ratios)) for k, ratios in others
     ]
     return "".join(
         (
@@ -252,10 +219,6 @@ def _tables(program: Program, reduction: Reduction) -> str:
 
 def _table(kind: str, name: str, values: Any) -> str:
     return f"static const {kind} {name}[] = {{{', '.join(str(value) for value in values)}}};\n"
-
-
-def _number(value: float) -> str:
-    return f"(DESIGNS_REAL) {value:.17g}"
 
 
 def _curves(reduction: Reduction) -> str:
