@@ -54,7 +54,9 @@ def test_every_table_says_where_it_is_from_and_fits_a_shape():
         assert " EN 10" in text.partition("\nname,")[0]
         for profile in beams.read_profiles(name):
             shape = profile.shape(kinds.get(name, "i_section"))
-            assert all(float(demand) > 0 for demand, _ in shape.demands()), profile.name
+            assert all(float(demand) > 0 for demand, _ in shape.parameter_constraints()), (
+                profile.name
+            )
 
 
 def test_a_file_of_the_same_name_comes_first(tmp_path, monkeypatch):

@@ -9,8 +9,10 @@ import numpy as np
 
 from ..arguments import NotNegative, Numeric, Positive, public
 from ..base.arrays import Array
+from ..renamed import renamed
 
 
+@renamed
 @public
 @dataclass(frozen=True)
 class Motor:
@@ -36,13 +38,13 @@ class Motor:
     time_constant: float = math.inf
     linear: bool = False
 
-    def lasting(self, speed: Numeric) -> Array:
-        """The torque that it bears continuously at a speed [N m], zero where there is none."""
+    def continuous_torque(self, speed: Numeric) -> Array:
+        """Continuous torque at a speed [N m], zero where there is none."""
         fall = (self.stall_torque - self.rated_torque) / self.rated_speed
         return np.asarray(np.maximum(self.stall_torque - fall * np.abs(speed), 0.0))
 
-    def at_most(self, speed: Numeric) -> Array:
-        """The torque that it gives for a short time at a speed [N m], at speeds that it reaches."""
+    def short_time_torque(self, speed: Numeric) -> Array:
+        """Largest torque for a short time at a speed [N m], at speeds that it reaches."""
         if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
             return np.full(np.shape(speed), self.peak_torque)
         return np.asarray(

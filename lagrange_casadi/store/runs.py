@@ -68,7 +68,11 @@ _AXES = {
 _OVER = "over"
 _BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
 """Attributes that a dataset may have beside those of what it holds."""
-_PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
+_PROVENANCE = {key: key for key in ("backend", "precision", "compiler", "flags")} | {
+    "rung": "method"
+}
+"""Field of the provenance that each attribute of a file holds."""
+
 _GRID_TOLERANCE = 1e-12
 _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
 """Largest distance of a coordinate from that by which the instants were defined, relative to the
@@ -230,7 +234,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
             if output.group != "section" or grids is None or output.part in grids
         )
         outputs = dict.fromkeys(
-            [*quantities, *solution.outputs, *held_outputs(solution.held), *certificate]
+            [*quantities, *solution.outputs, *held_outputs(solution.holding), *certificate]
         )
         listed = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in listed if output not in outputs]
@@ -363,7 +367,7 @@ def _write(
     for output, values in solution.outputs.items():
         breathe()
         _add(file, scales, solution, output, values)
-    for output, values in held_outputs(solution.held).items():
+    for output, values in held_outputs(solution.holding).items():
         _add(file, scales, solution, output, values)
     for name, values in solution.certificate.items():
         _add(file, scales, solution, Output("certificate", "", name), values)
@@ -388,22 +392,22 @@ def _write(
     file.attrs["undetermined"] = json.dumps(solution.undetermined)
     if solution.elasticity != Elasticity():
         file.attrs["by_elasticity"] = json.dumps(
-            [str(output) for output in solution.elasticity.told]
+            [str(output) for output in solution.elasticity.completed]
         )
         file.attrs["open_because"] = json.dumps(solution.elasticity.reasons)
-    if solution.held:
+    if solution.holding:
         file.attrs["holding"] = json.dumps(
-            {name: held.untold for name, held in solution.held.items()}
+            {name: held.reason for name, held in solution.holding.items()}
         )
     file.attrs["versions"] = json.dumps(dict(provenance.versions))
-    for key in _PROVENANCE:
-        file.attrs[key] = getattr(provenance, key)
+    for key, name in _PROVENANCE.items():
+        file.attrs[key] = getattr(provenance, name)
     file.attrs["figures"] = figures
 
 
 def _version(solution: Solution) -> int:
     """The first version of the schema that has all of a solution."""
-    latest = solution.sensitivities.by or solution.elasticity != Elasticity() or solution.held
+    latest = solution.sensitivities.by or solution.elasticity != Elasticity() or solution.holding
     if latest or any(output.group in _LATEST for output in solution.outputs):
         return SCHEMA_VERSION
     along = {output.member for output in solution.outputs if output.group == "spread"}
@@ -495,7 +499,7 @@ def _read(file: h5py.File) -> Solution:
                 outputs[output] = numbers(item, t.shape)
 
     file.visititems(visit)
-    words = {key: shown(file.attrs[key]) for key in _PROVENANCE}
+    words = {name: shown(file.attrs[key]) for key, name in _PROVENANCE.items()}
     provenance = Provenance(
         **words, versions=parsed(file.attrs["versions"], {str: str}, "versions")
     )
@@ -532,7 +536,7 @@ def _read(file: h5py.File) -> Solution:
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
     return replace(
-        solution, sensitivities=slopes_of(file, solution, numbers), held=_held(file, solution)
+        solution, sensitivities=slopes_of(file, solution, numbers), holding=_held(file, solution)
     )
 
 

@@ -206,7 +206,7 @@ def select_bearing(
     for one in sorted(fitting, key=lambda one: (one.outer, one.bore, one.width)):
         found = joint_safety(solution, joint, [one.rolling(hours)])
         if not found.verdicts:
-            raise DeclarationError(f"joint '{joint}': {'; '.join(found.is_open)}")
+            raise DeclarationError(f"joint '{joint}': {'; '.join(found.not_evaluated)}")
         if found.against("life of bearing") >= 1.0 and found.against("static load") >= static:
             return one
     best = max(fitting, key=lambda one: one.dynamic)
