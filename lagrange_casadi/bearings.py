@@ -1,6 +1,30 @@
-"""Pins and bearings of joints: what they are made of, and how near they are to what they bear."""
+"""Pins and bearings of joints: what they are made of, how near they are to what they bear, and
+tables to choose from.
+"""
 
 from .declare.fitted import Pin, Plain, Rolling, fit
+from .strength.ball_bearings import (
+    BallBearing,
+    deep_groove,
+    dynamic_rating,
+    read_bearings,
+    select_bearing,
+    static_rating,
+)
 from .strength.bearings import bending_of_pin, equivalent_load, rated_hours
 
-__all__ = ["Pin", "Plain", "Rolling", "bending_of_pin", "equivalent_load", "fit", "rated_hours"]
+__all__ = [
+    "BallBearing",
+    "Pin",
+    "Plain",
+    "Rolling",
+    "bending_of_pin",
+    "deep_groove",
+    "dynamic_rating",
+    "equivalent_load",
+    "fit",
+    "rated_hours",
+    "read_bearings",
+    "select_bearing",
+    "static_rating",
+]

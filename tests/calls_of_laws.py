@@ -25,6 +25,9 @@ from lagrange_casadi import (
     strength,
 )
 
+BALL = {"name": "B", "bore": 0.02, "outer": 0.04, "width": 0.01, "dynamic": 9e3, "static": 5e3}
+"""A ball bearing's numbers."""
+
 
 def laws() -> Iterator[tuple[str, Call]]:
     """Calls of what makes motions, densities, cross-sections, notches, bearings, figures."""
@@ -105,8 +108,15 @@ def laws() -> Iterator[tuple[str, Call]]:
         "bending_of_pin": {"force": 100.0, "eye": 0.01, "cheek": 0.01},
         "equivalent_load": {"load": [1.0, 2.0], "turned": [1.0, 1.0]},
         "rated_hours": {"dynamic": 1e4, "load": 10.0, "rpm": 100.0},
+        "BallBearing": BALL,
+        "deep_groove": {"series": "62"},
+        "dynamic_rating": {"ball": 0.01, "pitch": 0.05, "balls": 8},
+        "static_rating": {"ball": 0.01, "pitch": 0.05, "balls": 8},
+        "read_bearings": {"path": "bearings.csv"},
     }.items():
         yield f"bearings.{name}", (getattr(bearings, name), given)
+    ball = bearings.BallBearing(**BALL)
+    yield "BallBearing.rolling", (ball.rolling, {"hours": 1e4})
     for name, given in {
         "DeflectionPlot": {"name": "f", "link": "arm"},
         "MechanismDrawing": {},

@@ -15,6 +15,7 @@ from lagrange_casadi import (
     actuators,
     animation,
     beams,
+    bearings,
     evaluate,
     figures,
     prepare,
@@ -224,6 +225,8 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         },
     }.items():
         yield name, (getattr(actuators, name), given)
+    chosen = {**held, "bearings": bearings.deep_groove("62"), "hours": 10.0}
+    yield "select_bearing", (bearings.select_bearing, chosen)
     yield "Motor.short_time_torque", (of.motor.short_time_torque, {"speed": 10.0})
     yield "Motor.continuous_torque", (of.motor.continuous_torque, {"speed": 10.0})
     yield "write_animation", (animation.write_animation, {"solution": solution, "path": "made.svg"})
@@ -245,6 +248,9 @@ def files() -> None:
         "samples.csv": "0,0\n1,1\n2,0\n3,1\n4,0\n5,1\n",
         "profiles.csv": "name,height,width\nflat,0.03,0.01\n",
         "designs.csv": "l\n0.2\n0.3\n",
+        "bearings.csv": (
+            "name,bore [mm],outer [mm],width [mm],dynamic [kN],static [kN]\nB,25,52,15,14,7.8\n"
+        ),
         "motors.csv": (
             "name,stall_torque,rated_torque,peak_torque,rated_speed,max_speed,inertia\nM,9,8,20,1000,2000,1e-5\n"
         ),

@@ -7,7 +7,7 @@ import pytest
 from lagrange_casadi import check, evaluate, load, save
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.figures import draw
+from lagrange_casadi.figures import default_figures, draw
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -56,6 +56,7 @@ def test_what_is_left_out_is_filled_from_the_law(solution, tmp_path, grids, link
     assert check(path) == []
     back = load(path)
     assert list(back.names()) == list(solution.names())
+    assert dict(back.errors) == dict(solution.errors)
     for name in solution.names():
         np.testing.assert_array_equal(back.array(name), solution.array(name), err_msg=name)
     for link in solution.links_with_sections:
@@ -73,8 +74,9 @@ def test_readers_need_no_grids(solution, tmp_path):
         pages.append((tmp_path / name / "a.html").read_bytes())
         back.to_xarray()
     assert pages[0] == pages[1]
-    draw(load(tmp_path / "none" / "a.h5"), tmp_path / "figures")
-    assert any((tmp_path / "figures").iterdir())
+    bare = load(tmp_path / "none" / "a.h5")
+    (bending,) = [spec for spec in default_figures(bare) if spec.name == "section_bell_1"]
+    assert all(path for _, path in draw(bare, [bending], tmp_path))
     sizes = [(tmp_path / name / "a.h5").stat().st_size for name in ("none", "all")]
     assert sizes[0] < sizes[1] / 2
 

@@ -5,10 +5,11 @@ them.
 import functools
 
 from ..renamed import former
-from .catalogue import Motor, read_motors
+from .catalogue import read_motors
 from .choice import Choice, assess, select
 from .duty import Duty, InertiaRatio, duty_of
 from .inertia import inertia_at
+from .motor import Motor
 from .plot import plot_duty
 
 __all__ = [

@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 import os
 import re
-from dataclasses import dataclass
+from pathlib import Path
 
-import numpy as np
-
-from ..arguments import NotNegative, Numeric, Positive, public
-from ..base.arrays import Array
+from ..arguments import public
 from ..base.csv_rows import Row, read_rows
 from ..errors import DeclarationError
-from ..renamed import renamed
+from .classes import CLASSES
+from .motor import Motor
 
 _RPM = math.tau / 60.0
 _ROTARY = ("stall_torque", "rated_torque", "rated_speed", "peak_torque", "max_speed", "inertia")
@@ -36,55 +34,6 @@ said.
 _HEAD = re.compile(r"(\w+)\s*(?:\[\s*(.+?)\s*\])?")
 
 
-@renamed
-@public
-@dataclass(frozen=True)
-class Motor:
-    """A motor: torques in N m, speeds in rad/s, the rotor's inertia in kg m^2. Of a ``linear`` one
-    forces in N, speeds in m/s, and the mass of what moves in kg.
-
-    It bears ``stall_torque`` continuously at rest and ``rated_torque`` at its ``rated_speed``,
-    linear between and on; ``peak_torque`` for a short time, and no speed above ``max_speed``. Where
-    its voltage limits it, it gives ``peak_torque`` up to ``knee_speed`` alone, and from there less,
-    linear to ``end_torque`` at ``max_speed``. ``time_constant`` [s] is that of its winding: in so
-    long it warms by 63 %. Infinite, it is warm by the mean of a cycle, however long that is.
-    """
-
-    name: str
-    stall_torque: NotNegative
-    rated_torque: NotNegative
-    rated_speed: Positive
-    peak_torque: NotNegative
-    max_speed: Positive
-    inertia: NotNegative
-    knee_speed: NotNegative | None = None
-    end_torque: NotNegative | None = None
-    time_constant: float = math.inf
-    linear: bool = False
-
-    def continuous_torque(self, speed: Numeric) -> Array:
-        """Continuous torque at a speed [N m], zero where there is none."""
-        fall = (self.stall_torque - self.rated_torque) / self.rated_speed
-        return np.asarray(np.maximum(self.stall_torque - fall * np.abs(speed), 0.0))
-
-    def short_time_torque(self, speed: Numeric) -> Array:
-        """Largest torque for a short time at a speed [N m], at speeds that it reaches."""
-        if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
-            return np.full(np.shape(speed), self.peak_torque)
-        return np.asarray(
-            np.interp(
-                np.abs(speed),
-                [self.knee_speed, self.max_speed],
-                [self.peak_torque, self.end_torque],
-            )
-        )
-
-    @property
-    def rated_power(self) -> float:
-        """Power at the rated speed [W]."""
-        return self.rated_torque * self.rated_speed
-
-
 @public
 def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     """The motors of a CSV file, one a row, below a head of columns in any order and beside others.
@@ -95,9 +44,14 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     end_force, and time_constant [s]: a motor whose cell is empty has none. Other units stand with
     the column, as ``inertia [kg cm^2]``. Cells are parted as :func:`.read_rows` says.
 
+    Where there is no such file, the name of a class of motors is one, servo or induction: their
+    numbers follow from the rule of :mod:`.classes`, and are no maker's.
+
     Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a
     column that is missing, and for a line that is no motor, by its number.
     """
+    if str(path) in CLASSES and not Path(path).exists():
+        return CLASSES[str(path)].motors(str(path))
     rows = read_rows(path, f"the columns name, {', '.join(_ROTARY)}")
     head = next(rows)
     cells = [_HEAD.fullmatch(cell) for cell in head.cells]

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..arguments import public
 from ..errors import DeclarationError, NoDesignError
-from .catalogue import Motor
 from .duty import Duty
+from .motor import Motor
 from .warmth import warmest
 
 

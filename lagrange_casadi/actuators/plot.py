@@ -11,8 +11,8 @@ from ..arguments import public
 from ..base.publish import check_writable, writing
 from ..errors import DeclarationError
 from ..shapes.pictures import PICTURES, one_at_a_time, save
-from .catalogue import Motor
 from .duty import Duty
+from .motor import Motor
 
 
 def check_picture(path: str | Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass
+from pathlib import Path
 
 from ..arguments import public
 from ..base.csv_rows import Row, read_rows
@@ -14,6 +15,9 @@ from .shape import Shape, dimensions_of
 _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:\[\s*(\w+)\s*\])?\s*")
 _UNITS = {"": 1, "m": 1, "cm": 100, "mm": 1000}
 """Number of each unit in a metre."""
+_TABLES = Path(__file__).parent / "tables"
+STANDARD = tuple(sorted(path.stem for path in _TABLES.glob("*.csv")))
+"""Names of the tables of standard profiles."""
 
 
 @public
@@ -44,11 +48,17 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
     """Profiles of a CSV file: a column ``name``, and one for each dimension, in metres or with a
     unit as ``height [mm]``.
 
+    Where there is no such file, the name of a standard table is one: IPE, HEA and HEB of EN 10365,
+    CHS for tubes, flat and round. Each says in its first lines where its sizes are from.
+
     Cells are parted as :func:`.read_rows` says; lines that begin with ``#`` are passed over.
 
     Raises :class:`.PathError` for a file that cannot be read, and :class:`.DeclarationError` that
     names the line which is wrong.
     """
+    name = str(path)
+    if name in STANDARD and not Path(path).exists():
+        path = _TABLES / f"{name}.csv"
     rows = read_rows(path, "a head and a line for every profile")
     head = next(rows)
     heads = [_head(head.where, cell) for cell in head.cells]

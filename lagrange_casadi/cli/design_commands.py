@@ -285,10 +285,9 @@ def optimise(**given: Any) -> int:
 @click.option(
     "--profiles",
     type=PATH,
-    metavar="FILE.csv",
-    help="Choose from this table: a column name, and one column per dimension [m]. Default:"
-    " profiles.csv"
-    " next to the case.",
+    metavar="FILE.csv|NAME",
+    help="Choose from this table: a column name, and one column per dimension [m]; or by name from"
+    " a standard one: IPE, HEA, HEB, CHS, flat, round. Default: profiles.csv next to the case.",
 )
 @click.option(
     "--safety",
@@ -343,8 +342,9 @@ def size(**given: Any) -> None:
 @click.option(
     "--motors",
     type=PATH,
-    metavar="FILE.csv",
-    help="Choose from this catalogue; default: motors.csv next to the case.",
+    metavar="FILE.csv|NAME",
+    help="Choose from this catalogue, or by name from a class of motors: servo, induction; default:"
+    " motors.csv next to the case.",
 )
 @click.option(
     "--drive",

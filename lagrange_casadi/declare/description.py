@@ -442,7 +442,7 @@ def _described(
         parts = mechanism.fitted.get(joint.name)
         turning = mechanism.turning.get(joint.name)
         found: Description = {"fitted": parts_to_numbers(parts, number)} if parts else {}
-        return found | {"turning": turning} if parts and turning else found
+        return found | {"turning": turning} if turning else found
 
     def freedoms(joint: Joint) -> Description:
         if joint.turned is None:

@@ -389,6 +389,14 @@ def _write(
     file.attrs["outputs"] = json.dumps(list(solution.series))
     if len(grids) < len(solution.links_with_sections):
         file.attrs["grids"] = json.dumps(list(grids))
+        bare = (
+            Output("section", link, force)
+            for link in solution.links_with_sections
+            if link not in grids
+            for force in solution.table.forces
+        )
+        estimates = {str(o): solution.errors[str(o)] for o in bare if str(o) in solution.errors}
+        file.attrs["error_estimates"] = json.dumps(estimates)
     file.attrs["undetermined"] = json.dumps(solution.undetermined)
     if solution.elasticity != Elasticity():
         file.attrs["by_elasticity"] = json.dumps(
@@ -484,7 +492,8 @@ def _read(file: h5py.File) -> Solution:
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
     outputs: dict[Output, Array] = {}
-    errors: dict[str, float] = {}
+    estimates = file.attrs.get("error_estimates", "{}")
+    errors: dict[str, float] = {**parsed(estimates, {str: float}, "error_estimates")}
 
     def visit(place: str, item: Any) -> None:
         if (

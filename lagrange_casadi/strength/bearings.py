@@ -72,16 +72,16 @@ def rated_hours(
 
 
 @public
-def joint_safety(solution: Solution, joint: str) -> Safety:
-    """The factors of safety of what is fitted to a joint, over all instants: by how much its
-    reaction may grow.
+def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None = None) -> Safety:
+    """The factors of safety of what is fitted to a joint, or of other ``parts`` in its place, over
+    all instants: by how much its reaction may grow.
 
     Of speed and heating it is by how much these may. ``not_evaluated`` names what is missing, and
     why. Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted,
     equilibrium leaves it open, or a number that depends on parameters is not positive.
     """
     fitted = solution.description["joints"].get(joint, {}).get("fitted", {})
-    if not fitted:
+    if not fitted and parts is None:
         having = ", ".join(fitted_of(solution.description))
         raise DeclarationError(
             f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
@@ -108,8 +108,10 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
     rate, slide = (_rate(solution, joint, kind) for kind in ("angle", "slide"))
     verdicts: list[Verdict] = []
     left: list[str] = []
-    for kind, part in parts_from_numbers(fitted).items():
-        _check(joint, kind, part)
+    if parts is None:
+        parts = list(parts_from_numbers(fitted).values())
+    for part in parts:
+        _check(joint, part)
         if isinstance(part, Pin):
             verdicts += _pin(part, across, solution.t)
         elif isinstance(part, Plain):
@@ -126,7 +128,8 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
     return Safety(joint, tuple(verdicts), tuple(left))
 
 
-def _check(joint: str, kind: str, part: Fitted) -> None:
+def _check(joint: str, part: Fitted) -> None:
+    kind = type(part).__name__.lower()
     for name, value in vars(part).items():
         if isinstance(value, float) and not positive(name, value):
             raise DeclarationError(

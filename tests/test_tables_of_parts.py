@@ -1,0 +1,220 @@
+"""Shipped tables: masses that standards publish, ratings by Hertz and by tables of ISO, and that
+users' own tables come first.
+"""
+
+import itertools
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import lagrange_casadi.beams.profiles as profiles_of
+from lagrange_casadi import Mechanism, Scene, actuators, beams, bearings, evaluate
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import DeclarationError, NoDesignError
+from lagrange_casadi.motion import polynomial
+
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+
+# Radius of the fillets [mm] and mass per length [kg/m] of EN 10365.
+PUBLISHED = {
+    "IPE": """80 5 6.0, 100 7 8.1, 120 7 10.4, 140 7 12.9, 160 9 15.8, 180 9 18.8, 200 12 22.4,
+        220 12 26.2, 240 15 30.7, 270 15 36.1, 300 15 42.2, 330 18 49.1, 360 18 57.1, 400 21 66.3,
+        450 21 77.6, 500 21 90.7, 550 24 106, 600 24 122""",
+    "HEA": """100 12 16.7, 120 12 19.9, 140 12 24.7, 160 15 30.4, 180 15 35.5, 200 18 42.3,
+        220 18 50.5, 240 21 60.3, 260 24 68.2, 280 24 76.4, 300 27 88.3, 320 27 97.6, 340 27 105,
+        360 27 112, 400 27 125, 450 27 140, 500 27 155, 550 27 166, 600 27 178""",
+    "HEB": """100 12 20.4, 120 12 26.7, 140 12 33.7, 160 15 42.6, 180 15 51.2, 200 18 61.3,
+        220 18 71.5, 240 21 83.2, 260 24 93.0, 280 24 103, 300 27 117, 320 27 127, 340 27 134,
+        360 27 142, 400 27 155, 450 27 171, 500 27 187, 550 27 199, 600 27 212""",
+}
+
+
+@pytest.mark.parametrize("series", PUBLISHED)
+def test_sections_have_the_mass_that_the_standard_publishes(series):
+    """With the fillets at the web, (4 - pi) r^2: to the last digit of each row."""
+    found = beams.read_profiles(series)
+    rows = [row.split() for row in PUBLISHED[series].split(",")]
+    assert [profile.name for profile in found] == [f"{series} {size}" for size, *_ in rows]
+    for profile, (_, radius, mass) in zip(found, rows, strict=True):
+        area = float(profile.shape("i_section").area)
+        whole = area + (4 - math.pi) * (float(radius) / 1e3) ** 2
+        last = 0.05 if "." in mass else 0.5
+        assert abs(7850 * whole - float(mass)) <= 1.05 * last, profile.name
+        assert area > 0.92 * whole
+
+
+def test_every_table_says_where_it_is_from_and_fits_a_shape():
+    kinds = {"CHS": "tube", "flat": "rectangle", "round": "round_bar"}
+    assert set(profiles_of.STANDARD) == {*PUBLISHED, *kinds}
+    for name in profiles_of.STANDARD:
+        text = (Path(profiles_of.__file__).parent / "tables" / f"{name}.csv").read_text()
+        assert text.startswith("# ")
+        assert " EN 10" in text.partition("\nname,")[0]
+        for profile in beams.read_profiles(name):
+            shape = profile.shape(kinds.get(name, "i_section"))
+            assert all(float(demand) > 0 for demand, _ in shape.parameter_constraints()), (
+                profile.name
+            )
+
+
+def test_a_file_of_the_same_name_comes_first(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "IPE").write_text("name,diameter\nmine,0.1\n")
+    assert [profile.name for profile in beams.read_profiles("IPE")] == ["mine"]
+    (tmp_path / "servo").write_text(
+        "name,stall_torque,rated_torque,rated_speed,peak_torque,max_speed,inertia\n"
+        "mine,1,1,3000,3,5000,1e-5\n"
+    )
+    assert [motor.name for motor in actuators.read_motors("servo")] == ["mine"]
+
+
+@pytest.mark.parametrize("name", ["servo", "induction"])
+def test_motors_of_a_class_follow_its_rule(name):
+    """The shear stress on the rotor makes the torque at rest, and its mass turns."""
+    shear, slender = {"servo": (15e3, 1.5), "induction": (10e3, 1.2)}[name]
+    motors = actuators.read_motors(name)
+    for motor in motors:
+        radius = (2 * motor.inertia / (7850 * math.pi * 2 * slender)) ** 0.2
+        mass = 7850 * math.pi * radius**2 * (2 * radius * slender)
+        assert motor.inertia == pytest.approx(mass * radius**2 / 2, rel=1e-12)
+        surface = 2 * math.pi * radius * (2 * radius * slender)
+        assert motor.stall_torque == pytest.approx(shear * surface * radius, rel=1e-12)
+        assert motor.rated_torque <= motor.stall_torque < motor.peak_torque
+        assert motor.name == f"class {name} {motor.rated_power / 1e3:.6g} kW"
+    assert sorted(motors, key=lambda motor: motor.rated_power) == motors
+
+
+# f_c of ISO 281 over the ratio of ball and pitch diameters (Shigley, Harris and ISO print it).
+F_C = {0.05: 46.7, 0.1: 55.5, 0.12: 57.5, 0.14: 58.8, 0.16: 59.6, 0.2: 59.9, 0.24: 59.0, 0.3: 56.0}
+F_C |= {0.36: 51.7, 0.4: 48.4}
+
+
+@pytest.mark.parametrize("share", F_C)
+def test_the_dynamic_rating_has_the_factors_that_iso_prints(share):
+    found = bearings.dynamic_rating(share * 0.06, 0.06, 8)
+    size = share * 60
+    assert found == pytest.approx(1.3 * F_C[share] * 4 * size**1.8, rel=1.5e-3)
+
+
+def hertz(ball, pitch):
+    """Load of a ball [N] at which the larger pressure in its grooves is 4200 MPa, by Hertz: the
+    axes of the ellipse from the ratio of curvatures, with integrals by quadrature.
+    """
+    angle = (np.arange(4000) + 0.5) * math.pi / 8000
+    module = 2.07e11 / (1 - 0.3**2)
+    found = []
+    for sign, groove in ((1, 0.52), (-1, 0.53)):
+        race = (pitch - sign * ball) / 2
+        rolling, across = 2 / ball + sign / race, 2 / ball - 1 / (groove * ball)
+        total = rolling + across
+
+        def integrals(k):
+            root = np.sqrt(1 - (1 - 1 / k**2) * np.sin(angle) ** 2)
+            return [float(np.mean(x)) * math.pi / 2 for x in (1 / root, root)]
+
+        low, high = 1.0 + 1e-9, 60.0
+        for _ in range(200):
+            k = (low + high) / 2
+            first, second = integrals(k)
+            ratio = (k * k * second - first) / (first - second)
+            low, high = (k, high) if ratio < rolling / across else (low, k)
+        second = integrals(k)[1]
+        # a^3 = 6 k^2 E Q / (pi total E*), E* of one steel on another; b = a/k, p = 3 Q/(2 pi a b).
+        per = (6 * k * k * second / (math.pi * total * module)) ** (1 / 3)
+        found.append((4.2e9 * 2 * math.pi * per**2 / k / 3) ** 3)
+    return min(found)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.08, 0.12, 0.16, 0.2, 0.25, 0.3])
+def test_the_static_rating_is_that_of_hertz(share):
+    """A fifth of the load of all balls, at 4200 MPa."""
+    ball, balls = 0.01, 9
+    told = balls / 5 * hertz(ball, ball / share)
+    assert bearings.static_rating(ball, ball / share, balls) == pytest.approx(told, rel=0.015)
+
+
+def test_bearings_are_marked_as_computed_and_near_those_of_makers():
+    every = bearings.deep_groove()
+    assert len(every) == 63
+    assert len({bearing.name for bearing in every}) == 63
+    assert all("no maker's rating" in bearing.source for bearing in every)
+    for series in ("60", "62", "63"):
+        own = bearings.deep_groove(series)
+        assert all(a.outer < b.outer and a.bore < b.bore for a, b in itertools.pairwise(own))
+    # A bearing of 25 x 52 x 15 mm bears 14 kN, in any catalogue, and 7.8 kN at rest.
+    (bearing,) = [one for one in every if one.name == "6205"]
+    assert (bearing.bore, bearing.outer, bearing.width) == (0.025, 0.052, 0.015)
+    assert bearing.dynamic == pytest.approx(14e3, rel=0.08)
+    assert bearing.static == pytest.approx(7.8e3, rel=0.08)
+    with pytest.raises(DeclarationError, match="expected one of 60, 62, 63"):
+        bearings.deep_groove("61")
+
+
+@pytest.fixture(scope="module")
+def rotor():
+    m = Mechanism("rotor")
+    disc = m.link("disc", length=0.2, mass=2.0, centre=(0.05, 0.0), inertia=0.01)
+    m.revolute("O", m.ground, disc)
+    return evaluate(Scene(m, {"O": polynomial(0.0, 100.0)}, t=(0, math.pi / 50, 201)))
+
+
+def test_the_smallest_bearing_that_lives_long_enough(rotor):
+    every = bearings.deep_groove()
+    best = bearings.select_bearing(rotor, "O", every, hours=20e3, bore=0.015)
+    force = np.hypot(rotor.reaction("O").fx, rotor.reaction("O").fy)
+    cubic = (force[:-1] ** 3).mean() ** (1 / 3)
+
+    def lives(bearing):
+        long = bearings.rated_hours(bearing.dynamic, cubic, 100 * 60 / math.tau) >= 20e3
+        return long and bearing.static >= force.max()
+
+    assert lives(best)
+    assert best.bore >= 0.015
+    assert not any(lives(one) for one in every if one.bore >= 0.015 and one.outer < best.outer)
+    with pytest.raises(NoDesignError, match="no bearing lives 1e\\+12 h; the strongest, '6320'"):
+        bearings.select_bearing(rotor, "O", every, hours=1e12)
+    with pytest.raises(NoDesignError, match="no bearing has a bore of 200 mm or more"):
+        bearings.select_bearing(rotor, "O", every, hours=1.0, bore=0.2)
+
+
+def test_a_table_of_ones_own_bearings(tmp_path):
+    path = tmp_path / "bearings.csv"
+    path.write_text(
+        "# a maker's\nname;bore [mm];outer [mm];width [mm];dynamic [kN];static [kN]\n"
+        "A;25;52;15;14,8;7,8\n"
+    )
+    (own,) = bearings.read_bearings(path)
+    assert (own.name, own.bore, own.dynamic, own.static) == ("A", 0.025, 14.8e3, 7.8e3)
+    assert own.source == str(path)
+    assert own.rolling(100.0).dynamic == 14.8e3
+    for text, told in (
+        ("name,bore [mm]\n", r"expected one column 'outer \[mm\]'"),
+        (path.read_text().replace("14,8", "-1"), r"line 3: dynamic \[kN\]: expected a positive"),
+    ):
+        path.write_text(text)
+        with pytest.raises(DeclarationError, match=told):
+            bearings.read_bearings(path)
+
+
+def test_the_commands_take_names(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "case.py").write_text("""
+from lagrange_casadi import Mechanism, Scene, beams
+from lagrange_casadi.motion import harmonic
+
+
+def scene():
+    m = Mechanism("arm")
+    d = m.parameter("d", 0.03, "m", low=0.0)
+    beam = beams.Beam(beams.round_bar(d), beams.material("S355"))
+    arm = m.link("arm", length=1.0, beam=beam)
+    m.revolute("O", m.ground, arm)
+    m.force("pull", arm.tip, y=-500.0)
+    return Scene(m, {"O": harmonic(0.0, 0.5, 0.5)}, t=(0, 2, 81))
+""")
+    assert main(["size", "case.py", "--profiles", "round"]) == 0
+    assert "'round " in capsys.readouterr().out
+    assert main(["drive", "case.py", "--motors", "servo", "--ratio", "50,100"]) == 0
+    assert "'class servo " in capsys.readouterr().out
