@@ -10,6 +10,7 @@ import click
 
 from ..base.publish import check_writable
 from ..case import Case, load_case
+from ..codegen.compiler import statements
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, one_line
@@ -23,8 +24,9 @@ from ..store.runs import load
 from ..store.untrusted import reported_as
 from ..studies.evaluate import evaluate
 from ..studies.sweep import Sweep, is_sweep
+from ..studies.sweep.axes import grouped
 from ..verification.certificate import failure
-from .echo import echo
+from .echo import echo, say_step
 from .options import parameters
 from .strength_lines import untold_lines
 
@@ -83,8 +85,15 @@ def report(
         check_writable(out)
         wanted = with_motion(asked.want or scene.wanted)
         given, timing = parameters(asked.settings), scene.timing(asked.t, asked.over)
-        engine = Live.of(scene, timing, wanted, run_of(loaded.name), given) if asked.live else None
+        engine = None
+        if asked.live:
+            say_step(2, f"deriving the equations of {loaded.name}")
+            engine = Live.of(scene, timing, wanted, run_of(loaded.name), given)
+            size = grouped(statements(engine.source.code))
+            say_step(3, f"compiling {size} statements for this machine and for the browser at once")
         solution = _evaluated(loaded, asked, given)
+        if asked.live:
+            say_step(4, f"writing {out}")
         write_report(solution, out, engine)
     _announce(solution, out)
 
