@@ -120,6 +120,8 @@ def laws() -> Iterator[tuple[str, Call]]:
     for name, given in {
         "DeflectionPlot": {"name": "f", "link": "arm"},
         "MechanismDrawing": {},
+        "PolarPlots": {"name": "f", "joints": ("O",)},
+        "SectionDiagrams": {"name": "f", "links": ("arm",)},
         "SectionMaps": {"name": "f", "link": "arm"},
         "SpanPlot": {"name": "f", "quantity": "section:arm:bending", "t": 0.5},
         "StrengthPlot": {"name": "f", "link": "arm"},

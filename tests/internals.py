@@ -200,10 +200,11 @@ from lagrange_casadi.portable.statuses import SHARED, STATUSES
 from lagrange_casadi.renamed import RENAMED, renamed
 from lagrange_casadi.report import instants, maps, write_report
 from lagrange_casadi.report import page as report_page
+from lagrange_casadi.report.comparison import write_comparison
 from lagrange_casadi.report.contents import contents
 from lagrange_casadi.report.live import Live
 from lagrange_casadi.report.of_sweep import is_of
-from lagrange_casadi.report.page import LIVE_SCRIPTS, SCRIPTS, SWEEP_SCRIPTS
+from lagrange_casadi.report.page import COMPARISON_SCRIPTS, LIVE_SCRIPTS, SCRIPTS, SWEEP_SCRIPTS
 from lagrange_casadi.report.sections import section_entries
 from lagrange_casadi.report.still import still
 from lagrange_casadi.sensitivity.jacobian import total

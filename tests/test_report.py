@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from drawn_scenes import every_kind
 from internals import (
+    COMPARISON_SCRIPTS,
     LIVE_SCRIPTS,
     SCRIPTS,
     SWEEP_SCRIPTS,
@@ -193,9 +194,8 @@ def test_no_name_is_markup():
 
 
 def test_the_viewer_makes_no_markup_of_texts_and_asks_for_nothing():
-    assert {f"{name}.js" for name in (*LIVE_SCRIPTS, *SCRIPTS, *SWEEP_SCRIPTS)} == {
-        name for name in ASSETS if name.endswith(".js")
-    }
+    scripts = (*LIVE_SCRIPTS, *SCRIPTS, *SWEEP_SCRIPTS, *COMPARISON_SCRIPTS)
+    assert {f"{name}.js" for name in scripts} == {name for name in ASSETS if name.endswith(".js")}
     for name, text in ASSETS.items():
         assert not re.search(
             r"(inner|outer)HTML|insertAdjacentHTML|document\.write|\beval\(|new Function", text

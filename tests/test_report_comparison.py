@@ -12,13 +12,12 @@ import alive
 import browser
 import numpy as np
 import pytest
-from internals import governing, marks
+from internals import governing, marks, write_comparison
 from reports import held, press, solved
 
 from lagrange_casadi import evaluate, load_case, save
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.report import write_comparison
 
 
 def designs():

@@ -4,6 +4,7 @@ that chooses each.
 
 from __future__ import annotations
 
+import itertools
 import math
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,6 +13,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from ..declare.description import coordinates_of
 from ..declare.posture import posture_entry
 from ..declare.scene import Scene
 from ..errors import AssemblyError, PostureError
@@ -77,7 +79,7 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
     side = 4.2 if columns <= 2 else 3.0
     level = 0.8 * side
     table = _LINE * (sum(map(len, rows)) + len(note) + 2) + _ROW * len(rows)
-    legend = 0.24 * -(-len(scene.mechanism.bodies) // NAMES_IN_ROW)
+    legend = 0.24 * -(-len(found[0][1].description["bodies"]) // NAMES_IN_ROW)
     high = max(level * -(-len(pictures) // columns), table) + 2.5 * _MARGIN + legend
     left = columns * side + _MARGIN
     wide = left + max(len(line) for row in (*rows, note) for line in row) * _LETTER + 0.9
@@ -117,15 +119,17 @@ def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
     possible
         The largest number of ways that there may be, by the loops of the first of them.
     """
-    if len(scene.mechanism.bodies) > _LARGE:
-        return [], 0
     first, possible, levels = _closed(scene, scene.posture), 1, math.inf
     if isinstance(first, PostureError):
         counts = [len(ways) for ways in first.assembly_modes]
         possible = math.prod(counts)
         if possible > _ALL:
             levels = sum(math.prod(counts[: k + 1]) <= _SOME for k in range(len(counts)))
-    return list(_ways(scene, scene.posture, first, levels)), possible
+    ways = _ways(scene, scene.posture, first, levels)
+    found = list(itertools.islice(ways, 1))
+    if found and len(found[0][1].description["bodies"]) > _LARGE:
+        return [], 0
+    return [*found, *ways], possible
 
 
 def _apart(found: Sequence[Solution]) -> list[list[int]]:
@@ -179,9 +183,11 @@ def _ways(
     and one of the others with each.
     """
     if isinstance(closed, Solution):
-        coordinates = scene.mechanism.coordinates
-        slides = {name for name, (_, axis) in coordinates.items() if axis.kind == "slide"}
-        entries = (posture_entry(name, name in slides, value) for name, value in posture.items())
+        kinds = coordinates_of(closed.description)
+        entries = (
+            posture_entry(name, kinds.get(name) == "slide", value)
+            for name, value in posture.items()
+        )
         yield ", ".join(entries), closed
     if not isinstance(closed, PostureError) or closed.lacking or not closed.assembly_modes:
         return
