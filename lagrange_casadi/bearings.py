@@ -3,18 +3,18 @@ tables to choose from.
 """
 
 from .declare.fitted import Pin, Plain, Rolling, fit
-from .strength.ball_bearings import (
-    BallBearing,
+from .strength.bearings import bending_of_pin, equivalent_load, rated_hours
+from .strength.rolling_bearings import (
+    RollingBearing,
     deep_groove,
     dynamic_rating,
     read_bearings,
     select_bearing,
     static_rating,
 )
-from .strength.bearings import bending_of_pin, equivalent_load, rated_hours
 
 __all__ = [
-    "BallBearing",
+    "RollingBearing",
     "Pin",
     "Plain",
     "Rolling",

@@ -108,15 +108,15 @@ def laws() -> Iterator[tuple[str, Call]]:
         "bending_of_pin": {"force": 100.0, "eye": 0.01, "cheek": 0.01},
         "equivalent_load": {"load": [1.0, 2.0], "turned": [1.0, 1.0]},
         "rated_hours": {"dynamic": 1e4, "load": 10.0, "rpm": 100.0},
-        "BallBearing": BALL,
+        "RollingBearing": BALL,
         "deep_groove": {"series": "62"},
-        "dynamic_rating": {"ball": 0.01, "pitch": 0.05, "balls": 8},
-        "static_rating": {"ball": 0.01, "pitch": 0.05, "balls": 8},
+        "dynamic_rating": {"element": 0.01, "pitch": 0.05, "count": 8},
+        "static_rating": {"element": 0.01, "pitch": 0.05, "count": 8},
         "read_bearings": {"path": "bearings.csv"},
     }.items():
         yield f"bearings.{name}", (getattr(bearings, name), given)
-    ball = bearings.BallBearing(**BALL)
-    yield "BallBearing.rolling", (ball.rolling, {"hours": 1e4})
+    ball = bearings.RollingBearing(**BALL)
+    yield "RollingBearing.rolling", (ball.rolling, {"hours": 1e4})
     for name, given in {
         "DeflectionPlot": {"name": "f", "link": "arm"},
         "MechanismDrawing": {},

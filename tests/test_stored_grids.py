@@ -3,11 +3,11 @@
 import h5py
 import numpy as np
 import pytest
+from internals import figures
 
 from lagrange_casadi import check, evaluate, load, save
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.figures import default_figures, draw
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -75,8 +75,8 @@ def test_readers_need_no_grids(solution, tmp_path):
         back.to_xarray()
     assert pages[0] == pages[1]
     bare = load(tmp_path / "none" / "a.h5")
-    (bending,) = [spec for spec in default_figures(bare) if spec.name == "section_bell_1"]
-    assert all(path for _, path in draw(bare, [bending], tmp_path))
+    (bending,) = [spec for spec in figures.default_figures(bare) if spec.name == "section_bell_1"]
+    assert all(path for _, path in figures.draw(bare, [bending], tmp_path))
     sizes = [(tmp_path / name / "a.h5").stat().st_size for name in ("none", "all")]
     assert sizes[0] < sizes[1] / 2
 

@@ -59,7 +59,7 @@ _AXIAL = 2.3
 
 @public
 @dataclass(frozen=True)
-class BallBearing:
+class RollingBearing:
     """A ball bearing: bore, outer diameter and width [m], ratings C and C0 [N], and the ``source``
     of these.
     """
@@ -81,35 +81,35 @@ class BallBearing:
 
 
 @public
-def dynamic_rating(ball: Positive, pitch: Positive, balls: int) -> float:
+def dynamic_rating(element: Positive, pitch: Positive, count: int) -> float:
     """Compute C_r of ISO 281 for a deep groove ball bearing [N].
 
     Parameters
     ----------
-    ball, pitch : float
+    element, pitch : float
         Diameters of the balls and of their circle [m].
-    balls : int
+    count : int
         Number of balls.
     """
-    share, size = ball / pitch, 1e3 * ball
+    share, size = element / pitch, 1e3 * element
     inner = 1.04 * ((1.0 - share) / (1.0 + share)) ** 1.72
     factor = _LEADING * (1.0 + inner ** (10.0 / 3.0)) ** -0.3 * (2 * 0.52 / (2 * 0.52 - 1)) ** 0.41
     factor *= share**0.3 * (1.0 - share) ** 1.39 / (1.0 + share) ** (1.0 / 3.0)
     by_size = size**1.8 if size <= 25.4 else 3.647 * size**1.4
-    return float(1.3 * factor * balls ** (2.0 / 3.0) * by_size)
+    return float(1.3 * factor * count ** (2.0 / 3.0) * by_size)
 
 
 @public
-def static_rating(ball: Positive, pitch: Positive, balls: int) -> float:
+def static_rating(element: Positive, pitch: Positive, count: int) -> float:
     """Compute C_0r of ISO 76 for a deep groove ball bearing [N], with arguments as of
     :func:`dynamic_rating`.
     """
-    factor = np.interp(ball / pitch, np.arange(len(_F0)) / 100.0, _F0)
-    return float(factor * balls * (1e3 * ball) ** 2)
+    factor = np.interp(element / pitch, np.arange(len(_F0)) / 100.0, _F0)
+    return float(factor * count * (1e3 * element) ** 2)
 
 
 @public
-def deep_groove(series: str | None = None) -> tuple[BallBearing, ...]:
+def deep_groove(series: str | None = None) -> tuple[RollingBearing, ...]:
     """Deep groove ball bearings of the dimension series 60, 62 and 63, or of one, by rising bore.
 
     Their ratings are computed by a rule, as ``source`` says.
@@ -125,15 +125,15 @@ def deep_groove(series: str | None = None) -> tuple[BallBearing, ...]:
     return tuple(sorted(found, key=lambda bearing: (bearing.bore, bearing.dynamic)))
 
 
-def _computed(series: str, k: int, bore: float, outer: float, width: float) -> BallBearing:
-    ball, pitch = 0.3 * (outer - bore), (outer + bore) / 2
-    balls = 1 + math.floor(math.radians(195.0) / (2.0 * math.asin(ball / pitch)))
-    dynamic, static = dynamic_rating(ball, pitch, balls), static_rating(ball, pitch, balls)
-    return BallBearing(f"{series}{k:02d}", bore, outer, width, dynamic, static, COMPUTED)
+def _computed(series: str, k: int, bore: float, outer: float, width: float) -> RollingBearing:
+    element, pitch = 0.3 * (outer - bore), (outer + bore) / 2
+    count = 1 + math.floor(math.radians(195.0) / (2.0 * math.asin(element / pitch)))
+    dynamic, static = dynamic_rating(element, pitch, count), static_rating(element, pitch, count)
+    return RollingBearing(f"{series}{k:02d}", bore, outer, width, dynamic, static, COMPUTED)
 
 
 @public
-def read_bearings(path: str | os.PathLike[str]) -> tuple[BallBearing, ...]:
+def read_bearings(path: str | os.PathLike[str]) -> tuple[RollingBearing, ...]:
     """Bearings of a CSV file: columns name, bore, outer, width [mm], dynamic and static [kN], and
     ``source`` if it is told.
 
@@ -162,7 +162,7 @@ def read_bearings(path: str | os.PathLike[str]) -> tuple[BallBearing, ...]:
                 )
         bore, outer, width, dynamic, static = sizes
         source = cells.get("source", str(path))
-        found.append(BallBearing(cells["name"], bore, outer, width, dynamic, static, source))
+        found.append(RollingBearing(cells["name"], bore, outer, width, dynamic, static, source))
     if not found:
         raise DeclarationError(f"{head.where}: expected a line for every bearing below this head")
     return tuple(found)
@@ -172,19 +172,19 @@ def read_bearings(path: str | os.PathLike[str]) -> tuple[BallBearing, ...]:
 def select_bearing(
     solution: Solution,
     joint: str,
-    bearings: Sequence[BallBearing],
+    bearings: Sequence[RollingBearing],
     *,
     hours: Positive,
     bore: NotNegative = 0.0,
     static: Positive = 1.0,
-) -> BallBearing:
+) -> RollingBearing:
     """Choose for a joint the bearing with the smallest outer diameter that lives long enough.
 
     Parameters
     ----------
     solution : Solution
         Has the joint's reaction and motion.
-    bearings : sequence of BallBearing
+    bearings : sequence of RollingBearing
         What there is to choose from.
     hours : float
         Hours that nine of ten bearings must run.
