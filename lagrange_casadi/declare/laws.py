@@ -11,7 +11,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..base.arrays import Expression
+from ..base.arrays import Expression, Json
 from ..base.symbolic import Graphs, symbolic
 from .motion import Motion, ends_function, motion_function
 
@@ -82,7 +82,7 @@ class Laws(Graphs):
         by_t = ca.densify(ca.jacobian(self.motion(t, p)[2], t))
         return ca.Function("jerk", [t, p], [by_t], ["t", "p"], ["d_jerk"], {"cse": True})
 
-    def words(self) -> list[Any]:
+    def words(self) -> list[Json]:
         """The laws for JSON; functions as the text in which CasADi writes them."""
         beyond = None if self.beyond is None else self.beyond.serialize()
         return [self.joints, self.spans, self.knots, self.motion.serialize(), beyond]
