@@ -12,7 +12,10 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from _ctypes import CFuncPtr
 
 _NUMBERS = {"long long": ctypes.c_longlong, "int": ctypes.c_int, "double": ctypes.c_double}
 
@@ -61,7 +64,7 @@ class Call:
             )
         return made
 
-    def declare(self, entry: Any) -> Any:
+    def declare(self, entry: CFuncPtr) -> CFuncPtr:
         """A function of a library that takes a pointer to this struct, and gives nothing: declared
         so, for :mod:`ctypes`.
         """

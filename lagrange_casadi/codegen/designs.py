@@ -5,7 +5,7 @@ is kept of it.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any
@@ -250,7 +250,7 @@ def _tables(program: Program, reduction: Reduction) -> str:
     )
 
 
-def _table(kind: str, name: str, values: Any) -> str:
+def _table(kind: str, name: str, values: Iterable[float | str]) -> str:
     return f"static const {kind} {name}[] = {{{', '.join(str(value) for value in values)}}};\n"
 
 

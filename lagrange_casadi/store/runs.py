@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -435,7 +434,7 @@ def _read(file: h5py.File) -> Solution:
     outputs: dict[Output, Array] = {}
     errors: dict[str, float] = {}
 
-    def visit(place: str, item: Any) -> None:
+    def visit(place: str, item: h5py.Group | h5py.Dataset) -> None:
         if (
             isinstance(item, h5py.Dataset)
             and place not in (*_AXES, _OVER)
