@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Json
 from ..base.tables import ANGLE, LENGTH
 from ..base.vocabulary import PRECISIONS
 from ..codegen import find_compiler
@@ -136,13 +136,13 @@ class Trade:
             f"{best.rung.options}, keeps {best.largest:.2g} ({best.worst} is worst)"
         )
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Json]:
         """All of it as plain numbers and words, for JSON."""
         methods = [
             asdict(one) | {"options": one.rung.options, "front": one in self.front}
             for one in self.measurements
         ]
-        found = {
+        found: dict[str, Json] = {
             "case": self.case,
             "instants": self.instants,
             "compared": self.compared,
@@ -273,7 +273,7 @@ def _motions(program: Program, t: Array, p: Array) -> dict[str, float]:
 
 def _work(
     program: Program, t: Array, p: Array, method: EvaluationMethod
-) -> tuple[Callable[[], Any], int]:
+) -> tuple[Callable[[], object], int]:
     """Timed work, ready to run, and its instants."""
     count = INSTANTS // 10 if method.backend == "vm" else INSTANTS
     dense = np.linspace(t[0], t[-1], count)
@@ -282,7 +282,7 @@ def _work(
 
 
 def _in_turns(
-    works: Mapping[EvaluationMethod, tuple[Callable[[], Any], int]],
+    works: Mapping[EvaluationMethod, tuple[Callable[[], object], int]],
 ) -> dict[EvaluationMethod, float]:
     """Seconds an instant: the median over rounds in which each rung has its turn, long enough to be
     read off a clock.
