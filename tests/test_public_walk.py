@@ -258,8 +258,8 @@ def test_calls_that_do_not_fit_are_refused(things):
 
 
 RESULTS = """
-Belt Bent Cam CamProfile Cylinder CylindricalCam Gears Planetary Plate ProfileLift Choice
-InertiaRatio Animation Fibre Properties Course Density Slices Dwell Motion Move Column Life
+Bearings Belt Bent Bushes Cam CamProfile Cylinder CylindricalCam Gears Planetary Plate ProfileLift
+Choice InertiaRatio Animation Fibre Properties Course Density Slices Dwell Motion Move Column Life
 Plane Safety Stress StressPeak Swing Verdict Constraint Front FrontPoint Limit LocalOptimum
 Optimum Start Term Axis Design Sweep Case Curve Peak Prepared Sensitivities Solution Keep
 Duty Spec

@@ -434,7 +434,9 @@ def _described(
 
     def fitted(joint: Joint) -> Description:
         parts = mechanism.fitted.get(joint.name)
-        return {"fitted": parts_to_numbers(parts, number)} if parts else {}
+        turning = mechanism.turning.get(joint.name)
+        found: Description = {"fitted": parts_to_numbers(parts, number)} if parts else {}
+        return found | {"turning": turning} if parts and turning else found
 
     def freedoms(joint: Joint) -> Description:
         if joint.turned is None:

@@ -116,7 +116,10 @@ def draw_into(axes: Axes, solution: Solution) -> None:
     axes.set(xlabel=f"x [{scale_for('m', size).unit}]", ylabel=f"y [{scale_for('m', size).unit}]")
     label_bodies(axes.figure, *axes.get_legend_handles_labels())
     figure: Any = axes.figure
-    figure.draw_without_rendering()
+    if figure.get_layout_engine():
+        figure.draw_without_rendering()
+    else:
+        axes.apply_aspect()
     _name(axes, solution, 0, size)
 
 
