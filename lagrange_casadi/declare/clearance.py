@@ -99,7 +99,9 @@ class Clearance:
         near[near] = found.reshape(-1, many).any(axis=1)
         return near
 
-    def _looked(self, low: Array, high: Array, p: Array, most: Array) -> tuple[Flags, Array]:
+    def _looked(
+        self, low: Array, high: Array, p: Array, most: Array | float
+    ) -> tuple[Flags, Array]:
         """Return whether any mark comes near within boxes (d, symbols), and the size of marks there
         (d, marks).
         """

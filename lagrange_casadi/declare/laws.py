@@ -28,10 +28,10 @@ class Laws(Graphs):
     """
 
     joints: tuple[str, ...]
-    motion: Any
+    motion: ca.Function
     spans: tuple[tuple[float, float], ...]
     knots: tuple[tuple[float, ...], ...]
-    beyond: Any | None
+    beyond: ca.Function | None
 
     @classmethod
     @symbolic
@@ -90,12 +90,11 @@ class Laws(Graphs):
     @classmethod
     def loads(cls, words: Sequence[Any]) -> Laws:
         """The laws that :meth:`words` made."""
-        joints, spans, knots, *functions = words
-        motion, beyond = (None if f is None else ca.Function.deserialize(f) for f in functions)
+        joints, spans, knots, motion, beyond = words
         return cls(
             tuple(joints),
-            motion,
+            ca.Function.deserialize(motion),
             tuple((low, high) for low, high in spans),
             tuple(map(tuple, knots)),
-            beyond,
+            None if beyond is None else ca.Function.deserialize(beyond),
         )

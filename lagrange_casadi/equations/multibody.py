@@ -88,9 +88,8 @@ class Coordinate:
         """Variables for values of the coordinates ``symbols``."""
         if self.kind == "slide":
             return ca.substitute(self.value, symbols, values)
-        turn, angle = ca.vertsplit(
-            ca.substitute(ca.vertcat(self.turn, self.value), symbols, values)
-        )
+        both: ca.SX = ca.vertcat(self.turn, self.value)
+        turn, angle = ca.vertsplit(ca.substitute(both, symbols, values))
         return ca.vertcat(ca.cos(turn), ca.sin(turn), angle)
 
     @cached_property

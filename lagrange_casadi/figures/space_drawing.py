@@ -135,7 +135,8 @@ def draw_into(axes: Axes, solution: Solution) -> None:
     # in a column of two.
     wide, high = 4.6, 3.4
     if not axes.figure.get_layout_engine():
-        wide, high = axes.get_position().size * axes.figure.get_size_inches()
+        figure: Any = axes.figure
+        wide, high = axes.get_position().size * figure.get_size_inches()
     scale = 72.0 * min(wide / (box[1] - box[0]), high / (box[3] - box[2]))
     _label(axes, one, now, solution, size, box, scale)
     named = [

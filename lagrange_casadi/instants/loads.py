@@ -160,7 +160,7 @@ class _AtStation:
     name: str
     station: Array
 
-    def during(self: _Load, instants: slice) -> _Load:
+    def during(self: _Load, instants: slice | npt.NDArray[np.generic]) -> _Load:
         """Load at some of the instants."""
         arrays = (entry.name for entry in fields(self) if entry.name != "name")
         return replace(self, **{name: getattr(self, name)[instants] for name in arrays})

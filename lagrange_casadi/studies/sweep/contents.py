@@ -45,7 +45,7 @@ class KeptColumn:
 
 
 class Contents(TypedDict):
-    """What a file of a sweep says of itself."""
+    """Description of a sweep, from its file."""
 
     identity: Identity
     dimensions: dict[str, int]

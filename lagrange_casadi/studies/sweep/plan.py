@@ -68,7 +68,7 @@ IDENTITY = {
 
 
 class Identity(TypedDict):
-    """What makes the numbers of a sweep, as its file tells it."""
+    """Inputs of every number of a sweep, as its file keeps them."""
 
     schema_version: int
     case: str
