@@ -11,13 +11,13 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import Count, Index, Outputs, public, texts
+from ...arguments import LATER, Count, Index, Outputs, public, texts
 from ...base.arrays import Array
 from ...base.seal import VerifiedFile, kind_of, verify
 from ...declare.description import Description
@@ -64,7 +64,7 @@ class Sweep:
     """
 
     path: Path
-    identity: Identity
+    identity: Annotated[Identity, LATER]
     dimensions: Mapping[str, int]
     parameters: Mapping[str, str]
     columns: Mapping[str, KeptColumn]
