@@ -13,7 +13,7 @@ import typing
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, ParamSpec, TypeAlias, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -57,6 +57,8 @@ Graph: TypeAlias = Annotated[Any, "graph"]
 """A ``casadi.SX`` expression."""
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
+_P = ParamSpec("_P")
+_Result = TypeVar("_Result")
 
 
 def public(thing: Thing) -> Thing:
@@ -100,7 +102,7 @@ class _Kind(NamedTuple):
 _NONE: Any = object()
 
 
-def _looking(function: Callable[..., Any], kinds: bool = True) -> Callable[..., Any]:
+def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P, _Result]:
     """A function that looks at its arguments before it runs: whether they
     fit, and at their kinds.
     """
@@ -113,7 +115,7 @@ def _looking(function: Callable[..., Any], kinds: bool = True) -> Callable[..., 
         return signature, _kinds(function, signature) if kinds else {}
 
     @functools.wraps(function)
-    def called(*given: Any, **named: Any) -> Any:
+    def called(*given: _P.args, **named: _P.kwargs) -> _Result:
         signature, known = asked()
         try:
             bound = signature.bind(*given, **named)
@@ -121,7 +123,7 @@ def _looking(function: Callable[..., Any], kinds: bool = True) -> Callable[..., 
             raise DeclarationError(_not_taken(function, signature, given, str(wrong))) from None
         bound_arguments = bound.arguments
 
-        def read(kind: _Kind, name: str, value: Any) -> Any:
+        def read(kind: _Kind, name: str, value: object) -> Any:
             found = kind.read(value)
             if found is _NONE:
                 what = f"{_called(function)}{_part(signature, given)}: {name}"
@@ -145,7 +147,7 @@ def _looking(function: Callable[..., Any], kinds: bool = True) -> Callable[..., 
     return called
 
 
-def _called(function: Callable[..., Any]) -> str:
+def _called(function: Callable[..., object]) -> str:
     """A function as users call it; a class or an instance that is called bears the name of the
     class.
     """
@@ -153,7 +155,7 @@ def _called(function: Callable[..., Any]) -> str:
     return owner if name.startswith("__") else name
 
 
-def _part(signature: inspect.Signature, given: tuple[Any, ...]) -> str:
+def _part(signature: inspect.Signature, given: tuple[object, ...]) -> str:
     """The name of the part that is declared, if that is what the first argument says."""
     named = (
         list(signature.parameters)[:2] in (["self", "name"], ["mechanism", "name"])
@@ -164,7 +166,10 @@ def _part(signature: inspect.Signature, given: tuple[Any, ...]) -> str:
 
 
 def _not_taken(
-    function: Callable[..., Any], signature: inspect.Signature, given: tuple[Any, ...], wrong: str
+    function: Callable[..., object],
+    signature: inspect.Signature,
+    given: tuple[object, ...],
+    wrong: str,
 ) -> str:
     """Describe missing or superfluous arguments of a call."""
     each = list(signature.parameters.values())
@@ -181,7 +186,7 @@ def _not_taken(
     )
 
 
-def _kinds(function: Callable[..., Any], signature: inspect.Signature) -> dict[str, _Kind]:
+def _kinds(function: Callable[..., object], signature: inspect.Signature) -> dict[str, _Kind]:
     """The kinds of a function's arguments, of those whose annotation says one."""
     scope = vars(sys.modules[function.__module__])
     found: dict[str, _Kind] = {}
@@ -225,7 +230,7 @@ def _kind(hint: Any) -> _Kind | None:
     return _if(_with_article(origin.__name__), lambda value: isinstance(value, origin))
 
 
-def _if(words: str, admits: Callable[[Any], bool]) -> _Kind:
+def _if(words: str, admits: Callable[[object], bool]) -> _Kind:
     """A kind of which values are taken as they are."""
     return _Kind(words, lambda value: value if admits(value) else _NONE)
 
@@ -234,7 +239,7 @@ def _with_article(name: str) -> str:
     return f"a{'n' if name[0] in 'AEIO' else ''} {name}"
 
 
-def _one_of(hints: tuple[Any, ...]) -> _Kind | None:
+def _one_of(hints: tuple[object, ...]) -> _Kind | None:
     """One of several kinds; None where one of them is looked at by the function."""
     found = [kind for hint in hints if (kind := _kind(hint))]
     if len(found) < len(hints):
@@ -255,7 +260,7 @@ def _ranged(of: type, span: Within) -> _Kind:
     """The kind of numbers in a range."""
     simple = _SIMPLE[of]
 
-    def read(value: Any) -> Any:
+    def read(value: object) -> Any:
         found = simple.read(value)
         return found if found is not _NONE and span.admits(found) else _NONE
 
@@ -263,7 +268,7 @@ def _ranged(of: type, span: Within) -> _Kind:
     return _Kind(f"a {sign}{simple.words.removeprefix('a ')}{'' if sign else span.words}", read)
 
 
-def _row(of: Any, named: bool = False) -> _Kind | None:
+def _row(of: object, named: bool = False) -> _Kind | None:
     """The kind of rows of something: of numbers, of names, of parts; or the names of a mapping,
     where no order is asked for.
     """
@@ -276,7 +281,7 @@ def _row(of: Any, named: bool = False) -> _Kind | None:
     if kind is None:
         return None
 
-    def read(value: Any) -> Any:
+    def read(value: object) -> object:
         if isinstance(value, str | bytes | set | frozenset) or not isinstance(value, Iterable):
             return _NONE
         if isinstance(value, Mapping) and not named:
@@ -292,7 +297,7 @@ def _row(of: Any, named: bool = False) -> _Kind | None:
     return _Kind("a list of texts" if of is str else f"a list, each {kind.words}", read)
 
 
-def _array(value: Any) -> Any:
+def _array(value: object) -> Any:
     """A value as an array of doubles."""
     if isinstance(value, str | bytes | memoryview | Mapping | set | frozenset | ca.SX | ca.MX):
         return _NONE
@@ -305,13 +310,13 @@ def _array(value: Any) -> Any:
     return _NONE
 
 
-def _pair(value: Any) -> Any:
+def _pair(value: object) -> Any:
     """Two numbers."""
     found = _array(value)
     return tuple(found.tolist()) if found is not _NONE and found.shape == (2,) else _NONE
 
 
-def _wholes(value: Any) -> Any:
+def _wholes(value: object) -> Any:
     """A value as an array of whole numbers."""
     found = _array(value)
     whole = (
@@ -322,7 +327,7 @@ def _wholes(value: Any) -> Any:
     return found.astype(np.int64) if whole else _NONE
 
 
-def texts(value: Any) -> list[str] | None:
+def texts(value: object) -> list[str] | None:
     """Texts of a list, an array or what else is walked over; None of anything else, as a text."""
     if isinstance(value, Iterable) and not isinstance(value, str | Mapping):
         with suppress(Exception):  # of a class that is not ours, when it is walked over
@@ -331,13 +336,13 @@ def texts(value: Any) -> list[str] | None:
     return None
 
 
-def _graph(value: Any) -> Any:
+def _graph(value: object) -> Any:
     if isinstance(value, ca.SX | ca.DM):
         return ca.SX(value)
     return _NONE if (found := double(value)) is None else ca.SX(found)
 
 
-def _symbolic(value: Any) -> Any:
+def _symbolic(value: object) -> Any:
     """A scalar expression, a number, or a text of one with its unit, as it is; its size is looked
     at where it is used.
     """
@@ -349,7 +354,7 @@ def _symbolic(value: Any) -> Any:
     return _NONE if found is None else value if isinstance(value, int | float) else found
 
 
-def _is_path(value: Any) -> bool:
+def _is_path(value: object) -> bool:
     """Return whether the system could have a file of this name."""
     with suppress(UnicodeEncodeError):
         return (

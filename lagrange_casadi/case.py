@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import os
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, TypeVar
 
 from . import case_modules
 from .arguments import public
@@ -25,6 +25,8 @@ from .errors import CaseError, LagrangeCasadiError, shown
 from .shapes.kept import dump_specs
 from .shapes.specs import Spec
 from .shipped_cases import shipped_cases
+
+_Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +45,7 @@ class Case:
         """The name of its folder, or of its file without the ending."""
         return self.path.parent.name if self.path.name == "case.py" else self.path.stem
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable[[Path], Case], tuple[Path]]:
         """Sent to another process, a case is loaded there from its file."""
         return load_case, (self.path,)
 
@@ -122,7 +124,7 @@ def _call(given: Path, file: Path, module: ModuleType, name: str) -> Any:
         return _guard(given, file, function)
 
 
-def _guard(given: Path, file: Path, action: Any) -> Any:
+def _guard(given: Path, file: Path, action: Callable[[], _Result]) -> _Result:
     """Run a piece of the case; what it raises becomes one line that names the case's own line."""
     try:
         return action()

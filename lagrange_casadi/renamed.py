@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar, cast
+from typing import Any, ParamSpec, TypeVar, cast
 
 from .errors import DeclarationError, PostureError, warn
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
+_P = ParamSpec("_P")
+_Result = TypeVar("_Result")
 
 RENAMED: Mapping[str, str] = {
     "CamProfile.told_undercut": "undercut_summary",
@@ -58,7 +60,7 @@ def renamed(thing: Thing) -> Thing:
     return cast(Thing, thing)
 
 
-def former(module: str, names: Mapping[str, Any], name: str) -> Any:
+def former(module: str, names: Mapping[str, object], name: str) -> object:
     """Return what a module, with its ``names``, calls otherwise today; for its ``__getattr__``.
 
     Raises :class:`AttributeError` for a name that it never had.
@@ -71,14 +73,14 @@ def former(module: str, names: Mapping[str, Any], name: str) -> Any:
 
 
 def _attribute(entry: str, new: str) -> property:
-    def read(self: Any) -> Any:
+    def read(self: object) -> object:
         _warn(entry, new)
         return getattr(self, new)
 
     return property(read, doc=f"Deprecated name of ``{new}``.")
 
 
-def _taking(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+def _taking(name: str, function: Callable[_P, _Result]) -> Callable[_P, _Result]:
     """Return a function that takes its former keywords too."""
     keywords = {
         entry[len(name) + 1 : -1]: new
@@ -87,7 +89,7 @@ def _taking(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     }
 
     @functools.wraps(function)
-    def called(*given: Any, **named: Any) -> Any:
+    def called(*given: _P.args, **named: _P.kwargs) -> _Result:
         for old, new in keywords.items():
             if old not in named:
                 continue

@@ -67,6 +67,8 @@ DECLARED = ORDER[: ORDER.index("equations") + 1]
 LEAVES = ("exports", "figures", "report", "animation", "actuators", "cluster", "formats", "cli")
 """What nothing but the command line imports."""
 
+MOST_ANY = 89
+"""Parameters and results whose type is ``Any``, as what users give that is yet to be checked."""
 
 PUBLIC = "actuators beams bearings case cli density elements errors motion peaks version".split()  # noqa: SIM905
 """What users import from, and tests as well."""
@@ -371,6 +373,25 @@ def test_no_function_takes_more_than_eight_arguments():
             assert count <= 8 or own or marks & {"public", "overload"}, (
                 f"{name}:{node.lineno} {called} takes {count}"
             )
+
+
+@pytest.mark.quick
+def test_types_say_something():
+    """Few parameters and results are of the type ``Any``; the number may only fall."""
+    untold = []
+    for name, path in modules().items():
+        for node in ast.walk(tree_of(path)):
+            if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                continue
+            taken = node.args
+            each = [*taken.posonlyargs, *taken.args, *taken.kwonlyargs, taken.vararg, taken.kwarg]
+            said = [one.annotation for one in each if one is not None] + [node.returns]
+            untold += [
+                f"{name}:{node.lineno}"
+                for one in said
+                if one is not None and re.search(r"\bAny\b", ast.unparse(one))
+            ]
+    assert len(untold) <= MOST_ANY, "\n".join(untold)
 
 
 @pytest.mark.quick

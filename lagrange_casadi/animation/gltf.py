@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Json
 from ..declare.description import in_space
 from ..errors import DeclarationError
 from ..instants.solution import Solution
@@ -190,7 +190,11 @@ class _Scene:
                 )
                 ways = np.where(sizes[known, None] > 0.0, one.vector[known], np.eye(3)[0])
                 axes = np.stack([frame_along(way) for way in ways])
-                extras = {"unit": unit, "metres_per_unit": scale, "largest": float(sizes.max())}
+                extras: Json = {
+                    "unit": unit,
+                    "metres_per_unit": scale,
+                    "largest": float(sizes.max()),
+                }
                 number = self._node(
                     {"name": f"{one.kind} {one.of}", "mesh": meshes[one.colour], "extras": extras}
                 )
@@ -252,7 +256,7 @@ class _Scene:
             axes = np.stack([frame_along(way) for way in axes[:, 0]])
         return np.asarray(axes.transpose(0, 2, 1))
 
-    def _node(self, node: dict[str, Any]) -> int:
+    def _node(self, node: dict[str, Json]) -> int:
         self.content["nodes"].append(node)
         return len(self.content["nodes"]) - 1
 
@@ -294,7 +298,7 @@ class _Scene:
         )
 
     def _array(
-        self, values: npt.NDArray[Any], *, ends: bool = False, target: int | None = None
+        self, values: npt.NDArray[np.generic], *, ends: bool = False, target: int | None = None
     ) -> int:
         """Add an array, (n,) or (n, 3 or 4): of whole numbers, or in single precision; ``ends``
         tells its least and largest.

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,10 @@ from ..base.space import require
 from ..errors import LagrangeCasadiError, StoreError, one_line
 from ..shapes.pictures import one_at_a_time
 from .drawn import INK, Dot, Picture, Thing, Words
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
 
 _DOTS = 100.0
 """Pixels an inch."""
@@ -164,7 +168,7 @@ def mp4(picture: Picture, rate: float, path: Path) -> None:
             )
 
 
-def _artist(axes: Any, thing: Thing, unit: float, order: int) -> Any:
+def _artist(axes: Axes, thing: Thing, unit: float, order: int) -> Artist:
     from matplotlib.colors import to_rgba
     from matplotlib.lines import Line2D
     from matplotlib.patches import Circle, Polygon

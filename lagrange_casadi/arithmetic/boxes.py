@@ -41,7 +41,7 @@ _STEPS = {ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN, ca.OP_FMIN, ca.OP_FMAX, ca.OP_ASS
 """Operations that rise with their operands, and round nothing."""
 
 
-def boxed(function: Any) -> tuple[list[Operand], list[Box], Operand]:
+def boxed(function: ca.Function) -> tuple[list[Operand], list[Box], Operand]:
     """Bounds of the rows of a followable function ``(x, fixed) -> rows``, with the symbols ``low``,
     ``high`` and ``fixed``.
 
@@ -113,18 +113,18 @@ class _Boxes:
         }
         return Arithmetic(lambda value: (ca.SX(value),) * 2, known | {ca.OP_CALL: self._looked_up})
 
-    def wider(self, box: Any) -> Box:
+    def wider(self, box: Box) -> Box:
         """Bounds with room for rounding."""
         low, high = box
         self.width += high - low
         capacity = _WIDER * ca.fmax(ca.fabs(low), ca.fabs(high))
         return low - capacity, high + capacity
 
-    def unknown(self, where: Any) -> None:
+    def unknown(self, where: Operand) -> None:
         """Bounds that exclude nothing."""
         self.width += ca.if_else(where, math.inf, 0.0)
 
-    def _hull(self, *corners: Any) -> Box:
+    def _hull(self, *corners: Operand) -> Box:
         low = high = corners[0]
         for corner in corners[1:]:
             # The smaller of a number and none is the number.
@@ -134,8 +134,8 @@ class _Boxes:
 
     def _monotone(self, code: int, exact: bool = False) -> Callable[..., Box]:
         def rule(*boxes: Box) -> Box:
-            found = tuple(applied(code, *ends) for ends in zip(*boxes, strict=True))
-            return (found[0], found[1]) if exact else self.wider(found)
+            low, high = (applied(code, *ends) for ends in zip(*boxes, strict=True))
+            return (low, high) if exact else self.wider((low, high))
 
         return rule
 
@@ -156,7 +156,7 @@ class _Boxes:
         self.unknown(ca.logic_and(x[0] <= 0.0, x[1] >= 0.0))
         return self.wider((1.0 / x[1], 1.0 / x[0]))
 
-    def _wave(self, x: Box, shift: float, wave: Callable[[Any], Any]) -> Box:
+    def _wave(self, x: Box, shift: float, wave: Callable[[Operand], Operand]) -> Box:
         """The wave is largest a part of a turn after whole turns."""
         turns = [end / _TURN for end in x]
         low, high = (ends(wave(x[0]), wave(x[1])) for ends in (ca.fmin, ca.fmax))

@@ -11,7 +11,7 @@ is just what does not hold here: see :func:`closed`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -83,7 +83,7 @@ class Pairs:
         return Arithmetic(self.constant, self.operations)
 
     @cached_property
-    def operations(self) -> Mapping[int, Any]:
+    def operations(self) -> Mapping[int, Callable[..., Pair]]:
         """Operations by CasADi's ``OP_`` code."""
         rules = {
             ca.OP_ADD: self.add,
@@ -215,10 +215,10 @@ class Pairs:
     def _below(self, x: Pair, y: Pair) -> Operand:
         return self._value(self.subtract(x, y)) < 0.0
 
-    def _either(self, where: Any, x: Pair, y: Pair) -> Pair:
+    def _either(self, where: Operand, x: Pair, y: Pair) -> Pair:
         return self.add(_choose(where, x), _choose(ca.logic_not(where), y))
 
-    def _turning(self, x: Pair, function: Any, slope: Operand) -> Pair:
+    def _turning(self, x: Pair, function: Callable[[Operand], Operand], slope: Operand) -> Pair:
         angle = self.reduced(x)
         if angle.low is None:
             return Pair(self._rounded(function(angle.high)))

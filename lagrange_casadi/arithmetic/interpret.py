@@ -12,7 +12,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -21,6 +21,8 @@ from ..base.arrays import Array, Expression, Operand
 from ..errors import DeclarationError
 from .lookups import Lookup, lookup
 from .scalars import applied
+
+_Value = TypeVar("_Value")
 
 
 @dataclass(frozen=True)
@@ -94,9 +96,9 @@ def followable(function: ca.Function) -> bool:
 
 def replay(
     function: ca.Function,
-    inputs: Sequence[Sequence[Any]],
-    made: Callable[[int, Step, list[Any]], Any],
-) -> list[list[Any]]:
+    inputs: Sequence[Sequence[_Value]],
+    made: Callable[[int, Step, list[_Value]], _Value | Sequence[_Value]],
+) -> list[list[_Value]]:
     """The nonzeros of every output of an SX function, from those of its inputs.
 
     ``made`` makes the value of every other step of its number, the step and its operands: a list if
@@ -110,7 +112,7 @@ def replay(
         elif step.operation == ca.OP_OUTPUT:
             outputs[step.results[0]][step.results[1]] = work[step.arguments[0]]
         else:
-            value = made(k, step, [work[place] for place in step.arguments])
+            value: Any = made(k, step, [work[place] for place in step.arguments])
             if len(step.results) == 1:
                 work[step.results[0]] = value
             else:
@@ -119,7 +121,7 @@ def replay(
 
 
 def interpret(
-    function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithmetic
+    function: ca.Function, inputs: Sequence[Sequence[Operand]], arithmetic: Arithmetic
 ) -> list[list[Operand]]:
     """The nonzeros of every output of an SX function, from those of its inputs.
 
@@ -192,7 +194,7 @@ def _has_expression(function: ca.Function) -> bool:
     return bool(function.is_a("SXFunction"))
 
 
-def _written_out(function: Any, inputs: Sequence[Any]) -> list[Operand]:
+def _written_out(function: ca.Function, inputs: Sequence[ca.SX]) -> list[Operand]:
     """Return the outputs of an SX function of expressions, with what it calls written out."""
 
     def made(_k: int, step: Step, operands: list[Operand]) -> Operand:
@@ -212,7 +214,7 @@ def _written_out(function: Any, inputs: Sequence[Any]) -> list[Operand]:
     return [_filled(function.sparsity_out(i), nonzeros) for i, nonzeros in enumerate(outputs)]
 
 
-def _filled(sparsity: Any, nonzeros: Iterable[Any]) -> Any:
+def _filled(sparsity: ca.Sparsity, nonzeros: Iterable[Expression]) -> ca.SX:
     return ca.SX(sparsity, ca.vertcat(ca.SX(0, 1), *nonzeros))
 
 
@@ -232,7 +234,7 @@ def numpy_arithmetic() -> Arithmetic:
     )
 
 
-def _truth(function: Callable[..., Any]) -> Callable[..., Any]:
+def _truth(function: Callable[..., Operand]) -> Callable[..., Array]:
     """Let a comparison be one or zero, as in C."""
     return lambda *values: np.asarray(function(*values)).astype(np.result_type(*values))
 

@@ -68,7 +68,8 @@ def cell(breaks: Sequence[float], x: ca.SX, *, ends: bool) -> ca.SX:
     """The number of the cell in which an expression lies, as a scalar expression; of three breaks
     or more.
     """
-    return _function("cell", tuple(map(float, breaks)), ends)(x)
+    found: ca.SX = _function("cell", tuple(map(float, breaks)), ends)(x)
+    return found
 
 
 def entries(numbers: Sequence[float], number: ca.SX) -> ca.SX:
@@ -80,7 +81,9 @@ def entries(numbers: Sequence[float], number: ca.SX) -> ca.SX:
     if all(entry == numbers[0] for entry in numbers):
         return ca.SX(numbers[0])
     scale = math.ldexp(1.0, max(math.frexp(largest)[1] - _BITS, _LEAST))
-    whole = _function("entry", tuple(float(round(entry / scale)) for entry in numbers))(number)
+    whole: ca.SX = _function("entry", tuple(float(round(entry / scale)) for entry in numbers))(
+        number
+    )
     # Rounding changes no whole number, and has no derivative: CasADi would differentiate a call by
     # calls of further functions.
     return ca.ceil(whole) * scale

@@ -7,8 +7,6 @@ as to write the operation down. Here there are two kinds alone: numbers, and exp
 
 from __future__ import annotations
 
-from typing import Any
-
 import casadi as ca
 
 from ..base.arrays import Expression
@@ -42,7 +40,7 @@ def products_less(a: Expression, b: Expression, c: Expression, d: Expression) ->
     return less(product(a, b), product(c, d))
 
 
-def applied(operation: int, *operands: Any) -> ca.SX:
+def applied(operation: int, *operands: Expression) -> ca.SX:
     """An operation, by CasADi's ``OP_`` code, of one or two expressions."""
     return (
         ca.SX.unary(operation, *operands) if len(operands) == 1 else _binary(operation, *operands)

@@ -1,7 +1,8 @@
-"""Types of numbers: arrays, expressions, and what may be either."""
+"""Types of values: arrays, expressions, what may be either, and what JSON holds."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,3 +18,6 @@ functions take one or the other.
 
 Operand: TypeAlias = Any
 """A number, an array or an expression, for formulas that are written once for all of them."""
+
+Json: TypeAlias = str | float | Sequence["Json"] | Mapping[str, "Json"] | None
+"""A value that JSON holds."""

@@ -17,12 +17,15 @@ import zlib
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from ..errors import BusyError, PathError, StoreError, one_line
 from .interrupts import interrupts
 from .seal import SIGNATURE, is_held
 from .streams import SOCKET, open_stream, stream_word
+
+if TYPE_CHECKING:
+    from typing_extensions import Buffer
 
 try:
     import fcntl
@@ -182,7 +185,7 @@ class PatientFile(io.FileIO):
 
     failure: OSError | None = None
 
-    def write(self, data: Any, /) -> int:
+    def write(self, data: Buffer, /) -> int:
         """Write all of ``data``, or pass over as much."""
         view = memoryview(data).cast("B")
         try:

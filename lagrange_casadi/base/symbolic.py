@@ -12,13 +12,14 @@ import inspect
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar, cast, overload
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast, overload
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 Value = TypeVar("Value")
+_P = ParamSpec("_P")
 
 _lock = threading.RLock()
 _dropped: deque[dict[str, Any]] = deque()
@@ -49,9 +50,9 @@ class _Symbolic:
                 setattr(thing, name, self._alone(method))
         return thing
 
-    def _alone(self, function: Callable[..., Any]) -> Callable[..., Any]:
+    def _alone(self, function: Callable[_P, Value]) -> Callable[_P, Value]:
         @functools.wraps(function)
-        def called(*given: Any, **named: Any) -> Any:
+        def called(*given: _P.args, **named: _P.kwargs) -> Value:
             with self:
                 return function(*given, **named)
 
@@ -69,12 +70,12 @@ class symbolic_property(functools.cached_property[Value]):  # noqa: N801 - like 
     """
 
     @overload
-    def __get__(self, instance: None, owner: type[Any] | None = None) -> Self: ...
+    def __get__(self, instance: None, owner: type | None = None) -> Self: ...
 
     @overload
-    def __get__(self, instance: object, owner: type[Any] | None = None) -> Value: ...
+    def __get__(self, instance: object, owner: type | None = None) -> Value: ...
 
-    def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
+    def __get__(self, instance: object, owner: type | None = None) -> Self | Value:
         """Return the value, which is made once."""
         if instance is None:
             return self
@@ -82,11 +83,12 @@ class symbolic_property(functools.cached_property[Value]):  # noqa: N801 - like 
             kept, name = vars(instance), str(self.attrname)
             if name not in kept:
                 kept[name] = self.func(instance)
-            return kept[name]
+            value: Value = kept[name]
+            return value
 
 
 class Graphs:
     """Holder of expressions that any thread may drop: they are freed when a thread makes others."""
 
-    def __del__(self, later: Callable[[dict[str, Any]], None] = _dropped.append) -> None:
+    def __del__(self, later: Callable[[dict[str, object]], None] = _dropped.append) -> None:
         later(vars(self))

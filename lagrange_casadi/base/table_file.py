@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from io import TextIOWrapper
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import IO, Any, BinaryIO
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from ..errors import DeclarationError
@@ -153,7 +153,7 @@ def _cell_maker(sheet: Any, cell_of: Callable[..., Any]) -> Callable[[Cell], Any
     return made
 
 
-def _copy_without_times(draft: Any, file: BinaryIO) -> None:
+def _copy_without_times(draft: IO[bytes], file: BinaryIO) -> None:
     """Copy a workbook, so that the same table has the same bytes at any time."""
     with ZipFile(draft) as source, ZipFile(file, "w", ZIP_DEFLATED) as target:
         for entry in source.infolist():

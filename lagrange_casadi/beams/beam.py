@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, fields, replace
 from typing import Annotated, Any, TypeAlias
 
 from ..arguments import Share, public
-from ..base.arrays import Operand
+from ..base.arrays import Json, Operand
 from ..base.units import Within
 from ..errors import DeclarationError, check_kind
 from .material import Material
@@ -90,7 +90,7 @@ class Beam:
         """True if the cross-sections are the same about any axis across the link."""
         return all(shape.round for shape in self.course.shapes())
 
-    def mapped(self, change: Callable[[str, Any], Any]) -> Beam:
+    def mapped(self, change: Callable[[str, Operand], Operand]) -> Beam:
         """Beam with other dimensions."""
         return replace(self, shape=self.course.mapped(change))
 
@@ -124,10 +124,10 @@ class Beam:
         return found
 
 
-def beam_to_numbers(beam: Beam, number: Callable[[Any], float]) -> dict[str, Any]:
+def beam_to_numbers(beam: Beam, number: Callable[[Operand], float]) -> dict[str, Json]:
     """A beam, its expressions as numbers."""
     course, shapes = beam.course, list(beam.course.shapes())
-    known = [
+    known: list[Json] = [
         {
             "kind": s.kind,
             "dimensions": {name: number(value) for name, value in s.dimensions.items()},

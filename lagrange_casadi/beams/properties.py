@@ -79,7 +79,7 @@ class Properties:
         return self.iy / _farthest([fibre.z for fibre in self.fibres])
 
 
-def symbolic(*values: Any) -> bool:
+def symbolic(*values: Operand) -> bool:
     """True if any of the values is an expression."""
     return any(isinstance(value, (ca.SX, ca.MX)) for value in values)
 

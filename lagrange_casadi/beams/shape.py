@@ -61,7 +61,7 @@ class Shape:
         """Conditions on the dimensions."""
         return _demands(self.kind, dict(self.dimensions))
 
-    def mapped(self, change: Callable[[str, Any], Any]) -> Shape:
+    def mapped(self, change: Callable[[str, Operand], Operand]) -> Shape:
         """Shape with other dimensions, by name and value."""
         return Shape(
             self.kind, {name: change(name, value) for name, value in self.dimensions.items()}
@@ -77,7 +77,7 @@ class Course:
     breaks: tuple[float, ...]
     cells: tuple[tuple[Shape, Shape], ...]
 
-    def mapped(self, change: Callable[[str, Any], Any]) -> Course:
+    def mapped(self, change: Callable[[str, Operand], Operand]) -> Course:
         """Course with other dimensions."""
         made = {id(shape): shape.mapped(change) for cell in self.cells for shape in cell}
         return Course(
@@ -89,7 +89,7 @@ class Course:
         yield from {id(shape): shape for cell in self.cells for shape in cell}.values()
 
 
-def _length(what: str, value: Any) -> Operand:
+def _length(what: str, value: Operand | str) -> Operand:
     """A text as a length [m], anything else as it is.
 
     Raises :class:`.DeclarationError` for a text of none.

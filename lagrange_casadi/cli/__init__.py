@@ -63,15 +63,18 @@ class _Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         write_commands(GROUPS, formatter)
 
-    def invoke(self, ctx: click.Context) -> Any:
+    def invoke(self, ctx: click.Context) -> int | None:
         with _read(), _insistent():
-            return super().invoke(ctx)
+            status: int | None = super().invoke(ctx)
+            return status
 
     def make_context(self, *arguments: Any, **keywords: Any) -> click.Context:
         with _read():  # help is said here
             return super().make_context(*arguments, **keywords)
 
-    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
         known = ctx.resilient_parsing or args[:1] == [] or args[0] in self.commands
         if not (known or args[0].startswith("-")):
             raise UnknownNameError("command", args[0], self.commands)
@@ -204,7 +207,9 @@ def _insistent() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def _unless_interrupted(report: Callable[[Any], Any]) -> Callable[[Any], Any]:
+def _unless_interrupted(
+    report: Callable[[sys.UnraisableHookArgs], object],
+) -> Callable[[sys.UnraisableHookArgs], object]:
     """Report exceptions that Python ignores, except interrupts."""
     return lambda ignored: (
         None if issubclass(ignored.exc_type, KeyboardInterrupt) else report(ignored)

@@ -6,7 +6,6 @@ Help never cuts a description.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 import click
 
@@ -45,7 +44,7 @@ class Command(click.Command):
                     formatter.write_dl(records)
 
 
-def command(name: str | None = None) -> Callable[[Callable[..., Any]], Command]:
+def command(name: str | None = None) -> Callable[[Callable[..., int | None]], Command]:
     """Declare a command with grouped options."""
     return click.command(name, cls=Command)
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -21,6 +20,7 @@ from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import counted
 from ..studies.sweep.checking import progress, unfinished
 from ..studies.sweep.instant_axis import in_words
+from ..studies.sweep.plan import Identity
 from .echo import echo
 from .report import Rows, asked_line
 from .strength_lines import untold_lines
@@ -94,7 +94,7 @@ def _describe_file(solution: Solution) -> None:
         echo(line)
 
 
-def _describe_sweep(identity: Mapping[str, Any]) -> None:
+def _describe_sweep(identity: Identity) -> None:
     _describe_mechanism(identity["mechanism"])
     for name, words in identity["grid"].items():
         echo(f"swept {name}: {words}")

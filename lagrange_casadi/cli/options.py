@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import os
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -37,8 +38,11 @@ class _Path(click.Path):
     """
 
     def convert(
-        self, value: Any, parameter: click.Parameter | None, context: click.Context | None
-    ) -> Any:
+        self,
+        value: str | os.PathLike[str],
+        parameter: click.Parameter | None,
+        context: click.Context | None,
+    ) -> str | bytes | os.PathLike[str]:
         """The path that is told."""
         if value == "":
             self.fail("expected a path, got ''", parameter, context)
@@ -242,10 +246,10 @@ def _read(read: Callable[[str], Number], what: str, word: str, words: str) -> Nu
         ) from None
 
 
-def _together(*options: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def _together(*options: Option) -> Option:
     """Several options as one."""
 
-    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+    def decorate(command: Declared) -> Declared:
         for option in reversed(options):
             command = option(command)
         return command
@@ -294,7 +298,10 @@ _FLAGS = click.option(
     help="Pass these further flags to the compiler, as one word.",
 )
 
-Option = Callable[[Callable[..., Any]], Callable[..., Any]]
+Declared = Callable[..., int | None] | click.Command
+"""A command in the making: its function, or what options have made of it."""
+
+Option = Callable[[Declared], Declared]
 
 
 def settings_by(

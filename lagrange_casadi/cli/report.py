@@ -7,7 +7,6 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -283,7 +282,7 @@ def _aligned(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[st
         yield f"  {'  '.join(words)}".rstrip()
 
 
-def asked_line(words: Sequence[Any], slides: bool) -> str:
+def asked_line(words: Sequence[float | str], slides: bool) -> str:
     """Line on how the instants are defined, from :meth:`.Timing.words`, for a joint that ``slides``
     or turns.
     """

@@ -10,8 +10,8 @@ import pickle
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
+from ..base.arrays import Json
 from ..errors import ClusterError, LagrangeCasadiError
 from ..studies.designs.engine import DesignEngine
 from ..studies.optimise.executors import Progress
@@ -60,7 +60,7 @@ def searching(address: str) -> Workers:
     return Workers(Cluster(address))
 
 
-def _descend(sent: bytes, words: Mapping[str, Any], task: SearchTask) -> SearchRun:
+def _descend(sent: bytes, words: Mapping[str, Json], task: SearchTask) -> SearchRun:
     """Run a start on a worker."""
     try:
         with _building:  # a finder goes one way at a time

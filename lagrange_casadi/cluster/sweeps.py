@@ -17,9 +17,9 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Json
 from ..equations.program import Program
 from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line, warn
 from ..studies.sweep.blocks import Queue
@@ -27,6 +27,11 @@ from ..studies.sweep.columns import Harvest
 from ..studies.sweep.plan import Plan, Task, difference, signature
 from ..studies.sweep.thread_pool import ThreadPool
 from ..studies.sweep.workers import PATIENCE, PULSE, Blocks
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from distributed import Client
 
 _PATIENCE = 10.0
 """Seconds in which a scheduler must answer."""
@@ -96,7 +101,7 @@ class Cluster:
                 connecting.add_done_callback(_let_go)
 
     def _served(
-        self, client: Any, roll: _Roll, asked: Callable[[int, int], Asked], queue: Queue
+        self, client: Client, roll: _Roll, asked: Callable[[int, int], Asked], queue: Queue
     ) -> Iterator[tuple[int, int, Any] | None]:
         waiting = _dask().as_completed(loop=client.loop)
         blocks: dict[Any, tuple[int, int]] = {}
@@ -148,7 +153,7 @@ class Cluster:
                 return
             send()
 
-    def _connected(self, connecting: Future[Any]) -> Any:
+    def _connected(self, connecting: Future[Client]) -> Client:
         error = connecting.exception()
         if error is None:
             return connecting.result()
@@ -159,7 +164,7 @@ class Cluster:
             why = one_line(error) if known else "what is there says nothing that a scheduler says"
         raise ClusterError(f"no Dask scheduler answers at {self.address}: {why}")
 
-    def _result(self, coming: Future[Any], roll: _Roll, start: int, stop: int) -> Any:
+    def _result(self, coming: Any, roll: _Roll, start: int, stop: int) -> Any:
         dask = _dask()
         try:
             found = coming.result()
@@ -192,7 +197,7 @@ class Cluster:
         return ClusterError(f"the Dask scheduler at {self.address} was lost")
 
 
-def _connecting(address: str) -> Future[Any]:
+def _connecting(address: str) -> Future[Client]:
     """A client, made in a thread of its own: what takes its time to answer, or never does, holds
     nobody up.
     """
@@ -281,7 +286,7 @@ class _Roll:
             self.without.add(address)
 
 
-def _let_go(client: Future[Any]) -> None:
+def _let_go(client: Future[Client]) -> None:
     if client.exception() is None:
         wait([ThreadPool.alone(client.result().close, 2)], _GOODBYE)
 
@@ -296,7 +301,7 @@ def _first(waiting: Any) -> Any | None:
     return next(waiting)
 
 
-def _dask() -> Any:
+def _dask() -> ModuleType:
     try:
         return importlib.import_module("distributed")
     except ImportError:
@@ -330,13 +335,13 @@ class Asked:
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable[..., object], tuple[object, ...]]:
         """The call that reading it is."""
         return self.function, self.arguments
 
 
 def _evaluate(
-    sent: bytes, task: Task, identity: Mapping[str, Any], p: Array, capacity: int
+    sent: bytes, task: Task, identity: Mapping[str, Json], p: Array, capacity: int
 ) -> list[bytes]:
     """Evaluate the columns of a block of designs on a worker."""
     try:

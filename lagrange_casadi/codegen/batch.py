@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,9 @@ from ..base.arrays import Array
 from .calls import Call
 from .compiler import WIDE, Compiler, broken, loaded, packed, start
 from .printer import print_functions
+
+if TYPE_CHECKING:
+    import casadi as ca
 
 CHOSEN = "chosen"
 """The argument that is a row of a unit matrix; the number of the row is given in its place."""
@@ -68,7 +71,7 @@ class BatchLibrary:
     entry: Any
 
     def evaluate(
-        self, n: int, given: Mapping[str, tuple[npt.NDArray[Any], int]], into: Array
+        self, n: int, given: Mapping[str, tuple[npt.NDArray[np.generic], int]], into: Array
     ) -> None:
         """Fill ``into`` (n, result) for n points: of each argument, by name, its rows and for how
         many points one is.
@@ -82,11 +85,11 @@ class BatchLibrary:
         self.entry(self.call.made(n=n, **pointers, **every, found=into.ctypes.data))
 
 
-def _names(function: Any) -> list[str]:
+def _names(function: ca.Function) -> list[str]:
     return [function.name_in(k) for k in range(function.n_in())]
 
 
-def _call(function: Any) -> Call:
+def _call(function: ca.Function) -> Call:
     members = {"n": "long long"}
     for name in _names(function):
         members |= {
@@ -96,7 +99,7 @@ def _call(function: Any) -> Call:
     return Call("lagrange_casadi_batch_call", members | {"found": "double*"})
 
 
-def emit_batch(function: Any) -> str:
+def emit_batch(function: ca.Function) -> str:
     """The C of a function of one output at many points; the same text in every process."""
     arguments, rows, cleared, first = list[str](), list[str](), "", 0
     for k, name in enumerate(_names(function)):
@@ -127,7 +130,9 @@ def emit_batch(function: Any) -> str:
     )
 
 
-def load_batch(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> BatchLibrary:
+def load_batch(
+    function: ca.Function, compiler: Compiler, extra: Sequence[str] = ()
+) -> BatchLibrary:
     """Build that, or take it from the cache, and load it. Raises :class:`CompilerError`."""
     source = packed(emit_batch(function), compiler)
     library, call = loaded(source, compiler, tuple(extra)), _call(function)

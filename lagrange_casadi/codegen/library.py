@@ -7,7 +7,7 @@ import functools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,9 @@ from .compiler import Compiler, broken, loaded, packed, statements
 from .emit import EVALUATE, FOLLOW, INSTANTS
 from .reduction import CALL, DESIGNS, Reduction
 from .search import Search, Tables, load_search
+
+if TYPE_CHECKING:
+    from _ctypes import CFuncPtr
 
 Array = npt.NDArray[Any]
 """Array in the precision of the emitted code."""
@@ -134,7 +137,7 @@ class Library:
         t: npt.NDArray[np.float64],
         bent: npt.NDArray[np.bool_],
         p: npt.NDArray[np.float64],
-        results: Mapping[str, npt.NDArray[Any] | None],
+        results: Mapping[str, Array | None],
         threads: int = 1,
         listed: Listed | None = None,
     ) -> None:
@@ -164,7 +167,7 @@ class Library:
         t: npt.NDArray[np.float64],
         bent: npt.NDArray[np.bool_],
         p: npt.NDArray[np.float64],
-        results: Mapping[str, npt.NDArray[Any] | None],
+        results: Mapping[str, Array | None],
         listed: Listed | None = None,
     ) -> Callable[[], None]:
         """Return a function that fills ``results`` for designs ``p``, (n, parameters), from the
@@ -199,7 +202,9 @@ class Library:
             for name in ("history", "iterated")
             if (array := arrays.get(name)) is not None and array.dtype != dtype
         }
-        rounded = [(arrays[name], own) for name, own in single.items()]
+        rounded = [
+            (array, own) for name, own in single.items() if (array := arrays[name]) is not None
+        ]
         arrays |= single
         search, within = many.search.call(many.tables, _CUT)
         call = CALL.made(
@@ -252,7 +257,12 @@ def _share(run: Callable[[int], None], starts: Iterable[int], threads: int) -> N
         pool.shutdown(cancel_futures=True)
 
 
-def _enter(entry: Any, call: Any, rounded: Sequence[tuple[Any, Array]], _kept: object) -> None:
+def _enter(
+    entry: CFuncPtr,
+    call: ctypes.Structure,
+    rounded: Sequence[tuple[Array, Array]],
+    _kept: object,
+) -> None:
     """Call, with what must live as long as the call's addresses; then widen what was rounded."""
     entry(call)
     for array, own in rounded:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any
@@ -217,7 +218,7 @@ def _tables(program: Program, reduction: Reduction) -> str:
     )
 
 
-def _table(kind: str, name: str, values: Any) -> str:
+def _table(kind: str, name: str, values: Iterable[float | str]) -> str:
     return f"static const {kind} {name}[] = {{{', '.join(str(value) for value in values)}}};\n"
 
 

@@ -361,7 +361,15 @@ class _Asked:
         self.error: BaseException | None = None
         self.entry = _FUNCTION_OF_TIMES(self)
 
-    def __call__(self, _: Any, count: int, t: Any, need: int, out: Any, apart: int) -> int:
+    def __call__(
+        self,
+        _: None,
+        count: int,
+        t: ctypes._Pointer[ctypes.c_double],
+        need: int,
+        out: ctypes._Pointer[ctypes.c_double],
+        apart: int,
+    ) -> int:
         try:
             values, places, watched = self.source.at(np.ctypeslib.as_array(t, (count,)).copy())
             rows = np.concatenate([values, places[self.along], watched])

@@ -147,7 +147,7 @@ def controlled(
     )
 
 
-def _others(stages: Stages) -> tuple[Any | None, Any, Precision]:
+def _others(stages: Stages) -> tuple[ca.Function | None, ca.Function, Precision]:
     return stages.loops, stages.instant, stages.precision
 
 
@@ -155,7 +155,7 @@ def _rest(pair: Pair) -> ca.SX:
     return ca.SX(0) if pair.low is None else pair.low
 
 
-def _paired_law(smooth: Any, pairs: Pairs, p: Any, known: Sequence[Pair]) -> Any:
+def _paired_law(smooth: ca.Function, pairs: Pairs, p: ca.SX, known: Sequence[Pair]) -> ca.Function:
     """The motion of drives by a time in pairs, each coordinate as a pair; ``known`` are the
     parameters.
     """
@@ -207,14 +207,14 @@ def _largest(program: Program, instants: tuple[float, ...], p: tuple[float, ...]
     angles = [0.0]
     known = numpy_arithmetic().operations
 
-    def measured(code: int, *values: Any) -> Operand:
+    def measured(code: int, *values: Operand) -> Operand:
         if np.ndim(values[0]) and code in _PHASES | REMAINDERS | {ca.OP_FLOOR}:
             angles.append(
                 float(np.max(np.abs(values[0]))) * (math.tau if code == ca.OP_FLOOR else 1.0)
             )
         return known[code](*values)
 
-    def counted(code: int, *values: Any) -> Operand | None:
+    def counted(code: int, *values: Operand | None) -> Operand | None:
         if any(value is None for value in values):
             return None
         found = measured(code, *values)
@@ -326,7 +326,7 @@ _FOLLOWED = {
 
 def _counted(
     program: Program, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]
-) -> tuple[Any, Any | None, Any]:
+) -> tuple[ca.SX, ca.Function | None, ca.Function]:
     """Outputs of the drive stage for time and driven coordinates, and the loops and the instant
     that take them.
     """

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.boxes import boxed
-from ..base.arrays import Array, Expression
+from ..base.arrays import Array
 from ..base.symbolic import symbolic_property
 from .limits_beside import Flags
 
@@ -43,12 +43,12 @@ class Clearance:
     What stays the same there makes no kink either, unless it is ``open``.
     """
 
-    def __init__(self, marks: Expression, whole: Flags, open_: Flags) -> None:
+    def __init__(self, marks: ca.Function, whole: Flags, open_: Flags) -> None:
         self._marks, self._whole, self._open = marks, whole, open_
         self._kept = _Kept()
 
     @symbolic_property
-    def _near(self) -> Expression:
+    def _near(self) -> ca.Function:
         """The function ``(low, high, p, most) -> (near, most)`` of bounds of what is seen: whether
         any mark may come near.
 
@@ -99,7 +99,9 @@ class Clearance:
         near[near] = found.reshape(-1, many).any(axis=1)
         return near
 
-    def _looked(self, low: Array, high: Array, p: Array, most: Expression) -> tuple[Flags, Array]:
+    def _looked(
+        self, low: Array, high: Array, p: Array, most: Array | float
+    ) -> tuple[Flags, Array]:
         """Return whether any mark comes near within boxes (d, symbols), and the size of marks there
         (d, marks).
         """
@@ -118,7 +120,9 @@ class Clearance:
         return found[0][:, 0] != 0.0, found[1]
 
 
-def bound(function: Any, count: int) -> tuple[list[Array], list[Array], Callable[[], None], Any]:
+def bound(
+    function: ca.Function, count: int
+) -> tuple[list[Array], list[Array], Callable[[], None], ca.FunctionBuffer]:
     """Arrays (count, rows) of the arguments and results of a function, what fills these by those,
     and what must live for it.
     """

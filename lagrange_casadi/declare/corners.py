@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Json
 from ..base.symbolic import Graphs, symbolic
 from .kinks import Smooth
 from .mechanism import Mechanism
@@ -59,7 +59,7 @@ class Corners(Graphs):
             laws, {name: smooth for name, smooth in found.items() if smooth is not None}, cams
         )
 
-    def words(self) -> list[Any]:
+    def words(self) -> list[Json]:
         """Write them for JSON."""
         laws, constraints = (
             {name: smooth.words() for name, smooth in of.items()}

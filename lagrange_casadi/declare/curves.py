@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -54,7 +53,7 @@ def rows(
 
 
 @public
-def table(x: Expression, places: Sequence[float], values: Sequence[float]) -> Any:
+def table(x: Expression, places: Sequence[float], values: Sequence[float]) -> ca.SX:
     """A curve for loads: linear between values at increasing places, and straight on beyond them.
 
     ``x`` is an expression, such as a joint's coordinate; ``places`` are in its unit, and ``values``

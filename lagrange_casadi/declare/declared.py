@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -239,7 +239,7 @@ def _planar_joint(name: str, entry: Description) -> JointNumbers:
     )
 
 
-def _friction(entry: Description) -> tuple[Any, ...]:
+def _friction(entry: Description) -> tuple[()] | tuple[str, dict[str, float]]:
     return (
         (entry["friction"]["coordinate"], entry["friction"]["numbers"])
         if "friction" in entry

@@ -73,7 +73,10 @@ class Density:
 
     def tails(self, u: Expression, length: Expression) -> tuple[Expression, Expression, Expression]:
         """T0, T1 and T2 at a ratio ``u`` from 0 to 1, a number or an expression in parameters."""
-        larger = (lambda x: ca.fmax(x, 0.0)) if isinstance(u, ca.SX) else (lambda x: max(x, 0.0))
+
+        def larger(x: Expression) -> Expression:
+            return ca.fmax(x, 0.0) if isinstance(u, ca.SX) else max(x, 0.0)
+
         scale = length if self.per_length else 1.0
         found: list[Any] = [0.0, 0.0, 0.0]
         for (a, b), cell in zip(
@@ -90,7 +93,7 @@ class Density:
         """The coefficients that hold at a ratio between two breaks."""
         return self.cells[int(np.searchsorted(self.breaks, u, side="right")) - 1]
 
-    def at(self, number: Callable[[Any], float], length: float) -> NumericDensity:
+    def at(self, number: Callable[[Expression], float], length: float) -> NumericDensity:
         """The density at given parameters, per unit of the ratio."""
         scale = length if self.per_length else 1.0
         return NumericDensity(

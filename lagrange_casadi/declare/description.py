@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..base.arrays import Expression
+from ..base.arrays import Expression, Json
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..beams.beam import beam_to_numbers
@@ -319,7 +319,7 @@ class Template(Graphs):
         return cls(content, ca.Function("numbers", [symbols], [numbers], ["p"], ["numbers"]))
 
 
-def _with(content: Any, number: Callable[[Place], Any]) -> Expression:
+def _with(content: Json | Place, number: Callable[[Place], object]) -> Any:
     """A copy of a description with something else for each of its places."""
     if isinstance(content, dict):
         return {name: _with(part, number) for name, part in content.items()}
@@ -401,7 +401,7 @@ def numbered(
 
 
 def _described(
-    mechanism: Mechanism, driven: Collection[str], number: Callable[[Any], Any]
+    mechanism: Mechanism, driven: Collection[str], number: Callable[[Expression], Expression]
 ) -> Description:
     def place(point: Point) -> Description:
         found = {"body": point.body.name, "x": number(point.x), "y": number(point.y)}

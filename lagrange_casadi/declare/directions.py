@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
@@ -78,7 +78,7 @@ class Reference:
         return self.rotation.resolve(other.rotation.x), self.rotation.resolve(other.rotation.y)
 
 
-def vector(what: str, value: Any, checked: Checked, unit: str = "1") -> Vector:
+def vector(what: str, value: object, checked: Checked, unit: str = "1") -> Vector:
     """Three expressions, in a unit. Raises :class:`DeclarationError` for anything else."""
     if not isinstance(value, (tuple, list)) or len(value) != 3:
         raise DeclarationError(f"{what} must be three components (x, y, z), got {value!r}")
@@ -86,7 +86,7 @@ def vector(what: str, value: Any, checked: Checked, unit: str = "1") -> Vector:
     return x, y, z
 
 
-def triad_of(what: str, axis: Any, second: Expression, own: Ownership, part: str = "") -> Triad:
+def triad_of(what: str, axis: object, second: Expression, own: Ownership, part: str = "") -> Triad:
     """Directions u, v, w at right angles: along an axis, along a second one or any across it, and
     at right angles to both.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
 
 import casadi as ca
 
@@ -37,7 +36,7 @@ def check_line(what: str, text: object) -> None:
 
 
 def scalar(
-    what: str, value: Any, symbols: Iterable[ca.SX], allowed: str, unit: str = "1"
+    what: str, value: object, symbols: Iterable[ca.SX], allowed: str, unit: str = "1"
 ) -> Expression:
     """A finite float, or an SX scalar in the given symbols; a number in a ``unit`` may be a text,
     as ``"100 mm"``.
@@ -82,7 +81,9 @@ def scalar(
     return found
 
 
-def coordinates(what: str, terms: Iterable[tuple[Any, str]]) -> tuple[list[Expression], str]:
+def coordinates(
+    what: str, terms: Iterable[tuple[Expression | str, str]]
+) -> tuple[list[Expression], str]:
     """Numbers or expressions of a joint's coordinate, each with what it is per, as ``"/s"``; and in
     which unit texts tell them.
 
@@ -144,7 +145,7 @@ def bound(what: str, value: Operand, unit: str) -> float:
 
 
 def unit_vector(
-    what: str, axis: Any, component: Callable[[Any], Expression]
+    what: str, axis: object, component: Callable[[Expression], Expression]
 ) -> tuple[Expression, Expression]:
     """A direction of length one.
 

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from ..arguments import NotNegative, Positive, Symbolic, public
-from ..base.arrays import Operand
+from ..base.arrays import Expression, Json, Operand
 from ..beams.material import Material
 from ..errors import DeclarationError, shown
 
@@ -154,10 +154,12 @@ def positive(name: str, number: float) -> bool:
     return 0.0 <= number < math.inf if name in _MAY_BE_ZERO else 0.0 < number < math.inf
 
 
-def parts_to_numbers(parts: Mapping[str, Fitted], number: Callable[[Any], float]) -> dict[str, Any]:
+def parts_to_numbers(
+    parts: Mapping[str, Fitted], number: Callable[[Expression], float]
+) -> dict[str, Json]:
     """Parts in plain numbers, as a file keeps them."""
 
-    def plain(name: str, value: Operand) -> Any:
+    def plain(name: str, value: Operand) -> Json:
         return asdict(value) if name == "material" else None if value is None else number(value)
 
     return {

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression, Json
 from ..base.symbolic import symbolic_property
 from .broken_curves import Isolated, Kink
 from .clearance import Clearance
@@ -78,7 +78,7 @@ class Smooth:
     uses: Flags
 
     @classmethod
-    def of(cls, expression: Any, moving: Any, fixed: Any) -> Smooth | None:
+    def of(cls, expression: Expression, moving: ca.SX, fixed: ca.SX) -> Smooth | None:
         """Make it from an expression of ``moving`` and ``fixed`` symbols; None if nothing can make
         a kink.
         """
@@ -120,7 +120,7 @@ class Smooth:
             ),
         )
 
-    def words(self) -> list[Any]:
+    def words(self) -> list[Json]:
         """Write it for JSON; functions as the text in which CasADi writes them."""
         functions = [f.serialize() for f in (self.marks, self.turns, self.slopes)]
         flags = [own.tolist() for own in (self.whole, self.open, self.uses)]
@@ -168,7 +168,7 @@ class Smooth:
         return {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)}
 
     @symbolic_property
-    def _bends(self) -> Any:
+    def _bends(self) -> ca.Function:
         """The function ``(x, p, way)`` of the value, its derivatives by the symbols, and the second
         one along a way.
         """
@@ -343,7 +343,7 @@ class Smooth:
         number = np.concatenate([owner * (n - 1) + place, owner * (n - 1) + place + 1])
         row, some = np.concatenate([row, row]), steps.some(number)
 
-        def rises(x: Any, of: Steps = some, rows: Any = row) -> Array:
+        def rises(x: Array, of: Steps = some, rows: npt.NDArray[np.int64] = row) -> Flags:
             slopes = called(self.turns, of.at(x), of.p, of.way)
             return np.asarray(slopes[rows, np.arange(rows.size)] > 0.0)[None]
 
@@ -351,10 +351,10 @@ class Smooth:
         some, row = some.some(turning), row[turning]
         return some.halved(lambda x: rises(x, some, row)), row
 
-    def _state(self, steps: Steps, x: Any) -> Array:
+    def _state(self, steps: Steps, x: Array | float) -> Array:
         return self._states(self._marks(steps, x))
 
-    def _marks(self, steps: Steps, x: Any) -> Array:
+    def _marks(self, steps: Steps, x: Array | float) -> Array:
         return called(self.marks, steps.at(x), steps.p)
 
     def _states(self, marks: Array) -> Array:
@@ -395,7 +395,7 @@ class Smooth:
 
         faint = _FAINT * usual[:, steps.owner]
 
-        def vanishing(side: Side, sizes: Array, faint: Any) -> tuple[Flags, Array]:
+        def vanishing(side: Side, sizes: Array, faint: Array) -> tuple[Flags, Array]:
             sizes = _both(sizes)
             least = _SLACK * (_SAME * sizes + faint[:, None])
             found, part = vanishes(side, sizes[rows], least[rows])
@@ -429,7 +429,11 @@ def _finite(rows: Array) -> Array:
 
 
 def _owners(
-    search: Callable[[Array, Array], Iterator[tuple[Any, ...]]], paths: Array, p: Array
+    search: Callable[
+        [Array, Array], Iterator[tuple[int, str, float, Array]] | Iterator[tuple[int, str, Array]]
+    ],
+    paths: Array,
+    p: Array,
 ) -> Flags:
     """Return which paths (d, symbols, n) have a finding."""
     found = np.zeros(len(paths), bool)

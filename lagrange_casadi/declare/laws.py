@@ -11,7 +11,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..base.arrays import Expression
+from ..base.arrays import Expression, Json
 from ..base.symbolic import Graphs, symbolic
 from .motion import Motion, ends_function, motion_function
 
@@ -28,10 +28,10 @@ class Laws(Graphs):
     """
 
     joints: tuple[str, ...]
-    motion: Any
+    motion: ca.Function
     spans: tuple[tuple[float, float], ...]
     knots: tuple[tuple[float, ...], ...]
-    beyond: Any | None
+    beyond: ca.Function | None
 
     @classmethod
     @symbolic
@@ -82,7 +82,7 @@ class Laws(Graphs):
         by_t = ca.densify(ca.jacobian(self.motion(t, p)[2], t))
         return ca.Function("jerk", [t, p], [by_t], ["t", "p"], ["d_jerk"], {"cse": True})
 
-    def words(self) -> list[Any]:
+    def words(self) -> list[Json]:
         """The laws for JSON; functions as the text in which CasADi writes them."""
         beyond = None if self.beyond is None else self.beyond.serialize()
         return [self.joints, self.spans, self.knots, self.motion.serialize(), beyond]
@@ -90,12 +90,11 @@ class Laws(Graphs):
     @classmethod
     def loads(cls, words: Sequence[Any]) -> Laws:
         """The laws that :meth:`words` made."""
-        joints, spans, knots, *functions = words
-        motion, beyond = (None if f is None else ca.Function.deserialize(f) for f in functions)
+        joints, spans, knots, motion, beyond = words
         return cls(
             tuple(joints),
-            motion,
+            ca.Function.deserialize(motion),
             tuple((low, high) for low, high in spans),
             tuple(map(tuple, knots)),
-            beyond,
+            None if beyond is None else ca.Function.deserialize(beyond),
         )

@@ -95,7 +95,7 @@ def _powers(
 
 def _of_function(
     what: str,
-    function: Callable[[Any], Expression],
+    function: Callable[[ca.SX], Expression],
     start: Expression,
     end: Expression,
     checked: Callable[[Expression], Expression],

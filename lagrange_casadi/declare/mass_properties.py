@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
 
 from ..beams.beam import Beam
 from ..errors import DeclarationError
@@ -19,7 +18,8 @@ def mass_properties_of(
     centre: tuple[Expression, ...] | None,
     inertia: Expression,
     checked: Callable[..., Expression],
-    rigid: Callable[[Any, Any], tuple[tuple[Expression, ...], Any]] | None = None,
+    rigid: Callable[[Expression, Expression], tuple[tuple[Expression, ...], Expression]]
+    | None = None,
     beam: Beam | None = None,
 ) -> Density | RigidMass:
     """The mass of a link by one of the ways; ``checked`` takes what is said of an expression, and

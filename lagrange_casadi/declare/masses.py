@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import casadi as ca
 
 from .density import Density
@@ -22,7 +20,7 @@ def masses_of(mechanism: Mechanism) -> ca.SX:
     return ca.densify(ca.vertcat(*masses, sum(masses)))
 
 
-def _mass(body: Any) -> ca.SX:
+def _mass(body: Link | PointMass) -> ca.SX:
     if isinstance(body, PointMass):
         return ca.SX(body.mass)
     assert isinstance(body, Link)

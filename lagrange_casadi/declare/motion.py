@@ -112,7 +112,7 @@ def harmonic(
 
 
 @public
-def expression(law: Callable[[Any], Any]) -> Motion:
+def expression(law: Callable[[ca.SX], Expression]) -> Motion:
     """Any law: a function that takes the symbol t [s] and returns a ``casadi.SX`` expression of it
     and of parameters [rad or m].
 
@@ -192,7 +192,7 @@ def smooth_laws(laws: Mapping[str, Motion], parameters: ca.SX) -> dict[str, Smoo
 
 
 @symbolic
-def ends_function(laws: Mapping[str, Motion], parameters: ca.SX) -> Any | None:
+def ends_function(laws: Mapping[str, Motion], parameters: ca.SX) -> ca.Function | None:
     """The CasADi function ``beyond(t, p)``: how far what the laws put into curves is beyond their
     ends, a row a joint of the laws.
 

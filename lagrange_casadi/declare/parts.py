@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from ..arguments import Symbolic, public
 from ..base.numerals import readable
-from ..base.units import in_words, number
+from ..base.units import Number, in_words, number
 from ..beams.beam import Beam
 from ..errors import NumberError, ParameterError, shown
 from ..geometry.vectors import Expression as Expression
@@ -38,19 +38,19 @@ class Parameter:
     high: float
     symbol: ca.SX
 
-    def check(self, value: float) -> None:
+    def check(self, value: Number) -> None:
         """Raise :class:`ParameterError` unless ``value`` is finite and within ``[low, high]``."""
         if found := self.fault(value):
             raise ParameterError(found)
 
-    def number(self, value: float) -> float:
+    def number(self, value: Number) -> float:
         """A value as a number, see :func:`.units.number`.
 
         Raises :class:`.NumberError` for what is none; it may be infinite.
         """
         return number(value, self.unit, finite=False)
 
-    def fault(self, value: float) -> str:
+    def fault(self, value: Number) -> str:
         """Describe the fault of a value; empty if it is a finite number within ``[low, high]``."""
         try:
             found = self.number(value)

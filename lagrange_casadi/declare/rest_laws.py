@@ -174,7 +174,7 @@ def _refuse_share(what: str, share: object, most: float) -> None:
         raise DeclarationError(f"{what} must be above 0 and at most {most:g}, got {share!r}")
 
 
-def _both_halves(u: Expression, half: Callable[[Any], Any]) -> Expression:
+def _both_halves(u: Expression, half: Callable[[Expression], Expression]) -> Expression:
     """A law of which the first half is known."""
     way = half(_before(u, 0.5, u, 1.0 - u))
     return _before(u, 0.5, way, 1.0 - way)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, overload
 
 import casadi as ca
 
@@ -21,6 +21,9 @@ from .parts import Body, Constraint, Expression, Friction, Link, Load, Point, Ro
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
+
+_Part: TypeAlias = Load | Friction | Constraint | Row
+"""Part of a mechanism that has results of its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +118,13 @@ class Results:
 
     mechanism: Mechanism
 
-    def acceleration(self, of: Joint | Body | Point) -> Expression:
+    @overload
+    def acceleration(self, of: Joint) -> ca.SX: ...
+
+    @overload
+    def acceleration(self, of: Body | Point) -> tuple[ca.SX, ...]: ...
+
+    def acceleration(self, of: Joint | Body | Point) -> ca.SX | tuple[ca.SX, ...]:
         """The symbol of the acceleration of a joint's coordinate; or those of a point's, in ground
         axes [m/s^2].
         """
@@ -152,7 +161,10 @@ class Results:
 
     def multiplier(self, of: Constraint | Row) -> ca.SX:
         """The symbol of the multiplier of a constraint or a non-holonomic constraint."""
-        own = (*self.mechanism.constraints.values(), *self.mechanism.rows.values())
+        own: tuple[_Part, ...] = (
+            *self.mechanism.constraints.values(),
+            *self.mechanism.rows.values(),
+        )
         return self._ask(Output("multiplier", self._own("constraint", of, own)))
 
     def section(self, link: Link, ratio: Expression) -> SectionForces | SpatialSectionForces:
@@ -202,7 +214,12 @@ class Results:
         asked.append(Asked(output, ca.SX.sym(str(output)), ratio))
         return asked[-1].symbol
 
-    def _own(self, kind: str, part: Any, own: Iterable[Any]) -> str:
+    def _own(
+        self,
+        kind: str,
+        part: _Part,
+        own: Iterable[_Part],
+    ) -> str:
         parts = list(own)
         if isinstance(part, str) and part in [one.name for one in parts]:
             raise DeclarationError(

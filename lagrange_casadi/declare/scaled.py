@@ -9,6 +9,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Expression
 from ..errors import DeclarationError
 
 _POINTS = 8
@@ -26,7 +27,7 @@ class Scaled:
     shift: Any = None
 
     @classmethod
-    def of(cls, what: str, row: Any) -> Scaled:
+    def of(cls, what: str, row: ca.SX | Sequence[Expression]) -> Scaled:
         """A row of numbers or of expressions in parameters.
 
         Raises :class:`DeclarationError`, naming ``what``, for expressions that are not one scale

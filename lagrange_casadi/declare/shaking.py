@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..arguments import public
 from ..base.arrays import Operand
 from ..errors import DeclarationError, shown
 from .density import Density
 from .mass_properties import second_moments
-from .parts import Expression, Link, Point
+from .parts import Expression, Link, Point, PointMass
 from .results import UserOutput
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ _Pair = tuple[Point, Point]
 
 
 def _mass_properties(
-    mechanism: Mechanism, body: Any
+    mechanism: Mechanism, body: Link | PointMass
 ) -> tuple[list[tuple[Expression, Point]], list[tuple[Operand, _Pair, _Pair]]]:
     """Points with mass that stand for a body, and second moments with the pairs of points that are
     their axes.

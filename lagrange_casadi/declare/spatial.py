@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from ..arguments import public
 from ..base.symbolic import symbolic
@@ -120,7 +119,9 @@ class SpatialMechanism(Mechanism):
         if between is not None:
             reference, length, aside = lying(what, between, beside, self.own.expression)
 
-        def rigid(centre: Expression, inertia: Expression) -> tuple[Vector, Any]:
+        def rigid(
+            centre: Expression, inertia: Expression
+        ) -> tuple[Vector, tuple[Vector, Vector, Vector]]:
             place, moments = (
                 self._vector(f"{what}: centre", centre, "m"),
                 tensor(what, inertia, self.own.expression),
@@ -492,7 +493,7 @@ class SpatialMechanism(Mechanism):
             )
         return self.references[body.name]
 
-    def _vector(self, what: str, value: Any, unit: str = "1") -> Vector:
+    def _vector(self, what: str, value: object, unit: str = "1") -> Vector:
         return vector(what, value, self.own.expression, unit)
 
 

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Expression
+from ..base.arrays import Array, Expression, Json
 from ..base.symbolic import Graphs, symbolic
 from .mechanism import Mechanism
 from .meshes import Mesh, Transmission, Wrench
@@ -106,7 +106,7 @@ class Entries(Graphs):
             Entry(*one, tuple(point)) for one, point in zip(self.each, points, strict=True)
         )
 
-    def words(self) -> list[Any]:
+    def words(self) -> list[Json]:
         """Return them for JSON."""
         return [self.each, self.points.serialize()]
 
@@ -213,7 +213,7 @@ class EquationGraph(Graphs):
         )
         return Equation(self, p, self.entries.at(p), tuple(touches))
 
-    def words(self) -> list[Any]:
+    def words(self) -> list[Json]:
         """Return the graph for JSON; functions as the text in which CasADi writes them."""
         functions = [function.serialize() for function in (self.values, self.slopes, self.wrenches)]
         return [self.name, self.row, self.entries.words(), self.meshes, self.turns, *functions]
@@ -307,7 +307,7 @@ class LoadGraph(Graphs):
         """The law for values of all parameters."""
         return LoadLaw(self, p, self.entries.at(p))
 
-    def words(self) -> list[Any]:
+    def words(self) -> list[Json]:
         """Return the graph for JSON; functions as the text in which CasADi writes them."""
         return [self.name, self.kind, self.turning, self.entries.words(), self.values.serialize()]
 
@@ -373,7 +373,7 @@ class Stated:
             ),
         )
 
-    def words(self) -> list[Any]:
+    def words(self) -> list[Json]:
         """Return it for JSON."""
         return [
             [graph.words() for graph in graphs]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -101,7 +101,7 @@ class Steps:
         moves = np.abs(self.way) / np.spacing(sizes)
         return np.asarray(roundings / np.maximum(moves.max(axis=0, initial=0.0), 1.0))
 
-    def halved(self, state: Callable[[Any], Array]) -> Steps:
+    def halved(self, state: Callable[[Array], Array | npt.NDArray[np.bool_]]) -> Steps:
         """Bisect to where the state of each, (rows, m), changes from that at its low share."""
         low, high = self.low, self.high
         before = state(low)

@@ -14,6 +14,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from ..base.arrays import Array, Operand
 from ..base.brief import Brief
@@ -69,7 +70,11 @@ class Timing:
 
     @classmethod
     def of(
-        cls, mechanism: Mechanism, motion: Mapping[str, Motion], t: Expression, over: Any = None
+        cls,
+        mechanism: Mechanism,
+        motion: Mapping[str, Motion],
+        t: Expression,
+        over: Over | None = None,
     ) -> Timing:
         """Parse the user's ``t``, or ``over`` if that is given; ``t`` is then the range in which
         ``over`` is sought.
@@ -124,7 +129,7 @@ class Timing:
         )
         return start, stop
 
-    def words(self, symbols: ca.SX) -> list[Any]:
+    def words(self, symbols: ca.SX) -> list[float | str]:
         """Form for JSON: start, stop, count, and for a joint its name and around; expressions as
         text that distinguishes them.
         """
@@ -151,10 +156,12 @@ class DriveAxis(Brief, np.lib.mixins.NDArrayOperatorsMixin):
     unit: str
     values: Array
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> Array:
         return np.array(self.values, dtype) if copy else np.asarray(self.values, dtype)
 
-    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **keywords: Any) -> Any:
+    def __array_ufunc__(
+        self, ufunc: np.ufunc, method: str, *inputs: Operand, **keywords: Operand
+    ) -> Operand:
         return getattr(ufunc, method)(
             *(one.values if isinstance(one, DriveAxis) else one for one in inputs), **keywords
         )
@@ -162,7 +169,7 @@ class DriveAxis(Brief, np.lib.mixins.NDArrayOperatorsMixin):
     def __len__(self) -> int:
         return len(self.values)
 
-    def __getitem__(self, chosen: Any) -> Any:
+    def __getitem__(self, chosen: int | slice | npt.NDArray[np.generic]) -> Operand:
         return self.values[chosen]
 
     @property
@@ -284,7 +291,9 @@ def _shown(timing: Timing, value: float) -> str:
     return f"{value:.6g} rad ({math.degrees(value):.6g} deg)"
 
 
-def _read(mechanism: Mechanism, what: str, even: Any, unit: str = "s") -> tuple[Bound, Bound, int]:
+def _read(
+    mechanism: Mechanism, what: str, even: Times, unit: str = "s"
+) -> tuple[Bound, Bound, int]:
     """Start, stop and count, each a number or an expression of parameters; two numbers are looked
     at as :func:`.checked` does.
     """
@@ -329,7 +338,7 @@ def _bound(name: str, bound: Expression, unit: str) -> Operand:
     return found
 
 
-def _rising(even: Any) -> Expression:
+def _rising(even: Times) -> Expression:
     """Interval with the lesser end first, if that is known."""
     try:
         return (even[1], even[0], *even[2:]) if even[1] < even[0] else even

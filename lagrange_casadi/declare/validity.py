@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Json
 from ..base.numerals import readable
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.vocabulary import Precision
@@ -27,7 +28,16 @@ from .limits import END, margins
 from .lowest import lowest
 from .mass_properties import inertias, second_moments
 from .meshes import FITTING, Fit
-from .parts import POSITIVE, Expression, Friction, LineLoad, Link, PointMass, RigidMass, Vector
+from .parts import (
+    POSITIVE,
+    Expression,
+    Friction,
+    LineLoad,
+    Link,
+    PointMass,
+    RigidMass,
+    Vector,
+)
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -95,7 +105,7 @@ class Margins(Graphs):
         values = ca.vertsplit(self.function(symbols)) if self.function.numel_out(0) else []
         return values[: self.positive], values[self.positive :]
 
-    def words(self) -> list[Any]:
+    def words(self) -> list[Json]:
         """Write them for JSON."""
         return [self.function.serialize(), self.positive]
 
@@ -249,7 +259,7 @@ def _of_friction(friction: Friction) -> Iterator[Demand]:
         least = "positive" if positive else "at least 0"
 
         def refusal(
-            evaluated: Evaluator, value: Any = value, told: str = f"{word} must be {least}"
+            evaluated: Evaluator, value: Expression = value, told: str = f"{word} must be {least}"
         ) -> str:
             return f"friction '{friction.name}': {told}, got {readable(evaluated(value))}"
 

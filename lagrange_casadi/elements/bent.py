@@ -99,7 +99,7 @@ def bent_bar(
     return Bent(tuple(pieces), (pieces[0].base, *(piece.tip for piece in pieces)))
 
 
-def _place(mechanism: Mechanism, what: str, corner: Any, size: int) -> list[Expression]:
+def _place(mechanism: Mechanism, what: str, corner: object, size: int) -> list[Expression]:
     if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != size:
         raise DeclarationError(f"{what}: expected {size} numbers, got {corner!r}")
     return [mechanism.own.expression(what, number, "m") for number in corner]
@@ -121,7 +121,7 @@ def _weld(
     first: Link,
     second: Link,
     way: Sequence[Expression],
-    onward: Sequence[Any],
+    onward: Sequence[Expression],
 ) -> None:
     """Weld a piece to the tip of the one before, at the angle between their ways."""
     if not isinstance(mechanism, SpatialMechanism):

@@ -97,7 +97,7 @@ def disc_cam(
     name: str,
     cam: Joint,
     follower: Joint,
-    lift: Callable[[Any], Any],
+    lift: Callable[[Expression], Expression],
     *,
     base_radius: Expression,
     point: Point | None = None,

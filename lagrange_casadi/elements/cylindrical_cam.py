@@ -102,7 +102,7 @@ def cylindrical_cam(
     name: str,
     cam: Joint,
     follower: Joint,
-    lift: Callable[[Any], Any],
+    lift: Callable[[Expression], Expression],
     *,
     start: Expression = 0.0,
     point: Point | None = None,

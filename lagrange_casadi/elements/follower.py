@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -21,7 +20,9 @@ from ..errors import DeclarationError
 _SAMPLED = 37
 
 
-def rise_of(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], angle: ca.SX) -> ca.SX:
+def rise_of(
+    what: str, mechanism: Mechanism, lift: Callable[[ca.SX], Expression], angle: ca.SX
+) -> ca.SX:
     """The lift as an expression of the symbol ``angle``.
 
     Raises :class:`.DeclarationError` for what is no function of expressions, and where it is no

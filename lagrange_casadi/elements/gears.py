@@ -31,7 +31,7 @@ from ..declare.mechanism import Mechanism
 from ..declare.meshes import Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
-from ..geometry.vectors import cross, dot, minus
+from ..geometry.vectors import Vector, cross, dot, minus
 from .courses import Course, Numbers, along, courses_on, fits_of, length
 from .pitch import Pitch, Teeth, pitch_of
 from .ranges import LEAST, at_least, positive, share, whole, within
@@ -237,7 +237,7 @@ def _mesh(
     return Mesh(first, second, one.carrier, one.place, pitch.reach, *wrenches)
 
 
-def _sum(a: Expression, b: Expression) -> Expression:
+def _sum(a: Vector, b: Vector) -> Vector:
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 
@@ -281,7 +280,7 @@ def _sign(numbers: Numbers, value: Expression) -> int:
     return 1 if numbers.of(value) > 0.0 else -1
 
 
-def root(value: Any) -> Expression:
+def root(value: Expression) -> Expression:
     """The square root of a number or an expression."""
     return ca.sqrt(value) if isinstance(value, ca.SX) else math.sqrt(value)
 

@@ -13,7 +13,7 @@ import math
 import os
 import re
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from ..declare.mechanism import Mechanism
 from ..declare.parts import Point
 from ..errors import DeclarationError, one_line
 from .cam import layout_of
+
+if TYPE_CHECKING:
+    pass
 
 _HEAD = re.compile(r"(\w+)\s*(?:\[\s*(\w+)\s*\])?")
 _UNITS = {"m": 1, "mm": 1000, "um": 1_000_000}
@@ -44,7 +47,7 @@ class ProfileLift:
     curve: Curve
     base_radius: float
 
-    def __call__(self, angle: Expression) -> Any:
+    def __call__(self, angle: Expression) -> Expression:
         """The lift at an angle of the cam [rad]."""
         return self.curve(angle)
 

@@ -21,7 +21,7 @@ from ..declare.density import Density
 from ..declare.joints import Axis, Joint
 from ..declare.mass_properties import second_moments
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Constraint, Link, PointMass, RigidMass, Vector
+from ..declare.parts import Constraint, Link, PointMass, RigidMass, Row, Vector
 from ..errors import DeclarationError
 from ..geometry.frames import Carried, Frame, Velocities
 from ..geometry.vectors import AXES, ZERO, minus, nil, times
@@ -207,7 +207,7 @@ def _loop_equations(
     )
 
 
-def _row(resting: Grown, row: Any) -> RowGraph:
+def _row(resting: Grown, row: Row) -> RowGraph:
     """A row, and the size of what is added up in it: rates of coordinates, in what is measured, in
     the row.
 

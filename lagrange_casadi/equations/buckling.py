@@ -74,7 +74,7 @@ class Column:
         return cls(*zip(column(0), column(1), strict=True))
 
 
-def used(column: Column, compression: Array, moments: Sequence[Array]) -> Array:
+def used(column: Column, compression: Operand, moments: Sequence[Operand]) -> Operand:
     """Utilisation of a column by compression and moments, about z and in space about y: one over
     the factor of safety.
 

@@ -125,7 +125,7 @@ def _curve(
     return [_Piece(ca.vertsplit(curve)) for _, curve in found]
 
 
-def _integrals(degree: int) -> tuple[list[float], Expression, Expression]:
+def _integrals(degree: int) -> tuple[list[float], ca.DM, ca.DM]:
     """Nodes from 0 to 1, and what makes of values there the integral from 0 of their polynomial,
     and the integral of that.
     """

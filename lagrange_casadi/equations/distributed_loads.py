@@ -137,7 +137,7 @@ def distributed_force(
 
 
 def _force_of_load(
-    outputs: Mapping[Column, Any],
+    outputs: Mapping[Column, Expression],
     of: tuple[str, str],
     length: Expression,
     powers: int,

@@ -74,7 +74,7 @@ class _UntoldError(Exception):
     pass
 
 
-def _spell(item: Any, words: list[str], expressions: list[ca.SX]) -> None:
+def _spell(item: object, words: list[str], expressions: list[ca.SX]) -> None:
     """Add what an object is made of, to the last bit, in an order that its declaration fixes."""
     if item is None or isinstance(item, (str, bool, int)):
         words.append(f"{type(item).__name__} {item!r}")

@@ -418,7 +418,9 @@ def needed(
         names = more
 
 
-def _sum(row: Sequence[Any], values: Sequence[Expression], start: Expression) -> Expression:
+def _sum(
+    row: Sequence[Expression | None], values: Sequence[Expression], start: Expression
+) -> Expression:
     """A row of A times values, and R0."""
     total = None
     for slope, value in zip(row, values, strict=True):

@@ -138,7 +138,8 @@ class Grown:
         if name not in self.turned:
             own = None if axis is None else own_coordinate(axis, self.coordinates)
             if own is not None:
-                c, s, angle = ca.vertsplit(own.variables)
+                variables: list[Any] = ca.vertsplit(own.variables)
+                c, s, angle = variables
             elif isinstance(of, Link) or not self.mechanism.space:
                 turn = self.frames[of.name].rotation if isinstance(of, Link) else self._between(of)
                 c, s, angle = turn.c, turn.s, turn.angle

@@ -10,6 +10,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..base.quantities import Output
 from .checks import Check, Column
 from .multibody import column
@@ -47,7 +48,9 @@ class Forces:
         sizes = {output: ca.sum2(ca.fabs(slope)) for output, slope in doubted.items()}
         return cls(dict(zip(acting, ca.vertsplit(forces), strict=True)), sizes)
 
-    def with_those_of(self, made: Callable[[Mapping[Column, Any]], Mapping[Column, Any]]) -> Forces:
+    def with_those_of(
+        self, made: Callable[[Mapping[Column, Expression]], Mapping[Column, Expression]]
+    ) -> Forces:
         """Add what is ``made`` of these forces, which is open with what goes into it."""
         symbols: dict[Column, Any] = {output: ca.SX.sym(str(output)) for output in self.open}
         more = made({**self.values, **symbols})

@@ -44,7 +44,8 @@ class Course:
 
     def along_rates(self, slopes: ca.SX) -> ca.SX:
         """Slopes along the rates q', from those along the coordinates p."""
-        return ca.jtimes(self.coordinate_rates, self.rates, slopes, True)
+        along: ca.SX = ca.jtimes(self.coordinate_rates, self.rates, slopes, True)
+        return along
 
     @symbolic_property
     def circles(self) -> list[tuple[int, int]]:

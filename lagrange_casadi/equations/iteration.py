@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -53,11 +53,11 @@ class Iterated:
     turning: list[bool] = field(default_factory=list)
     sphericals: dict[int, SphericalCoordinates] = field(default_factory=dict)
 
-    def number(self, name: str, scale: Any, guess: float, *, turning: bool) -> Any:
+    def number(self, name: str, scale: Expression, guess: float, *, turning: bool) -> ca.SX:
         """The symbol of a number, whose ``scale`` is what a correction is large beside."""
         return self._add(ca.SX.sym(f"z_{name}"), [scale], [guess], turning=turning)
 
-    def spherical(self, spherical: SphericalCoordinates, guess: Sequence[float]) -> Any:
+    def spherical(self, spherical: SphericalCoordinates, guess: Sequence[float]) -> ca.SX:
         """The axes of a ball, as they follow from its four symbols."""
         self.sphericals[len(self.parts)] = spherical
         return axes_of(
@@ -65,8 +65,8 @@ class Iterated:
         )
 
     def _add(
-        self, symbols: Any, scales: Sequence[Any], guess: Sequence[float], *, turning: bool
-    ) -> Any:
+        self, symbols: ca.SX, scales: Sequence[Expression], guess: Sequence[float], *, turning: bool
+    ) -> ca.SX:
         self.parts.append(symbols)
         self.scales += scales
         self.guess += guess
@@ -87,7 +87,7 @@ class Iterated:
             ca.SX(expression), axes, column(axes_of(self.parts[k]) for k in self.sphericals)
         )
 
-    def step(self, residuals: Any) -> tuple[Any, Any]:
+    def step(self, residuals: ca.SX) -> tuple[ca.SX, ca.SX]:
         """Newton correction of the symbols, and its size; a large one is shortened."""
         slope = ca.jacobian(
             residuals,
@@ -112,7 +112,7 @@ class Iterated:
         bounded = correction * (LARGEST_STEP / ca.fmax(relative, LARGEST_STEP))
         return self._moved(bounded) if self.sphericals else bounded, relative
 
-    def _moved(self, correction: Any) -> Any:
+    def _moved(self, correction: ca.SX) -> ca.SX:
         """Change of the symbols by a correction of numbers, and by small rotations."""
         added, start = [], 0
         for k, part in enumerate(self.parts):
@@ -127,8 +127,8 @@ def place_roughly(
     multibody: Multibody,
     posture: Mapping[Coordinate, float],
     numbers: Numbers,
-    but: Mapping[Coordinate, Any],
-) -> Any:
+    but: Collection[Coordinate],
+) -> dict[SphericalCoordinates, list[float]]:
     """Let ``numbers`` hold where coordinates are by what is ``told`` of them, but for some; and
     give the quaternions of balls.
     """

@@ -26,11 +26,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import casadi as ca
 
 from ..arguments import Graph, public
+from ..base.arrays import Expression
 from ..errors import DeclarationError
 from .integrability import Course, no_rates
 
@@ -260,7 +260,7 @@ class LagrangeSystem:
             speed = speed if self.drift is None else speed + self.drift
         return Course(self.coordinates, self.rates, self.accelerations, time, ca.SX(speed))
 
-    def terms(self) -> tuple[Any, Any]:
+    def terms(self) -> tuple[ca.SX, ca.SX]:
         """R along the coordinates (n) and along the mobilities (k), at e = e' = e'' = 0, as CasADi
         SX columns.
 
@@ -314,7 +314,7 @@ class LagrangeSystem:
             across -= self.mobility_forces
         return along, across
 
-    def _at_rest(self, expression: Any) -> Any:
+    def _at_rest(self, expression: Expression) -> ca.SX:
         resting = ca.vertcat(self.mobilities, self.mobility_rates)
         return ca.substitute(ca.SX(expression), resting, ca.SX.zeros(resting.numel()))
 

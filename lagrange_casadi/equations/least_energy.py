@@ -114,7 +114,7 @@ class Completion:
         least: LeastEnergy,
         forces: Forces,
         columns: Mapping[Column, Expression],
-        inputs: Sequence[Any],
+        inputs: Sequence[ca.SX],
     ) -> Completion:
         """Put together what is told of ``forces`` that are among the ``columns`` of a graph, over
         its ``inputs``.
@@ -239,7 +239,7 @@ def _apart(
     ways: Iterable[tuple[Expression, Expression]],
     rows: Expression,
     weights: Expression,
-    measure: Any,
+    measure: ca.SX,
     least: Expression,
 ) -> list[_Way]:
     """Make what ``rows`` make of ways orthogonal, each to those before it that did something.

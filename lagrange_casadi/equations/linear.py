@@ -96,7 +96,7 @@ class LinearSystem:
         return turned
 
 
-def _reflect(reflection: tuple[Any, Any], x: Expression) -> Any:
+def _reflect(reflection: tuple[ca.SX, ca.SX], x: ca.SX) -> ca.SX:
     """(1 - factor v v') x."""
     v, factor = reflection
     return x - v @ (factor * (v.T @ x))

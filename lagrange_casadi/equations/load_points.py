@@ -11,11 +11,11 @@ the same force as before. Places are compared at each instant, for the parameter
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..declare.limits import END
 from ..declare.parts import Link
@@ -57,7 +57,7 @@ def gathered(
     """
     found = dict(columns)
 
-    def is_open(load: Any) -> bool:
+    def is_open(load: Expression) -> bool:
         return not vanish(ca.jacobian(load, free), coordinates)
 
     for link in links if free.numel() else ():
@@ -87,12 +87,12 @@ def gathered(
 
 
 def _together(
-    loads: Sequence[Any],
-    places: Sequence[Any],
-    length: Any,
+    loads: Sequence[ca.SX],
+    places: Sequence[ca.SX],
+    length: Expression,
     coordinates: Sequence[Coordinate],
-    is_open: Callable[[Any], bool],
-) -> list[Any]:
+    is_open: Callable[[Expression], bool],
+) -> list[ca.SX]:
     """Loads at places, ratios xi/l: all at one place in the first of them, and none that is open
     where no section feels it.
     """
@@ -121,12 +121,12 @@ def _together(
     return found
 
 
-def _twice(here: Any, there: Any, coordinates: Sequence[Coordinate]) -> bool:
+def _twice(here: ca.SX, there: ca.SX, coordinates: Sequence[Coordinate]) -> bool:
     """Return whether two places are one that is written in two ways, by random values."""
     return bool(np.abs(drawn(here - there, coordinates)).max() <= _TWICE)
 
 
-def _where(truth: Any, load: Any) -> Any:
+def _where(truth: ca.SX, load: ca.SX) -> ca.SX:
     """A load where something is true, and nothing elsewhere."""
     if truth.is_constant():
         return load if float(truth) else ca.SX.zeros(load.numel())

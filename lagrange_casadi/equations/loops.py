@@ -249,7 +249,7 @@ def _one_direction(phi: ca.SX, angle: Coordinate) -> ClosedForm | None:
 
 
 def _direction_on_line(
-    phi: ca.SX, angle: Coordinate, branch: ca.SX, largest: Any = None
+    phi: ca.SX, angle: Coordinate, branch: ca.SX, largest: ca.SX | None = None
 ) -> tuple[ca.SX, ca.SX] | None:
     """The direction for which phi = 0, and the closure: beside the square of its slope, or beside
     the ``largest`` there may be.
@@ -320,7 +320,7 @@ def _turns(columns: ca.SX, coordinates: Sequence[Coordinate]) -> bool:
 
 
 def _direction_and_slide(
-    phi: Any, angle: Coordinate, slide: Coordinate, coordinates: Sequence[Coordinate]
+    phi: ca.SX, angle: Coordinate, slide: Coordinate, coordinates: Sequence[Coordinate]
 ) -> ClosedForm | None:
     """Eliminate the slide; what is left is a direction on a line."""
     pair, branch = _pair(angle), ca.SX.sym("branch")

@@ -424,7 +424,7 @@ def _in_ground_axes(
     return Action(*supported(joint, parent, child, *_on_child(multibody, joint, actions)))
 
 
-def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Action:
+def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, ca.SX]) -> Action:
     """A reaction in the parent's axes, of what is in those of the body that hangs on the joint, by
     the joint's own turns.
     """

@@ -8,12 +8,12 @@ import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Expression
+from ..base.arrays import Array, Expression, Json
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
@@ -43,6 +43,8 @@ from .checks import Column
 from .residuals import extent
 from .section_function import Section
 from .tree import span
+
+_Value = TypeVar("_Value")
 
 
 def materials_of(description: Description) -> dict[str, Material]:
@@ -220,7 +222,8 @@ class ModelData(Graphs):
         parts = [*self.template.content["bodies"], ALL]
         if part not in parts:
             raise UnknownNameError("part with a mass", part, parts)
-        return self.masses(p)[parts.index(part)]
+        mass: ca.SX = self.masses(p)[parts.index(part)]
+        return mass
 
     @cached_property
     def materials(self) -> dict[str, Material]:
@@ -255,7 +258,7 @@ class ModelData(Graphs):
         )
         return f"{next((kind for kind, parts in kinds if part in parts), 'constraint')} '{part}'"
 
-    def words(self) -> dict[str, Any]:
+    def words(self) -> dict[str, Json]:
         """The data for JSON; functions as the text in which CasADi writes them."""
         return {name: write(getattr(self, name)) for name, (write, _) in _WRITTEN.items()}
 
@@ -265,11 +268,11 @@ class ModelData(Graphs):
         return cls(**{name: read(words[name]) for name, (_, read) in _WRITTEN.items()})
 
 
-def _as_it_is(value: Any) -> Expression:
+def _as_it_is(value: _Value) -> _Value:
     return value
 
 
-def _parameters(words: Mapping[str, Any]) -> dict[str, Parameter]:
+def _parameters(words: Mapping[str, tuple[float, str, float, float]]) -> dict[str, Parameter]:
     known = words.items()
     return {
         name: Parameter(name, default, unit, low, high, ca.SX.sym(name))

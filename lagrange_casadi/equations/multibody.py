@@ -10,6 +10,7 @@ rotations.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
@@ -49,10 +50,10 @@ class Coordinate:
     body: str
     axis: Axis
     driven: bool
-    variables: Any
-    change: Any
-    rate: Any
-    acceleration: Any
+    variables: ca.SX
+    change: ca.SX
+    rate: ca.SX
+    acceleration: ca.SX
     turn: Any = None
     relative: bool = False
     spherical: SphericalCoordinates | None = None
@@ -74,7 +75,7 @@ class Coordinate:
         return (1.0, 0.0, 0.0) if self.kind == "angle" else (0.0,)
 
     @property
-    def value(self) -> Expression:
+    def value(self) -> ca.SX:
         """The symbol of the coordinate itself."""
         return self.variables[-1]
 
@@ -92,7 +93,8 @@ class Coordinate:
 
     def placed(self, symbols: ca.SX, values: ca.SX) -> ca.SX:
         """Variables for values of the coordinates ``symbols``."""
-        return ca.substitute(self.by_values, symbols, values)
+        placed: ca.SX = ca.substitute(self.by_values, symbols, values)
+        return placed
 
     @cached_property
     def keys(self) -> tuple[int, ...]:
@@ -369,6 +371,6 @@ def change(expression: ca.SX, coordinates: tuple[Coordinate, ...], time: ca.SX) 
     return ca.jtimes(ca.SX(expression), moving, speed)
 
 
-def column(parts: Expression) -> Expression:
+def column(parts: Iterable[Expression]) -> ca.SX:
     """Parts one below the other; an empty column where there are none."""
     return ca.vertcat(ca.SX(0, 1), *parts)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Expression
+from ..base.arrays import Array
 from ..base.quantities import Output, law_members, load_point_members
 from ..base.symbolic import Graphs, symbolic
 from ..declare.laws import Laws
@@ -87,7 +87,7 @@ class Program(Graphs):
         return status_of(self)
 
     @property
-    def beside(self) -> Expression:
+    def beside(self) -> ca.Function:
         """The function ``beside(before, checks, next, after, most)``: what :attr:`status` sees of
         other instants.
         """
@@ -116,7 +116,7 @@ class Program(Graphs):
         return self.laws.joints
 
     @property
-    def motion(self) -> Expression:
+    def motion(self) -> ca.Function:
         """The function ``motion(t, p) -> (d, d_rate, d_acceleration)``."""
         return self.laws.motion
 
@@ -229,7 +229,7 @@ class Program(Graphs):
             data, wanted, instant, newton, columns, loop_angles, completion, kept["identity"]
         )
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable[[str], Program], tuple[str]]:
         """Send it as its text. Raises :class:`.PickleError` where that would not tell all."""
         if self.identity is None:
             raise PickleError(

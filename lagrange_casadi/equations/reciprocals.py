@@ -70,7 +70,9 @@ def differentiable(function: ca.Function) -> ca.Function:
     return _replayed(function, made)
 
 
-def _replayed(function: ca.Function, made: Callable[[int, Step, list[Any]], Any]) -> ca.Function:
+def _replayed(
+    function: ca.Function, made: Callable[[int, Step, list[Expression]], Expression]
+) -> ca.Function:
     """The function of one output again, with what ``made`` makes of the number of a step, the step
     and its operands.
     """

@@ -58,7 +58,7 @@ class ReleasedLoops:
         posture: Mapping[Coordinate, float],
         inputs: Sequence[Expression],
         values: Sequence[Expression],
-        by: Sequence[Any],
+        by: Sequence[ca.SX],
     ) -> ReleasedLoops:
         """Coordinates near the given ones; ``values`` are the initial numbers of the symbols
         ``inputs``.

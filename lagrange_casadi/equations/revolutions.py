@@ -54,7 +54,7 @@ def count_revolutions(
     span: tuple[float, float],
     start: Start,
     used: Mapping[str, ca.SX],
-) -> tuple[Kinematics, dict[str, Any]]:
+) -> tuple[Kinematics, dict[str, ca.SX]]:
     """The kinematics with the angles that ``used`` expressions of loads and rows see, by their
     names; and swings, by angle.
 
@@ -66,7 +66,7 @@ def count_revolutions(
     angles = [c for c in multibody.coordinates if c.kind == "angle"]
     wrapped = column(c.value for c in angles if c.name in solved.wrapped)
     counted = solved.evaluate(column(c.value for c in angles if c.name not in solved.wrapped))
-    values: dict[str, Any] = {}
+    values: dict[str, ca.SX] = {}
     users: dict[str, list[str]] = {}
     for turned in multibody.turned:
         users[turned.name] = [
@@ -77,7 +77,7 @@ def count_revolutions(
         elif not any(depends_on_turns(used[name], turned.symbol) for name in users[turned.name]):
             values[turned.name] = solved.evaluate(turned.within)
     open_ = [turned for turned in multibody.turned if turned.name not in values]
-    deviations: dict[str, Any] = {}
+    deviations: dict[str, ca.SX] = {}
     for turned, rule in zip(
         open_, _rules(multibody, solved, motion, span, start, open_, counted), strict=True
     ):
@@ -287,7 +287,7 @@ class _Part:
     number: float | None = None
 
 
-def _combined(code: int, *operands: Any) -> _Part:
+def _combined(code: int, *operands: float | _Part) -> _Part:
     """Rule by which an operation, one of CasADi's ``OP_`` codes, combines its parts."""
     parts: list[_Part] = [operand for operand in operands if isinstance(operand, _Part)]
     first, last = parts[0], parts[-1]

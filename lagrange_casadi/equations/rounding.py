@@ -23,6 +23,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..declare.density import Density
@@ -380,7 +381,7 @@ class _Search:
                 return found
         return None
 
-    def _corrections(self, cases: Sequence[Sequence[Any]]) -> Array | None:
+    def _corrections(self, cases: Sequence[Sequence[npt.ArrayLike]]) -> Array | None:
         x = np.zeros(self.released.residuals.size1_in(4))
         seen = [(case, posture) for case in cases for posture in self._walk(case, x)]
         for _ in range(_ROUNDS):
@@ -399,7 +400,7 @@ class _Search:
             x = x - np.linalg.lstsq(slopes, misses, rcond=seen_from)[0]
         return None
 
-    def _walk(self, case: Sequence[Any], x: Array) -> Iterator[Posture]:
+    def _walk(self, case: Sequence[npt.ArrayLike], x: Array) -> Iterator[Posture]:
         """Postures of the mechanism with all its freedoms, at random."""
         generator, posture = np.random.default_rng(0), self._closed(self.released.first, case, x)
         for _ in range(_POSTURES):
@@ -414,7 +415,7 @@ class _Search:
                 self.released.first, case, x
             )
 
-    def _closed(self, posture: Posture, case: Sequence[Any], x: Array) -> Posture | None:
+    def _closed(self, posture: Posture, case: Sequence[npt.ArrayLike], x: Array) -> Posture | None:
         """Posture in which loops close within rounding."""
         for _ in range(_CLOSING_STEPS):
             residual, slope, _ = self._scaled(posture, case, x)
@@ -429,7 +430,7 @@ class _Search:
         return None
 
     def _along_null(
-        self, case: Sequence[Any], posture: Posture, x: Array
+        self, case: Sequence[npt.ArrayLike], posture: Posture, x: Array
     ) -> tuple[Array, Array] | None:
         """Residual of loops in a posture that is closed anew, and the derivatives by corrections;
         None if the rank is unclear.
@@ -449,7 +450,7 @@ class _Search:
         return int(np.linalg.matrix_rank(slope, tol=self._singular * np.linalg.norm(slope, 2)))
 
     def _scaled(
-        self, posture: Posture, case: Sequence[Any], x: Array
+        self, posture: Posture, case: Sequence[npt.ArrayLike], x: Array
     ) -> tuple[Array, Array, Array]:
         """Gaps and their derivatives, in radians and beside the mechanism's size."""
         residual, slope, by = self.released.at(posture, [*case, x])

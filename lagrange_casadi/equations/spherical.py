@@ -81,7 +81,7 @@ class SphericalCoordinates:
         return x, y, z
 
 
-def axes_of(quaternion: Expression) -> Expression:
+def axes_of(quaternion: ca.SX) -> ca.SX:
     """The three axes that a quaternion (w, x, y, z) of any length turns to, nine expressions."""
     w, x, y, z = ca.vertsplit(quaternion)
     twice = 2 / ca.sumsqr(quaternion)

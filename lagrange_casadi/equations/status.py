@@ -147,7 +147,7 @@ def status_of(program: Program) -> ca.Function:
 
 @functools.lru_cache(maxsize=64)
 @symbolic
-def beside_of(program: Program) -> Expression:
+def beside_of(program: Program) -> ca.Function:
     """Return the function ``beside(before, checks, next, after, most)``: what stands beside checks,
     from those at the instants before and after, and the largest sizes of terms over all instants.
 

@@ -20,6 +20,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.tables import table_of
 from ..beams.properties import Properties
@@ -55,7 +56,7 @@ class Part:
     cell: int
     forces: Mapping[str, Sequence[Any]] = field(default_factory=dict)
 
-    def force(self, name: str, x: Any) -> Any:
+    def force(self, name: str, x: Expression) -> Expression:
         """A section force at a place from 0 to 1."""
         *others, found = self.forces[name]
         for coefficient in reversed(others):
@@ -66,7 +67,7 @@ class Part:
 class Loaded:
     """A link with a beam, its section forces and stresses as expressions."""
 
-    def __init__(self, space: bool, link: Link, columns: Mapping[Column, Any]) -> None:
+    def __init__(self, space: bool, link: Link, columns: Mapping[Column, Expression]) -> None:
         assert link.beam is not None
         assert isinstance(link.mass, Density)
         self.link, self.space = link, space
@@ -106,15 +107,15 @@ class Loaded:
                     found.append(Part(a, b - a, cell))
         return found
 
-    def force_at(self, name: str, u: Any, side: Side) -> Any:
+    def force_at(self, name: str, u: Expression, side: Side) -> Expression:
         """A section force at a ratio; at a station on a ``side`` of it."""
         return self.section.at(name, Place(u, side=side), _SLACK)
 
-    def force_within(self, name: str, part: Part, x: Any) -> Any:
+    def force_within(self, name: str, part: Part, x: Expression) -> Expression:
         """A section force at a place of a part from 0 to 1, by the link's law."""
         return self.section.force(name, part.low + part.width * x, edge(part.low, _SLACK))
 
-    def _polynomials(self, part: Part) -> dict[str, list[Any]]:
+    def _polynomials(self, part: Part) -> dict[str, list[Expression]]:
         nodes = (1.0 - np.cos(math.pi * np.arange(self.degree + 1) / self.degree)) / 2
         inverse = np.linalg.inv(np.vander(nodes, increasing=True))
         found = {}
@@ -126,11 +127,11 @@ class Loaded:
             ]
         return found
 
-    def at(self, part: Part, x: Any) -> Properties:
+    def at(self, part: Part, x: Expression) -> Properties:
         """The cross-section at a place of a part."""
         return self.cross.properties(part.cell, part.low + part.width * x)
 
-    def square(self, part: Part, x: Any) -> Any:
+    def square(self, part: Part, x: Expression) -> ca.SX:
         """The largest square of von Mises' stresses at a place of a part."""
         forces = [part.force(name, x) for name in self.cross.forces]
         needed = self.cross.fibres(part.cell).needed
@@ -138,7 +139,9 @@ class Loaded:
         return most(ca.vertsplit(squared(found, KINDS["von_mises"])))
 
 
-def stresses(mechanism: Mechanism, name: str, columns: Mapping[Column, Any]) -> dict[Column, Any]:
+def stresses(
+    mechanism: Mechanism, name: str, columns: Mapping[Column, Expression]
+) -> dict[Column, ca.SX]:
     """Von Mises' stress that is largest along a link [Pa]; nothing where there is no formula."""
     link = Loaded(mechanism.space, mechanism.links[name], columns)
     if not link.has_formula:
@@ -147,8 +150,11 @@ def stresses(mechanism: Mechanism, name: str, columns: Mapping[Column, Any]) -> 
 
 
 def utilisation(
-    mechanism: Mechanism, name: str, columns: Mapping[Column, Any], effective: tuple[float, float]
-) -> dict[Column, Any]:
+    mechanism: Mechanism,
+    name: str,
+    columns: Mapping[Column, Expression],
+    effective: tuple[float, float],
+) -> dict[Column, ca.SX]:
     """Utilisation of a link against yielding and against buckling: one over the factors of safety
     at an instant.
 
@@ -168,7 +174,7 @@ def utilisation(
     return found
 
 
-def _buckling(link: Loaded, effective: tuple[float, float]) -> Any:
+def _buckling(link: Loaded, effective: tuple[float, float]) -> Expression:
     """Utilisation of a link as a column, with the largest compression and the largest moments along
     it.
     """
@@ -180,11 +186,11 @@ def _buckling(link: Loaded, effective: tuple[float, float]) -> Any:
     )
 
 
-def _squared(name: str, part: Part, x: Any) -> Any:
+def _squared(name: str, part: Part, x: Expression) -> Expression:
     return part.force(name, x) ** 2
 
 
-def _largest(link: Loaded, value: Callable[[Part, Any], Any]) -> Any:
+def _largest(link: Loaded, value: Callable[[Part, Expression], Expression]) -> ca.SX:
     """The largest value along a link, of those at all places that are looked at."""
     found: list[Any] = []
     for part in link.parts:
@@ -193,7 +199,7 @@ def _largest(link: Loaded, value: Callable[[Part, Any], Any]) -> Any:
     return most(found)
 
 
-def sampled(value: Callable[[Any], Any], degree: int) -> list[Any]:
+def sampled(value: Callable[[Expression], Expression], degree: int) -> list[ca.SX]:
     """The values of a function of a degree at both ends of a part, between them, and beside its
     summits.
     """
@@ -222,7 +228,9 @@ def sampled(value: Callable[[Any], Any], degree: int) -> list[Any]:
     return found
 
 
-def _ranked(best: list[tuple[Any, Any]], top: Any, place: Any) -> list[tuple[Any, Any]]:
+def _ranked(
+    best: list[tuple[ca.SX, Expression]], top: ca.SX, place: Expression
+) -> list[tuple[ca.SX, Expression]]:
     """The highest summits and their places, with one more."""
     found = []
     for kept, at in best:
@@ -232,7 +240,7 @@ def _ranked(best: list[tuple[Any, Any]], top: Any, place: Any) -> list[tuple[Any
     return [*found, (top, place)][:_MAXIMA]
 
 
-def _in_order(marks: Sequence[Any]) -> list[Any]:
+def _in_order(marks: Sequence[ca.SX]) -> list[ca.SX]:
     """Marks from the base to the tip: by numbers where they are numbers, else compared as they
     move.
     """
@@ -248,7 +256,7 @@ def _in_order(marks: Sequence[Any]) -> list[Any]:
     return found
 
 
-def most(values: Sequence[Any]) -> Any:
+def most(values: Sequence[Expression]) -> ca.SX:
     """The largest of values."""
     found = values[0]
     for value in values[1:]:

@@ -178,7 +178,7 @@ def _differing(rows: Sequence[_Row], *, lower: bool) -> tuple[int, ...]:
     return tuple(kept)
 
 
-def _plain(row: tuple[tuple[Any, ...], ...], space: bool) -> _Row:
+def _plain(row: tuple[tuple[Expression, ...], ...], space: bool) -> _Row:
     """Return factors of a fibre's normal stress and shear stress: in the plane only the square of
     the latter matters.
     """

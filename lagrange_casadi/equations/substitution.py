@@ -32,7 +32,7 @@ class Expressions:
         more.note(symbols, values)
         return more
 
-    def with_values(self, of: Callable[[Any], Any]) -> Expressions:
+    def with_values(self, of: Callable[[ca.SX], ca.SX]) -> Expressions:
         """Substitution with another expression made of each."""
         more = Expressions()
         if self._known:

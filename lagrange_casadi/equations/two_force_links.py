@@ -18,6 +18,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.limits import parameter_values
@@ -55,12 +56,12 @@ class TwoForceLink:
         return joint.parent if joint.child.body is self.link else joint.child
 
     @property
-    def start(self) -> Any:
+    def start(self) -> Expression:
         """Position of the first joint along the bar [m]."""
         return self.own(self.joints[0]).x
 
     @property
-    def length(self) -> Any:
+    def length(self) -> Expression:
         """Distance of the joints [m]."""
         return self.own(self.joints[1]).x - self.start
 
@@ -174,8 +175,8 @@ def idle_spins(mechanism: Mechanism, driven: Collection[str]) -> list[str]:
 
 
 def two_force_frame(
-    two_force_link: TwoForceLink, frames: Mapping[str, Frame], released: Mapping[str, Any]
-) -> tuple[TwoForceFrame, tuple[Any, Any, Any]]:
+    two_force_link: TwoForceLink, frames: Mapping[str, Frame], released: Mapping[str, ca.SX]
+) -> tuple[TwoForceFrame, tuple[Expression, Expression, Expression]]:
     """A bar's frame between the bodies of its joints, displaced by the mobilities that are
     ``released``; and its length's equation.
 
@@ -187,8 +188,8 @@ def two_force_frame(
         point, frame = two_force_link.other(joint), frames[two_force_link.other(joint).body.name]
         speed, acceleration = frame.motion_of(point.place)
         if joint.name in released:
-            x, y, z = ca.vertsplit(released[joint.name])
-            speed = plus(speed, (x, y, z))
+            along, across, out = ca.vertsplit(released[joint.name])
+            speed = plus(speed, (along, across, out))
         places.append(frame.place_of(point.place))
         speeds.append(speed)
         accelerations.append(acceleration)

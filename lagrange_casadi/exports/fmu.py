@@ -9,7 +9,7 @@ import io
 import zipfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..base.arrays import Array
 from ..base.cache import working_folder
@@ -22,6 +22,9 @@ from ..portable.header import header
 from ..portable.source import Source
 from ..portable.text import indented, template
 from .fmu_description import Description, page
+
+if TYPE_CHECKING:
+    pass
 
 _HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 _EPOCH = (1980, 1, 1, 0, 0, 0)

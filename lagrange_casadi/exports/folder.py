@@ -11,13 +11,14 @@ import casadi as ca
 import numpy as np
 
 from ..arguments import LATER, Outputs, public
+from ..base.arrays import Json
 from ..base.manifest import Manifest
 from ..base.publish import check_writable
 from ..base.vocabulary import Precision
 from ..declare.scene import Scene
 from ..errors import PathError
 from ..instants.evaluation_method import EvaluationMethod
-from ..portable.contract import Contract
+from ..portable.contract import Contract, Member, Setting
 from ..portable.data import LARGEST
 from ..portable.header import header
 from ..portable.source import Source
@@ -123,11 +124,11 @@ def export(
     return agreed
 
 
-def _told(source: Source) -> dict[str, Any]:
+def _told(source: Source) -> dict[str, Json]:
     """Contents of the folder, for programs: names, units and places of all members."""
     agreed = source.contract
 
-    def rows(members: Sequence[Any]) -> list[dict[str, str]]:
+    def rows(members: Sequence[Member | Setting]) -> list[dict[str, str]]:
         return [
             {"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members
         ]

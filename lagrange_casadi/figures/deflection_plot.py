@@ -14,6 +14,7 @@ from ..elastic.vibration import Vibration, vibration
 from ..instants.solution import Solution
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _PIXELS, _FLOOR = 1600, 1e-6
@@ -42,7 +43,13 @@ def draw_deflection(
 
 
 def _map(
-    figure: Figure, axes: Any, found: Deflection, along: Array, label: str, factor: float, unit: str
+    figure: Figure,
+    axes: Axes,
+    found: Deflection,
+    along: Array,
+    label: str,
+    factor: float,
+    unit: str,
 ) -> None:
     member = found.member
     instants, ratios = (
@@ -52,7 +59,7 @@ def _map(
     u = np.broadcast_to(xi, (member.t.size, xi.size))
     values = found.size(u)[instants] * factor
     most = abs(peak.value) * factor or 1.0
-    colours = (
+    colours: dict[str, Any] = (
         {"cmap": "viridis", "vmin": 0.0}
         if member.space
         else {"cmap": "RdBu_r", "vmin": -most, "vmax": most}
@@ -70,7 +77,7 @@ def _map(
     figure.colorbar(picture, ax=axes, label=f"deflection across the link [{unit}]")
 
 
-def _spectrum(axes: Any, response: Vibration) -> None:
+def _spectrum(axes: Axes, response: Vibration) -> None:
     from matplotlib.ticker import NullFormatter
 
     assert response.cycle is not None

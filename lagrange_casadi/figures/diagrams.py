@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from ..instants.solution import Peak, Solution
 from ..shapes.readable import scale_for
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _SYMBOLS = {
@@ -121,7 +122,7 @@ def draw_section_diagrams(solution: Solution, links: Sequence[str], si: bool = F
 
 
 def _panel(
-    axes: Any,
+    axes: Axes,
     solution: Solution,
     output: Output,
     law: SectionLaw,
@@ -223,7 +224,7 @@ def draw_polar(solution: Solution, joints: Sequence[str], si: bool = False) -> F
 
 
 def _polar(
-    axes: Any, solution: Solution, joint: str, middle: tuple[float, float], si: bool
+    axes: Axes, solution: Solution, joint: str, middle: tuple[float, float], si: bool
 ) -> None:
     (x0, y0), pair = middle, polar_members(solution, joint)
     axes.text(x0, y0 + _RADIUS + 0.3, joint, fontsize=10, fontweight="bold", ha="center")
@@ -273,7 +274,7 @@ def _round_up(value: float) -> float:
     )
 
 
-def _sheet(wide: float, high: float) -> tuple[Figure, Any]:
+def _sheet(wide: float, high: float) -> tuple[Figure, Axes]:
     """A figure of a size, and axes over all of it, in inches."""
     from matplotlib.figure import Figure
 

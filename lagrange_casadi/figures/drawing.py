@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ from .labels import placed as labelled
 from .stills import stills
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _POINTS = 8.0
@@ -107,15 +108,16 @@ def draw_mechanism(
     return figure
 
 
-def draw_into(axes: Any, solution: Solution) -> None:
+def draw_into(axes: Axes, solution: Solution) -> None:
     """The mechanism at its first instant, into axes of a figure."""
     box, size = _extent(solution)
     _draw_instant(axes, solution, 0, size)
     _frame(axes, box, False)
     axes.set(xlabel=f"x [{scale_for('m', size).unit}]", ylabel=f"y [{scale_for('m', size).unit}]")
     label_bodies(axes.figure, *axes.get_legend_handles_labels())
-    if axes.figure.get_layout_engine():
-        axes.figure.draw_without_rendering()
+    figure: Any = axes.figure
+    if figure.get_layout_engine():
+        figure.draw_without_rendering()
     else:
         axes.apply_aspect()
     _name(axes, solution, 0, size)
@@ -158,7 +160,7 @@ def _extent(solution: Solution) -> tuple[Box, float]:
     ), size
 
 
-def _frame(axes: Any, box: Box, si: bool) -> None:
+def _frame(axes: Axes, box: Box, si: bool) -> None:
     scale = scale_for("m", max(box[1] - box[0], box[3] - box[2]) / 1.24, si)
     axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
     axes.grid(True, color="0.93")
@@ -168,14 +170,14 @@ def _frame(axes: Any, box: Box, si: bool) -> None:
 
 
 def _draw_instant(
-    axes: Any, solution: Solution, i: int, size: float, *, strong: bool = True
+    axes: Axes, solution: Solution, i: int, size: float, *, strong: bool = True
 ) -> None:
     """An instant; where it is not the ``strong`` one without the ground, and so that one sees
     through it.
     """
     now = solution.during(slice(i, i + 1))
     description = solution.description
-    style = {"alpha": 1.0 if strong else _FAINT, "zorder": 3 if strong else 2}
+    style: dict[str, Any] = {"alpha": 1.0 if strong else _FAINT, "zorder": 3 if strong else 2}
 
     def at(spot: Spot) -> Array:
         place: Array = placed(now, spot)[0, :2]
@@ -221,13 +223,18 @@ def _draw_instant(
 
 
 def _draw_body(
-    axes: Any, shape: Shape, at: Any, colour: str, style: Mapping[str, float], label: str
+    axes: Axes,
+    shape: Shape,
+    at: Callable[[Spot], Array],
+    colour: str,
+    style: dict[str, Any],
+    label: str,
 ) -> None:
     """A link's axis, plates, and arms to what is beside it; of a rotor its disc, with a spoke by
     which one sees it turn.
     """
 
-    def line(ends: Sequence[Any], width: float, label: str) -> None:
+    def line(ends: Sequence[tuple[float, float, float]], width: float, label: str) -> None:
         x, y = np.transpose([at(Spot(shape.name, end)) for end in ends])
         axes.plot(x, y, color=colour, linewidth=width, solid_capstyle="round", label=label, **style)
 
@@ -250,7 +257,12 @@ def _draw_body(
             label = "_"
     for points in (*shape.plates, *([tuple(_circle(shape))] if shape.disc else ())):
         corners = np.array([at(Spot(shape.name, point)) for point in points])
-        face = {"facecolor": colour, "linewidth": 0.0, **style, "alpha": 0.25 * style["alpha"]}
+        face: dict[str, Any] = {
+            "facecolor": colour,
+            "linewidth": 0.0,
+            **style,
+            "alpha": 0.25 * style["alpha"],
+        }
         axes.fill(*corners.T, **face)
         axes.plot(
             *np.vstack([corners, corners[:1]]).T,
@@ -273,7 +285,7 @@ def _circle(shape: Shape) -> Iterator[tuple[float, float, float]]:
 
 
 def _draw_axis(
-    axes: Any, solution: Solution, now: Solution, joint: JointShape, size: float
+    axes: Axes, solution: Solution, now: Solution, joint: JointShape, size: float
 ) -> None:
     """The line on which something slides, as far as it ever does."""
     parent = placed(now, joint.parent)[0, :2]
@@ -289,7 +301,7 @@ def _draw_axis(
     axes.plot(*ends.T, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1, label="_")
 
 
-def _name(axes: Any, solution: Solution, i: int, size: float) -> None:
+def _name(axes: Axes, solution: Solution, i: int, size: float) -> None:
     """Write the names beside their points, where they hide neither each other nor more of the
     bodies than they must.
     """
@@ -315,7 +327,7 @@ def _name(axes: Any, solution: Solution, i: int, size: float) -> None:
     for word, spot, anchor, low, wide in zip(words, named, anchors, corners, sizes, strict=True):
         own = apart(low, wide, anchor)
         far = own > 10.0 or sum(apart(low, wide, other) < 2.0 * own for other in anchors) > 1
-        line = (
+        line: dict[str, Any] = (
             {
                 "arrowprops": {
                     "arrowstyle": "-",
@@ -328,7 +340,7 @@ def _name(axes: Any, solution: Solution, i: int, size: float) -> None:
             if far
             else {}
         )
-        words_at = {
+        words_at: dict[str, Any] = {
             "xytext": low - anchor,
             "textcoords": "offset points",
             "fontsize": _POINTS,

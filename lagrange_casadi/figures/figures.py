@@ -40,6 +40,7 @@ from ..strength.parts import NEEDED, bending_of, fitted_in, strong_of
 from .diagrams import draw_polar, draw_section_diagrams, polar_members
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _PIXELS, _LABEL = 1600, 40
@@ -191,7 +192,7 @@ def _time(spec: TimePlot, solution: Solution, si: bool) -> Figure:
     return figure
 
 
-def _draw_time(spec: TimePlot, axes: Any, solution: Solution, name: str) -> None:
+def _draw_time(spec: TimePlot, axes: Axes, solution: Solution, name: str) -> None:
     output = Output.of(name)
     label = name.partition(":")[2].replace(":", " ") if len(spec.quantities) > 1 else None
     if output.group != "section":
@@ -343,7 +344,7 @@ def _place_of(peak: Peak, solution: Solution) -> tuple[float, str]:
     return float(solution.over.drawn(peak.over)), solution.over.shown(peak.over)
 
 
-def _figure(subplots: int = 1) -> tuple[Figure, list[Any]]:
+def _figure(subplots: int = 1) -> tuple[Figure, list[Axes]]:
     """A figure, and its axes, one above the other."""
     from matplotlib.figure import Figure
 
@@ -355,7 +356,7 @@ def _figure(subplots: int = 1) -> tuple[Figure, list[Any]]:
 
 def _finish(
     figure: Figure,
-    axes: Any,
+    axes: Axes,
     solution: Solution,
     names: Sequence[str],
     title: str,

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ..base.tables import SPACE
 from ..instants.solution import Solution
 from . import drawing, space_drawing
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-def draw_into(axes: Any, solution: Solution) -> None:
+
+def draw_into(axes: Axes, solution: Solution) -> None:
     """The mechanism at its first instant, into axes of a figure; in space as it is seen from one
     side.
     """

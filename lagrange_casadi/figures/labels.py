@@ -6,11 +6,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..base.arrays import Array
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.figure import Figure, SubFigure
 
 _REACHES, _DIRECTIONS = (6.0, 10.0, 15.0, 21.0, 28.0, 38.0, 50.0, 70.0), 16
 """Distances of a name from its point [pt], and number of directions, that are tried."""
@@ -90,7 +94,9 @@ def _cost(
     )
 
 
-def label_bodies(figure: Any, handles: Sequence[Any], names: Sequence[str]) -> None:
+def label_bodies(
+    figure: Figure | SubFigure, handles: Sequence[Artist], names: Sequence[str]
+) -> None:
     """Draw the legend of bodies and colours, once below all drawings of a figure; where its layout
     is not constrained, in its corner.
     """

@@ -34,7 +34,9 @@ from .labels import apart, label_bodies, placed
 from .stills import stills
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 _THINNED = 2000
 """Largest number of instants at which paths are drawn."""
@@ -118,7 +120,7 @@ def draw_in_space(
     return figure
 
 
-def draw_into(axes: Any, solution: Solution) -> None:
+def draw_into(axes: Axes, solution: Solution) -> None:
     """The mechanism at its first instant, into axes of a figure, from one side."""
     one = view(upright(solution.description["gravity"]), AZIMUTH, ELEVATION)
     now, cloud = solution.during(slice(0, 1)), cloud_of(solution)
@@ -133,7 +135,8 @@ def draw_into(axes: Any, solution: Solution) -> None:
     # in a column of two.
     wide, high = 4.6, 3.4
     if not axes.figure.get_layout_engine():
-        wide, high = axes.get_position().size * axes.figure.get_size_inches()
+        figure: Any = axes.figure
+        wide, high = axes.get_position().size * figure.get_size_inches()
     scale = 72.0 * min(wide / (box[1] - box[0]), high / (box[3] - box[2]))
     _label(axes, one, now, solution, size, box, scale)
     named = [
@@ -157,7 +160,7 @@ def _instants(solution: Solution, chosen: list[int]) -> str:
     return f"t = {times[0]}" + (f", and faint {', '.join(times[1:])}" if times[1:] else "")
 
 
-def _frame(axes: Any, one: View, box: Box, size: Sequence[float], scale: Scale) -> None:
+def _frame(axes: Axes, one: View, box: Box, size: Sequence[float], scale: Scale) -> None:
     """Range of a picture, and its scales, with as many numbers as fit its ``size`` [inch]."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
@@ -181,7 +184,7 @@ def _frame(axes: Any, one: View, box: Box, size: Sequence[float], scale: Scale) 
 
 
 def _draw_instant(
-    axes: Any, one: View, now: Solution, thin: Solution, size: float, *, strong: bool
+    axes: Axes, one: View, now: Solution, thin: Solution, size: float, *, strong: bool
 ) -> None:
     """A solution's first instant; axes of joints only where it is the ``strong`` one."""
     from matplotlib.markers import CARETUP
@@ -240,14 +243,14 @@ def _draw_instant(
         )
 
 
-def _draw_paths(axes: Any, one: View, thin: Solution) -> None:
+def _draw_paths(axes: Axes, one: View, thin: Solution) -> None:
     for point in thin.description.get("paths", {}).values():
         x, y = one.on_page(place_of(thin, point)).T
         axes.plot(x, y, color=PATH, linewidth=1.4, zorder=2, label="_")
 
 
 def _label(
-    axes: Any, one: View, now: Solution, thin: Solution, size: float, box: Box, scale: float
+    axes: Axes, one: View, now: Solution, thin: Solution, size: float, box: Box, scale: float
 ) -> None:
     """The directions of the ground's axes, and the names of joints and declared points at a
     solution's first instant.
@@ -301,14 +304,14 @@ def _triad_at(cloud: Array, edge: Sequence[float]) -> Array:
     )
 
 
-def _draw_triad(axes: Any, one: View, spot: Array, box: Box, scale: float) -> None:
+def _draw_triad(axes: Axes, one: View, spot: Array, box: Box, scale: float) -> None:
     at = np.array([box[0], box[2]]) + spot / scale
     for name, axis in zip("xyz", np.eye(3), strict=True):
         end = at + _ARROW / scale * one.on_page(axis)
         axes.annotate(
             "",
-            end,
-            at,
+            tuple(end),
+            tuple(at),
             arrowprops={
                 "arrowstyle": "->",
                 "color": "0.3",
@@ -317,13 +320,12 @@ def _draw_triad(axes: Any, one: View, spot: Array, box: Box, scale: float) -> No
                 "shrinkB": 0,
             },
         )
-        axes.text(
-            *(at + 1.28 * (end - at)), name, fontsize=8, color="0.3", ha="center", va="center"
-        )
+        x, y = at + 1.28 * (end - at)
+        axes.text(x, y, name, fontsize=8, color="0.3", ha="center", va="center")
 
 
 def _name(
-    axes: Any,
+    axes: Axes,
     spots: Mapping[str, Array],
     things: Array,
     edge: Sequence[float],
@@ -378,7 +380,7 @@ def _along(points: Array) -> Array:
     return found
 
 
-def _entries(solution: Solution) -> list[tuple[str, Any]]:
+def _entries(solution: Solution) -> list[tuple[str, Line2D]]:
     """The legend: bodies by their colours, kinds of joints by their marks, and declared points."""
     from matplotlib.lines import Line2D
 

@@ -5,7 +5,7 @@ far all parts are used.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from ..strength.stress import Stress
 from ..strength.worst import places, worst
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _MEGA, _PIXELS = 1e6, 1600
@@ -76,7 +77,7 @@ def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
     return figure
 
 
-def _map(figure: Figure, axes: Any, stress: Stress, along: Array, label: str, unit: Scale) -> None:
+def _map(figure: Figure, axes: Axes, stress: Stress, along: Array, label: str, unit: Scale) -> None:
     instants, ratios = (
         slice(None, None, 1 + size // _PIXELS)
         for size in (stress.member.t.size, stress.member.xi.size)
@@ -98,7 +99,7 @@ def _map(figure: Figure, axes: Any, stress: Stress, along: Array, label: str, un
     unit.put(figure.colorbar(picture, ax=axes, label=f"von Mises [{unit.unit}]").ax.yaxis)
 
 
-def _goodman(axes: Any, stress: Stress, unit: Scale) -> None:
+def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
     stress = Stress(stress.member.counted)
     material = stress.member.beam.material
     endurance, ultimate = (

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.arrays import Json
 from ..errors import shown
 from .record import (
     COORDINATES,
@@ -121,7 +122,7 @@ def write(model: Model) -> str:
     return json.dumps(told, indent=1, allow_nan=False) + "\n"
 
 
-def _told_body(body: Body) -> dict[str, Any]:
+def _told_body(body: Body) -> dict[str, Json]:
     told: dict[str, Any] = {"name": body.name, "mass": body.mass} | _told_frame(body.frame)
     if body.rod is not None:
         told["rod"] = [end.tolist() for end in body.rod]
@@ -135,7 +136,7 @@ def _told_body(body: Body) -> dict[str, Any]:
     return told
 
 
-def _told_frame(frame: Frame) -> dict[str, Any]:
+def _told_frame(frame: Frame) -> dict[str, Json]:
     told: dict[str, Any] = {"place": frame.place.tolist()}
     if not np.array_equal(frame.axes, np.eye(3)):
         told["axes"] = frame.axes.T.tolist()

@@ -8,7 +8,7 @@ without mass between these.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,11 @@ from ..base.arrays import Array
 from ..errors import MissingPackageError, shown
 from .record import GROUND, Body, Coupling, Frame, Joint, Model, about_axis, rotation, turned
 from .xml_tree import Element, parsed
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    import mujoco
 
 _FOLDERS = ("assetdir", "meshdir", "texturedir")
 _FILES = ("file", "fileup", "filedown", "filefront", "fileback", "fileleft", "fileright", "content")
@@ -62,7 +67,7 @@ def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -
 class _Reader:
     """A compiled model under way."""
 
-    def __init__(self, model: Model, compiled: Any, mujoco: Any) -> None:
+    def __init__(self, model: Model, compiled: mujoco.MjModel, mujoco: ModuleType) -> None:
         self.model, self.m, self.mujoco = model, compiled, mujoco
         self.data = mujoco.MjData(compiled)
         mujoco.mj_kinematics(compiled, self.data)

@@ -5,7 +5,7 @@ first instant.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import casadi as ca
@@ -27,11 +27,11 @@ SAMPLES = 1001
 """Instants of a motion that has no expression, as one from measured points."""
 
 
-def _infix(sign: str) -> Any:
+def _infix(sign: str) -> Callable[[str, str], str]:
     return lambda x, y: f"({x} {sign} {y})"
 
 
-def _call(name: str) -> Any:
+def _call(name: str) -> Callable[[str], str]:
     return lambda x: f"{name}({x})"
 
 
@@ -145,7 +145,7 @@ def _joint(name: str, told: Told, plane: bool) -> Joint:
     return Joint(name, kind, one, other, Frame(parent, near), Frame(child, far), lead)
 
 
-def _law(law: Any, span: tuple[float, float, int]) -> Law:
+def _law(law: ca.Function, span: tuple[float, float, int]) -> Law:
     """Return a motion as text, or as samples where it has none."""
     try:
         ((text,),) = interpret(law, [["t"]], _TEXT)

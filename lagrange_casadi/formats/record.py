@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -224,7 +223,7 @@ class Model:
         """Return the error of an element of the file."""
         return ModelFileError(f"{self.file}: {where + ': ' if where else ''}{words}")
 
-    def name_of(self, kind: str, told: str, where: str, taken: Mapping[str, Any]) -> str:
+    def name_of(self, kind: str, told: str, where: str, taken: Collection[str]) -> str:
         """Return a name of the file as one that parts may have, and keep what it was."""
         name = re.sub(r"\W", "_", told.strip(), flags=re.ASCII)
         name = name if name[:1].isalpha() else f"{kind[0]}_{name}"

@@ -10,7 +10,7 @@ import shlex
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import casadi as ca
 import numpy as np
@@ -216,7 +216,7 @@ def unevaluated(program: Program, stages: Stages, size: int) -> Evaluated:
     return Evaluated(out, np.full(size, Status.OK, dtype=np.int32), iterated, stages)
 
 
-def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
+def rows(count: int, size: int, dtype: npt.DTypeLike = np.float64) -> Array:
     """Rows an odd number of cache lines apart: at a power of two all would share the same few lines
     of the cache.
     """

@@ -14,7 +14,7 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from importlib import resources
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,9 @@ from ..codegen import find_compiler
 from ..codegen.calls import Call
 from ..codegen.compiler import loaded
 from ..errors import CompilerError, DeclarationError, warn
+
+if TYPE_CHECKING:
+    from _ctypes import CFuncPtr
 
 FACTORS = ("1", "rate", "rate^2", "acceleration")
 """Factors of a term."""
@@ -164,7 +167,7 @@ class CycleTable:
         return int(self.coefficients.nbytes)
 
     @property
-    def dtype(self) -> np.dtype[Any]:
+    def dtype(self) -> np.dtype[np.generic]:
         """The type of numbers that it is read in: float64 or float32."""
         return self.coefficients.dtype
 
@@ -361,7 +364,7 @@ def source() -> str:
 
 
 @functools.cache
-def _compiled(dtype: str) -> Any | None:
+def _compiled(dtype: str) -> CFuncPtr | None:
     """The C function for numbers of a type, or None where there is no compiler that takes it."""
     try:
         compiler = find_compiler()

@@ -12,9 +12,9 @@ import functools
 import math
 from collections.abc import Sequence
 from importlib import resources
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..base.space import require
@@ -173,7 +173,7 @@ def largest(
     return out
 
 
-def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:
+def empty(what: str, shape: tuple[int, ...], dtype: npt.DTypeLike = np.float64) -> Array:
     """An array to fill, from the start of a cache line: what crosses lines is stored at half the
     speed.
 
@@ -196,7 +196,12 @@ def _flat(columns: Sequence[Array], loads: Sequence[Load]) -> list[Array]:
 
 
 def _sum(
-    columns: int, planes: int, rows: Any, functions: Array, ratios: Array, beyond: Array
+    columns: int,
+    planes: int,
+    rows: ctypes.Array[ctypes.c_void_p],
+    functions: Array,
+    ratios: Array,
+    beyond: Array,
 ) -> dict[str, int]:
     """Arguments of a call: ``rows`` are the addresses of the columns, so many, and of the loads'
     parts; functions have a row each.
@@ -266,7 +271,7 @@ def _sum_up(
 
 
 @functools.cache
-def _compiled() -> Any | None:
+def _compiled() -> ctypes.CDLL | None:
     """The C functions, or None where there is no compiler that takes them."""
     functions = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
     source = (

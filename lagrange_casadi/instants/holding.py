@@ -96,7 +96,7 @@ _Reasons = list[tuple[Any, str]]
 """Instants (t,) at which a range is not available, and the reasons."""
 
 
-def _inputs(program: Program, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[Any]:
+def _inputs(program: Program, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[ca.DM]:
     """Arguments of a scene's columns, for some of the instants ``t``."""
     z = (
         np.zeros((0, at.size))
@@ -107,7 +107,7 @@ def _inputs(program: Program, t: Array, p: Array, at: npt.NDArray[np.intp]) -> l
     return [ca.DM(t[at]).T, *moved, ca.DM(z), ca.DM(p)]
 
 
-def _tried(held: HeldEfforts, inputs: list[Any]) -> tuple[Array, _Reasons]:
+def _tried(held: HeldEfforts, inputs: list[ca.DM]) -> tuple[Array, _Reasons]:
     """The columns for all choices of signs of the frictions that rest, (choices, columns, t); and
     where these are not enough.
     """

@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields, replace
 from typing import TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..base.quantities import Output
@@ -50,7 +51,7 @@ class DistributedLoad:
             if ((place > 0.0) & (place < 1.0)).any()
         ]
 
-    def during(self, instants: slice) -> DistributedLoad:
+    def during(self, instants: slice | npt.NDArray[np.generic]) -> DistributedLoad:
         """Load at some of the instants."""
         terms = {
             member: tuple(values[instants] for values in rows)
@@ -159,7 +160,7 @@ class _AtStation:
     name: str
     station: Array
 
-    def during(self: _Load, instants: slice) -> _Load:
+    def during(self: _Load, instants: slice | npt.NDArray[np.generic]) -> _Load:
         """Load at some of the instants."""
         arrays = (entry.name for entry in fields(self) if entry.name != "name")
         return replace(self, **{name: getattr(self, name)[instants] for name in arrays})

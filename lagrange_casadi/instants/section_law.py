@@ -14,9 +14,9 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..base.arrays import Array, Operand
 from ..base.brief import Brief
@@ -98,7 +98,7 @@ class SectionLaw(Brief):
         columns, rows, acting, planes = self._planes(force, basis)
         return grids.largest(columns, rows, acting, basis.u, planes, self.slack)
 
-    def during(self, instants: slice) -> SectionLaw:
+    def during(self, instants: slice | npt.NDArray[np.generic]) -> SectionLaw:
         """The law at some of the instants."""
         coefficients = {name: values[instants] for name, values in self.coefficients.items()}
         loads = tuple(load.during(instants) for load in self.loads)
@@ -204,7 +204,7 @@ class SectionLaw(Brief):
                 found[force] = gap, size_of(found[part][1] for part in parts)
         return found
 
-    def along(self, force: str, xi: Any, side: Side = "tip") -> Array:
+    def along(self, force: str, xi: npt.ArrayLike, side: Side = "tip") -> Array:
         """The derivative of a force by the ratio, at ratios of shape (t, ...)."""
         u = np.asarray(xi, dtype=float)
         if len(parts := self._parts(force)) > 1:

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
 from ..equations.checks import Check
@@ -102,7 +102,7 @@ class Sharpness:
         watched = ca.Function("watched", inputs, [rows], names, ["out"], {"cse": True})
         return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(sorted(knots)))
 
-    def rounding(self, *inputs: Any) -> Array:
+    def rounding(self, *inputs: Operand) -> Array:
         """Distance from zero by rounding of each watched function that is nothing else at any of n
         places; zero for others (rows, 1).
 
@@ -252,7 +252,7 @@ _ALIKE = {
 
 def _watched(
     operation: int, operands: Sequence[ca.SX]
-) -> Iterator[tuple[Kind, Any, tuple[float, ...]]]:
+) -> Iterator[tuple[Kind, ca.SX, tuple[float, ...]]]:
     """Watched functions of an operation."""
     x, y = operands[0], operands[-1]
     if operation in (ca.OP_DIV, ca.OP_INV):

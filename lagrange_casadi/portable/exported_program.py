@@ -164,7 +164,7 @@ def _status(
     return ca.Function("status", [y, mass_properties, iterated], [ca.densify(rule)], {"cse": True})
 
 
-def _fixed(function: Any, p: Array) -> Any:
+def _fixed(function: ca.Function, p: Array) -> ca.Function:
     """A function with numbers for its parameters, which are its last input."""
     inputs = function.sx_in()
     return ca.Function(

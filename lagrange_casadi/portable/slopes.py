@@ -5,7 +5,7 @@ C, and what they must be.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -130,7 +130,7 @@ def _given(c: Contract) -> Iterator[str]:
             yield f"{name}[{k}] = inputs->{c.input_of(f'motion:{drive}{ending}')};"
 
 
-def selftest_numbers(slopes: ExportedSlopes, row: Any) -> str:
+def selftest_numbers(slopes: ExportedSlopes, row: Callable[[Array], str]) -> str:
     """Expected values of the self-test; ``row`` writes numbers."""
     rows = ",\n".join(f"  {{{row(x.ravel())}}}" for x in slopes.expected)
     many = slopes.off.size

@@ -10,7 +10,6 @@ import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
-from typing import Any
 
 from ..base.cache import working_folder
 from ..base.packages import check_installed
@@ -115,17 +114,20 @@ def engine() -> str:
     return (resources.files(__package__) / "templates" / "engine.js").read_text()
 
 
-def layout(source: Source) -> dict[str, Any]:
+def layout(source: Source) -> dict[str, int | str]:
     """Layout of the C's structs for the wrapper: the number of numbers in each, and the bytes of a
     model.
     """
     c = source.contract
-    counts = {"parameters": len(c.settings), "inputs": len(c.inputs), "outputs": len(c.outputs)}
-    return (
-        {"prefix": c.prefix, "precision": c.precision, "model": places(source)["end"]}
-        | counts
-        | {"forces": len(_forces(c))}
-    )
+    return {
+        "prefix": c.prefix,
+        "precision": c.precision,
+        "model": places(source)["end"],
+        "parameters": len(c.settings),
+        "inputs": len(c.inputs),
+        "outputs": len(c.outputs),
+        "forces": len(_forces(c)),
+    }
 
 
 def places(source: Source) -> dict[str, int]:
@@ -164,7 +166,7 @@ def _forces(c: Contract) -> tuple[str, ...]:
 def _contract(source: Source) -> str:
     c = source.contract
 
-    def described(m: Member) -> dict[str, Any]:
+    def described(m: Member) -> dict[str, str]:
         return {"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.comment}
 
     def end(value: float) -> float | None:

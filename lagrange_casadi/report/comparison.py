@@ -10,8 +10,8 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
+from ..base.arrays import Json
 from ..errors import DeclarationError, shown
 from ..instants.ordering import error_of, ordered
 from ..instants.solution import Solution
@@ -54,7 +54,8 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
         raise DeclarationError(
             "report: nothing to compare: the two runs have no quantity in common"
         )
-    arrays, runs = Arrays(), []
+    arrays = Arrays()
+    runs: list[Json] = []
     for solution, name in zip(solutions, names, strict=True):
         chosen = shown_instants(solution)
         over = solution.over
@@ -64,8 +65,9 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
                 "case": solution.case,
                 "certified": solution.certified,
                 "t": arrays.add(solution.t[chosen]),
-                "over": over
-                and {
+                "over": None
+                if over is None
+                else {
                     "joint": over.joint,
                     "unit": over.unit,
                     "values": arrays.add(over.values[chosen]),
@@ -79,7 +81,7 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
             }
         )
     cases = " and ".join(dict.fromkeys(solution.case for solution in solutions))
-    content = {"case": cases, "runs": runs, "rows": rows, "groups": GROUPS}
+    content: dict[str, Json] = {"case": cases, "runs": runs, "rows": rows, "groups": GROUPS}
     content |= {"arrays": arrays.places, "numbers": arrays.block()}
     return assembled(
         f"{cases}: two runs",
@@ -90,7 +92,7 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
     )
 
 
-def _rows(solutions: tuple[Solution, Solution]) -> Iterator[dict[str, Any]]:
+def _rows(solutions: tuple[Solution, Solution]) -> Iterator[dict[str, Json]]:
     """The quantities that both have, each with its peaks and how far these may be off."""
     first, second = solutions
     others = {str(output) for output in ordered(second)}

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Json
 from ..base.quantities import Output
 from ..declare.description import Description
 from ..instants.derivatives import derivatives
@@ -77,7 +77,7 @@ class Row:
     rms: float | None = None
 
 
-def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
+def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
     """All of a page about a solution; with ``live`` the engine that evaluates its scene for other
     parameters, too.
 
@@ -118,8 +118,8 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
     return found | {"arrays": arrays.places, "numbers": arrays.block()}
 
 
-def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
-    over = solution.over
+def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Json]:
+    over: Any = solution.over
     return {
         "total": solution.t.size,
         "shown": int(chosen.size),
@@ -133,7 +133,7 @@ def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) 
 
 def _bodies(
     solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
-) -> Iterator[dict[str, Any]]:
+) -> Iterator[dict[str, Json]]:
     """The bodies' shapes, colours, and poses: in the plane x, y and the angle; in space a place,
     and three axes one by one.
     """
@@ -241,7 +241,7 @@ def _rows(solution: Solution) -> Iterator[Row]:
         yield Row(*words, False, peak, error_of(solution, output), smallest, largest, *means)
 
 
-def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
+def _strength(solution: Solution) -> Iterator[dict[str, Json]]:
     """Utilisation of links and joints for each mode of failure, and whether that governs; infinite
     factors are none.
 
@@ -249,7 +249,7 @@ def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
     """
     for found in looked(solution):
         for verdict in found.verdicts:
-            values = {
+            values: dict[str, Json] = {
                 "part": found.link,
                 "against": verdict.against,
                 "where": verdict.where,
@@ -266,7 +266,7 @@ def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
             yield values | {"factor": None, "used": None, "governs": False}
 
 
-def _parameters(description: Description) -> Iterator[dict[str, Any]]:
+def _parameters(description: Description) -> Iterator[dict[str, Json]]:
     for name, parameter in description["parameters"].items():
         low, high = (finite(parameter[end]) for end in ("low", "high"))
         yield {
@@ -285,7 +285,7 @@ def _residuals(solution: Solution) -> Iterator[tuple[Output, Array]]:
             yield Output("certificate", "", quantity.member), solution.certificate[quantity.member]
 
 
-def _certificate(solution: Solution) -> dict[str, Any]:
+def _certificate(solution: Solution) -> dict[str, Json]:
     """The certificate in words, and its residuals."""
     state = "certified" if solution.certified else "failed" if solution.failed else "none"
     residuals = [

@@ -13,12 +13,12 @@ import shlex
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arrays import Json
 from ..base.quantities import Output
 from ..codegen.printer import print_functions
 from ..declare.description import Description
@@ -116,7 +116,7 @@ class Live:
 
     def entry(
         self, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
-    ) -> dict[str, Any]:
+    ) -> dict[str, Json]:
         """Data of a page beside its solution: the module, and its inputs, outputs and numbers.
 
         ``chosen`` are the instants that are shown, by number.
@@ -134,7 +134,7 @@ def _numbers(data: ModelData, timing: Timing) -> ca.Function:
 
 def _entry(
     live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
-) -> dict[str, Any]:
+) -> dict[str, Json]:
     source, timing = live.source, live.timing
     data = source.exported.program.data
     described, asked = data.template.content, data.template.numbers(data.symbols)
@@ -183,7 +183,7 @@ def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
     return [known.get(str(Output("pose", body, member)), -1) for member in members]
 
 
-def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) -> dict[str, Any]:
+def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) -> dict[str, Json]:
     """Pieces of a link's functions along it: the breaks of its density, distributed loads, and the
     highest degree.
     """
@@ -202,7 +202,7 @@ def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) 
     }
 
 
-def _picture(described: Description, first: int, masses: Mapping[str, int]) -> dict[str, Any]:
+def _picture(described: Description, first: int, masses: Mapping[str, int]) -> dict[str, Json]:
     """The numbers that a picture is made of, as their places behind ``first``; -1 is nothing."""
 
     def at(number: float | None) -> int:
@@ -214,7 +214,7 @@ def _picture(described: Description, first: int, masses: Mapping[str, int]) -> d
     def vector(components: Sequence[float]) -> list[int]:
         return [*map(at, components), *[-1] * (3 - len(components))]
 
-    def joint(entry: Description) -> dict[str, Any]:
+    def joint(entry: Description) -> dict[str, Json]:
         ends = {"parent": place(entry["parent"]), "child": place(entry["child"])}
         if "turned" in entry:
             second = entry["kind"] == "universal" and len(entry["axes"]) > 1

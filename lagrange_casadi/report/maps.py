@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Json
 from ..instants.solution import Solution
 from ..instants.statistics import counted
 from ..strength.parts import bending_of, strong_of
@@ -51,7 +51,7 @@ class Map:
     where: str
 
 
-def map_entries(solution: Solution, arrays: Arrays) -> Iterator[dict[str, Any]]:
+def map_entries(solution: Solution, arrays: Arrays) -> Iterator[dict[str, Json]]:
     """The maps of the links that have a beam: von Mises' stress, and where the material's
     elasticity is known the deflection.
     """

@@ -9,12 +9,14 @@ from __future__ import annotations
 import json
 import math
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arrays import Array
 from ..declare.description import values_of
 from ..declare.scene import Scene, Wanted
 from ..declare.wanted_names import SENSITIVITY
@@ -148,9 +150,7 @@ def _shown(sweep: Sweep, many: int, front: list[int]) -> npt.NDArray[np.int64]:
     )
 
 
-def _values(
-    sweep: Sweep, names: list[str], wanted: npt.NDArray[np.int64]
-) -> dict[str, npt.NDArray[Any]]:
+def _values(sweep: Sweep, names: list[str], wanted: npt.NDArray[np.int64]) -> dict[str, Array]:
     """Columns of some designs, by name."""
     parts: dict[str, list[npt.NDArray[Any]]] = {name: [] for name in names}
     for numbers, values in sweep.blocks(names):
@@ -193,7 +193,7 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
     return page(evaluate(scene, parameters=design, wanted=wanted, elastic=False, **words), live)
 
 
-def _bounds(asked: list[float]) -> tuple[float, ...]:
+def _bounds(asked: Sequence[float]) -> tuple[float, ...]:
     return tuple(asked[:3])
 
 

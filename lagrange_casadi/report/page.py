@@ -17,8 +17,8 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from string import Template
-from typing import Any
 
+from ..base.arrays import Json
 from ..base.publish import writing
 from ..errors import DeclarationError
 from ..instants.solution import Solution
@@ -131,7 +131,7 @@ def page(solution: Solution, live: Live | None = None) -> str:
 
 def assembled(
     title: str,
-    content: Mapping[str, Any],
+    content: Mapping[str, Json],
     scripts: Sequence[str],
     *,
     wasm: bool,

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arrays import Json
 from ..base.quantities import Output
 from ..base.tables import Table
 from ..instants.solution import Solution
@@ -47,7 +48,7 @@ class Force:
 
 def section_entries(
     solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
-) -> Iterator[dict[str, Any]]:
+) -> Iterator[dict[str, Json]]:
     """The links that have sections, each with its forces."""
     xi = np.linspace(0.0, 1.0, RATIOS)
     for link in solution.links_with_sections:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -50,7 +49,7 @@ class Ends:
     def _still(self) -> bool:
         return self.timing is None or self.timing.shared or not self.p.size
 
-    def _gaps(self, derivatives: Callable[[Any, Any], Any]) -> Array:
+    def _gaps(self, derivatives: Callable[[ca.SX, ca.SX], ca.SX]) -> Array:
         """Derivatives, (2, rows, 1 + parameters), by time and by all parameters, of each end's
         distance from its target.
         """

@@ -103,7 +103,7 @@ class PointFunction(Graphs):
         )
 
     @symbolic
-    def further(self) -> Expression:
+    def further(self) -> ca.Function:
         """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: the derivatives that
         ``function`` has, and how they change along a ``way`` of time, xi/l and the parameters.
 
@@ -129,7 +129,7 @@ class PointFunction(Graphs):
         )
 
 
-def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> Expression:
+def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> ca.Function:
     """``total(t, d, d_rate, d_acceleration, z, p) -> slopes``: of some ``rows`` of a graph by some
     parameters, by their numbers.
 
@@ -156,7 +156,7 @@ def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> Expressio
 
 def section_slopes(
     data: ModelData, link: str, columns: Sequence[Output], by: Sequence[int]
-) -> Expression:
+) -> ca.Function:
     """``sections(columns, slopes, xi, p) -> changes``: those of all section forces of a link,
     (parameters, forces), at a ratio.
 
@@ -200,7 +200,7 @@ def _weights(parts: Sequence[Expression]) -> list[Expression]:
 
 
 def _backwards(
-    program: Program, inputs: Sequence[Any], adjoint: Expression
+    program: Program, inputs: Sequence[ca.SX], adjoint: Expression
 ) -> tuple[Expression, Expression, Expression]:
     """The derivatives by time, by the drives' coordinates, rates and accelerations, and in total by
     the parameters, of what has an ``adjoint``, (inputs, n), by the ``inputs`` of an instant.
@@ -217,12 +217,12 @@ def _backwards(
     return by_t, by_drives, by_p + ca.jtimes(driven, p, by_drives, True)
 
 
-def _seeds(count: int, by: Sequence[int]) -> Expression:
+def _seeds(count: int, by: Sequence[int]) -> ca.SX:
     """Derivatives of all parameters by some of them."""
     return ca.SX.eye(count)[:, list(by)]
 
 
-def _ends(parts: Sequence[Expression]) -> list[int]:
+def _ends(parts: Sequence[ca.SX]) -> list[int]:
     """First row of each of some parts that stand below each other, and the end of the last one."""
     ends = [0]
     for part in parts:
@@ -236,9 +236,9 @@ def _rows(
     columns: dict[Column, Expression],
     quantities: Sequence[Output],
     xi: Expression,
-    value: Any,
+    value: Expression,
     moving: Expression,
-    chosen: Any,
+    chosen: ca.SX,
 ) -> tuple[list[Expression], list[Expression]]:
     """Rows of which a sum is the quantity that is meant, and their weights in it."""
     table = table_of(data.space)

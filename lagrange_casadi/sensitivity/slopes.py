@@ -8,7 +8,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,9 @@ from ..instants.evaluation_method import EvaluationMethod
 from ..peak_search.sharpness import Sharpness
 from .jacobian import PointFunction
 
+if TYPE_CHECKING:
+    import casadi as ca
+
 Numbers = npt.NDArray[np.intc]
 
 
@@ -37,14 +40,14 @@ class Batch:
     library: codegen.BatchLibrary | None = None
 
     @classmethod
-    def of(cls, function: Any, method: EvaluationMethod) -> Batch:
+    def of(cls, function: ca.Function, method: EvaluationMethod) -> Batch:
         """Compile it by the compiler of a method; always in doubles."""
         found = compiled(
             method, lambda compiler: codegen.load_batch(function, compiler, _flags(method))
         )
         return cls(function, None if found is None else found[1])
 
-    def at(self, n: int, given: Mapping[str, tuple[npt.NDArray[Any], int]]) -> Array:
+    def at(self, n: int, given: Mapping[str, tuple[npt.NDArray[np.generic], int]]) -> Array:
         """Result at n points, (n, result): of each argument its rows, and the number of points that
         one is for, 0 for all. Of what is ``chosen`` the numbers are given.
         """
@@ -231,7 +234,7 @@ def unit_ways(numbers: Sequence[int], parameters: int) -> Array:
 
 def _given(
     t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array | None
-) -> dict[str, tuple[npt.NDArray[Any], int]]:
+) -> dict[str, tuple[npt.NDArray[np.generic], int]]:
     """The arguments of a :class:`.PointFunction` at n points."""
     known = np.zeros(t.size, bool) if value is None else np.isfinite(value)
     return {

@@ -6,7 +6,10 @@ The data of a figure stay in SI.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.axis import Axis
 
 STEPS = (
     (1e9, "G", 1e-9),
@@ -30,7 +33,7 @@ class Scale:
         """A value with its unit."""
         return f"{self.factor * value:.{digits}g} {self.unit}"
 
-    def put(self, axis: Any) -> None:
+    def put(self, axis: Axis) -> None:
         """Have the numbers of an axis, or of a colour bar, be in this unit; what is drawn stays as
         it is.
         """

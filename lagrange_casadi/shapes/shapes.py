@@ -7,9 +7,8 @@ is not said here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -178,15 +177,15 @@ def _spots(description: Description) -> Iterator[Spot]:
     yield from path_spots(description).values()
 
 
-def _spot(point: Any) -> Spot:
+def _spot(point: Description) -> Spot:
     return Spot(point["body"], _place(point))
 
 
-def _place(point: Any) -> Place:
+def _place(point: Description) -> Place:
     return float(point["x"]), float(point["y"]), float(point.get("z", 0.0))
 
 
-def _vector(components: Any) -> Place:
+def _vector(components: Iterable[float]) -> Place:
     x, y, z = (float(component) + 0.0 for component in components)
     return x, y, z
 

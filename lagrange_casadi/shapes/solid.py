@@ -4,13 +4,14 @@ description.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..base.arrays import Array
+from ..declare.description import Description
 from ..instants.solution import Solution
 from .shapes import Place, shapes
 
@@ -70,7 +71,7 @@ class Mark:
     order: int = 5
 
 
-def place_of(solution: Solution, point: Any) -> Array:
+def place_of(solution: Solution, point: Description) -> Array:
     """Place of a described point of a body, (t, 3) in ground axes [m]."""
     local = [point["x"], point["y"], point["z"]]
     if point["body"] == "ground":
@@ -81,14 +82,14 @@ def place_of(solution: Solution, point: Any) -> Array:
     return place + _on_ground_axes(pose.axes, local) if any(local) else place
 
 
-def direction_of(solution: Solution, body: str, local: Any) -> Array:
+def direction_of(solution: Solution, body: str, local: Sequence[float]) -> Array:
     """A direction that a body carries, (t, 3) in ground axes."""
     if body == "ground":
         return np.tile(np.array(local, float), (solution.t.size, 1))
     return _on_ground_axes(solution.pose(body).axes, local)
 
 
-def _on_ground_axes(axes: Array | None, local: Any) -> Array:
+def _on_ground_axes(axes: Array | None, local: Sequence[float]) -> Array:
     """Components on a body's axes, in ground axes; what it has no axes for is not asked of it."""
     assert axes is not None
     found: Array = np.sum(
@@ -221,7 +222,7 @@ def plates_of(solution: Solution) -> Iterator[tuple[str, Array]]:
             )
 
 
-def _segments(solution: Solution) -> Iterator[tuple[str, Any, Any]]:
+def _segments(solution: Solution) -> Iterator[tuple[str, Description, Description]]:
     """The lines of all bodies as the described points that they join, and of springs: axes, arms,
     and edges of plates.
     """
@@ -238,5 +239,5 @@ def _segments(solution: Solution) -> Iterator[tuple[str, Any, Any]]:
             yield "", first, second
 
 
-def _point(body: str, place: Place) -> dict[str, Any]:
+def _point(body: str, place: Place) -> Description:
     return {"body": body, **dict(zip("xyz", place, strict=True))}

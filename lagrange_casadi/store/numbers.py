@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,8 +13,13 @@ from ..declare.description import Description, motions_of
 from ..declare.times import DriveAxis
 from .untrusted import check_chunks, check_dataset, shown
 
+if TYPE_CHECKING:
+    import h5py
 
-def drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -> DriveAxis:
+
+def drive_axis(
+    dataset: h5py.Dataset, shape: tuple[int, ...], description: Description
+) -> DriveAxis:
     """The coordinate by which instants were asked for.
 
     Raises ``ValueError`` for that of a joint which is not driven.
@@ -32,7 +37,7 @@ def drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -
     return DriveAxis(joint, unit, values)
 
 
-def numbers(dataset: Any, shape: tuple[int, ...] | None = None) -> Array:
+def numbers(dataset: h5py.Dataset, shape: tuple[int, ...] | None = None) -> Array:
     """The numbers of a dataset, of a shape if one is given.
 
     Raises ``ValueError`` for what has others.
@@ -41,7 +46,7 @@ def numbers(dataset: Any, shape: tuple[int, ...] | None = None) -> Array:
     return np.asarray(dataset[()], np.float64)
 
 
-def check_numbers(dataset: Any, shape: Sequence[int] | None) -> None:
+def check_numbers(dataset: h5py.Dataset, shape: Sequence[int] | None) -> None:
     """Raise ``ValueError`` for a dataset that has no numbers, or another shape."""
     check_dataset(dataset, shape)
     check_chunks(dataset)

@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -495,7 +494,7 @@ def _read(file: h5py.File) -> Solution:
     estimates = file.attrs.get("error_estimates", "{}")
     errors: dict[str, float] = {**parsed(estimates, {str: float}, "error_estimates")}
 
-    def visit(place: str, item: Any) -> None:
+    def visit(place: str, item: h5py.Group | h5py.Dataset) -> None:
         if (
             isinstance(item, h5py.Dataset)
             and place not in (*_AXES, _OVER)

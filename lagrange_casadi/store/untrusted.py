@@ -39,7 +39,7 @@ def reported_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
         raise StoreError(f"{path}: {what}: {one_line(error) or type(error).__name__}") from error
 
 
-def parsed(text: Any, shape: Shape, what: str = "JSON") -> Any:
+def parsed(text: str | bytes, shape: Shape, what: str = "JSON") -> Any:
     """JSON of a shape.
 
     Raises ``ValueError`` or ``TypeError`` for what is not JSON, and as :func:`check_shape` does.
@@ -49,7 +49,7 @@ def parsed(text: Any, shape: Shape, what: str = "JSON") -> Any:
     return found
 
 
-def check_shape(value: Any, shape: Shape, what: str) -> None:
+def check_shape(value: object, shape: Shape, what: str) -> None:
     """Raise ``ValueError`` for what came from JSON and has another shape, with the place."""
     if place := _mismatch(value, shape, what):
         raise ValueError(f"{place} is not of the expected kind")
@@ -68,7 +68,7 @@ def check_links(file: h5py.File) -> None:
     be shown.
     """
 
-    def astray(place: bytes, link: Any) -> bytes | None:
+    def astray(place: bytes, link: h5py.h5l.LinkInfo) -> bytes | None:
         return (
             None
             if link.type == h5py.h5l.TYPE_HARD and _is_shown(place.decode(errors="surrogateescape"))
@@ -112,7 +112,7 @@ def check_chunks(dataset: h5py.Dataset) -> None:
             raise ValueError(f"{dataset.name} has {count} chunks of {expected}")
 
 
-def _mismatch(value: Any, shape: Shape, place: str) -> str:
+def _mismatch(value: object, shape: Shape, place: str) -> str:
     """The first place where a value has another shape; nothing where none has."""
     if isinstance(shape, FunctionType):
         return _mismatch(value, shape(value), place)
@@ -162,7 +162,7 @@ def _is_shown(value: str) -> bool:
         return False
 
 
-def _is_real(value: float) -> bool:
+def _is_real(value: Any) -> bool:
     try:
         return type(value) in (int, float) and isinstance(float(value), float)
     except OverflowError:

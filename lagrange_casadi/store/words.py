@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ..base.tables import CF, Table
+
+if TYPE_CHECKING:
+    import h5py
 
 
 def conventions(table: Table) -> dict[str, str]:
@@ -13,14 +16,14 @@ def conventions(table: Table) -> dict[str, str]:
     return {"Conventions": CF, "conventions": table.conventions}
 
 
-def say(dataset: Any, unit: str, words: Mapping[str, str]) -> None:
+def say(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> None:
     """Write the unit of a dataset, and other words about it, by attribute."""
     dataset.attrs["units"] = unit
     for key, text in words.items():
         dataset.attrs[key] = text
 
 
-def unlike(dataset: Any, unit: str, words: Mapping[str, str]) -> Iterator[str]:
+def unlike(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> Iterator[str]:
     """Yield what a dataset says otherwise, a line each."""
     place = dataset.name.removeprefix("/")
     if dataset.attrs.get("units") != unit:
@@ -32,7 +35,7 @@ def unlike(dataset: Any, unit: str, words: Mapping[str, str]) -> Iterator[str]:
     )
 
 
-def unlike_conventions(file: Any, table: Table) -> Iterator[str]:
+def unlike_conventions(file: h5py.File, table: Table) -> Iterator[str]:
     """Yield what a file says otherwise of all that it holds, a line each."""
     yield from (
         f"{key}: not the schema's"

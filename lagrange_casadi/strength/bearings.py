@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -29,7 +28,7 @@ from .safety import Safety, Verdict
 
 
 @public
-def bending_of_pin(force: Numeric, eye: Numeric, cheek: Numeric, gap: Numeric = 0.0) -> Any:
+def bending_of_pin(force: Numeric, eye: Numeric, cheek: Numeric, gap: Numeric = 0.0) -> Numeric:
     """The bending moment in the middle of a pin [N m]: F (eye + 2 cheek + 4 gap)/8."""
     return force * (eye + 2.0 * cheek + 4.0 * gap) / 8.0
 

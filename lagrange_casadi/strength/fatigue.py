@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -82,7 +82,7 @@ def _needed(material: Material, criterion: str) -> tuple[str, str]:
 @public
 def factor(
     amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
-) -> Any:
+) -> Numeric:
     """Factor by which amplitude and mean may grow together until the part no longer lasts for ever;
     of numbers or arrays.
 
@@ -116,7 +116,7 @@ def lacking(material: Material, criterion: str = "goodman") -> str:
 @public
 def reversed_amplitude(
     amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
-) -> Any:
+) -> Numeric:
     """The amplitude without a mean that does the same damage; infinite where the mean alone is too
     much.
     """
@@ -142,7 +142,7 @@ def line(material: Material) -> tuple[float, float, float]:
 
 
 @public
-def cycles(amplitude: Numeric, material: Material) -> Any:
+def cycles(amplitude: Numeric, material: Material) -> Numeric:
     """Number of cycles of a fully reversed amplitude: by the material's S-N line, and infinite
     below its endurance limit.
 

@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..base.quantities import Output
 from ..beams.beam import Notch
 from ..declare.parts import Link
@@ -124,7 +124,7 @@ def _is_place(member: Output) -> bool:
     return member.member == "station" or (member.group == "spread" and member.power is None)
 
 
-def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Any, Side, Notch | None]]:
+def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Expression, Side, Notch | None]]:
     """Cells of the cross-section, ratios and the sides of them that are meant, and notches: those
     of :mod:`..strength.fatigue`.
     """

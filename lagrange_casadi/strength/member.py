@@ -6,9 +6,9 @@ import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..beams.beam import Beam, beam_from_numbers
@@ -131,7 +131,7 @@ class Member:
         values = np.stack([self.law.at(force, u, side) for force in self.forces])
         return values if scale is None else values * scale[:, None, None]
 
-    def during(self, instants: Any) -> Member:
+    def during(self, instants: slice | npt.NDArray[np.generic]) -> Member:
         """Member at some of the instants, a slice or their numbers."""
         return Member(
             self.link, self.beam, self.law.during(instants), self.t[instants], self.xi, self.space

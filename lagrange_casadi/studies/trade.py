@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Json
 from ..base.tables import ANGLE, LENGTH
 from ..base.vocabulary import PRECISIONS
 from ..codegen import find_compiler
@@ -141,14 +141,14 @@ class Trade:
             f"{best.method.options}, keeps {best.largest:.2g} ({best.worst} is worst)"
         )
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Json]:
         """All of it as plain numbers and words, for JSON."""
         methods = [
             {"rung" if key == "method" else key: value for key, value in asdict(one).items()}
             | {"options": one.method.options, "front": one in self.front}
             for one in self.measurements
         ]
-        found = {
+        found: dict[str, Json] = {
             "case": self.case,
             "instants": self.instants,
             "compared": self.compared,
@@ -279,7 +279,7 @@ def _motions(program: Program, t: Array, p: Array) -> dict[str, float]:
 
 def _work(
     program: Program, t: Array, p: Array, method: EvaluationMethod
-) -> tuple[Callable[[], Any], int]:
+) -> tuple[Callable[[], object], int]:
     """Timed work, ready to run, and its instants."""
     count = INSTANTS // 10 if method.backend == "vm" else INSTANTS
     dense = np.linspace(t[0], t[-1], count)
@@ -288,7 +288,7 @@ def _work(
 
 
 def _in_turns(
-    works: Mapping[EvaluationMethod, tuple[Callable[[], Any], int]],
+    works: Mapping[EvaluationMethod, tuple[Callable[[], object], int]],
 ) -> dict[EvaluationMethod, float]:
     """Seconds an instant: the median over rounds in which each method has its turn, long enough to
     be read off a clock.

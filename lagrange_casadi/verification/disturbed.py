@@ -96,9 +96,10 @@ class Instants:
         return [chosen[k : k + size] for k in range(0, chosen.size, size)]
 
     @property
-    def kind(self) -> Any:
+    def kind(self) -> type[np.floating]:
         """The precision's numbers."""
-        return DTYPES[self.stages.precision].type
+        kind: type[np.floating] = DTYPES[self.stages.precision].type
+        return kind
 
     @property
     def unit(self) -> float:
@@ -291,7 +292,8 @@ def _trials(course: _Course, z: Array) -> tuple[Array, dict[int, Array]]:
         value = _KNOWN[code](*values)
         return value if sizes[k] is None else noise.put(value, sizes[k])
 
-    def closed(counted: Sequence[Any]) -> list[Any]:
+    def closed(counted: Sequence[Array]) -> list[Array]:
+        assert instants.stages.loops is not None
         correction, _ = interpret(
             instants.stages.loops, [list(z), counted, rounded], noise.arithmetic
         )
@@ -306,10 +308,10 @@ def _trials(course: _Course, z: Array) -> tuple[Array, dict[int, Array]]:
 
 def _columns(
     instants: Instants,
-    apply: Callable[[int, int, tuple[Any, ...]], Any],
-    constant: Callable[[float], Any],
+    apply: Callable[[int, int, tuple[Operand, ...]], Operand],
+    constant: Callable[[float], Operand],
     p: Sequence[float],
-    z: Any,
+    z: Sequence[Operand] | Callable[[Sequence[Operand]], Sequence[Operand]],
     handed: Sequence[Array] | None = None,
     shape: tuple[int, ...] | None = None,
 ) -> Array:
@@ -318,7 +320,7 @@ def _columns(
     """
     count = itertools.count()
 
-    def rule(code: int) -> Callable[..., Any]:
+    def rule(code: int) -> Callable[..., Operand]:
         return lambda *values: apply(next(count), code, values)
 
     arithmetic = Arithmetic(constant, {code: rule(code) for code in _KNOWN})
@@ -463,7 +465,7 @@ class _Noise:
         start = next(self.starts)
         return value + self.pool[:, start : start + self.n] * size
 
-    def rounded(self, value: Any, roundings: float = 1.0) -> Any:
+    def rounded(self, value: Operand, roundings: float = 1.0) -> Operand:
         """A value with an error of up to so many roundings, exact or not."""
         return self.put(
             value, np.spacing(np.abs(value).astype(self.instants.kind)) * (roundings / 2)
@@ -495,7 +497,7 @@ class _Noise:
     def arithmetic(self) -> Arithmetic:
         """NumPy's operations with such errors."""
 
-        def rule(code: int) -> Callable[..., Any]:
+        def rule(code: int) -> Callable[..., Operand]:
             known, roundings = _KNOWN[code], ROUNDINGS.get(code)
             return (
                 known

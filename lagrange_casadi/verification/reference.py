@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
@@ -20,19 +20,23 @@ from ..base.arrays import Array
 from ..equations.program import Program
 from ..errors import AssemblyError, LagrangeCasadiError
 
+if TYPE_CHECKING:
+    from mpmath import mpf
+    from mpmath.ctx_mp import MPContext
+
 DIGITS = 50
 _STEPS = 30
 
 
 def reference(
     program: Program,
-    t: Sequence[Any],
+    t: Sequence[float],
     p: Sequence[float],
     *,
     z: Array | None = None,
     digits: int = DIGITS,
     following: Callable[[Arithmetic], Arithmetic] = lambda arithmetic: arithmetic,
-) -> list[list[Any]]:
+) -> list[list[mpf]]:
     """Every column of a graph at instants ``t``, a row an instant, as mpmath numbers of so many
     digits.
 
@@ -71,7 +75,7 @@ def arithmetic() -> Arithmetic:
 
 
 @functools.cache
-def _operations(mp: Any) -> dict[int, Any]:
+def _operations(mp: MPContext) -> Mapping[int, Callable[..., mpf]]:
     one, zero = mp.mpf(1), mp.mpf(0)
     unary = {
         ca.OP_NEG: lambda x: -x,
@@ -117,7 +121,7 @@ def _operations(mp: Any) -> dict[int, Any]:
     )
 
 
-def _mpmath() -> Any:
+def _mpmath() -> MPContext:
     try:
         from mpmath import mp
     except ImportError:
@@ -127,13 +131,13 @@ def _mpmath() -> Any:
     return mp
 
 
-def _driven(program: Program, time: Any, values: list[Any]) -> list[list[Any]]:
+def _driven(program: Program, time: mpf, values: list[mpf]) -> list[list[mpf]]:
     return interpret(program.laws.motion, [[time], values], arithmetic())
 
 
 def _closed(
-    program: Program, z: list[Any], time: Any, driven: list[Any], values: list[Any], small: Any
-) -> list[Any]:
+    program: Program, z: list[mpf], time: mpf, driven: list[mpf], values: list[mpf], small: mpf
+) -> list[mpf]:
     """The iterated coordinates, closed from a guess."""
     if program.newton is None:
         return []

@@ -7,6 +7,7 @@ lies in a plane costs what it would with two components.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -132,7 +133,7 @@ class Axes:
         return cls(turned(GROUND.x), turned(GROUND.y), turned(GROUND.z))
 
     @classmethod
-    def of(cls, rows: Any) -> Axes:
+    def of(cls, rows: Sequence[Sequence[Scalar]]) -> Axes:
         """Three directions, of three numbers each."""
         x, y, z = rows
         return GROUND if rows == _IDENTITY else cls(Vector(*x), Vector(*y), Vector(*z))
@@ -185,7 +186,7 @@ GROUND = Axes(*(Vector(*row) for row in _IDENTITY))
 """Axes that are not turned."""
 
 
-def most(values: Any) -> Scalar:
+def most(values: Iterable[Scalar]) -> Scalar:
     """The largest size among numbers and arrays, at each instant."""
     found: Scalar = 0.0
     for value in values:

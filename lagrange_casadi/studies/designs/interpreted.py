@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -142,8 +141,8 @@ class InterpretedDesigns:
         return Signals(interpreter, kept.sharpness, chosen, t, p, evaluated.iterated)
 
 
-def _means(t: Array, values: Array) -> tuple[Any, Any]:
+def _means(t: Array, values: Array) -> tuple[float, float]:
     """Mean and root of the mean square over the times that count, by trapezia."""
     counts = counted(values)
     weights, values = shares(np.arange(t.size, dtype=float), counts), np.where(counts, values, 0.0)
-    return values @ weights, np.sqrt(values**2 @ weights)
+    return float(values @ weights), float(np.sqrt(values**2 @ weights))

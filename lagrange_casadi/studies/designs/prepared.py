@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ from ...arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
+from ...base.units import Number
 from ...base.vocabulary import Backend, Precision
 from ...declare.description import fitted_of
 from ...declare.scene import Scene
@@ -31,7 +32,7 @@ from ..request import Request
 from .engine import DesignEngine
 from .outcome import KEPT, Outcome
 
-_Values: TypeAlias = Mapping[str, Any] | None
+_Values: TypeAlias = Mapping[str, Number] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,7 +242,7 @@ class Prepared:
         """
         return Prepared(self._engine, self._explain)
 
-    def __call__(self, /, *values: _Values, **named: Any) -> Mapping[str, Array]:
+    def __call__(self, /, *values: _Values, **named: Number) -> Mapping[str, Array]:
         """The series (t,) of all outputs, by name, for values of parameters, by name or in
         mappings; the defaults for others.
 
@@ -265,7 +266,7 @@ class Prepared:
             else {str(o): row for o, row in engine.reported(answers.history[0], p[0]).items()}
         )
 
-    def peaks(self, /, *values: _Values, **named: Any) -> Peaks:
+    def peaks(self, /, *values: _Values, **named: Number) -> Peaks:
         """Peaks and means for values of parameters; this thread's next evaluation overwrites the
         arrays.
 
@@ -275,7 +276,7 @@ class Prepared:
         """
         return self._peaks(self._set(values, named))
 
-    def gradient(self, /, *values: _Values, **named: Any) -> Gradient:
+    def gradient(self, /, *values: _Values, **named: Number) -> Gradient:
         """Peaks and their derivatives by all parameters, for values of these.
 
         They are exact, by automatic differentiation. The first call derives and compiles them, in
@@ -301,7 +302,7 @@ class Prepared:
             add_up,
         )
 
-    def curvature(self, /, *values: _Values, **named: Any) -> Curvature:
+    def curvature(self, /, *values: _Values, **named: Number) -> Curvature:
         """The second derivatives of peaks by all parameters, for values of these: how their
         gradient changes.
 
@@ -341,7 +342,7 @@ class Prepared:
         return answers.seen
 
     def _kept_peaks(
-        self, values: Sequence[_Values], named: Mapping[str, Any]
+        self, values: Sequence[_Values], named: Mapping[str, Number]
     ) -> tuple[Array, Array, Array, Array]:
         """The parameters (parameters,), and of the peaks there the values, times and ratios, as
         copies that stay.
@@ -350,7 +351,7 @@ class Prepared:
         peaks = self._peaks(p)
         return p[0].copy(), peaks.value.copy(), peaks.t.copy(), peaks.xi.copy()
 
-    def _set(self, values: Sequence[_Values], named: Mapping[str, Any]) -> Array:
+    def _set(self, values: Sequence[_Values], named: Mapping[str, Number]) -> Array:
         """Put values of parameters into this thread's row of them (1, parameters)."""
         p: Array = self._answers.p
         row = p[0]

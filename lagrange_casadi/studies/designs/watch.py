@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,9 @@ from ...base.status import Status
 from ...declare.corners import Corners
 from ...declare.ends import BEYOND
 from ...equations.program import Program
+
+if TYPE_CHECKING:
+    import casadi as ca
 
 _OK = int(Status.OK)
 
@@ -27,7 +30,7 @@ class Watch:
     program: Program
 
     @property
-    def _ends(self) -> Any | None:
+    def _ends(self) -> ca.Function | None:
         return self.program.laws.beyond
 
     @property

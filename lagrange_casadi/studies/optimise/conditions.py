@@ -7,8 +7,9 @@ Nocedal and Wright, Numerical Optimization, 2nd edition, theorems 12.1, 12.5 and
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -115,7 +116,7 @@ def _least(hessian: Array, active: Array) -> tuple[float, Array]:
     return float(values[0]), free @ vectors[:, 0]
 
 
-def _differences(slope: Any, at: Array, chosen: int) -> Array:
+def _differences(slope: Callable[[Array], Array], at: Array, chosen: int) -> Array:
     """Second derivatives by differences of first ones, within the bounds; what is no parameter
     enters linearly.
     """

@@ -18,6 +18,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ...base.arrays import Expression
 from ...base.quantities import Output
 from ...beams.material import Material
 from ...equations.program import Program
@@ -94,13 +95,15 @@ class Tired:
             best = max(best, float(shares[worst]))
         return sorted(found, key=lambda point: -point.value)
 
-    def stresses(self, out: Any, p: Any) -> Any:
+    def stresses(self, out: ca.SX, p: ca.SX) -> ca.SX:
         """Normal stresses of all places, then their shear stresses along y and along z, of columns
         at an instant: expressions.
         """
         fatigue, count = self.fatigue, self.fatigue.places
         members = ca.vertcat(*(out[self.program.outputs[member]] for member in fatigue.members))
-        found = ca.mtimes(ca.reshape(fatigue.rows(members, p), members.numel(), -1).T, members)
+        found: ca.SX = ca.mtimes(
+            ca.reshape(fatigue.rows(members, p), members.numel(), -1).T, members
+        )
         shears = ca.SX(2 * count, 1)
         for number, axis in enumerate(fatigue.axes):
             first = count + number * fatigue.sheared.size
@@ -109,7 +112,7 @@ class Tired:
             ]
         return ca.densify(ca.vertcat(found[:count], shears))
 
-    def cycle(self, at_time: Any) -> Any:
+    def cycle(self, at_time: ca.Function) -> ca.Function:
         """``value(share, guess, p, xi, place)``: a swing's utilisation, by stresses at a time;
         ``place`` names the place by a 1.
         """
@@ -141,7 +144,7 @@ def tired_link(output: Output | None) -> str | None:
     return output.part if output is not None and fatigue else None
 
 
-def _root(square: Any) -> Any:
+def _root(square: Expression) -> Expression:
     """A square root, whose slope at zero is none."""
     there = square > 0.0
     return ca.if_else(there, ca.sqrt(ca.if_else(there, square, 1.0)), 0.0)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
+import numpy.typing as npt
 
 from ...base.publish import PatientFile, replacing
 from ...base.seal import kind_of, seal
@@ -125,7 +125,7 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
         yield f"{optima.name}: are not the designs at which starts have converged"
 
 
-def _alike(one: Any, other: Any) -> bool:
+def _alike(one: npt.ArrayLike, other: npt.ArrayLike) -> bool:
     return np.array_equal(np.asarray(one, float), np.asarray(other, float), equal_nan=True)
 
 

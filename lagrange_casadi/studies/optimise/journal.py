@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
+from ...base.arrays import Json
 from ...base.publish import check_writable, settled, telling
 from ...errors import BusyError, PathError, StoreError
 from ...store.untrusted import check_shape
@@ -73,7 +74,7 @@ class Journal:
 
 @contextmanager
 def kept(
-    target: Path | None, identity: Mapping[str, Any], *, resume: bool, force: bool
+    target: Path | None, identity: Mapping[str, Json], *, resume: bool, force: bool
 ) -> Iterator[Journal]:
     """The journal of a search into ``target``, locked; nothing is kept on disk where that is None.
 
@@ -118,7 +119,7 @@ def kept(
             path.unlink(missing_ok=True)
 
 
-def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:
+def _read(journal: Journal, path: Path, identity: Mapping[str, Json]) -> bool:
     """Read what is there; whether it is of anything.
 
     Raises :class:`StoreError` where it is of another search.
@@ -155,7 +156,7 @@ def _holds_nothing(content: bytes) -> bool:
     return b"\n" not in content and cut and all(digit in b"0123456789abcdef" for digit in checksum)
 
 
-def _line(words: Mapping[str, Any]) -> bytes:
+def _line(words: Mapping[str, Json]) -> bytes:
     text = json.dumps(words).encode()
     return f"{zlib.crc32(text):08x} ".encode() + text + b"\n"
 

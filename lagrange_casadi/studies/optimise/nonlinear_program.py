@@ -240,7 +240,7 @@ class NonlinearProgram:
         rows: list[Any] = []
         places: list[slice] = []
 
-        def points(function: ca.Function, size: int, *, moved: bool) -> tuple[Any, Any]:
+        def points(function: ca.Function, size: int, *, moved: bool) -> tuple[ca.MX, ca.MX]:
             """Values at as many points as there is room for, and their signs."""
             symbol = ca.MX.sym("points", _NUMBERS + n + size + nz, capacity)
             given.append(ca.vec(symbol))
@@ -309,7 +309,7 @@ class NonlinearProgram:
             capacity, solver, ca.Function("slopes", [variables, by_g, parameters], outputs), places
         )
 
-    def _average(self, term: Term, p: Any, guesses: Any) -> Any:
+    def _average(self, term: Term, p: ca.MX, guesses: ca.MX) -> ca.MX:
         """A mean over time, by trapezia, as sweeps have it."""
         assert term.output is not None
         followed, n = self.values.of(term.output), self.instants
@@ -322,8 +322,9 @@ class NonlinearProgram:
             shares, guesses, ca.repmat(p, 1, n), ca.DM.zeros(1, n), place
         )
         weighted = ca.DM(weights / weights.sum())
-        return (
+        average: ca.MX = (
             ca.mtimes(values, weighted)
             if term.kind == "mean"
             else ca.sqrt(ca.mtimes(values * values, weighted))
         )
+        return average

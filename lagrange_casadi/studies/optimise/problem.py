@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Array, Operand
+from ...base.arrays import Array, Json, Operand
 from ...base.vocabulary import Backend
 from ...declare.scene import Scene
 from ...declare.times import Times, Timing
@@ -222,7 +222,7 @@ class Question:
                 raise UnknownNameError(f"quantity with a {term.kind}", term.name, there)
         return engine
 
-    def words(self, engine: DesignEngine) -> dict[str, Any]:
+    def words(self, engine: DesignEngine) -> dict[str, Json]:
         """Inputs of every number of a search beside its starts, for JSON: no clock, no path."""
         made, program, box = engine.provenance, engine.program, self.box
         content = {

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from ...base.arrays import Json
+
 WORDS = {
     "start": [float],
     "end": [float],
@@ -61,7 +63,7 @@ class SearchRun:
         return cls(**{**words, **lists, "history": tuple(map(tuple, words["history"]))})
 
     @property
-    def words(self) -> dict[str, Any]:
+    def words(self) -> dict[str, Json]:
         """Form for JSON."""
         return asdict(self)
 

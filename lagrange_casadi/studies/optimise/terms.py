@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 import casadi as ca
 
@@ -88,7 +88,7 @@ class Term:
         """The quantity, None of a parameter and of a mass."""
         return None if self.kind in ("parameter", MASS) else Output.of(self.name)
 
-    def of_parameters(self, data: ModelData) -> Any:
+    def of_parameters(self, data: ModelData) -> ca.Function:
         """A parameter or a mass as a function of all parameters.
 
         Raises :class:`.UnknownNameError` for what is none.

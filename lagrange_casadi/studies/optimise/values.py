@@ -101,7 +101,7 @@ class Followed:
         )
 
     @classmethod
-    def of(cls, value: Any, size: int) -> Followed:
+    def of(cls, value: ca.Function, size: int) -> Followed:
         """Make it for a function."""
         smooth = value.is_a("SXFunction")
         kind, names = (ca.SX if smooth else ca.MX), ["share", "guess", "p", "xi", "place"]
@@ -170,9 +170,9 @@ class PointValues:
             ]
         place = ca.SX.sym("place", len(sizes))
         # What is not meant may have no value, as a size at zero has no slope.
-        value = sum((ca.if_else(place[k] > 0, size, 0) for k, size in enumerate(sizes)), ca.SX(0))
+        meant = sum((ca.if_else(place[k] > 0, size, 0) for k, size in enumerate(sizes)), ca.SX(0))
         return Followed.of(
-            self._at_time([t, d, rate, acceleration, z, p, xi, place], ca.SX(value)), len(sizes)
+            self._at_time([t, d, rate, acceleration, z, p, xi, place], ca.SX(meant)), len(sizes)
         )
 
     def tired(self, link: str) -> Tired:
@@ -182,7 +182,7 @@ class PointValues:
         return self.links[link]
 
     @symbolic
-    def closures(self) -> Any | None:
+    def closures(self) -> ca.Function | None:
         """``value(share, guess, p, xi, place)``: the squares of the sines of all loops'
         transmission angles, None without loops.
 
@@ -200,10 +200,10 @@ class PointValues:
         return self._at_time([*inputs, ca.SX.sym("xi"), ca.SX.sym("place", 1)], ca.vertcat(*found))
 
     @symbolic_property
-    def _instant(self) -> Any:
+    def _instant(self) -> ca.Function:
         return differentiable(self.program.instant)
 
-    def _at_time(self, inputs: list[Expression], value: Expression) -> Any:
+    def _at_time(self, inputs: list[Expression], value: Expression) -> ca.Function:
         """The function with its drives and loops inside."""
         program = self.program
         at_drives = ca.Function("at_drives", inputs, [ca.densify(value)], {"cse": True})
@@ -231,7 +231,7 @@ class PointValues:
         return ca.Function("at_time", given, found, {"cse": True} if smooth else {})
 
     @symbolic_property
-    def _span(self) -> Any:
+    def _span(self) -> ca.Function:
         """The first and the last instant as functions of the parameters.
 
         Raises :class:`.DeclarationError` where a drive says when they are, and its motion can be
@@ -254,7 +254,7 @@ class PointValues:
         return ca.Function("span", [symbols], [ca.densify(ca.SX(end)) for end in ends])
 
     @symbolic_property
-    def _loops(self) -> Any:
+    def _loops(self) -> ca.Function:
         """The loops' solution near a guess."""
         assert self.program.newton is not None
         step = self.program.newton.step

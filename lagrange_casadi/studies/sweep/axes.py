@@ -11,14 +11,14 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from ...arguments import LATER, public
 from ...base.arrays import Array
-from ...base.units import number, typed
+from ...base.units import Number, number, typed
 from ...declare.even_points import points
 from ...declare.limits import parameter_faults
 from ...declare.parts import Parameter
@@ -320,11 +320,20 @@ class Listed:
 Designs = Grid | Listed
 
 
-def designs_of(given: Any) -> Designs:
+AxisLike: TypeAlias = Axis | Number | Iterable[Number]
+"""An axis, its values, or (start, stop, count)."""
+
+DesignsLike: TypeAlias = Designs | Mapping[str, AxisLike]
+"""Designs, or axes by the names of parameters."""
+
+
+def designs_of(given: DesignsLike) -> Designs:
     """Designs from a :class:`Grid`, a :class:`Listed`, or a mapping of names to axes, ranges as
     tuples, or values.
     """
-    return given if isinstance(given, (Grid, Listed)) else Grid(given)
+    if isinstance(given, (Grid, Listed)):
+        return given
+    return Grid(cast(Mapping[str, Axis], given))  # which makes axes of what else stands for them
 
 
 def check_designs(
@@ -453,7 +462,7 @@ def _one_unit(*units: str) -> str:
     return next(iter(found), "")
 
 
-def _axis(name: str, given: Any) -> Axis:
+def _axis(name: str, given: AxisLike) -> Axis:
     """An axis, a tuple (start, stop, count) whose count is whole, or any other sequence of values;
     errors name the parameter.
     """
@@ -471,7 +480,7 @@ def _axis(name: str, given: Any) -> Axis:
         return Values(
             (number(given),)
             if not isinstance(given, Iterable) or isinstance(given, str)
-            else tuple(given)
+            else cast(tuple[float, ...], tuple(given))  # texts among them are read there
         )
     except (TypeError, NumberError):
         raise DeclarationError(

@@ -20,7 +20,7 @@ from ...base.numerals import real
 from ...base.units import typed
 from ...errors import DeclarationError, check_kind
 from .meanings import STATUS
-from .reading import Sweep, names_in
+from .reading import Sweep, Values, names_in
 from .selection import absent, near
 
 _RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
@@ -152,7 +152,7 @@ def chosen(
     names: str | Sequence[str],
     where: str | Condition | Sequence[str | Condition] = (),
     along: Sequence[str] = (),
-) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Any]]]:
+) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
     """The designs, or rows ``along`` axes, that meet all conditions, in blocks, as
     :meth:`.Sweep.blocks` gives them.
     """

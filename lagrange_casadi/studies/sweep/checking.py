@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -92,7 +93,8 @@ def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
     """Compare what a file tells twice: the case and its parameters, and the axes with what was
     asked for.
     """
-    identity, description = sweep.identity, sweep.description
+    identity: Mapping[str, Any] = sweep.identity
+    description = sweep.description
     parameter_values = values_of(description)
     if (
         parsed(file.attrs["parameters"], {str: float}, "parameters") != parameter_values

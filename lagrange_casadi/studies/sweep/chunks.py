@@ -15,6 +15,7 @@ from itertools import groupby
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ...base.arrays import Operand
 
@@ -36,7 +37,7 @@ def encoded(values: Operand) -> bytes:
     return content + struct.pack("<I", fletcher32(content))
 
 
-def deflated(planes: Any) -> bytes:
+def deflated(planes: npt.NDArray[np.uint8]) -> bytes:
     """A zlib stream of the rows of an array of bytes, one after another."""
     pieces: list[Any] = [_HEAD]
     first = 0
@@ -51,7 +52,7 @@ def deflated(planes: Any) -> bytes:
             pieces += [compressor.compress(content), compressor.flush(zlib.Z_SYNC_FLUSH)]
         else:
             pieces += _stored(content)
-    return b"".join([*pieces, _LAST, struct.pack(">I", zlib.adler32(planes))])
+    return b"".join([*pieces, _LAST, struct.pack(">I", zlib.adler32(planes.data))])
 
 
 def fletcher32(content: bytes) -> int:
@@ -78,7 +79,7 @@ def _folded(total: int) -> int:
     return (total - 1) % 0xFFFF + 1 if total else 0
 
 
-def _shrink(planes: Any) -> list[bool]:
+def _shrink(planes: npt.NDArray[np.uint8]) -> list[bool]:
     """Rows in which neighbours repeat, or some bytes come much more often than others; to ask zlib
     takes as long as to deflate.
     """
@@ -97,7 +98,7 @@ def _shrink(planes: Any) -> list[bool]:
     return worth
 
 
-def _stored(content: memoryview) -> Iterator[Any]:
+def _stored(content: memoryview) -> Iterator[bytes | memoryview]:
     for start in range(0, len(content), _STORED):
         piece = content[start : start + _STORED]
         yield struct.pack("<BHH", 0, len(piece), len(piece) ^ 0xFFFF)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypedDict
 
 import h5py
 import numpy as np
@@ -16,7 +16,7 @@ from .axes import DESIGN
 from .columns import KINDS
 from .file import WORDS
 from .meanings import STATUS
-from .plan import IDENTITY
+from .plan import IDENTITY, Identity
 
 _NAMED = (
     "backend",
@@ -44,14 +44,24 @@ class KeptColumn:
     axes: tuple[str, ...]
 
 
-def contents(file: h5py.File) -> dict[str, Any]:
+class Contents(TypedDict):
+    """Description of a sweep, from its file."""
+
+    identity: Identity
+    dimensions: dict[str, int]
+    parameters: dict[str, str]
+    columns: dict[str, KeptColumn]
+    statuses: dict[int, tuple[str, str]]
+
+
+def contents(file: h5py.File) -> Contents:
     """The fields of a :class:`.Sweep` that its file tells.
 
     Raises ``ValueError``, ``KeyError`` and others where it is not what a sweep writes.
     """
     check_links(file)
     attributes = file.attrs
-    identity = {key: json.loads(attributes[key]) for key in WORDS} | {
+    identity: Any = {key: json.loads(attributes[key]) for key in WORDS} | {
         key: _plain(attributes[key]) for key in _NAMED
     }
     check_shape(identity, IDENTITY, "attributes")
@@ -63,7 +73,7 @@ def contents(file: h5py.File) -> dict[str, Any]:
     def length(name: str) -> int:
         return dimensions[name] if name in dimensions else int(file[name].size)
 
-    def visit(place: str, item: Any) -> None:
+    def visit(place: str, item: h5py.Group | h5py.Dataset) -> None:
         if isinstance(item, h5py.Dataset):
             folder, _, own = place.rpartition("/")
             if item.is_scale or folder == "grid":
@@ -102,5 +112,5 @@ def contents(file: h5py.File) -> dict[str, Any]:
     }
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: str | np.int64) -> str | int:
     return int(value) if isinstance(value, np.integer) else shown(value)

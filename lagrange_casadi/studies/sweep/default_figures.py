@@ -5,7 +5,7 @@ parameters, by what names.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from ...instants.ordering import table_of_described
 from .axes import DESIGN
 from .plots import Along, Front, Peaks, Scatter, Spec
 from .reading import Sweep
+
+_Page = TypeVar("_Page")
 
 _INTERVALS, _ROWS, _ACROSS = 9, 4, 3
 _TOGETHER = {"effort": "effort", "load": "loads", "multiplier": "multipliers", "motion": "motion"}
@@ -182,6 +184,6 @@ def _pages(items: Sequence[str], most: int) -> list[tuple[str, ...]]:
     return [tuple(part) for part in np.array_split(np.array(items, object), count)]
 
 
-def _numbered(pages: Sequence[Any]) -> Iterator[tuple[str, Any]]:
+def _numbered(pages: Sequence[_Page]) -> Iterator[tuple[str, _Page]]:
     """Pages, and the end of their names: none of a single one."""
     return ((f"_{k}" if len(pages) > 1 else "", page) for k, page in enumerate(pages, 1))

@@ -11,11 +11,12 @@ import json
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
+import numpy.typing as npt
 
 from ...base.publish import PatientFile
 from ...declare.wanted_names import SENSITIVITY
@@ -125,7 +126,7 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
             grid,
             name,
             (length,),
-            lambda start, stop, name=name: designs.scale(name, start, stop),
+            partial(designs.scale, name),
             np.float64,
             breathe,
         )
@@ -155,8 +156,8 @@ def _stream(
     group: h5py.Group,
     name: str,
     shape: tuple[int, ...],
-    values: Callable[..., Any],
-    dtype: Any,
+    values: Callable[[int, int], npt.ArrayLike],
+    dtype: npt.DTypeLike,
     breathe: Callable[[], None],
 ) -> h5py.Dataset:
     """A dataset over one axis, filled in pieces."""
@@ -170,7 +171,7 @@ def _stream(
     return dataset
 
 
-def _nothing(dtype: Any) -> float:
+def _nothing(dtype: npt.DTypeLike) -> float:
     """Value of a dataset that was never written: no number, or one without a meaning."""
     return np.nan if np.dtype(dtype).kind == "f" else np.iinfo(dtype).min
 

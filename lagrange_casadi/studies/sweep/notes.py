@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from typing import Any
 
 import numpy as np
 
@@ -21,7 +20,7 @@ from ...equations.model_data import template
 from ...errors import LagrangeCasadiError
 from ...strength.fatigue import lacking
 from ..evaluate import evaluate
-from .axes import designs_of
+from .axes import DesignsLike, designs_of
 from .meanings import LEAST
 from .reading import Sweep
 
@@ -93,7 +92,9 @@ def resting_note(
     )
 
 
-def turning_note(scene: Scene, timing: Timing, grid: Any, fixed: Mapping[str, float]) -> str:
+def turning_note(
+    scene: Scene, timing: Timing, grid: DesignsLike, fixed: Mapping[str, float]
+) -> str:
     """A line where the drive turns, and makes less than a turn, or not the same in every design of
     a ``grid``.
     """

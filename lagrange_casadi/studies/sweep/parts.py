@@ -13,22 +13,31 @@ import json
 import os
 import shutil
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO, TypedDict
 
 from ...base.publish import flush, put, settled, telling
 from ...errors import BusyError, PathError, StoreError, one_line
 from ...store.untrusted import parsed
 from .column import Column
-from .plan import IDENTITY
+from .plan import IDENTITY, Identity
 
 try:
     import fcntl
 except ImportError:  # where there is none, nothing keeps two sweeps apart
     fcntl = None  # type: ignore[assignment]
+
+
+class _Head(TypedDict):
+    """First line of a part: its designs, and the place and length of each column."""
+
+    start: int
+    stop: int
+    columns: dict[str, list[int]]
+
 
 _HEAD = {"start": int, "stop": int, "columns": {str: [int, int]}}
 _PLAN, _LOCK, _FORCED, _JOINED, _DRAFT, _PART = (
@@ -169,21 +178,22 @@ class Folder:
         return os.path.isfile(self.path / _PLAN)  # of a name that is too long too
 
     @property
-    def identity(self) -> Any:
+    def identity(self) -> Identity:
         """Identity of the parts. Raises :class:`StoreError` if it cannot be read."""
         try:
-            return parsed((self.path / _PLAN).read_text(), IDENTITY, "plan")
+            found: Identity = parsed((self.path / _PLAN).read_text(), IDENTITY, "plan")
         except (OSError, ValueError, RecursionError) as error:
             raise StoreError(
                 f"{self.path / _PLAN}: damaged: {one_line(error)}; start anew with force=True"
             ) from None
+        return found
 
     @property
     def forced(self) -> bool:
         """True if a file that was there when the sweep began is to be replaced."""
         return (self.path / _FORCED).is_file()
 
-    def begin(self, identity: Mapping[str, Any], *, forced: bool = False) -> None:
+    def begin(self, identity: Identity, *, forced: bool = False) -> None:
         """Say what the parts will be of, and remove what is there of another sweep."""
         with telling(self.target):
             self._clear()
@@ -273,7 +283,7 @@ class Folder:
             if path.name != _LOCK:
                 path.unlink()
 
-    def _publish(self, name: str, contents: Sequence[Any]) -> None:
+    def _publish(self, name: str, contents: Sequence[bytes | memoryview]) -> None:
         draft = self.path / f"{name}{_DRAFT}"
         try:
             with draft.open("wb") as file:
@@ -300,7 +310,7 @@ def _whole(path: Path) -> Part | None:
     try:
         with path.open("rb") as file:
             head = _head(file)
-            start, stop, columns = (head[key] for key in _HEAD)
+            start, stop, columns = head["start"], head["stop"], head["columns"]
             size = sum(length for length, _ in columns.values())
             whole = os.fstat(file.fileno()).st_size == file.tell() + size and path.name == _name(
                 start, stop
@@ -310,13 +320,13 @@ def _whole(path: Path) -> Part | None:
         return None
 
 
-def _head(file: BinaryIO) -> Any:
+def _head(file: BinaryIO) -> _Head:
     """Head of a part. Raises ``ValueError`` if it is damaged."""
     head, digest = file.readline(), file.readline()
     if hashlib.sha256(head[:-1]).hexdigest().encode() != digest[:-1]:
         raise ValueError("damaged")
     try:
-        content = parsed(head, _HEAD, "head")
+        content: _Head = parsed(head, _HEAD, "head")
     except RecursionError:
         raise ValueError("damaged") from None
     if not 0 <= content["start"] < content["stop"] or any(

@@ -11,13 +11,13 @@ import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Json
 from ...base.space import in_words, require
-from ...base.vocabulary import Keep
+from ...base.vocabulary import Keep, Precision
 from ...declare.description import Description, beams_of, fitted_of, shape_of
 from ...declare.even_points import EvenPoints, checked_ratios, points
 from ...declare.scene import STRENGTH, Scene
@@ -65,6 +65,28 @@ IDENTITY = {
     "grid": {str: str},
 }
 """The shape of :attr:`Plan.identity`, in the words of :mod:`.untrusted`."""
+
+
+class Identity(TypedDict):
+    """Inputs of every number of a sweep, as its file keeps them."""
+
+    schema_version: int
+    case: str
+    versions: dict[str, str]
+    sources: str
+    backend: str
+    precision: Precision
+    compiler: str
+    flags: str
+    rung: str
+    keep: Keep
+    scene: str
+    wanted: dict[str, Json]
+    t: list[Any]
+    xi: list[Any] | None
+    mechanism: Description
+    grid: dict[str, str]
+
 
 MANY, MOST = 10**9, 10**12
 """Designs beyond which a sweep must be meant, and beyond which it cannot be."""
@@ -262,7 +284,7 @@ class Plan:
         return _WITH_COMMON_TIMES if self.task.timing.shared else _PLANAR
 
     @cached_property
-    def identity(self) -> dict[str, Any]:
+    def identity(self) -> Identity:
         """Inputs of all numbers of the sweep, in plain words: no clock, no path, nothing of how it
         is run.
         """
@@ -273,7 +295,7 @@ class Plan:
             "mechanism": self.description,
             "grid": self.designs.describe(),
         }
-        content: dict[str, Any] = json.loads(json.dumps(words))
+        content: Identity = json.loads(json.dumps(words))
         return content
 
 
@@ -322,7 +344,7 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     return (*(name for name in own if name not in ("all", "motion")), *strength, *slopes)
 
 
-def signature(program: Program, task: Task, provenance: Provenance) -> dict[str, Any]:
+def signature(program: Program, task: Task, provenance: Provenance) -> dict[str, Json]:
     """Inputs of a design's numbers beside its parameters, wherever it is evaluated."""
     words = {
         "versions": {**provenance.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
@@ -338,11 +360,11 @@ def signature(program: Program, task: Task, provenance: Provenance) -> dict[str,
         "keep": task.keep,
         "scene": program.identity or "cannot be told",
     }
-    content: dict[str, Any] = json.loads(json.dumps(words))
+    content: dict[str, Json] = json.loads(json.dumps(words))
     return content
 
 
-def difference(before: Any, now: Any, where: str = "") -> str | None:
+def difference(before: object, now: object, where: str = "") -> str | None:
     """The first place at which two identities differ, in words; None where they do not."""
     if isinstance(before, dict) and isinstance(now, dict):
         for key in dict.fromkeys([*before, *now]):
@@ -369,5 +391,5 @@ def difference(before: Any, now: Any, where: str = "") -> str | None:
     return f"{where} was {_short(before)} and is {_short(now)}"
 
 
-def _short(value: Any) -> str:
+def _short(value: object) -> str:
     return value if isinstance(value, str) else json.dumps(value)

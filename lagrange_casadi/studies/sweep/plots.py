@@ -25,7 +25,11 @@ from .selection import near
 from .sheet import STYLE, MissingDesigns, Sheet, fitted, label, value
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
     from matplotlib.figure import Figure
+    from matplotlib.typing import ColorType
 
 _KEYED, _NAMED, _OFTEN, _GOLDEN = 5, 3, 3, (5.0**0.5 - 1.0) / 2.0
 _RING = 0.15
@@ -344,14 +348,14 @@ def _differing(columns: Sequence[str], cut: Cut) -> tuple[dict[str, Array], str]
 
 
 def _cells(
-    axes: Any,
+    axes: Axes,
     over: tuple[Array, ...],
     values: Array,
     scale: Scale,
     gaps: MissingDesigns,
-    legend: dict[str, Any],
+    legend: dict[str, Artist],
     colours: str = "viridis",
-) -> Any:
+) -> QuadMesh:
     """A map of values over two axes, and of what has none."""
     from matplotlib import colormaps
 
@@ -368,7 +372,7 @@ def _cells(
 
 
 def _curves(
-    axes: Any, cut: Cut, values: Array, gaps: MissingDesigns, legend: dict[str, Any]
+    axes: Axes, cut: Cut, values: Array, gaps: MissingDesigns, legend: dict[str, Artist]
 ) -> None:
     """Values over the first axis, a curve for each place along the second one if there is one."""
     x, rest = cut.axes[0], cut.axes[1:]
@@ -405,11 +409,11 @@ def _ties(values: Array) -> str:
     return f" and\N{NO-BREAK SPACE}{others} more" if others else ""
 
 
-def _star(axes: Any, x: float, y: float, legend: dict[str, Any]) -> None:
+def _star(axes: Axes, x: float, y: float, legend: dict[str, Artist]) -> None:
     (legend["smallest of those drawn"],) = axes.plot(x, y, clip_on=False, zorder=5, **_STAR)
 
 
-def _colour(k: int, count: int) -> Any:
+def _colour(k: int, count: int) -> ColorType:
     """The colour of a curve among some in order."""
     from matplotlib import colormaps
 

@@ -11,15 +11,16 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import Count, Index, Outputs, public, texts
+from ...arguments import LATER, Count, Index, Outputs, public, texts
 from ...base.arrays import Array
 from ...base.seal import VerifiedFile, kind_of, verify
+from ...declare.description import Description
 from ...errors import (
     DeclarationError,
     LagrangeCasadiError,
@@ -37,8 +38,8 @@ from .blocks import chunk_of, slabs
 from .contents import KeptColumn, contents
 from .meanings import CYCLE, OVER, STATUS, Meanings
 from .parts import Folder
-from .plan import READ, SCHEMA
-from .selection import matches
+from .plan import READ, SCHEMA, Identity
+from .selection import Selected, matches
 
 if TYPE_CHECKING:
     import xarray
@@ -63,7 +64,7 @@ class Sweep:
     """
 
     path: Path
-    identity: Mapping[str, Any]
+    identity: Annotated[Identity, LATER]
     dimensions: Mapping[str, int]
     parameters: Mapping[str, str]
     columns: Mapping[str, KeptColumn]
@@ -153,7 +154,7 @@ class Sweep:
             raise self._unknown([name])
         return self.columns[name]
 
-    def select(self, **values: Any) -> Sweep:
+    def select(self, **values: Selected) -> Sweep:
         """The designs with given values of parameters: a number that is on the grid, a list of such
         numbers, or a tuple (low, high), both included. Angles may be texts, as ``"30 deg"``.
 
@@ -308,7 +309,7 @@ class Sweep:
         return xarray.Dataset(data, coordinates, {"case": self.case})
 
     @cached_property
-    def description(self) -> dict[str, Any]:
+    def description(self) -> Description:
         """The mechanism as a file describes it, swept parameters at their defaults."""
         return dict(self.identity["mechanism"])
 
@@ -341,7 +342,9 @@ class Sweep:
         """Meanings of columns and axes, by their names."""
         axis = next((name for name in (OVER, CYCLE) if name in self._over), "t")
         return Meanings.of(
-            self.description, axis, self.identity["t"][3] if len(self.identity["t"]) > 3 else ""
+            self.description,
+            axis,
+            self.identity["t"][3] if len(self.identity["t"]) > 3 else "",
         )
 
     @cached_property
@@ -408,7 +411,7 @@ class Sweep:
                     found[name] = np.broadcast_to(values, shape).reshape(-1)
                 yield np.repeat(numbers[left], rows), found
 
-    def _left(self, numbers: npt.NDArray[np.int64]) -> Any:
+    def _left(self, numbers: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.bool_]:
         """Selected designs."""
         if not self.chosen:
             return slice(None)
@@ -419,14 +422,15 @@ class Sweep:
                 strict=True,
             )
         )
-        return np.all(
+        kept: npt.NDArray[np.bool_] = np.all(
             [np.isin(places[axis], chosen) for axis, chosen in self.chosen.items()], axis=0
         )
+        return kept
 
     def _axis(self, parameter: str) -> str:
         return parameter if parameter in self.dimensions else DESIGN
 
-    def _cut(self, dataset: Any, axes: Sequence[str]) -> Values:
+    def _cut(self, dataset: h5py.Dataset, axes: Sequence[str]) -> Values:
         """Selected part of a dataset: evenly spaced numbers are read, else the box around them, cut
         in memory.
         """
@@ -448,12 +452,12 @@ def is_sweep(path: str | Path) -> bool:
     return kind_of(path) == SCHEMA
 
 
-def identity_of(path: Path) -> dict[str, Any]:
+def identity_of(path: Path) -> Identity:
     """Identity of a finished sweep. Raises what :meth:`Sweep.open` does."""
-    return dict(Sweep.open(path).identity)
+    return Sweep.open(path).identity
 
 
-def _taken(dataset: h5py.Dataset, where: Any = ()) -> Values:
+def _taken(dataset: h5py.Dataset, where: int | slice | tuple[int | slice, ...] = ()) -> Values:
     """Contents of a dataset. Raises :class:`StoreError` that names its column."""
     try:
         return np.asarray(dataset[where])
@@ -469,7 +473,9 @@ def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
     return slice(int(numbers[0]), int(numbers[-1]) + 1, int(steps[0]) if steps.size == 1 else 1)
 
 
-def opened_sweep(path: str | Path, seen: VerifiedFile | None = None, keeper: Any = None) -> Sweep:
+def opened_sweep(
+    path: str | Path, seen: VerifiedFile | None = None, keeper: object = None
+) -> Sweep:
     """A sweep, compared with its seal unless its file was ``seen`` already.
 
     ``keeper`` is kept alive as long as the sweep.
@@ -490,7 +496,11 @@ def names_in(given: str | Sequence[str]) -> list[str]:
 
 
 def _along(
-    dataset: h5py.Dataset, name: str, axes: list[str], dims: tuple[int, ...], where: tuple[Any, ...]
+    dataset: h5py.Dataset,
+    name: str,
+    axes: list[str],
+    dims: tuple[int, ...],
+    where: tuple[int | slice, ...],
 ) -> Array:
     """A parameter's values of the designs of a slab, flat."""
     if name not in axes:

@@ -6,11 +6,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...base.arrays import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis, XAxis, YAxis
+    from matplotlib.colorbar import Colorbar
+    from matplotlib.colors import Normalize
 
 _MIDDLE: Any = ((5, "higher"), (95, "lower"))
 _SPAN, _LOWEST, _DEPTH, _SAME = 5.0, 0.2, 1e6, 1e-9
@@ -85,7 +91,7 @@ class Scale:
             else ""
         )
 
-    def norm(self) -> Any:
+    def norm(self) -> Normalize:
         """Norm for colours."""
         from matplotlib.colors import AsinhNorm, LogNorm, Normalize
 
@@ -96,7 +102,7 @@ class Scale:
             )
         return (LogNorm if self.log else Normalize)(self.low, self.high)
 
-    def mark(self, bar: Any) -> None:
+    def mark(self, bar: Colorbar) -> None:
         """Ticks of a short horizontal colour bar."""
         from matplotlib.ticker import MaxNLocator
 
@@ -122,7 +128,7 @@ class Scale:
             bar.locator = MaxNLocator(4)
             bar.update_ticks()
 
-    def limit(self, axes: Any, axis: str, held: Iterable[float] = (), foot: float = 0.05) -> None:
+    def limit(self, axes: Axes, axis: str, held: Iterable[float] = (), foot: float = 0.05) -> None:
         """Let axis "x" or "y" of axes have this scale, with room below for ``foot`` of it; values
         ``held`` are inside.
 
@@ -170,7 +176,7 @@ def _raised(power: int) -> str:
     return str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
-def even_in_ratios(axis: Any) -> None:
+def even_in_ratios(axis: Axis) -> None:
     """Ticks of a logarithmic axis that do not run into each other."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -185,7 +191,7 @@ def even_in_ratios(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def tick(axis: Any, values: Array, inches: float) -> None:
+def tick(axis: XAxis | YAxis, values: Array, inches: float) -> None:
     """Ticks of an axis of a length at values, ascending, with numbers as far as they do not run
     into each other.
     """

@@ -5,17 +5,22 @@ all within a range.
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Iterable
+from typing import Annotated, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from ...arguments import LATER
 from ...base.arrays import Array
+from ...base.units import Number, typed
 from ...base.units import number as read_number
-from ...base.units import typed
 from ...errors import DeclarationError, NumberError, shown
 
 _NEAR = 1e-9
+
+Selected: TypeAlias = Annotated[Number | Iterable[Number], LATER]
+"""A number, some numbers, or (low, high)."""
 
 
 def near(values: Array, number: float) -> npt.NDArray[np.bool_]:
@@ -25,15 +30,17 @@ def near(values: Array, number: float) -> npt.NDArray[np.bool_]:
     return np.asarray(np.abs(values - number) <= _NEAR * np.maximum(np.abs(values), abs(number)))
 
 
-def matches(name: str, there: Array, wanted: Any, unit: str) -> npt.NDArray[np.bool_]:
+def matches(name: str, there: Array, wanted: Selected, unit: str) -> npt.NDArray[np.bool_]:
     """Return where values are wanted, in their ``unit``; they may be texts, as ``"30 deg"``.
 
     Raises :class:`DeclarationError` for what cannot be, and for what no value is.
     """
-    several = isinstance(wanted, list | tuple | set | frozenset | range) or (
+    each: Iterable[object] = [wanted]
+    if isinstance(wanted, list | tuple | set | frozenset | range) or (
         isinstance(wanted, np.ndarray) and wanted.ndim == 1
-    )
-    typed_values = [typed(number) for number in (wanted if several else [wanted])]
+    ):
+        each = wanted
+    typed_values = [typed(number) for number in each]
     for in_unit in (given_unit for _, given_unit in typed_values if given_unit not in ("", unit)):
         other = "angles" if in_unit == "rad" else f"numbers [{in_unit}]"
         raise DeclarationError(

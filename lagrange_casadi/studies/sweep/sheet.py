@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +17,14 @@ from .reading import Sweep
 from .scale import Scale, tick
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
     from matplotlib.figure import Figure
+    from matplotlib.typing import ColorType
+
+_Share: TypeAlias = bool | Literal["none", "all", "row", "col"]
+"""Plots of a sheet that share an axis."""
 
 STYLE: dict[Any, Any] = {
     "font.size": 8,
@@ -74,7 +81,7 @@ class MissingDesigns:
         others = ["other reasons"] if named.size < kinds.size else []
         return cls(codes, tuple(f"no result: {text}" for text in words + others))
 
-    def shade(self, axes: Any, x: Array, y: Array, legend: dict[str, Any]) -> None:
+    def shade(self, axes: Axes, x: Array, y: Array, legend: dict[str, Artist]) -> None:
         """Cells of a map between edges ``x`` and ``y`` hatched, each reason in a grey of its own;
         codes are (x, y).
         """
@@ -99,7 +106,12 @@ class MissingDesigns:
             legend[text] = Patch(facecolor=colour, edgecolor="0.45", hatch="//////", linewidth=0.0)
 
     def cross(
-        self, axes: Any, x: Array, legend: dict[str, Any], colour: Any = "0.4", row: int = 0
+        self,
+        axes: Axes,
+        x: Array,
+        legend: dict[str, Artist],
+        colour: ColorType = "0.4",
+        row: int = 0,
     ) -> None:
         """Marks in a row along the foot of curves or dots, at the ``x`` of each design without a
         result.
@@ -136,7 +148,9 @@ class Sheet:
     legend: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, count: int, *, columns: int = 0, share: Any = (False, False)) -> Sheet:
+    def of(
+        cls, count: int, *, columns: int = 0, share: tuple[_Share, _Share] = (False, False)
+    ) -> Sheet:
         """Panels row by row, one in a report's column, more over a page's width."""
         from matplotlib.figure import Figure
         from matplotlib.ticker import MaxNLocator
@@ -169,7 +183,7 @@ class Sheet:
         """Height of text beside a panel, in inches."""
         return 0.8 * (_ALONE if len(self.plots) == 1 else _HEIGHT)
 
-    def bar(self, axes: Any, cells: Any, scale: Scale, text: str) -> None:
+    def bar(self, axes: Axes, cells: QuadMesh, scale: Scale, text: str) -> None:
         """A bar of colours above a panel."""
         bar = self.figure.colorbar(
             cells, ax=axes, location="top", extend=scale.extend, aspect=25, pad=0.02
@@ -177,7 +191,7 @@ class Sheet:
         scale.mark(bar)
         bar.set_label(fitted(0.97 * self.across, text, scale.note))
 
-    def tick(self, axes: Any, axis: str, values: Array) -> None:
+    def tick(self, axes: Axes, axis: str, values: Array) -> None:
         """Put ticks at the values of axis "x" or "y" of a panel, if these are few."""
         there = np.unique(values[np.isfinite(values)])
         if 0 < there.size <= _TICKED:

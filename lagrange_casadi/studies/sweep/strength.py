@@ -11,7 +11,6 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -133,7 +132,7 @@ class Kept:
         return link in self.data.materials and not lacking(self.data.materials[link])
 
     def _tired(
-        self, link: str, there: Any, series: Array | None, times: Array, p: Array
+        self, link: str, there: npt.NDArray[np.int64], series: Array | None, times: Array, p: Array
     ) -> tuple[Array, Array]:
         """Utilisation against fatigue, and the life in cycles, of every design."""
         share, lives = np.full(len(p), np.nan), np.full(len(p), np.nan)
@@ -162,9 +161,9 @@ class Kept:
     def _count(
         self,
         link: str,
-        there: Any,
+        there: npt.NDArray[np.int64],
         members: Array,
-        whole: tuple[Any, ...],
+        whole: tuple[Array, Array, npt.NDArray[np.bool_], Array],
         names: Mapping[str, int],
         share: Array,
         lives: Array,
@@ -224,7 +223,7 @@ class Kept:
         return found
 
     @cached_property
-    def _masses(self) -> Any:
+    def _masses(self) -> ca.Function:
         p = self.data.symbols
         found = [self.data.mass(part, p) for part in (*self.links, ALL)]
         return ca.Function("masses", [p], [ca.densify(ca.vertcat(*found))])

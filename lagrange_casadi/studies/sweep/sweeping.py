@@ -8,7 +8,7 @@ import tempfile
 import weakref
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from ...arguments import LATER, Outputs, ThreadCount, public
 from ...base.space import MOST_THREADS
@@ -21,7 +21,7 @@ from ...errors import DeclarationError
 from ...instants.evaluation_method import EvaluationMethod
 from ...methods import method
 from ..request import Request
-from .axes import designs_of
+from .axes import DesignsLike, designs_of
 from .carrying_out import Progress, carry_out
 from .plan import Plan
 from .reading import Sweep, opened_sweep
@@ -31,7 +31,7 @@ from .workers import Threads, Workers
 @public
 def sweep(
     scene: Scene | Case,
-    grid: Any,
+    grid: Annotated[DesignsLike, LATER],
     *,
     out: str | os.PathLike[str] | None = None,
     parameters: Mapping[str, float] | None = None,

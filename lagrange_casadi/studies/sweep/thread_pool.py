@@ -8,7 +8,9 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import Future
 from queue import SimpleQueue
-from typing import Any
+from typing import Any, TypeVar
+
+_Result = TypeVar("_Result")
 
 
 class ThreadPool:
@@ -26,16 +28,16 @@ class ThreadPool:
             threading.Thread(target=self._work, daemon=True).start()
 
     @classmethod
-    def alone(cls, work: Callable[..., Any], *arguments: Any) -> Future[Any]:
+    def alone(cls, work: Callable[..., _Result], *arguments: object) -> Future[_Result]:
         """Future of one piece of work, by a thread of its own."""
         pool = cls(1)
         future = pool.give(work, *arguments)
         pool.dismiss()
         return future
 
-    def give(self, work: Callable[..., Any], *arguments: Any) -> Future[Any]:
+    def give(self, work: Callable[..., _Result], *arguments: object) -> Future[_Result]:
         """Start a piece of work, and return its future."""
-        future: Future[Any] = Future()
+        future: Future[_Result] = Future()
         self._given.put((future, work, arguments))
         return future
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Generator, Iterable
-from concurrent.futures import wait
+from concurrent.futures import Future, wait
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 from ...base.space import cores, memory
 from .blocks import Queue
@@ -54,7 +54,7 @@ class Threads:
         def evaluated(start: int, stop: int) -> list[bytes]:
             return plan.harvest.chunks(plan.block(start, stop), plan.capacity)
 
-        pool, pending = ThreadPool(count), deque[tuple[int, int, Any]]()
+        pool, pending = ThreadPool(count), deque[tuple[int, int, Future[list[bytes]]]]()
         try:
             while True:
                 while len(pending) <= count and (block := queue.take()):
@@ -76,7 +76,7 @@ class Threads:
             pool.dismiss()
 
 
-def _last(pending: Iterable[tuple[int, int, Any]]) -> Blocks:
+def _last(pending: Iterable[tuple[int, int, Future[list[bytes]]]]) -> Blocks:
     """Yield the blocks that were begun and still end; no other one begins."""
     begun = [(start, stop, future) for start, stop, future in pending if not future.cancel()]
     ended = wait([future for _, _, future in begun], PATIENCE).done
