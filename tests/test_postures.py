@@ -86,7 +86,7 @@ def test_what_is_open_is_told_at_once_in_lines_to_paste(case):
     assert lines
     assert "\n" not in str(error.value)
     found = [moved(scene, posture=line)[0] for line in lines]
-    assert len(lines) == (2 if len(error.value.ways) == 1 else 1)
+    assert len(lines) == (2 if len(error.value.assembly_modes) == 1 else 1)
     if len(found) == 2:
         assert not same(*found)
 
@@ -118,7 +118,7 @@ def test_names_that_iterations_need_are_told_at_once():
     )
     with pytest.raises(PostureError, match=says) as error:
         evaluate(replace(scene, posture={}))
-    assert (error.value.ways, error.value.lacking) == ((), True)
+    assert (error.value.assembly_modes, error.value.lacking) == ((), True)
 
 
 def test_a_part_of_a_posture_leaves_the_rest_open():
@@ -244,7 +244,7 @@ def test_rounding_is_never_proposed():
     scene = replace(load_case("screw_lift").scene, posture={})
     with pytest.raises(PostureError, match=r"or posture=\{'thread': '0 deg'\}") as error:
         moved(scene)
-    assert error.value.ways[0][1] == {"thread": 0.0}
+    assert error.value.assembly_modes[0][1] == {"thread": 0.0}
 
 
 def test_what_a_posture_may_tell():
@@ -263,4 +263,8 @@ def test_the_error_can_be_sent_to_another_process():
     with pytest.raises(PostureError) as error:
         evaluate(replace(four_bar(), posture={}))
     told = pickle.loads(pickle.dumps(error.value))
-    assert (str(told), told.ways, told.lacking) == (str(error.value), error.value.ways, False)
+    assert (str(told), told.assembly_modes, told.lacking) == (
+        str(error.value),
+        error.value.assembly_modes,
+        False,
+    )

@@ -106,7 +106,7 @@ def test_smoothing_takes_the_noise_out_of_accelerations(here, smoothing, points)
     assert errors[0] > 2.0 * np.abs(clean[2]).max()
     assert errors[1] < 0.01 * errors[0]
     assert errors[1] < 0.02 * np.abs(clean[2]).max()
-    assert "smoothed by 0.00" in smooth.told
+    assert "smoothed by 0.00" in smooth.description
     distance = np.degrees(derivatives(smooth, t)[0]) - np.round(noisy, 13)
     if points is None:
         assert np.sqrt(np.mean(distance[:-1] ** 2)) == pytest.approx(0.001, rel=0.1)
@@ -226,7 +226,7 @@ def test_misuse_is_named(here, rows, options, error, says):
 def test_a_first_row_that_is_no_head_is_not_passed_over(here, cell):
     with pytest.raises(DeclarationError, match=r"axis\.csv, line 1: expected a finite number, got"):
         read_samples(write(here / "axis.csv", ["0", cell], RAMP))
-    assert read_samples(write(here / "axis.csv", ["", "0"], RAMP), value=2).told.startswith(
+    assert read_samples(write(here / "axis.csv", ["", "0"], RAMP), value=2).description.startswith(
         f"{len(RAMP)} samples of "
     )
 

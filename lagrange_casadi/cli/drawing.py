@@ -68,5 +68,5 @@ def drawn_ways(error: PostureError) -> tuple[str, list[str]]:
             if not complete:
                 words += ", and says how to get the others"
             numbered = [f"  {number:>2}  {line}" for number, line in enumerate(postures, 1)]
-            return words, numbered if len(error.ways) > 1 else []
+            return words, numbered if len(error.assembly_modes) > 1 else []
     return "", []

@@ -495,7 +495,9 @@ def _law(
         f" s{', repeated' if periodic else ''}"
     )
     return Motion(
-        graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off", unit=unit_in
+        graph,
+        description=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off",
+        unit=unit_in,
     )
 
 

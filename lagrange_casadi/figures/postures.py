@@ -121,7 +121,7 @@ def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
         return [], 0
     first, possible, levels = _closed(scene, scene.posture), 1, math.inf
     if isinstance(first, PostureError):
-        counts = [len(ways) for ways in first.ways]
+        counts = [len(ways) for ways in first.assembly_modes]
         possible = math.prod(counts)
         if possible > _ALL:
             levels = sum(math.prod(counts[: k + 1]) <= _SOME for k in range(len(counts)))
@@ -183,14 +183,14 @@ def _ways(
         slides = {name for name, (_, axis) in coordinates.items() if axis.kind == "slide"}
         entries = (posture_entry(name, name in slides, value) for name, value in posture.items())
         yield ", ".join(entries), closed
-    if not isinstance(closed, PostureError) or closed.lacking or not closed.ways:
+    if not isinstance(closed, PostureError) or closed.lacking or not closed.assembly_modes:
         return
-    ways = closed.ways[0]
+    ways = closed.assembly_modes[0]
     # An entry that is given and does not choose never will.
     if any(name in posture and name not in scene.posture for way in ways for name in way):
         return
     if levels <= 0:
-        ways = ({name: x for first, *_ in closed.ways for name, x in first.items()},)
+        ways = ({name: x for first, *_ in closed.assembly_modes for name, x in first.items()},)
     for way in ways:
         chosen = dict(posture) | dict(way)
         yield from _ways(scene, chosen, _closed(scene, chosen), levels - 1)

@@ -76,8 +76,8 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
     """The factors of safety of what is fitted to a joint, over all instants: by how much its
     reaction may grow.
 
-    Of speed and heating it is by how much these may. ``is_open`` says what could not be looked at.
-    Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted,
+    Of speed and heating it is by how much these may. ``not_evaluated`` names what is missing, and
+    why. Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted,
     equilibrium leaves it open, or a number that depends on parameters is not positive.
     """
     fitted = solution.description["joints"].get(joint, {}).get("fitted", {})
