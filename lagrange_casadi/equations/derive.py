@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arguments import Outputs, public
+from ..arguments import Outputs, public, texts
 from ..base import cache
 from ..base.arrays import Expression
 from ..base.quantities import Output
@@ -91,8 +91,8 @@ def compile_scene(
     names = scene.wanted if wanted is None else wanted
     if parameters is not None:
         scene = assembled(scene, scene.values(parameters), names)
-    want = Wanted.of(scene.mechanism, names)
-    _check_aimed(scene, names)
+    listed = texts(names)
+    want = Wanted.of(scene.mechanism, names) if listed is None else _wanted(scene, tuple(listed))
     try:
         found = _kept(scene, want)
     except PostureError as error:
@@ -154,6 +154,13 @@ def assembled(
 @functools.lru_cache(maxsize=32)
 def _at(scene: Scene, values: tuple[tuple[str, float], ...]) -> Scene:
     return replace(scene, assembly=dict(values))
+
+
+@functools.lru_cache(maxsize=64)
+def _wanted(scene: Scene, names: tuple[str, ...]) -> Wanted:
+    want = Wanted.of(scene.mechanism, names)
+    _check_aimed(scene, names)
+    return want
 
 
 @functools.lru_cache(maxsize=32)

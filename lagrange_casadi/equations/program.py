@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -23,6 +23,9 @@ from .least_energy import Completion
 from .mobility import load_points_of
 from .model_data import ModelData
 from .status import Bound, Rule, beside_of, bounds_of, rules_of, status_of
+
+Turns: TypeAlias = tuple[tuple[int, int], ...]
+"""Numbers of parts of an angle, and the sign of each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +64,30 @@ class Program(Graphs):
         """The outputs, and their rows of ``out``."""
         return {column: k for k, column in enumerate(self.columns) if isinstance(column, Output)}
 
-    def checks(self, kind: Kind) -> dict[str, int]:
+    def checks(self, kind: Kind) -> Mapping[str, int]:
         """The parts that have a check of a kind, and its row of ``out``."""
-        return {
-            str(c.part): k
-            for k, c in enumerate(self.columns)
-            if isinstance(c, Check) and c.kind == kind
-        }
+        return self._checks.get(kind, {})
+
+    @cached_property
+    def _checks(self) -> dict[str, dict[str, int]]:
+        found: dict[str, dict[str, int]] = {}
+        for k, check in enumerate(self.columns):
+            if isinstance(check, Check):
+                found.setdefault(check.kind, {})[str(check.part)] = k
+        return found
+
+    @cached_property
+    def loop_rows(self) -> tuple[tuple[tuple[int, bool], ...], tuple[tuple[int, Turns], ...]]:
+        """Rows of what :attr:`loop_angles` are sums of, and whether each has whole turns; and by
+        the row of each angle, the numbers among these of its parts, with their signs.
+        """
+        rows = {column: k for k, column in enumerate(self.columns)}
+        parts = dict.fromkeys(part for signs in self.loop_angles.values() for part in signs)
+        numbers = {part: number for number, part in enumerate(parts)}
+        return tuple((rows[part], isinstance(part, Check)) for part in parts), tuple(
+            (rows[angle], tuple((numbers[part], sign) for part, sign in signs.items()))
+            for angle, signs in self.loop_angles.items()
+        )
 
     @property
     def bounds(self) -> tuple[Bound, ...]:

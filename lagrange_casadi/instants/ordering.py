@@ -4,6 +4,7 @@ may be off.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
@@ -30,11 +31,17 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
 
     Raises ``ValueError`` for one of a part that is not declared.
     """
-    table = table_of_described(description)
+    order = _order(tuple(outputs), tuple(parts_of(description)), in_space(description))
+    return {output: outputs[output] for output in order}
+
+
+@functools.lru_cache(maxsize=64)
+def _order(outputs: tuple[Output, ...], parts: tuple[str, ...], space: bool) -> list[Output]:
+    """Outputs in the order of :func:`in_order`."""
+    table = table_of(space)
     rows = table.rows
     groups = list(dict.fromkeys(q.group for q in rows))
     sections = groups.index("section")
-    parts = parts_of(description)
 
     def rank(output: Output) -> tuple[int, int, str, str, int, int]:
         group = sections if output.along else groups.index(output.group)
@@ -48,7 +55,7 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
             output.power or 0,
         )
 
-    return {output: outputs[output] for output in sorted(outputs, key=rank)}
+    return sorted(outputs, key=rank)
 
 
 _GROUPS = ("effort", "reaction", "friction", "section", *LARGEST, "output")

@@ -19,7 +19,6 @@ from ..declare.laws import Laws
 from ..declare.scene import Scene
 from ..declare.times import Timing, instants_of, span_of
 from ..declare.wanted_names import by_parameters
-from ..equations.checks import Check
 from ..equations.derive import compile_scene
 from ..equations.model_data import ModelData
 from ..equations.program import Program
@@ -187,21 +186,29 @@ def outputs_of(program: Program, out: Array) -> dict[Output, Array]:
 
     They are those columns, not copies: in ``out`` too angles go on after this.
     """
-    found = {output: out[k] for output, k in program.outputs.items()}
-    parts = {
-        part: out[program.columns.index(part)]
-        for signs in program.loop_angles.values()
-        for part in signs
-    }
-    turns = {
-        part: math.tau * (row - row[..., :1]) if isinstance(part, Check) else np.unwrap(row) - row
-        for part, row in parts.items()
-    }
-    for angle, signs in program.loop_angles.items():
-        for part, sign in signs.items():
-            found[angle] += sign * turns[part]
-        found[angle] -= math.tau * np.ceil(found[angle][..., :1] / math.tau - 0.5)
-    return found
+    unwind(program, out)
+    return {output: out[k] for output, k in program.outputs.items()}
+
+
+def unwind(program: Program, out: Array) -> None:
+    """Let angles go on where they would jump by a turn, in the columns ``out`` (columns, ..., t)
+    of a graph.
+    """
+    parts, angles = program.loop_rows
+    turns = [
+        math.tau * (out[k] - out[k][..., :1]) if whole else _jumps(out[k]) for k, whole in parts
+    ]
+    for k, signs in angles:
+        angle = out[k]
+        for number, sign in signs:
+            angle += sign * turns[number]
+        angle -= math.tau * np.ceil(angle[..., :1] / math.tau - 0.5)
+
+
+def _jumps(angle: Array) -> Array | float:
+    """Addition that lets an angle (..., t) go on where it jumps by a turn."""
+    jumps = not (np.abs(angle[..., 1:] - angle[..., :-1]) < math.pi).all()
+    return np.unwrap(angle) - angle if jumps else 0.0
 
 
 def residuals_of(

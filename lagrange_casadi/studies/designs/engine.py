@@ -38,7 +38,7 @@ from ...peak_search.sharpness import bent, with_watched
 from ...sensitivity.ends import Ends
 from ...sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
 from ...sensitivity.slopes import Slopes
-from ..solving import checked_span, outputs_of
+from ..solving import checked_span, outputs_of, unwind
 from .interpreted import InterpretedDesigns
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .reduction import KeptOutputs, stages_of
@@ -271,12 +271,20 @@ class DesignEngine:
         """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is
         open is NaN, angles go on.
         """
+        self.finish(out, p)
+        return {output: out[k] for output, k in self.program.outputs.items()}
+
+    def finish(self, out: Array, p: Array) -> None:
+        """Put NaN into the columns (columns, t) of a design for what is open, and let angles go
+        on.
+        """
         self._withhold(out, p)
-        series = outputs_of(self.program, out)
-        return {output: series[output] for output in self.outputs}
+        unwind(self.program, out)
 
     def _withhold(self, out: Array, p: Array) -> None:
         """Take from the columns (columns, t) of a design what equilibrium leaves open."""
+        if not self.program.indeterminate:
+            return
         with np.errstate(invalid="ignore"):
             out[
                 [
@@ -287,7 +295,7 @@ class DesignEngine:
 
     @property
     def plain(self) -> bool:
-        """True if :meth:`reported` changes nothing of the columns."""
+        """True if :meth:`finish` changes nothing of the columns."""
         return not self.program.loop_angles and not self.program.indeterminate
 
     @cached_property

@@ -260,11 +260,9 @@ class Prepared:
             return {str(o): row for o, row in engine.reported(found.columns, p[0]).items()}
         fill[0]()
         self._refuse(self._watched(answers.instants[1], answers.history), p)
-        return (
-            answers.rows
-            if engine.plain
-            else {str(o): row for o, row in engine.reported(answers.history[0], p[0]).items()}
-        )
+        if not engine.plain:
+            engine.finish(answers.history[0], p[0])
+        return answers.rows
 
     def peaks(self, /, *values: _Values, **named: Number) -> Peaks:
         """Peaks and means for values of parameters; this thread's next evaluation overwrites the
