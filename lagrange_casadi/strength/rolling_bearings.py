@@ -17,6 +17,7 @@ import numpy as np
 
 from ..arguments import NotNegative, Positive, public
 from ..base.csv_rows import read_rows
+from ..base.units import count as whole
 from ..declare.fitted import Rolling
 from ..errors import DeclarationError, NoDesignError
 from ..instants.solution import Solution
@@ -91,6 +92,7 @@ def dynamic_rating(element: Positive, pitch: Positive, count: int) -> float:
     count : int
         Number of balls.
     """
+    count = whole("dynamic_rating: count", count)
     share, size = element / pitch, 1e3 * element
     inner = 1.04 * ((1.0 - share) / (1.0 + share)) ** 1.72
     factor = _LEADING * (1.0 + inner ** (10.0 / 3.0)) ** -0.3 * (2 * 0.52 / (2 * 0.52 - 1)) ** 0.41
@@ -104,6 +106,7 @@ def static_rating(element: Positive, pitch: Positive, count: int) -> float:
     """Compute C_0r of ISO 76 for a deep groove ball bearing [N], with arguments as of
     :func:`dynamic_rating`.
     """
+    count = whole("static_rating: count", count)
     factor = np.interp(element / pitch, np.arange(len(_F0)) / 100.0, _F0)
     return float(factor * count * (1e3 * element) ** 2)
 
