@@ -1,7 +1,7 @@
-"""``python -m tests.pages FOLDER``: pictures of the pages of four cases and of a sweep, to be
-looked at.
+"""``python -m tests.pages FOLDER``: pictures of the pages of four cases, of two designs and of a
+sweep, to be looked at.
 
-Each page is there at two sizes of window, light and dark, and on A4 and letter as a PDF.
+Each page is there at three sizes of window, light and dark, and on A4 and letter as a PDF.
 """
 
 import importlib.util
@@ -14,7 +14,7 @@ from lagrange_casadi.cli import main
 from . import browser
 
 CASES = ("slider_crank", "connecting_rod", "excavator", "delta")
-SIZES = ((1400, 900), (900, 700))
+SIZES = ((1400, 900), (900, 700), (400, 800))
 PAPERS = {"a4": (8.27, 11.69), "letter": (8.5, 11.0)}
 
 
@@ -31,6 +31,9 @@ def written(folder):
         page = folder / f"{name}.html"
         told("report", name, *live, "--out", str(page))
         yield page
+    beside = ["--beside", "l=0.3", "--out", str(folder / "beside.html")]
+    told("report", "slider_crank", *beside)
+    yield folder / "beside.html"
     grid = ["--grid", "l=0.12:0.4:15", "--grid", "r=0.05:0.1:6"]
     told("sweep", "slider_crank", *grid, "--out", str(folder / "sweep.h5"), "--force")
     told("report", str(folder / "sweep.h5"), "--out", str(folder / "sweep.html"))

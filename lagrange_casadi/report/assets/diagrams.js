@@ -60,22 +60,31 @@ class Diagram {
   }
 
   draw(width) {
-    const high = this.forces.length > 3 ? 84 : 100;
-    const [from, to] = [FIELD.left - 14, width - 46];
+    const [from, to, half] = [FIELD.left - 14, width - 46, 28];
     const across = (xi) => from + xi * (to - from);
-    const height = high * this.forces.length + 14;
     this.across = { from, to };
-    this.sheet.fill(width, height, ...this.forces.flatMap((force, k) => this.panel(force, high * (k + 0.5) + 8, 0.26 * high, across)),
-      drawn("text", { x: from, y: height - 3, class: "x" }, "base"), drawn("text", { x: to, y: height - 3, class: "x" }, "tip"));
+    const parts = [];
+    let top = 4;
+    for (const force of this.forces) {
+      // Below its name a force has room for numbers, and on the sides of the link on which it is.
+      const along = this.along(force);
+      const [up, down] = [1, -1].map((sign) => (along.values.some((value) => sign * value > 0) ? half : 0));
+      parts.push(drawn("text", { x: 4, y: top + 11, class: "name" }, this.nameOf(force, along)), ...this.panel(force, along, top + 29 + up, half, across));
+      top += 48 + up + down;
+    }
+    this.sheet.fill(width, top + 14, ...parts, drawn("text", { x: from, y: top + 10, class: "x" }, "base"), drawn("text", { x: to, y: top + 10, class: "x" }, "tip"));
   }
 
-  panel(force, y0, half, across) {
-    const { ratios, values } = this.along(force);
+  nameOf(force, { values }) {
+    return labelled(force.what, scaleFor(force.unit, largestOf(values)).unit);
+  }
+
+  panel(force, { ratios, values }, y0, half, across) {
     const most = largestOf(values);
-    const { factor, unit } = scaleFor(force.unit, most);
+    const { factor } = scaleFor(force.unit, most);
     const at = (value) => y0 - (most ? (half * value) / most : 0);
     const path = (sign) => `M${across(0)} ${y0}${values.map((value, k) => `L${across(ratios[k])} ${at(sign * value > 0 ? value : 0)}`).join("")}L${across(1)} ${y0}Z`;
-    const parts = [drawn("text", { x: 4, y: y0 - half - 12, class: "name" }, labelled(force.what, unit))];
+    const parts = [];
     for (const [sign, kind] of [[1, "positive"], [-1, "negative"]]) if (values.some((value) => sign * value > 0)) parts.push(drawn("path", { d: path(sign), class: `area ${kind}` }));
     parts.push(
       drawn("path", { d: `M${across(0)} ${y0}${values.map((value, k) => `L${across(ratios[k])} ${at(value)}`).join("")}L${across(1)} ${y0}`, class: "outline" }),

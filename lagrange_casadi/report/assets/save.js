@@ -22,13 +22,13 @@ function pictureOf(card) {
   const page = getComputedStyle(card.body);
   const write = (words, x, y, weight) => drawn("text", { x, y, fill: page.color, "font-family": page.fontFamily, "font-size": 12, "font-weight": weight }, words);
   const lines = [...card.legend.children].map((item, k) => {
-    const [y, swatch] = [36 + 17 * k, item.querySelector("svg")];
+    const [y, swatch] = [53 + 17 * k, item.querySelector("svg")];
     const line = swatch && styled(swatch.firstChild);
     line?.setAttribute("transform", `translate(8 ${y - 8})`);
     const words = swatch ? item.querySelector("span").textContent : item.textContent;
     return [line, write(words, swatch ? 40 : 8, y, 400)];
   });
-  const top = 26 + 17 * lines.length;
+  const top = 43 + 17 * lines.length;
   const parts = styled(sheet.still);
   const chosen = [...card.choices.querySelectorAll("select:not(.curves)")].map((list) => list.selectedOptions[0]?.textContent);
   const canvas = sheet.body.querySelector("canvas");
@@ -37,7 +37,7 @@ function pictureOf(card) {
   const map = canvas && drawn("image", { x: share(left, width), y: share(down, high), width: share(wide, width), height: share(height, high), href: canvas.toDataURL(), preserveAspectRatio: "none" });
   return drawn("svg", { xmlns: "http://www.w3.org/2000/svg", width, height: high + top, viewBox: `0 0 ${width} ${high + top}` },
     drawn("rect", { width, height: high + top, fill: page.backgroundColor }),
-    write([contents.case, card.title.textContent, ...chosen].join(", "), 8, 18, 650), lines.flat(),
+    write([contents.case, card.title.textContent].join(", "), 8, 18, 650), write(chosen.join(", "), 8, 35, 400), lines.flat(),
     drawn("g", { transform: `translate(0 ${top})` }, map, ...parts.childNodes));
 }
 
