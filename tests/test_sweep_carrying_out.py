@@ -222,7 +222,9 @@ def test_what_no_sweep_put_into_the_folder_is_not_touched(engine, tmp_path, keyw
     folder = tmp_path / "x.h5.parts"
     folder.mkdir()
     (folder / "thesis.txt").write_text("mine")
-    with pytest.raises(PathError, match=r"x\.h5\.parts holds 'thesis\.txt', which is no sweep's"):
+    with pytest.raises(
+        PathError, match=r"x\.h5\.parts holds 'thesis\.txt', which is not part of a sweep"
+    ):
         run(tmp_path / "x.h5", **keywords)
     assert os.listdir(folder) == ["thesis.txt"]
 

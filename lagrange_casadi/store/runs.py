@@ -84,10 +84,21 @@ _OTHERS = {
 
 @public
 def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") -> None:
-    """Write a solution, replacing the file at ``path`` whole or not at all.
+    """Write a solution to a file; an existing file is replaced completely or not at all.
 
-    ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn.
-    Raises :class:`StoreError` where the file cannot be written.
+    Parameters
+    ----------
+    solution
+        The solution.
+    path
+        The file, HDF5.
+    figures
+        Specifications of figures as JSON, which :mod:`.figures` reads from the file.
+
+    Raises
+    ------
+    StoreError
+        If the file cannot be written.
     """
     if "\0" in figures or not figures.isascii():
         raise DeclarationError(
@@ -165,10 +176,24 @@ def _require_space(solution: Solution, target: Path) -> None:
 
 @public
 def load(path: str | os.PathLike[str]) -> Solution:
-    """Read a solution.
+    """Read a solution from its file.
 
-    Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for
-    none.
+    Parameters
+    ----------
+    path
+        The file of a run.
+
+    Returns
+    -------
+    Solution
+        The solution, without its scene.
+
+    Raises
+    ------
+    PathError
+        If there is no such file.
+    StoreError
+        If the file is damaged, incomplete, or of another schema.
     """
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         return _read(file)
@@ -185,11 +210,26 @@ def figure_specs(path: str | os.PathLike[str]) -> str:
 
 @public
 def check(path: str | os.PathLike[str]) -> list[str]:
-    """Faults of a file, one line each; none if it is whole and consistent.
+    """Check a file of a run, and return its faults.
 
     Every dataset is read, so its checksum is verified; every value must be finite, every axis have
-    its scale, every unit and sign be the schema's; and the section grids must be what the laws
-    give, to 1e-12 of their peak. Raises what :func:`load` does.
+    its scale, every unit and sign be the schema's; and the section grids must agree with the laws
+    to 1e-12 of their peak.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    list of str
+        The faults, one line each; empty if the file is complete and consistent.
+
+    Raises
+    ------
+    PathError, StoreError
+        As :func:`load`.
     """
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         solution = _read(file)
@@ -492,7 +532,7 @@ def _read(file: h5py.File) -> Solution:
             distributed.sound for distributed in law.distributed_loads
         )
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
-            raise ValueError(f"the law or the density of '{link}' is not whole")
+            raise ValueError(f"the law or the density of '{link}' is incomplete")
     return replace(
         solution, sensitivities=slopes_of(file, solution, numbers), holding=_held(file, solution)
     )
