@@ -209,9 +209,8 @@ def declarations() -> Iterator[tuple[str, Call]]:
         "two_bearings": {
             **steel,
             "housing": w.m.ground,
-            "shaft": w.m.link("axle", length=0.2, mass=1.0),
-            "fixed": 0.0,
-            "floating": 0.1,
+            "fixed": w.m.link("axle", length=0.2, mass=1.0),
+            "floating": w.m.links["axle"].tip,
         },
         "two_bushes": {
             **steel,

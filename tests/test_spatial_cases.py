@@ -362,5 +362,5 @@ def test_figures_can_be_drawn(name, tmp_path):
     assert {"mechanism", f"section_{link}"} <= {spec.name for spec, _ in drawn}
 
 
-def test_there_are_eleven():
-    assert len(SPATIAL) == 11
+def test_there_are_twelve():
+    assert len(SPATIAL) == 12

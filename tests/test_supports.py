@@ -43,7 +43,7 @@ def test_a_shaft_with_a_pulley_out_of_balance(values):
     m.weld("key", shaft.tip, pulley)
     m.force("belt", pulley, y=500.0)
     m.force("thrust", pulley, x=-80.0)
-    pair = two_bearings(m, "main", m.ground, shaft, fixed=0.05, floating=b)
+    pair = two_bearings(m, "main", m.ground, shaft.at(0.05), shaft.at(b))
     assert pair.coordinate == "main_fixed:turn_1"
     speeding = {pair.coordinate: polynomial(0.3, 100.0, 400.0)}
     parts = bearings.Rolling(2e4, hours=1e3), bearings.Rolling(3e4, hours=1e3)
@@ -97,7 +97,7 @@ def test_a_shaft_seen_from_the_side_on_an_arm_that_swings():
     arm = m.link("arm", length=0.6, mass=2.0)
     m.revolute("O", m.ground, arm)
     shaft = m.link("shaft", length=0.4, mass=1.5)
-    pair = two_bearings(m, "main", arm.at(0.5, 0.1), shaft, fixed=0.1, floating=0.3, axis=(-1, 0))
+    pair = two_bearings(m, "main", arm.at(0.5, 0.1), shaft.at(0.1), shaft.at(0.3), axis=(-1, 0))
     m.force("pull", shaft.tip, x=30.0, y=-50.0)
     solution = evaluate(Scene(m, {"O": harmonic(0.2, 0.8, 6.0)}, t=(0, 1, 41)))
     assert solution.certified
@@ -221,13 +221,17 @@ def test_a_carriage_on_a_slanting_rail(turns):
 def test_what_cannot_be():
     m = Mechanism("odd")
     rod, other = m.link("rod", length=0.5, mass=1.0), m.link("other", length=0.5, mass=1.0)
-    with pytest.raises(DeclarationError, match=r"bearings 'a': both are at 0.1 m"):
-        two_bearings(m, "a", m.ground, rod, fixed=0.1, floating=0.1)
+    with pytest.raises(
+        DeclarationError, match=r"bearings 'a': expected two places along the shaft"
+    ):
+        two_bearings(m, "a", m.ground, rod.at(0.1), rod.at(0.1))
+    with pytest.raises(DeclarationError, match=r"bearings 'a': .* on two bodies; expected apart="):
+        two_bearings(m, "a", m.ground, rod.at(0.1), other)
     with pytest.raises(DeclarationError, match=r"bushes 'a': expected two places of one body"):
         two_bushes(m, "a", rod, m.ground, other.tip)
     with pytest.raises(DeclarationError, match=r"bushes 'a': both are at one place of 'ground'"):
         two_bushes(m, "a", rod, m.ground, m.ground)
-    side = two_bearings(m, "c", m.ground, other, fixed=0.0, floating=0.1)
+    side = two_bearings(m, "c", m.ground, other, other.at(0.1))
     with pytest.raises(DeclarationError, match="seen from the side does not turn"):
         bearings.fit(m, side.floating, bearings.Rolling(1e3, hours=1.0))
     with pytest.raises(DeclarationError, match="rod of a plane cannot turn"):

@@ -231,6 +231,12 @@ def bends_of(description: Description) -> list[str]:
     return found
 
 
+def pieces_of(description: Description) -> set[str]:
+    """Return the links that bent bars were cut into."""
+    joints = (description["joints"][name] for name in bends_of(description))
+    return {joint[end]["body"] for joint in joints for end in ("parent", "child")}
+
+
 def parts_of(description: Description) -> list[str]:
     """The names of all parts that outputs are of."""
     tables = ("bodies", "joints", "constraints", "rows", "loads")

@@ -19,9 +19,9 @@ from ..declare.directions import triad_of
 from ..declare.expressions import unit_vector
 from ..declare.joints import Joint, Triad
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Body, Expression, Link, Point, Vector
+from ..declare.parts import Body, Expression, Point, Vector
 from ..declare.spatial import SpatialMechanism
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 from ..geometry.vectors import dot, minus, plus, times
 
 
@@ -54,11 +54,11 @@ def two_bearings(
     mechanism: Mechanism,
     name: str,
     housing: Body | Point,
-    shaft: Link,
+    fixed: Body | Point,
+    floating: Body | Point,
     *,
-    fixed: Expression,
-    floating: Expression,
     axis: Vector | None = None,
+    apart: Expression = None,
 ) -> Bearings:
     """Declare a shaft in a fixed and a floating bearing: joints NAME_fixed and NAME_floating.
 
@@ -74,13 +74,15 @@ def two_bearings(
         Prefix of the joints' names.
     housing : Body or Point
         The place of the fixed bearing on the body that carries both.
-    shaft : Link
-        What turns in the bearings, about its own axis.
-    fixed, floating : float or expression
-        Places of the bearings along the shaft, from its base [m].
+    fixed, floating : Body or Point
+        Places of the bearings on the shaft, whose x axis is the axis of the shaft. The floating one
+        may be on another body that turns with it, as at the other end of a crankshaft.
     axis : vector, optional
-        Direction of the shaft, base to tip, in the axes of the housing; by default x. In space the
+        Direction of the shaft's x axis in the axes of the housing; by default x. In space the
         shaft's y axis is across it, along the housing's y if that is at right angles.
+    apart : float or expression, optional
+        How far the floating bearing is from the fixed one along the axis [m]; needed if they are
+        on two bodies.
 
     Returns
     -------
@@ -93,18 +95,21 @@ def two_bearings(
         If both places are one, and as declaring joints does.
     """
     what, own = f"bearings '{name}'", mechanism.own
-    check_kind(what, shaft, "a link for the shaft", Link)
-    here, there = places = [
-        own.expression(f"{what}: {word}", place, "m")
-        for word, place in (("fixed", fixed), ("floating", floating))
-    ]
-    if not isinstance(there - here, ca.SX) and here == there:
-        raise DeclarationError(f"{what}: both are at {here:g} m; expected two places of the shaft")
-    near = own.point(what, housing)
+    near, *ends = (own.point(what, place) for place in (housing, fixed, floating))
+    if apart is None and ends[0].body is not ends[1].body:
+        raise DeclarationError(
+            f"{what}: the places are on two bodies; expected apart=, their distance"
+        )
+    gap = (
+        minus(ends[1].place, ends[0].place)[0]
+        if apart is None
+        else own.expression(f"{what}: apart", apart, "m")
+    )
+    if not isinstance(gap, ca.SX) and gap == 0.0:
+        raise DeclarationError(f"{what}: expected two places along the shaft, got one")
     u, v, _ = _triad(mechanism, what, axis)
-    x, y, z = plus(near.place, times(there - here, u))
+    x, y, z = plus(near.place, times(gap, u))
     far = Point(near.body, x, y, z=z)
-    ends = [shaft.at(place) for place in places]
     names = f"{name}_fixed", f"{name}_floating"
     if isinstance(mechanism, SpatialMechanism):
         pin = mechanism.spherical(names[0], near, ends[0], axis=u, second=v, turned=(u, v))
