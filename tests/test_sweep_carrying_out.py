@@ -240,7 +240,7 @@ def test_parts_of_nobody_knows_what_are_not_touched(whole, tmp_path, keywords):
     with pytest.raises(
         PathError,
         match=(
-            r"x\.h5\.parts holds parts, and no plan\.json that tells what they are of: force=True"
+            r"x\.h5\.parts holds parts, and no plan\.json that describes them: force=True"
         ),
     ):
         run(path, **keywords)
