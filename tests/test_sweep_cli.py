@@ -182,7 +182,7 @@ MISTAKES = [
     (
         ["--grid", "l=0.2", "--out", "mine.h5"],
         2,
-        "mine.h5 exists: --force replaces it, --resume goes on",
+        "mine.h5 exists: --force replaces it, --resume continues",
     ),
     (["--grid", "l=0.2", "--out", "mine.h5", "--resume"], 1, "mine.h5: not a file of this program"),
     (["--grid", "l=0.2", "--resume", "--force"], 2, "resume and force exclude each other"),
