@@ -52,10 +52,23 @@ class Case:
 
 @public
 def load_case(path: str | os.PathLike[str]) -> Case:
-    """Load a case's folder or Python file, or by its name one that comes with the package; what is
-    here has precedence.
+    """Load a case.
 
-    Raises :class:`CaseError`; an error of a declaration passes as it is.
+    Parameters
+    ----------
+    path
+        A case's folder or Python file, or the name of a case that comes with the package. A folder
+        or file of that name has precedence.
+
+    Returns
+    -------
+    Case
+        The case with its scene.
+
+    Raises
+    ------
+    CaseError
+        If the file is missing, fails, or has no ``scene``. Errors of a declaration pass unchanged.
     """
     given = Path(path)
     file = _file(given)

@@ -115,7 +115,7 @@ def test_a_rotor_may_be_without_inertia(here):
     duty = duty_of(
         turned(harmonic(0.0, 0.8, 0.1), (0, 10, 101)), "J", ratio=40, inertia=motor.inertia
     )
-    with pytest.raises(DeclarationError, match="expected the inertia seen by the drive"):
+    with pytest.raises(DeclarationError, match="expected the inertia reflected to the drive"):
         assert duty.inertia_ratio
     assert assess(motor, duty).heat > 0.0
 
@@ -160,7 +160,7 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
             HEADS.replace("inertia", "J"),
             r"motors\.csv, line 1: it lacks the column 'inertia'; expected name, stall_torque",
         ),
-        ([*ROWS, ROWS[0]], HEADS, r"motors\.csv, line 5: motor 'small' comes twice"),
+        ([*ROWS, ROWS[0]], HEADS, r"motors\.csv, line 5: motor 'small' is listed twice"),
         (
             ROWS,
             HEADS.replace("inertia", "inertia [lb in^2]"),
@@ -184,7 +184,7 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
         (
             [f"{row},2" for row in ROWS],
             f"{HEADS},inertia",
-            "line 1: the column 'inertia' comes twice",
+            "line 1: the column 'inertia' is listed twice",
         ),
         ([], HEADS, "expected at least one motor below the heads"),
     ],

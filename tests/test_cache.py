@@ -112,8 +112,8 @@ def test_the_command_shows_what_is_kept(fresh_cache, monkeypatch, capsys):
     assert main(["cache"]) == 0
     assert (
         capsys.readouterr().out
-        == f"{fresh_cache}: 0 graphs, 0 libraries, 0 MB in 0 files\nlimit: 500 MB, of which what"
-        " was used longest ago goes first; $LAGRANGE_CASADI_CACHE_SIZE sets another\n"
+        == f"{fresh_cache}: 0 graphs, 0 libraries, 0 MB in 0 files\nlimit: 500 MB, least"
+        " recently used files are removed first; $LAGRANGE_CASADI_CACHE_SIZE sets another\n"
     )
     assert not fresh_cache.exists()
     put(fresh_cache, NAMES[0], 300_000, 5)

@@ -287,7 +287,7 @@ def test_exported_c_refuses_what_does_not_close_a_loop(monkeypatch, fresh_cache,
     told = subprocess.run(
         ["./look"], cwd=tmp_path / "c", capture_output=True, text=True, check=True
     ).stdout
-    assert told == "what was found for a loop does not satisfy its equations"
+    assert told == "the solution of a loop does not satisfy its equations"
 
 
 def test_what_fails_its_certificate_is_not_exported(monkeypatch, tmp_path):

@@ -176,7 +176,7 @@ def test_a_scene_whose_defaults_have_a_corner_serves_for_values_that_have_none(s
 def test_what_is_exported_says_that_corners_were_looked_for_with_the_defaults(tmp_path):
     export(motion(), tmp_path / "c", wanted=["effort"])
     for name in ("README.md", "slide.h"):
-        assert "looked for with the defaults alone" in (tmp_path / "c" / name).read_text()
+        assert "checked with the default parameters only" in (tmp_path / "c" / name).read_text()
 
 
 def test_a_live_page_says_that_sliders_go_by_corners(monkeypatch):

@@ -384,7 +384,7 @@ def test_a_file_without_a_part_of_a_load_is_not_whole(tmp_path):
         changed.write_bytes(path.read_bytes())
         edit(changed, lambda file, missing=missing: file.__delitem__(missing))
         with pytest.raises(
-            StoreError, match=r"the load along the link '(wind|lift|flow)' is not whole"
+            StoreError, match=r"the load along the link '(wind|lift|flow)' is incomplete"
         ):
             load(changed)
 

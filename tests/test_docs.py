@@ -176,7 +176,7 @@ def test_the_schema_lists_every_quantity(request):
     """Run pytest with --update to write the table anew."""
     page = ROOT / "docs" / "schema.md"
     text = page.read_text()
-    axes = ("| /t | t | s | time | |", "| /xi | xi | 1 | place along a link, ratio xi/l | |")
+    axes = ("| /t | t | s | time | |", "| /xi | xi | 1 | position along a link, ratio xi/l | |")
     others = [quantity for quantity in SPATIAL_QUANTITIES if quantity not in QUANTITIES]
     new = text
     for name, lines in (

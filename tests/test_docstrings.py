@@ -1,6 +1,8 @@
 """Docstrings begin with a verb or a noun, as PEP 257 asks."""
 
 import ast
+import inspect
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -33,3 +35,26 @@ def test_docstrings_begin_with_a_verb_or_a_noun():
             if words[0] in FIRST or words[:2] == ["The", "same"]:
                 begun.append(f"{path.relative_to(PACKAGE)}:{found.lineno}: {' '.join(words[:6])}")
     assert not begun, "\n".join(begun)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    "name",
+    [
+        name
+        for name in lagrange_casadi.__all__
+        if inspect.isfunction(getattr(lagrange_casadi, name))
+    ],
+)
+def test_a_function_of_the_facade_says_what_it_takes_gives_and_raises(name):
+    """Its docstring has numpydoc's sections, and each of its arguments is described."""
+    function = getattr(lagrange_casadi, name)
+    signature, text = inspect.signature(function), inspect.getdoc(function)
+    sections = re.split(r"^(\w+)\n-+$", text, flags=re.MULTILINE)
+    found = dict(zip(sections[1::2], sections[2::2], strict=True))
+    needed = {"Parameters", "Raises"} | (
+        set() if signature.return_annotation == "None" else {"Returns"}
+    )
+    assert found.keys() == needed
+    described = re.findall(r"^(\w.*)$", found["Parameters"], flags=re.MULTILINE)
+    assert {one for line in described for one in line.split(", ")} == {*signature.parameters}

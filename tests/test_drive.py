@@ -370,7 +370,8 @@ def test_one_command_chooses_a_motor_for_every_drive(gantry, capsys):
             assert f"    {limit:<12} {share:>8.4g} |" in told
         assert f"rms {first.duty.rms_torque:.5g} N m, peak {first.duty.peak_torque:.5g} N m" in told
         assert (
-            f"{first.duty.energy:.5g} J a cycle, {first.duty.regenerated:.5g} J come back" in told
+            f"{first.duty.energy:.5g} J a cycle, {first.duty.regenerated:.5g} J are regenerated"
+            in told
         )
     assert out.splitlines()[-1].startswith("certificate: closure")
 

@@ -211,7 +211,7 @@ PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inp
         ),
         (
             "parameters.r = 0; status = @_prepare(&model, &parameters);",
-            "or leaves a link without length",
+            "or gives a link no length",
         ),
         (
             "parameters.l = NAN; status = @_prepare(&model, &parameters);",
@@ -242,7 +242,7 @@ PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inp
         (PREPARED + "inputs.O_rate = 1e200; " + EVALUATED, "a result is not finite"),
         (
             PREPARED + "outputs.effort_O = NAN; status = (@_status) 99;",
-            "no status of this mechanism",
+            "unknown status",
         ),
     ],
 )

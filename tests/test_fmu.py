@@ -239,8 +239,8 @@ def test_parameters_that_make_a_part_impossible_are_an_error(unit, instances):
         refusing(fmi2.fmi2Error, it.get, "effort/O")
     assert [message for _, _, message in it.log] == [
         (
-            "t = 0 s: a parameter is not finite, or out of its range, or leaves a link without"
-            " length or with a negative mass"
+            "t = 0 s: a parameter is not finite, or out of its range, or gives a link no length"
+            " or a negative mass"
         )
     ]
     it.set(m2=0.1)

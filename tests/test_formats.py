@@ -55,7 +55,7 @@ def test_what_new_writes_gives_the_numbers_of_read(tmp_path, monkeypatch, capfd)
     monkeypatch.chdir(tmp_path)
     assert main(["export", "stewart_gough", "--model", "legs.json"]) == 0
     assert main(["new", "legs", "--from", "legs.json"]) == 0
-    assert "Loads are not told: tool, twist." in capfd.readouterr().out
+    assert "Loads are not exported: tool, twist." in capfd.readouterr().out
     text = (tmp_path / "legs" / "case.py").read_text()
     assert 'mass_piston0 = m.parameter("mass_piston0", 0.7, "kg", low=0.0)' in text
     assert max(map(len, text.splitlines())) <= 100

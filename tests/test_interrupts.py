@@ -21,7 +21,7 @@ from internals import interrupts
 from lagrange_casadi.cli import progress
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
-LINE = "error: interrupted; nothing was left half-written\n"
+LINE = "error: interrupted; no file was left incomplete\n"
 RUN = ["run", str(CASE), "--t", "0:0.08:9", "--no-figures"]
 SWEEP = ["sweep", str(CASE), "--t", "0:0.08:21", "--want", "effort", "--want", "section:rod"]
 SHORT = ["--grid", "l=0.11:0.4:25", "--grid", "r=0.05:0.1:6"]
@@ -237,7 +237,7 @@ def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
         out, err = stopped.communicate(timeout=20)
     assert (stopped.returncode, out) == (130, "")
     assert re.search(
-        r"error: (interrupted; nothing was left half-written|stopped; nothing was done yet)\n$", err
+        r"error: (interrupted; no file was left incomplete|stopped; nothing was done yet)\n$", err
     )
     assert not list(here.iterdir())
 

@@ -174,7 +174,7 @@ def test_sections_that_were_not_wanted_say_so():
     for ask in (lambda: solution.section("rod"), lambda: solution.peak("section:rod:bending")):
         with pytest.raises(
             DeclarationError,
-            match="the sections of link 'rod' were not wanted; want section:rod too",
+            match="the sections of link 'rod' were not evaluated; add section:rod",
         ):
             ask()
 

@@ -187,7 +187,7 @@ def test_a_motion_that_cannot_be_inverted_is_told():
     m.revolute("O", m.ground, m.link("arm", length=0.3, mass=1.0))
     scene = Scene(m, {"O": polynomial(0.0, 1.0, bend)}, over=("O", 0.0, 1.0, 21), wanted=["effort"])
     with pytest.raises(
-        DeclarationError, match="the motion of joint 'O', which says when the instants are"
+        DeclarationError, match="the motion of joint 'O', which defines the instants"
     ):
         optimise(scene, minimise="peak:effort:O", over={"bend": (0.5, 2.0)})
 

@@ -195,7 +195,7 @@ def test_damaged_lines_are_done_again(here):
     journal.write_bytes(content[0] * 2)
     assert asked(out="x.h5", resume=True).objective == whole.objective
     journal.write_bytes(b"nothing of ours\n")
-    with pytest.raises(StoreError, match="holds what no search wrote"):
+    with pytest.raises(StoreError, match="is not the file of a search"):
         asked(out="x.h5", resume=True)
     assert asked(out="x.h5", force=True).converged
 
@@ -227,7 +227,7 @@ def test_a_journal_whose_first_line_was_cut_holds_nothing(here):
         journal.write_bytes(other)
         with pytest.raises(PathError, match="is of an unfinished search"):
             asked(out="x.h5")
-        with pytest.raises(StoreError, match="holds what no search wrote"):
+        with pytest.raises(StoreError, match="is not the file of a search"):
             asked(out="x.h5", resume=True)
         assert journal.read_bytes().rstrip() == other.rstrip()
 
@@ -266,7 +266,7 @@ def test_odd_lines_and_journals_that_were_joined(here):
     ):
         asked(out="x.h5", resume=True)
     journal.write_bytes(odd)
-    with pytest.raises(StoreError, match="holds what no search wrote"):
+    with pytest.raises(StoreError, match="is not the file of a search"):
         asked(out="x.h5", resume=True)
 
 

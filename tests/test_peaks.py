@@ -289,7 +289,7 @@ def test_misuse_is_named(slider_crank):
         match=r"unknown quantity 'effort:none' \(did you mean 'effort:O'\?\); valid: effort:O",
     ):
         refine(scene, solution, ["effort:none"])
-    with pytest.raises(DeclarationError, match="the sections of link 'rod' were not wanted"):
+    with pytest.raises(DeclarationError, match="the sections of link 'rod' were not evaluated"):
         refine(scene, solution, ["section:rod:bending"])
     other = Scene(scene.mechanism, {"O": motion.polynomial(0, 1.0)}, posture=scene.posture)
     with pytest.raises(

@@ -53,7 +53,7 @@ def test_series_are_told_where_a_peak_cannot_be(backend):
     )
     np.testing.assert_allclose(f(l=0.4)["output:fast"], np.sin(1e6 * f.t), atol=1e-9)
     if backend == "c":  # which is quick to find out
-        with pytest.raises(AssemblyError, match="a peak cannot be told"):
+        with pytest.raises(AssemblyError, match="a peak cannot be located"):
             f.peaks(l=0.4)
 
 

@@ -84,7 +84,7 @@ def test_a_chosen_compiler_that_hangs_at_its_version_is_an_error(tmp_path, monke
     monkeypatch.setenv(programs.VARIABLE, "4")
     with pytest.raises(
         CompilerError,
-        match=r"^\$CC = '.*fake-cc' did not tell its version within 0\.2 s; \$LAGRANGE_CASADI_COM",
+        match=r"^\$CC = '.*fake-cc' did not report its version within 0\.2 s; \$LAGRANGE_CASADI_CO",
     ):
         codegen.find_compiler()
     all_gone(pid)
@@ -97,7 +97,7 @@ def test_another_that_hangs_at_its_version_is_passed_over(tmp_path, monkeypatch,
     monkeypatch.setenv(programs.VARIABLE, "4")
     with pytest.warns(
         UserWarning,
-        match=r"the compiler cc is passed over: it did not tell its version within 0\.2 s",
+        match=r"the compiler cc is passed over: it did not report its version within 0\.2 s",
     ):
         found = codegen.find_compiler()
     assert found is None or found.command != ("cc",)
@@ -149,7 +149,7 @@ def test_an_interrupt_stops_the_compiler(here, tmp_path_factory, monkeypatch, nu
         stopped.send_signal(number)
         assert stopped.communicate(timeout=60) == (
             "",
-            "error: interrupted; nothing was left half-written\n",
+            "error: interrupted; no file was left incomplete\n",
         )
     assert stopped.returncode == 130
     assert time.monotonic() - began < 10.0

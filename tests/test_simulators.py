@@ -156,7 +156,7 @@ SDF_MISUSE = {
             '<frame name="g"><pose relative_to="f">0 0 0 0 0 0</pose></frame>'
             '<link name="a"><pose relative_to="f">0 0 0 0 0 0</pose>' + inertial() + "</link>"
         ),
-        "its pose is told on itself",
+        "its pose is relative to itself",
     ),
     "unknown frame": (
         model('<link name="a"><pose relative_to="x">0 0 0 0 0 0</pose>' + inertial() + "</link>"),

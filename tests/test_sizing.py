@@ -200,7 +200,7 @@ def test_tables_have_units_and_blank_lines(here):
         ("name,d,d\nx,1,2\n", "expected a column 'name'"),
         ("name,d [ft]\nx,1\n", r"column 'd \[ft\]': expected a name, and m, cm or mm as its unit"),
         ("name,d\nx,1,2\n", "line 2: 3 cells, expected 2"),
-        ("name,d\nx,1\nx,2\n", "line 3: profile 'x' comes twice"),
+        ("name,d\nx,1\nx,2\n", "line 3: profile 'x' is listed twice"),
         ("name,d\n ,1\n", "line 2: it has no name"),
         ("name,d\nx,-1\n", "line 2: d: expected a positive number, got '-1'"),
         ("name,d\nx,thick\n", "line 2: d: expected a positive number, got 'thick'"),

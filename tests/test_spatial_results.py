@@ -215,7 +215,7 @@ def test_a_sweep_keeps_peaks_along_links(scene, solution):
             )
     assert (
         attributes["peak:section:beam:shear"]["long_name"]
-        == "largest in size over time: resultant shear force"
+        == "largest magnitude over time: resultant shear force"
     )
 
 

@@ -113,7 +113,7 @@ def test_resume_starts_where_there_is_nothing(whole, tmp_path):
 def test_what_is_there_is_not_overwritten(whole, tmp_path):
     path = tmp_path / "whole.h5"
     with pytest.raises(
-        PathError, match=r"whole\.h5 exists: force=True replaces it, resume=True goes on"
+        PathError, match=r"whole\.h5 exists: force=True replaces it, resume=True continues"
     ):
         run(path)
     assert path.read_bytes() == whole
@@ -222,7 +222,9 @@ def test_what_no_sweep_put_into_the_folder_is_not_touched(engine, tmp_path, keyw
     folder = tmp_path / "x.h5.parts"
     folder.mkdir()
     (folder / "thesis.txt").write_text("mine")
-    with pytest.raises(PathError, match=r"x\.h5\.parts holds 'thesis\.txt', which is no sweep's"):
+    with pytest.raises(
+        PathError, match=r"x\.h5\.parts holds 'thesis\.txt', which is not part of a sweep"
+    ):
         run(tmp_path / "x.h5", **keywords)
     assert os.listdir(folder) == ["thesis.txt"]
 
@@ -237,9 +239,7 @@ def test_parts_of_nobody_knows_what_are_not_touched(whole, tmp_path, keywords):
     before = sorted(os.listdir(folder))
     with pytest.raises(
         PathError,
-        match=(
-            r"x\.h5\.parts holds parts, and no plan\.json that tells what they are of: force=True"
-        ),
+        match=(r"x\.h5\.parts holds parts, and no plan\.json that describes them: force=True"),
     ):
         run(path, **keywords)
     assert sorted(os.listdir(folder)) == before

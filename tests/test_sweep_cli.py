@@ -182,7 +182,7 @@ MISTAKES = [
     (
         ["--grid", "l=0.2", "--out", "mine.h5"],
         2,
-        "mine.h5 exists: --force replaces it, --resume goes on",
+        "mine.h5 exists: --force replaces it, --resume continues",
     ),
     (["--grid", "l=0.2", "--out", "mine.h5", "--resume"], 1, "mine.h5: not a file of this program"),
     (["--grid", "l=0.2", "--resume", "--force"], 2, "resume and force exclude each other"),
@@ -239,7 +239,7 @@ def test_info_and_check_tell_how_far_an_unfinished_sweep_is(here, capfd, monkeyp
     (folder / "000000000000-000000000001.part").write_bytes(first.read_bytes())
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     capfd.readouterr()
-    told = f"unfinished: {done} of 70 designs done; the same sweep goes on when it is resumed"
+    told = f"unfinished: {done} of 70 designs done; run it again with resume=True to continue"
     with Folder(here / "x.h5").locked():
         for target in ("x.h5.parts", "x.h5"):
             assert main(["info", target]) == 0
@@ -258,7 +258,7 @@ def test_info_and_check_tell_how_far_an_unfinished_sweep_is(here, capfd, monkeyp
             ]
             assert (out, err.splitlines()) == ("", [f"{target}: {told}", *flawed])
         assert main(["table", "x.h5"]) == 2
-        told = "x.h5: its sweep is not finished: `lagrange-casadi info` tells how far it is"
+        told = "x.h5: its sweep is not finished: `lagrange-casadi info` shows its progress"
         assert capfd.readouterr() == ("", f"error: {told}\n")
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
     (folder / "plan.json").write_text('{"grid": 3}')
@@ -322,7 +322,7 @@ def test_ctrl_c_before_anything_is_done_leaves_nothing(here):
         stopped.send_signal(signal.SIGINT)
         assert (
             stopped.communicate(timeout=60)[1]
-            == "error: interrupted; nothing was left half-written\n"
+            == "error: interrupted; no file was left incomplete\n"
         )
         assert stopped.returncode == 130
     assert [name for name in os.listdir(here) if name != "__pycache__"] == ["slow.py"]

@@ -191,10 +191,10 @@ def test_what_cannot_be_kept_is_named(slider_crank):
     ):
         sweep(slider_crank, grid, keep="all")
     with pytest.raises(
-        DeclarationError, match="xi: ratios are kept of section forces, and none is wanted"
+        DeclarationError, match="xi: ratios apply to section forces, and none is in wanted="
     ):
         sweep(slider_crank, grid, wanted=["effort"], xi=(0, 1, 3))
-    with pytest.raises(DeclarationError, match="keep laws: the laws are those of section forces"):
+    with pytest.raises(DeclarationError, match="keep laws: laws describe section forces"):
         sweep(slider_crank, grid, wanted=["effort"], keep="laws")
     with pytest.raises(DeclarationError, match=r"ratios xi/l must lie in \[0, 1\]"):
         sweep(slider_crank, grid, xi=(0, 2, 3))

@@ -96,7 +96,7 @@ def test_a_disk_without_room_is_told_after_the_first_block(whole, engine, tmp_pa
     with pytest.raises(
         StoreError,
         match=(
-            r"what is still to be written takes about \S+ GB, and the disk has 1e-05 GB left; 14"
+            r"the rest of the file takes about \S+ GB, and the disk has 1e-05 GB left; 14"
             r" of 420"
         ),
     ):

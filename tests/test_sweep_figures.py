@@ -197,7 +197,7 @@ def test_what_cannot_be_drawn_is_named(swept, listed, monkeypatch, tmp_path):
         match=r"'r' cannot be drawn over: it is 0\.1 in all designs; those that vary: l",
     ):
         default_plots(one, over=["r"])
-    with pytest.raises(DeclarationError, match="there is nothing to draw: it comes to one design"):
+    with pytest.raises(DeclarationError, match="there is nothing to draw: it has only one design"):
         default_plots(one, at={"l": 0.2})
     engine = sweeps.use(monkeypatch)
     engine.quantities, engine.efforts = ("pose:rod:x",), ()

@@ -81,14 +81,14 @@ def test_angles_may_have_a_unit(tmp_path):
                 " the results out"
             ),
         ),
-        ("l,peak:effort:O\n0.2,nan\n", "`lagrange-casadi table` writes what it is told"),
+        ("l,peak:effort:O\n0.2,nan\n", "`lagrange-casadi table` writes the chosen columns"),
         ("l,r\n1_0,0.1\n", "line 2, column 'l': expected a finite number, got '1_0'"),
         (
             'l,r\n0.2,0.1\n0.2,"0.1\n0.3,0.1\n',
             "line 3: no cells with ',' between them: a quote is opened and never closed",
         ),
         ('l,r\n0.2,"0.1"3\n', "line 2: no cells with ',' between them: ',' expected after"),
-        ("l,r,l\n1,2,3\n", "line 1, column 3: 'l' stands there already as column 1"),
+        ("l,r,l\n1,2,3\n", "line 1, column 3: 'l' is already column 1"),
     ],
 )
 def test_what_is_wrong_is_named(tmp_path, text, says):

@@ -362,7 +362,7 @@ def test_info_check_and_plot_know_sweeps(file, capfd):
         "1 design: a loop cannot be closed: its links do not reach",
     ]
     assert re.search(
-        r"peak:section:rod:bending +N m +largest in size over time: bending moment", out
+        r"peak:section:rod:bending +N m +largest magnitude over time: bending moment", out
     )
     assert main(["check", "s.h5"]) == 0
     assert capfd.readouterr().out == "s.h5: whole and consistent\n"

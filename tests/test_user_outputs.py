@@ -311,7 +311,8 @@ def test_an_unknown_output_lists_what_there_is():
     with pytest.raises(UnknownNameError, match=r"output:power"):
         evaluate(engine(), wanted=["output:powr"])
     with pytest.raises(
-        UnknownNameError, match=r"unknown output of the mechanism's own 'powr' .*valid: power"
+        UnknownNameError,
+        match=r"unknown user-defined output of the mechanism 'powr' .*valid: power",
     ):
         evaluate(engine(), wanted=["output:power"]).output("powr")
 

@@ -261,7 +261,7 @@ def test_a_derivative_that_is_none_is_told(tmp_path):
     assert not np.isfinite(slopes[0])
     assert np.isfinite(slopes[1:]).all()
     assert solution.notes == (
-        "the derivative of effort:O by swing is no number at 1 of 6 instants",
+        "the derivative of effort:O by swing is not finite at 1 of 6 instants",
     )
     save(solution, tmp_path / "a.h5")
     assert check(tmp_path / "a.h5") == [

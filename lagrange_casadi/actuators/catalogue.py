@@ -67,7 +67,7 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     if sum(column in names for column in knee) == 1:
         raise DeclarationError(f"{head.where}: expected both columns {' and '.join(knee)}, or none")
     if twice := [column for column in ("name", *needed, *knee, _LASTS) if names.count(column) > 1]:
-        raise DeclarationError(f"{head.where}: the column '{twice[0]}' comes twice")
+        raise DeclarationError(f"{head.where}: the column '{twice[0]}' is listed twice")
     units = {
         column: _unit(head, column, match.group(2) if match else None, linear)
         for column, match in zip(names, cells, strict=True)
@@ -77,7 +77,7 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     for row in rows:
         motor = _motor(row, names, units, needed, knee, linear)
         if motor.name in motors:
-            raise DeclarationError(f"{row.where}: motor '{motor.name}' comes twice")
+            raise DeclarationError(f"{row.where}: motor '{motor.name}' is listed twice")
         motors[motor.name] = motor
     if not motors:
         raise DeclarationError(f"{head.where}: expected at least one motor below the heads")

@@ -117,7 +117,7 @@ class Duty:
             lacking = (
                 "the motor's inertia"
                 if self.carried is not None
-                else "the inertia seen by the drive, from inertia_at"
+                else "the inertia reflected to the drive, carried=inertia_at(...)"
             )
             raise DeclarationError(f"inertia ratio of '{self.joint}': expected {lacking}")
         ratio = self.carried / (self.ratio**2 * self.inertia)

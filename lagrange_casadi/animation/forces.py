@@ -305,8 +305,7 @@ def _laws(solution: Solution, force: str) -> list[str]:
     ]
     if not links:
         none = (
-            "bodies of which only mass and centre are known have none, nor is what equilibrium"
-            " leaves open shown"
+            "bodies given by mass and centre alone have none, and indeterminate ones are not shown"
         )
         raise DeclarationError(
             f"{solution.case}: there is no section force to be shown; want section too; {none}"

@@ -127,7 +127,7 @@ class Pairs:
         return Pair(ca.SX(high), ca.SX(low), _TURN[0])
 
     def add(self, x: Pair, y: Pair) -> Pair:
-        """x + y, to the last digits also where they nearly cancel."""
+        """Return x + y, to the last digits also where they nearly cancel."""
         total, error = self._sum(x.high, y.high)
         if x.low is None and y.low is None:
             return Pair(total, error)
@@ -138,7 +138,7 @@ class Pairs:
         return self._normal(first.high, self._plus(first.low, rest))
 
     def subtract(self, x: Pair, y: Pair) -> Pair:
-        """x - y."""
+        """Return x - y."""
         return self.add(x, self.negate(y))
 
     def negate(self, x: Pair) -> Pair:
@@ -150,7 +150,7 @@ class Pairs:
         return Pair(self._negative(x.high), low, number)
 
     def multiply(self, x: Pair, y: Pair) -> Pair:
-        """x y; a power of two only scales."""
+        """Return x y; a power of two only scales."""
         for one, other in ((x, y), (y, x)):
             if other.number is not None and other.number and np.frexp(abs(other.number))[0] == 0.5:
                 return Pair(
@@ -164,7 +164,7 @@ class Pairs:
         return self._normal(product, error)
 
     def divide(self, x: Pair, y: Pair) -> Pair:
-        """x / y by what a first quotient leaves."""
+        """Return x / y by what a first quotient leaves."""
         first = self._over(x.high, y.high)
         left = self.subtract(x, self.multiply(Pair(first), y))
         return self._normal(first, self._over(self._value(left), y.high))
@@ -178,7 +178,7 @@ class Pairs:
         )
 
     def reduced(self, x: Pair) -> Pair:
-        """x less whole turns, between -pi and pi."""
+        """Return x less whole turns, between -pi and pi."""
         turns = ca.floor(self._plus(self._times(x.high, self._rounded(1.0 / _TURN[0])), 0.5))
         for part in self._turn():
             product, error = self._product(turns, ca.SX(part))
@@ -236,7 +236,7 @@ class Pairs:
         return tuple(parts)
 
     def _product(self, a: Expression, b: Expression) -> tuple[Expression, Expression]:
-        """a b and its error (Dekker)."""
+        """Return a b and its error (Dekker)."""
         product = self._times(a, b)
         (ah, al), (bh, bl) = self._split(a), self._split(b)
         error = self._minus(self._times(ah, bh), product)
@@ -297,7 +297,7 @@ class Pairs:
         return self._rounded(x.value)
 
     def _sum(self, a: Expression, b: Expression) -> tuple[Expression, Expression]:
-        """a + b and its error (Knuth)."""
+        """Return a + b and its error (Knuth)."""
         total = self._plus(a, b)
         other = self._minus(total, a)
         return total, self._plus(self._minus(a, self._minus(total, other)), self._minus(b, other))

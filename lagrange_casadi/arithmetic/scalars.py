@@ -16,27 +16,27 @@ _ADD, _SUB, _MUL = ca.OP_ADD, ca.OP_SUB, ca.OP_MUL
 
 
 def added(a: Expression, b: Expression) -> Expression:
-    """a + b."""
+    """Return a + b."""
     return _binary(_ADD, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a + b
 
 
 def less(a: Expression, b: Expression) -> Expression:
-    """a - b."""
+    """Return a - b."""
     return _binary(_SUB, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a - b
 
 
 def product(a: Expression, b: Expression) -> Expression:
-    """a b."""
+    """Return a b."""
     return _binary(_MUL, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a * b
 
 
 def products_added(a: Expression, b: Expression, c: Expression, d: Expression) -> Expression:
-    """a b + c d."""
+    """Return a b + c d."""
     return added(product(a, b), product(c, d))
 
 
 def products_less(a: Expression, b: Expression, c: Expression, d: Expression) -> Expression:
-    """a b - c d."""
+    """Return a b - c d."""
     return less(product(a, b), product(c, d))
 
 

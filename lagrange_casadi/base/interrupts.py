@@ -15,7 +15,7 @@ from types import FrameType
 STATUS = 130
 """The exit status of a program that was interrupted."""
 
-SENTENCE = "interrupted; nothing was left half-written"
+SENTENCE = "interrupted; no file was left incomplete"
 
 _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
 

@@ -1,4 +1,4 @@
-"""Reasons why an instant, or a design, has no result: their numbers, and the same in words."""
+"""Reasons why an instant or a design has no result, by number and in words."""
 
 from __future__ import annotations
 
@@ -39,45 +39,50 @@ class Status(enum.IntEnum):
 _MEANINGS = {
     Status.OK: "there is a result",
     Status.NOT_CONVERGED: "the iterated loops did not converge",
-    Status.NOT_FINITE: "a result is not finite: the mechanism is singular, or its numbers overflow",
+    Status.NOT_FINITE: (
+        "a result is not finite: the mechanism is singular, or its numbers overflow"
+    ),
     Status.SLOW: "the iterated loops converge slowly: they are near a dead centre",
     Status.OUT_OF_REACH: "a loop cannot be closed: its links do not reach",
-    Status.JUMPED: "an iterated loop has jumped to another branch: more instants may help",
+    Status.JUMPED: "an iterated loop has jumped to another branch: take more instants",
     Status.DEAD_CENTRE: (
-        "a loop is at a dead centre, a joint in gimbal lock, a bar along its beside, or drives"
-        " cannot make the motion: forces are open"
+        "a loop is at a dead centre, a joint is in gimbal lock, a two-force link lies along its"
+        " beside= direction, or the drives cannot produce the motion: forces are indeterminate"
     ),
     Status.PASSES_DEAD_CENTRE: (
-        "a loop passes a dead centre between two instants, a joint gimbal lock, a bar its beside,"
-        " or drives such a place"
+        "between two instants a loop passes a dead centre, a joint gimbal lock, a two-force link"
+        " its beside= direction, or the drives such a position"
     ),
-    Status.MISFIT: "loops are over-constrained and do not fit",
+    Status.MISFIT: "the loops are over-constrained and do not fit",
     Status.ROW_VIOLATED: "the motion violates a non-holonomic constraint",
     Status.IMPOSSIBLE: (
-        "a length is not positive, a mass or density is negative, a station is off its link, a move"
-        " cannot be, or gears do not fit"
+        "a part is impossible: a length is not positive, a mass or density is negative, a load"
+        " point is not on its link, a move is not feasible, or gears do not fit"
     ),
     Status.INVALID: "a parameter is not finite",
-    Status.NOT_CLOSED: "what was found for a loop does not satisfy its equations",
+    Status.NOT_CLOSED: "the solution of a loop does not satisfy its equations",
     Status.UNCERTIFIED: (
-        "the design was checked in full, and fails its certificate: others may be wrong as well"
+        "this design was checked in full and failed its certificate: others may be wrong too"
     ),
-    Status.TURNED: "an angle that a load sees with its turns might be a turn further",
+    Status.TURNED: (
+        "a load depends on the number of revolutions of an angle, which cannot be determined"
+    ),
     Status.PEAK_NOT_TOLD: (
-        "a peak cannot be told: too much may hide between the instants; more instants may help"
+        "a peak cannot be located: the quantity may be larger between the instants; take more"
+        " instants"
     ),
-    Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
-    Status.JAMS: "the mechanism jams: friction has no force that holds its law, or several",
+    Status.BEYOND_ENDS: "the argument of a curve is outside the curve's range",
+    Status.JAMS: "the mechanism jams: its friction forces have no unique solution",
     Status.AT_REST: (
-        "a joint that rubs is at rest: its friction is open; take instants that move, or smooth"
-        " friction"
+        "a joint with friction is at rest, so its friction is indeterminate: take instants of"
+        " motion, or give the friction smooth="
     ),
     Status.CORNER: (
-        "the slope of a motion, a constraint or a lift jumps, and forces there are without bound;"
-        " or one is other at a place than on both sides"
+        "the slope of a motion, a constraint or a lift jumps, where forces have no bound, or its"
+        " value at a point differs from that on both sides"
     ),
     Status.NO_INSTANTS: (
-        "its instants cannot be: the motion does not go where they are asked for, or they end"
-        " before they start"
+        "there are no instants: the motion does not reach the requested range, or the range ends"
+        " before it starts"
     ),
 }

@@ -1,5 +1,6 @@
 """Devices, pipes, and what standard output goes to: they are written straight to, for no file may
-be put in their place, and are never read."""
+be put in their place, and are never read.
+"""
 
 from __future__ import annotations
 

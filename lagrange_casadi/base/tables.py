@@ -93,12 +93,10 @@ _HOLDING = (
         "least",
         ("t",),
         "{Q}",
-        "least effort that the drive may need, where joints that rub are at rest",
+        "least effort that holds the mechanism while joints with friction rest",
         _ALONG,
     ),
-    Quantity(
-        "holding", "largest", ("t",), "{Q}", "largest effort that the drive may need there", _ALONG
-    ),
+    Quantity("holding", "largest", ("t",), "{Q}", "largest effort that holds it there", _ALONG),
 )
 _REACTION = (
     Quantity("reaction", "fx", ("t",), FORCE, "reaction of the joint, x", _ON_CHILD),
@@ -131,7 +129,7 @@ _FRICTION = (
 )
 _OTHERS = (
     *_FRICTION,
-    Quantity("output", "", ("t",), "1", "output of the user's own"),
+    Quantity("output", "", ("t",), "1", "user-defined output"),
     Quantity(
         "stress",
         "von_mises",
@@ -177,35 +175,36 @@ _OTHERS = (
         "closure",
         ("t",),
         "1",
-        "gaps of joints, and what users' equations miss, over the length of all links",
+        "gaps of joints and residuals of user-defined equations, over the length of all links",
     ),
     Quantity(
         "certificate",
         "friction",
         ("t",),
         "1",
-        "frictions and their laws, over the largest friction of the cycle",
+        "residual of the friction laws, over the largest friction of the cycle",
     ),
     Quantity(
         "certificate",
         "ends",
         ("t",),
         "1",
-        "sections at the base and what acts there, over the largest force of the cycle",
+        "section forces at the base less the forces that act there, over the largest force of the"
+        " cycle",
     ),
     Quantity(
         "certificate",
         "elasticity",
         ("t",),
         "1",
-        "how far the strain energy is from its least, as a cosine",
+        "distance of the strain energy from its minimum, as a cosine",
     ),
     Quantity(
         "certificate",
         "condition",
         ("t",),
         "1",
-        "how much the loops magnify: 1/sin(transmission angle), or 2/volume",
+        "condition of the loops: 1/sin(transmission angle), or 2/volume",
     ),
     Quantity(
         "section",
@@ -234,9 +233,9 @@ _AXIAL_LAW = (
     ),
 )
 _LOAD_POINT_N = Quantity(
-    "station", "n", ("t",), FORCE, "force on the link at a station, along the axis"
+    "station", "n", ("t",), FORCE, "force on the link at a load point, along the axis"
 )
-_LOAD_POINT = Quantity("station", "station", ("t",), "1", "place of the station, ratio xi/l")
+_LOAD_POINT = Quantity("station", "station", ("t",), "1", "position of the load point, ratio xi/l")
 _DISTRIBUTED = (
     Quantity(
         "spread",
@@ -302,8 +301,8 @@ QUANTITIES = (
     Quantity("law", "m0", ("t",), MOMENT, "bending moment at the tip"),
     _LOAD_POINT_N,
     Quantity("station", "f", ("t",), FORCE,
-        "force on the link at a station, 90 deg counter-clockwise of the axis"),
-    Quantity("station", "m", ("t",), MOMENT, "moment on the link at a station"),
+        "force on the link at a load point, 90 deg counter-clockwise of the axis"),
+    Quantity("station", "m", ("t",), MOMENT, "moment on the link at a load point"),
     _LOAD_POINT,
     *_DISTRIBUTED,
     _DISTRIBUTED_N,
@@ -349,13 +348,15 @@ SPATIAL_QUANTITIES = (
     Quantity("law", "my0", ("t",), MOMENT, "bending moment at the tip, y"),
     Quantity("law", "mx0", ("t",), MOMENT, "torsional moment at the tip"),
     _LOAD_POINT_N,
-    Quantity("station", "fy", ("t",), FORCE, "force on the link at a station, along the link's y"),
-    Quantity("station", "fz", ("t",), FORCE, "force on the link at a station, along the link's z"),
-    Quantity("station", "mx", ("t",), MOMENT, "moment on the link at a station, about the axis"),
+    Quantity("station", "fy", ("t",), FORCE,
+        "force on the link at a load point, along the link's y"),
+    Quantity("station", "fz", ("t",), FORCE,
+        "force on the link at a load point, along the link's z"),
+    Quantity("station", "mx", ("t",), MOMENT, "moment on the link at a load point, about the axis"),
     Quantity("station", "my", ("t",), MOMENT,
-        "moment on the link at a station, about the link's y"),
+        "moment on the link at a load point, about the link's y"),
     Quantity("station", "mz", ("t",), MOMENT,
-        "moment on the link at a station, about the link's z"),
+        "moment on the link at a load point, about the link's z"),
     _LOAD_POINT,
     *_DISTRIBUTED,
     _DISTRIBUTED_N,

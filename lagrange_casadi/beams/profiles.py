@@ -75,7 +75,7 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
         if not name.isprintable() or not name or name in found:
             raise DeclarationError(
                 f"{row.where}: "
-                + (f"profile '{name}' comes twice" if name in found else "it has no name")
+                + (f"profile '{name}' is listed twice" if name in found else "it has no name")
             )
         found[name] = Profile(
             name, {key: _size(row, key, text, dict(heads)[key]) for key, text in cells.items()}

@@ -25,13 +25,13 @@ def cache(clear: bool) -> None:
     if not clear:
         echo(f"{place}: {what} in {counted(len(names), 'file')}")
         echo(
-            f"limit: {most / 1e6:g} MB, of which what was used longest ago goes first;"
+            f"limit: {most / 1e6:g} MB, least recently used files are removed first;"
             f" ${kept.VARIABLE} sets another"
         )
         return
     removed = kept.remove(entries)
     if removed < size:
         raise StoreError(
-            f"cannot remove all that is kept in {place}: {(size - removed) / 1e6:.3g} MB are left"
+            f"cannot remove all cached files in {place}: {(size - removed) / 1e6:.3g} MB are left"
         )
     echo(f"{place}: removed {what}")

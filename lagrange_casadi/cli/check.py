@@ -1,4 +1,4 @@
-"""``lagrange-casadi check``: is a file whole and consistent?"""
+"""``lagrange-casadi check``: the faults of a file."""
 
 from __future__ import annotations
 

@@ -41,7 +41,10 @@ def draw_with_progress(
         (drawn if path else skipped).append(spec.name)
     write_index(solution.case, drawn, folder)
     if skipped:
-        echo(f"note: not drawn, for their outputs were not wanted: {', '.join(skipped)}", err=True)
+        echo(
+            f"note: not drawn, because their outputs were not evaluated: {', '.join(skipped)}",
+            err=True,
+        )
 
 
 def drawn_ways(error: PostureError) -> tuple[str, list[str]]:

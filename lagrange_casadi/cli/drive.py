@@ -198,7 +198,7 @@ def _speed(duty: Duty) -> str:
 
 def _energy(duty: Duty) -> str:
     back = (
-        f", {duty.regenerated:.5g} J come back, {duty.peak_return:.5g} W at most"
+        f", {duty.regenerated:.5g} J are regenerated, {duty.peak_return:.5g} W at most"
         if duty.peak_return > 0.0
         else ""
     )

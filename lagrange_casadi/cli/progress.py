@@ -76,7 +76,7 @@ class Bar(Silent):
     def show(self, what: str, done: float, total: float) -> None:
         """Move the bar."""
         if what == "stopping":
-            tqdm.write("stopping: what is under way is being finished", file=sys.stderr)
+            tqdm.write("stopping: finishing the designs in progress", file=sys.stderr)
             return
         if what != self._what:
             self.close()

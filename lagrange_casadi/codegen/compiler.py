@@ -214,8 +214,8 @@ def _version(command: tuple[str, ...]) -> str | None:
 
 def _silent(error: subprocess.TimeoutExpired) -> str:
     return (
-        f"did not tell its version within {error.timeout:g} s; ${programs.VARIABLE} sets {_ANSWER}"
-        " times as many"
+        f"did not report its version within {error.timeout:g} s; ${programs.VARIABLE} sets"
+        f" {_ANSWER} times as many"
     )
 
 

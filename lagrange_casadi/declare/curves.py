@@ -54,12 +54,28 @@ def rows(
 
 @public
 def table(x: Expression, places: Sequence[float], values: Sequence[float]) -> ca.SX:
-    """A curve for loads: linear between values at increasing places, and straight on beyond them.
+    """Return a piecewise linear curve of an expression, for loads; beyond its ends it is straight.
 
-    ``x`` is an expression, such as a joint's coordinate; ``places`` are in its unit, and ``values``
-    in that of the load. Returns a ``casadi.SX`` expression. Constraints and motions refuse it, for
-    there slopes must not jump; :func:`curve` is for them. Raises :class:`DeclarationError` for
-    places that do not increase.
+    Constraints and motions refuse it, because slopes must not jump there: use :func:`curve`.
+
+    Parameters
+    ----------
+    x
+        An expression, such as a joint's coordinate.
+    places
+        Increasing abscissas (n,), in the unit of ``x``.
+    values
+        Ordinates (n,), in the unit of the load.
+
+    Returns
+    -------
+    casadi.SX
+        The value of the curve at ``x``.
+
+    Raises
+    ------
+    DeclarationError
+        For abscissas that do not increase.
     """
     at, to = rows("table", places, values, 2)
     try:
@@ -144,18 +160,35 @@ class Curve:
 def curve(
     x: Sequence[float], y: Sequence[float], *, periodic: bool = False, smoothing: float = 0.0
 ) -> Curve:
-    """A smooth curve through points, for constraints, motions, loads and densities: call it on an
-    expression.
+    """Return a smooth curve through points, for constraints, motions, loads and densities.
 
-    ``curve(angles, lifts, periodic=True)(m.coordinate(cam))`` is the lift of a cam. Between the
-    points it is a cubic spline with a continuous second derivative. It is not-a-knot at its ends; a
-    ``periodic`` one goes on over its seam as everywhere else, and its first and last value are one.
-    With a ``smoothing`` it is the least bent curve whose distance from the points, in the root mean
-    square, is so much, in the unit of ``y``: as large as the noise of what was measured.
+    Call it on an expression: ``curve(angles, lifts, periodic=True)(m.coordinate(cam))`` is the lift
+    of a cam. Between the points it is a cubic spline with a continuous second derivative,
+    not-a-knot at its ends.
 
-    Raises :class:`.DeclarationError` for fewer than four points, rows of different lengths, an
-    ``x`` that does not increase, numbers that are not finite, ends of a periodic curve that differ,
-    and a smoothing that is negative or leaves a straight line.
+    Parameters
+    ----------
+    x
+        Increasing abscissas (n,), at least four, in the unit of the expression.
+    y
+        Ordinates (n,), in the unit of the result.
+    periodic
+        Let the curve repeat; its first and last ordinate must be equal.
+    smoothing
+        Root mean square of the distances from the points, in the unit of ``y``, that the smoothest
+        such curve may have: the size of the noise of measured points. Default: 0.
+
+    Returns
+    -------
+    Curve
+        The curve, a function of expressions.
+
+    Raises
+    ------
+    DeclarationError
+        For fewer than four points, different lengths, abscissas that do not increase, numbers that
+        are not finite, ends of a periodic curve that differ, and a smoothing that is negative or
+        makes the curve a straight line.
     """
     at, to = rows("curve", x, y, 4)
     span = max(to) - min(to)

@@ -100,8 +100,8 @@ def _per(order: int) -> str:
 def harmonic(
     mean: Expression, amplitude: Expression, frequency: Expression, phase: Expression = 0.0
 ) -> Motion:
-    """mean + amplitude sin(2 pi frequency t + phase): [rad or m], the frequency in Hz, the phase in
-    rad; numbers or symbols.
+    """Return mean + amplitude sin(2 pi frequency t + phase): [rad or m], the frequency in Hz, the
+    phase in rad; numbers or symbols.
 
     All but the frequency may be texts, as ``"45 deg"`` or ``"100 mm"``.
     """

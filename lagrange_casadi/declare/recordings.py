@@ -121,9 +121,20 @@ def read_samples(
         Numbers or expressions of parameters: the law is offset [rad or m] + ratio times the values,
         and takes ``stretch`` times as long.
 
-    Notes ----- Raises :class:`.PathError` for a file that cannot be read,
-    :class:`.DeclarationError` for a line that is no row of numbers, times that do not rise, and
-    ends of a cycle that differ, and :class:`.UnknownNameError` for columns and units that are not.
+    Returns
+    -------
+    Motion
+        The law, in rad or m.
+
+    Raises
+    ------
+    PathError
+        For a file that cannot be read.
+    DeclarationError
+        For a line that is no row of numbers, times that do not increase, and ends of a cycle that
+        differ.
+    UnknownNameError
+        For unknown columns and units.
     """
     path = Path(path)
     for name, valid, what in ((unit, _UNITS, "unit"), (time_unit, _TIMES, "time unit")):

@@ -242,9 +242,14 @@ class Scene(Graphs):
         How far axes [rad] and places [of its size] in space may be off where loops do not close as
         declared, 0 to 1e-3.
 
-    Notes ----- Raises :class:`.DeclarationError` for what does not fit the mechanism,
-    :class:`.UnknownNameError` for names it does not have, and :class:`.ParameterError` where the
-    default parameters make a part impossible.
+    Raises
+    ------
+    DeclarationError
+        For what does not fit the mechanism.
+    UnknownNameError
+        For names that the mechanism does not have.
+    ParameterError
+        If the default parameters make a part impossible.
     """
 
     mechanism: Mechanism

@@ -34,16 +34,34 @@ class Shaking(UserOutput):
 def shaking(
     mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expression] = ()
 ) -> tuple[UserOutput, ...]:
-    """Declare the shaking force and the shaking moment of a mechanism as outputs, and return them.
+    """Declare the shaking force and the shaking moment of a mechanism as outputs.
 
     They are ``output:NAME_fx``, ``output:NAME_fy`` [N] and ``output:NAME_mz`` [N m], in space also
-    of z, x and y: what the inertia of all bodies does to the frame, in ground axes. The moment is
-    about the point ``about`` of the ground [m], by default the origin. Weights and loads are no
-    part of it. Call it when all bodies are declared: a scene refuses one that came later.
+    those of z, x and y: the action of the inertia of all bodies on the frame, in ground axes,
+    without weights and loads. Call it when all bodies are declared: a scene refuses one that is
+    declared later.
 
     Source: Berkof and Lowen, *A new method for completely force balancing simple linkages*, J. Eng.
-    Ind. 91 (1969), 21-26. Raises :class:`.DeclarationError` where there are no bodies, or ``about``
-    is no place.
+    Ind. 91 (1969), 21-26.
+
+    Parameters
+    ----------
+    mechanism
+        The mechanism.
+    name
+        Prefix of the outputs' names.
+    about
+        Point of the ground about which the moment acts [m]; default: the origin.
+
+    Returns
+    -------
+    tuple of UserOutput
+        The outputs.
+
+    Raises
+    ------
+    DeclarationError
+        If there are no bodies, or ``about`` is no point.
     """
     if isinstance(mechanism, type) or not hasattr(mechanism, "moving"):
         raise DeclarationError(f"shaking: expected a Mechanism, got {shown(mechanism)}")

@@ -212,7 +212,8 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which
         it carries itself, at right angles to the first: coordinates ``turn_1`` and ``turn_2``. Both
-        directions are told where the coordinates are zero."""
+        directions are told where the coordinates are zero.
+        """
         return self._spatial(name, "universal", (parent, child), (axis, second), at, turned)
 
     def spherical(
@@ -265,7 +266,8 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Let ``child`` move in the plane through a point of ``parent`` that is normal to ``axis``:
         coordinates ``slide_1`` along ``second``, ``slide_2`` at right angles to both, and ``turn``
-        about ``axis``."""
+        about ``axis``.
+        """
         return self._spatial(name, "planar", (parent, child), (axis, second), at, turned)
 
     def slot(  # type: ignore[override]
@@ -280,7 +282,8 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, and
         ``child`` turn freely: coordinates ``slide``, and as of a spherical joint. Where the joint
-        closes a loop it has the slide alone."""
+        closes a loop it has the slide alone.
+        """
         return self._spatial(name, "slot", (parent, child), (axis, None), at, turned)
 
     def weld(  # type: ignore[override]
@@ -342,7 +345,8 @@ class SpatialMechanism(Mechanism):
         turning: bool = False,
     ) -> Torque:
         """Apply a torque [N m] to a body at a point, in ground axes, or in the body's own where
-        ``turning``; and its opposite to another body (default: the ground)."""
+        ``turning``; and its opposite to another body (default: the ground).
+        """
         load = super().torque(name, point, z, against=against)
         across = (self._load(name, x), self._load(name, y))
         found = Torque(name, load.point, load.value, load.against, across, turning)

@@ -87,16 +87,31 @@ class Vibration:
 
 @public
 def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibration:
-    """The first bending frequency of a link between its joints, and whether rigid links are enough
-    for it: see :class:`Vibration`.
+    """Return the first bending frequency of a link, and whether rigid links are enough for it.
 
-    ``ends`` says how base and tip are held, each "pinned", "clamped", "free" or "guided", which
-    holds the slope alone. By default joints tell, as for columns: a link that is pinned at both
-    ends is; where one end is held, by a weld, a slide or the drive of a pin, nothing holds the
-    other end sideways. In space it is the softer of the two planes of bending.
+    Parameters
+    ----------
+    solution
+        A solution with the link's section forces.
+    link
+        Name of a link with a beam.
+    ends
+        Supports of base and tip, each "pinned", "clamped", "free" or "guided", which holds the
+        slope alone. By default they follow from the joints, as for columns: a link that is pinned
+        at both ends is pinned; if one end is held, by a weld, a slide or the drive of a pin, the
+        other end is free sideways.
 
-    Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its
-    forces are open, or its material has no elasticity; and for other words than these.
+    Returns
+    -------
+    Vibration
+        Frequency [Hz], in space that of the softer plane of bending, and the error of bending
+        moments by resonance.
+
+    Raises
+    ------
+    DeclarationError
+        If the link has no beam, its sections were not evaluated, its forces are indeterminate, its
+        material has no elasticity, or ``ends`` has other words.
     """
     if ends is not None and not (
         isinstance(ends, Sequence) and len(ends) == 2 and all(end in ENDS for end in ends)

@@ -111,6 +111,8 @@ def disc_cam(
 
     Parameters
     ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
     cam, follower
         The revolute joint of the cam on the ground, and the joint of the follower on the ground:
         prismatic for a translating one, whose line leads away from the cam, or revolute for a
@@ -135,8 +137,16 @@ def disc_cam(
         The width of the contact [m], for the pressure of Hertz, and Young's modulus [Pa] and
         Poisson's ratio of both bodies.
 
-    Notes ----- Raises :class:`.DeclarationError` for joints that are others, a lift that is no
-    function, and a profile that is undercut with the default parameters.
+    Returns
+    -------
+    Cam
+        The contact, with its constraint and the numbers of its profile.
+
+    Raises
+    ------
+    DeclarationError
+        For joints of other kinds, a lift that is no function, and a profile that is undercut with
+        the default parameters.
     """
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)

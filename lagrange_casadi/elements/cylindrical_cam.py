@@ -115,6 +115,8 @@ def cylindrical_cam(
 
     Parameters
     ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
     cam, follower
         The revolute joint of the drum on the ground, and the joint of the follower on the ground:
         prismatic along the drum's axis, or revolute about an axis at right angles to it.
@@ -132,10 +134,18 @@ def cylindrical_cam(
         Young's modulus [Pa] and Poisson's ratio of both bodies. The flank is that of the middle of
         the groove's depth: a curve beside the path of the centre.
 
-    Notes ----- Of a follower that slides the roller turns about the line from the drum's axis to
-    its centre; of one that swings, about an axis along its joint's. Raises
-    :class:`.DeclarationError` for joints that are others, a roller on the drum's axis or too large
-    for the groove's bends, and a lift that is not the same after a turn.
+    Returns
+    -------
+    CylindricalCam
+        The contact, with its constraint. The roller of a follower that slides turns about the line
+        from the drum's axis to its centre; that of one that swings, about an axis along its
+        joint's.
+
+    Raises
+    ------
+    DeclarationError
+        For joints of other kinds, a roller on the drum's axis or too large for the groove's bends,
+        and a lift that is not periodic by a turn.
     """
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)

@@ -75,6 +75,8 @@ def gears(
 
     Parameters
     ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
     first, second
         The centres of the gears: points of bodies, on the axes about which revolute joints let
         these turn. A link stands for its base, the ground for its origin. A rack is a point of a
@@ -103,16 +105,22 @@ def gears(
     offset
         The way that the first pitch circle is ahead where both coordinates are zero [m].
 
-    Notes ----- The multiplier is the force along the pitch circle on the first gear, positive where
-    it turns this forward. The flank that touches follows from its sign, and both flanks press the
-    gears apart. Outputs are NAME_tangential, NAME_radial toward the axis of the first gear, or off
-    it of a ring, and in space NAME_axial on the first gear along its joint's axis [N]: without
-    friction's part. Where teeth rub, NAME_loss is the power that all meshes take [W]. At rest
-    friction is open, as in joints that rub.
+    Returns
+    -------
+    Gears
+        The mesh. Its multiplier is the force along the pitch circle on the first gear, positive
+        where it turns this forward; its sign decides which flanks touch, and both flanks press the
+        gears apart. Outputs are NAME_tangential, NAME_radial toward the axis of the first gear, or
+        off it of a ring, and in space NAME_axial on the first gear along its joint's axis [N]:
+        without friction. With friction NAME_loss is the power that all meshes take [W]; at rest it
+        is indeterminate, as in joints with friction.
 
-    Raises :class:`.DeclarationError` for bodies that do not turn about axes through these points,
-    centres that do not fit the radii, numbers of teeth that are not whole, and angles out of range;
-    values of parameters that break these are refused as well.
+    Raises
+    ------
+    DeclarationError
+        For bodies that do not turn about axes through these points, centres that do not fit the
+        radii, numbers of teeth that are not whole, and angles out of range. Values of parameters
+        that violate these are refused as well.
     """
     what, own = f"gears '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)

@@ -55,6 +55,8 @@ def planetary(
 
     Parameters
     ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
     sun, carrier, ring
         The points in the middle of the three, each a body that a revolute joint lets turn about it;
         one of them may be the ground, or welded to it. A link stands for its base. A carrier has
@@ -71,10 +73,17 @@ def planetary(
     pressure_angle, efficiency
         As of :func:`.gears`; the efficiency is that of each mesh.
 
-    Notes ----- The planets share the load evenly. The mesh with the sun is NAME_sun, those with the
-    ring NAME_ring_1 and so on, with the outputs of :func:`.gears`, all of one planet.
+    Returns
+    -------
+    Planetary
+        The planets, their pins and meshes. The mesh with the sun is NAME_sun, those with the ring
+        NAME_ring_1 and so on, with the outputs of :func:`.gears`, all of one planet. The planets
+        share the load evenly.
 
-    Raises :class:`.DeclarationError` for teeth that do not fit, and as :func:`.gears` does.
+    Raises
+    ------
+    DeclarationError
+        For numbers of teeth that do not fit, and as :func:`.gears`.
     """
     what, own = f"planetary set '{name}'", mechanism.own
     if mechanism.space:

@@ -68,6 +68,10 @@ def two_bearings(
 
     Parameters
     ----------
+    mechanism : Mechanism
+        The mechanism.
+    name : str
+        Prefix of the joints' names.
     housing : Body or Point
         The place of the fixed bearing on the body that carries both.
     fixed, floating : Body or Point
@@ -141,6 +145,10 @@ def two_bushes(
 
     Parameters
     ----------
+    mechanism : Mechanism
+        The mechanism.
+    name : str
+        Prefix of the joints' names.
     rod : Body or Point
         What runs through the bushes, by a point of its axis; a link stands for its base.
     first, second : Body or Point

@@ -67,11 +67,11 @@ def compile_scene(
     *,
     parameters: Mapping[str, float] | None = None,
 ) -> Program:
-    """Compile a scene, for its own wanted outputs or for others, to CasADi functions of an instant
-    and tables of plain data.
+    """Compile a scene to CasADi functions of an instant and tables of plain data.
 
-    What is returned needs the scene no more. It can be pickled, and read in another process that
-    has no file of the case.
+    The result does not need the scene any more. It can be pickled, and read in another process that
+    has no file of the case. A scene is compiled once: the result is kept in the process, and in the
+    cache folder by the content of the declaration.
 
     Parameters
     ----------
@@ -82,11 +82,15 @@ def compile_scene(
     parameters
         Values with which loops are assembled where they cannot be with the scene's own.
 
-    Notes ----- A scene is compiled once: what is made is kept while the process lasts, and in the
-    cache folder by the content of the declaration.
+    Returns
+    -------
+    Program
+        The functions and tables.
 
-    Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the
-    loops cannot be solved.
+    Raises
+    ------
+    MobilityError, DeclarationError, AssemblyError
+        If the loops cannot be solved.
     """
     names = scene.wanted if wanted is None else wanted
     if parameters is not None:

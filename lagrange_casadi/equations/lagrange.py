@@ -91,11 +91,13 @@ class LagrangeSystem:
         The symbol t, where any graph depends on time itself. A symbol that is none of all these is
         a parameter and does not change.
 
-    Notes ----- Raises :class:`DeclarationError` where the columns do not fit each other, or where a
-    graph holds what may not be in it. So it does for w that are no rates of places, and for p that
-    are no functions of coordinates with the rates q': both are looked at at random points and named
-    by number. And so it does where E, w, T or r depend on a symbol called t or time, and no
-    ``time`` is given.
+    Raises
+    ------
+    DeclarationError
+        If the columns do not fit each other, or an expression has symbols that may not be in it;
+        for w that are no rates of positions, and for p that are no functions of coordinates with
+        the rates q', which are checked at random points and named by number; and if E, w, T or r
+        depend on a symbol called t or time, and no ``time`` is given.
     """
 
     kinetic: Graph

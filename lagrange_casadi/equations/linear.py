@@ -65,7 +65,7 @@ class LinearSystem:
         return int(self.matrix.shape[0] - self.matrix.shape[1])
 
     def solve(self, right: ca.SX) -> Expression:
-        """x of ``matrix x = right``."""
+        """Return x of ``matrix x = right``."""
         if self.inverse is not None:
             return self.inverse @ right
         turned = right
@@ -80,7 +80,7 @@ class LinearSystem:
         return ca.vertcat(ca.SX(0, 1), *x)
 
     def solve_transposed(self, right: ca.SX, free: ca.SX) -> Expression:
-        """x of ``matrix' x = right``, for values of the free unknowns,
+        """Return x of ``matrix' x = right``, for values of the free unknowns,
         a column of ``self.free``.
         """
         if self.inverse is not None:

@@ -17,7 +17,7 @@ from .multibody import LoopEquations, Multibody, column
 def multipliers_of(
     multibody: Multibody, kinematics: Kinematics, along: ca.SX
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """lambda and mu: their symbols, their values, and the symbols of what equilibrium leaves open.
+    """Return lambda and mu: their symbols, their values, and the symbols of indeterminate forces.
 
     lambda comes from the undriven rows of R = Phi_q' lambda + A' mu (paper eq. 2, 8), the blocks of
     the loops last one first; mu from the driven rows that bear no effort.

@@ -57,35 +57,49 @@ def export(
     fmu: bool = False,
     wasm: bool = False,
 ) -> Contract:
-    """Write a scene as C into the folder ``out``: header, source, self-test, example, build files,
-    README.
+    """Write a scene as C into a folder: header, source, self-test, example, build files, README.
 
     Parameters
     ----------
+    scene
+        The scene.
+    out
+        The folder.
     name
-        What it is called in C; default: the mechanism's name.
+        Name of the mechanism in C; default: its own.
     parameters
         Values that become the defaults; with ``table`` they are fixed.
     wanted
         Output names; default: the scene's.
     precision, newton, table
-        How it is evaluated there: see :class:`.EvaluationMethod`.
+        Method of evaluation in C: see :class:`.EvaluationMethod`.
     largest
         Bytes that a table may take; default: 16 MB, in single precision 64 kB.
     force
-        Write into a folder that holds other files, too, or files of an earlier export that were
-        changed since. Files that are not an export's are never touched; those of an earlier one
-        that this one has not are removed, unless they were changed.
+        Write into a folder that holds other files too, or files of an earlier export that were
+        changed since. Files of others are never touched; those of the earlier export that are no
+        longer written are removed, unless they were changed.
     fmu
-        Write ``<prefix>.fmu``, too: a unit of FMI 2.0. Needs FMPy and a C compiler.
+        Also write ``<prefix>.fmu``, a unit of FMI 2.0. Needs FMPy and a C compiler.
     wasm
-        Write ``<prefix>.wasm``, too, with a wrapper in JavaScript, its types and
+        Also write ``<prefix>.wasm``, with a wrapper in JavaScript, its types and
         ``README.wasm.md``. Needs ziglang.
 
-    Notes ----- Returns the names, units, signs and ranges of the parameters, inputs and outputs of
-    the C. Raises :class:`PathError` where the folder is taken, :class:`SizeError` for a table that
-    is too large, :class:`CompilerError` for an FMU without a compiler, and what :func:`.evaluate`
-    raises.
+    Returns
+    -------
+    Contract
+        Names, units, signs and ranges of the parameters, inputs and outputs of the C.
+
+    Raises
+    ------
+    PathError
+        If the folder holds other files.
+    SizeError
+        For a table that is too large.
+    CompilerError
+        For an FMU without a compiler.
+    LagrangeCasadiError
+        As :func:`.evaluate`.
     """
     folder = Path(out)
     method = EvaluationMethod("auto", precision, newton, table)

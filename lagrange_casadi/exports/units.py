@@ -18,9 +18,7 @@ class BaseUnit:
 
 
 def base_unit(text: str) -> BaseUnit | None:
-    """A unit in base units; None where it is not known, or can be read in two ways: what does ``N/m
-    s`` divide by?
-    """
+    """Return a unit in base units; None if it is unknown, or ambiguous, as ``N/m s``."""
     top, *bottom = text.replace("²", "^2").replace("³", "^3").split("/")
     if any(len(_factors(part)) != 1 for part in bottom):
         return None

@@ -41,11 +41,22 @@ LARGEST = 64 * 2**20
 
 @public
 def read(path: str | os.PathLike[str]) -> Scene:
-    """Read a mechanism from a file of another program: the scene of the case that the command
-    ``new`` writes of it.
+    """Read a mechanism from a file of another program.
 
-    The ending says the format, see the page on models of other programs. Raises
-    :class:`.ModelFileError`, which names file, line and element, for what no mechanism has.
+    Parameters
+    ----------
+    path
+        The file; its ending is the format, see the page on models of other programs.
+
+    Returns
+    -------
+    Scene
+        The scene of the case that the command ``new`` writes from it.
+
+    Raises
+    ------
+    ModelFileError
+        For what the package does not support, with file, line and element.
     """
     name: dict[str, Any] = {"__name__": "lagrange_casadi_case"}
     exec(compile(case_of(path), f"<{Path(path).name}>", "exec"), name)  # our own text, see as_case
@@ -64,8 +75,25 @@ def save_model(
     path: str | os.PathLike[str],
     parameters: Mapping[str, float] | None = None,
 ) -> None:
-    """Write a scene's mechanism and motion as JSON, as :func:`read` reads it, for values of
-    parameters.
+    """Write a scene's mechanism and motion as JSON, which :func:`read` reads.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    path
+        The file.
+    parameters
+        Values that replace defaults, by name: the model has numbers.
+
+    Raises
+    ------
+    ModelFileError
+        For a file that does not end in ``.json``.
+    DeclarationError
+        For parts that the format does not have.
+    PathError
+        If the file cannot be written.
     """
     file = Path(path)
     check_writable(file)

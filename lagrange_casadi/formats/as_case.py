@@ -100,7 +100,7 @@ class _Case:
     def imports(self) -> str:
         """Return what stands before the declaration."""
         body, model = "\n".join(self.lines), self.model
-        head = f"{model.name}, as {model.file} tells it."
+        head = f"{model.name}, as {model.file} describes it."
         notes = [_comment(note) for note in model.notes]
         parts = [f'"""{_safe(head)}"""\n\n']
         parts += [f"{line}\n" for note in notes for line in note] + (["\n"] if notes else [])

@@ -58,7 +58,9 @@ def _body(model: Model, body: Body) -> Body:
         raise model.refuse(body.where, f"{what}: a mass of {body.mass:g} kg is impossible")
     if body.inertia is None or not np.any(body.inertia):
         if body.mass > 0.0 and not body.point:
-            words = f"{what} has a mass of {body.mass:g} kg and no inertia; tell its moments"
+            words = (
+                f"{what} has a mass of {body.mass:g} kg and no inertia; give its moments of inertia"
+            )
             raise model.refuse(body.where, f"{words} of inertia about the centre of mass")
         return replace(body, inertia=np.zeros((3, 3)))
     inertia = (body.inertia + body.inertia.T) / 2.0

@@ -63,13 +63,16 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
     for name in (*told["constraints"], *told["rows"]):
         raise DeclarationError(f"{what}: constraint '{name}' has no word in a model file")
     if told["loads"]:
-        model.notes.append(f"Loads are not told: {', '.join(told['loads'])}.")
+        model.notes.append(f"Loads are not exported: {', '.join(told['loads'])}.")
     x, y, z = (*told["gravity"], 0.0)[:3]
     model.gravity = (x, y, z)
     for name, body in told["bodies"].items():
         model.bodies[name] = _body(name, body, _frame(solution, name))
         if "density" in body and model.bodies[name].rod is None:
-            model.notes.append(f"The mass of '{name}' is told as a whole, not along it.")
+            model.notes.append(
+                f"The mass of '{name}' is exported as a total, without its distribution along"
+                " the link."
+            )
     for name, joint in told["joints"].items():
         model.joints[name] = _joint(name, joint, len(told["gravity"]) == 2)
     known = [name for joint in model.joints.values() for name in joint.coordinates]

@@ -227,7 +227,7 @@ class _Reader:
         """Return where a link, frame or joint is; poses may be told on each other."""
         line = self.named[name]
         if name in above:
-            raise self.model.refuse(line.where, "its pose is told on itself")
+            raise self.model.refuse(line.where, "its pose is relative to itself")
         pose, on = line.first("pose"), ""
         if pose is not None:
             on = pose.given.get("relative_to", "") or pose.given.get("frame", "")

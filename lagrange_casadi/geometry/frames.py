@@ -57,7 +57,7 @@ class Frame:
         return plus(self.anchor, self.rotation.resolve(minus(place, self.at)))
 
     def displaced(self, translation: Vector, turning: Vector) -> Frame:
-        """This frame displaced at the anchor, by the rates of a translation and of a rotation."""
+        """The frame displaced at the anchor, by the rates of a translation and of a rotation."""
         return replace(self, speed=plus(self.speed, translation), rate=plus(self.rate, turning))
 
     @property
@@ -148,7 +148,7 @@ class Carried(Frame):
         return self.own if self.turns > 1 else self
 
     def displaced(self, translation: Vector, turning: Vector) -> Carried:
-        """This frame displaced at the anchor, by the rates of a translation and of a rotation."""
+        """The frame displaced at the anchor, by the rates of a translation and of a rotation."""
         own = self.own.displaced(self.rotation.resolve(translation), self.rotation.resolve(turning))
         return replace(
             self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), own=own

@@ -102,14 +102,14 @@ class Rotation:
         return dot(self.x, v), dot(self.y, v), dot(self.z, v)
 
     def then(self, other: Rotation) -> Rotation:
-        """This rotation followed by another, which is given in the axes turned by this one."""
+        """The rotation followed by another, which is given in the axes turned by this one."""
         if self.angle is not None and other.angle is not None:
             c, s, _ = self.apply(other.x)
             return Rotation.flat(c, s, self.angle + other.angle)
         return Rotation(self.apply(other.x), self.apply(other.y), None, self.apply(other.z))
 
     def against(self, other: Rotation) -> Rotation:
-        """This direction as seen from another."""
+        """The direction as seen from another."""
         if self.angle is not None and other.angle is not None:
             c, s, _ = other.resolve(self.x)
             return Rotation.flat(c, s, self.angle - other.angle)

@@ -15,12 +15,12 @@ AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0
 
 
 def plus(a: Vector, b: Vector) -> Vector:
-    """a + b."""
+    """Return a + b."""
     return added(a[0], b[0]), added(a[1], b[1]), added(a[2], b[2])
 
 
 def minus(a: Vector, b: Vector) -> Vector:
-    """a - b."""
+    """Return a - b."""
     return less(a[0], b[0]), less(a[1], b[1]), less(a[2], b[2])
 
 
@@ -30,12 +30,12 @@ def times(factor: Expression, a: Vector) -> Vector:
 
 
 def dot(a: Vector, b: Vector) -> Expression:
-    """a . b."""
+    """Return a . b."""
     return added(products_added(a[0], b[0], a[1], b[1]), product(a[2], b[2]))
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """a x b."""
+    """Return a x b."""
     return (
         products_less(a[1], b[2], a[2], b[1]),
         products_less(a[2], b[0], a[0], b[2]),

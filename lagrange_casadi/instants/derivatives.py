@@ -61,7 +61,7 @@ class Derivatives:
             for output, x in found.items():
                 if many := int((~np.isfinite(x.reshape(len(x), -1)).all(axis=1)).sum()):
                     yield (
-                        f"the derivative of {output} by {name} is no number at {many} of {len(x)}"
+                        f"the derivative of {output} by {name} is not finite at {many} of {len(x)}"
                         " instants"
                     )
 

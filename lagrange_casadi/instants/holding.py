@@ -48,10 +48,24 @@ _BENDS, _JAMS = 1e-9, 1e-14
 
 @public
 def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
-    """The range of each drive's effort, by joint, at the instants of a solution of the scene that
-    has efforts.
+    """Return the range of each drive's effort that holds the mechanism where joints are at rest.
 
-    Raises :class:`.DeclarationError` for what is no scene or no solution.
+    Parameters
+    ----------
+    scene
+        The scene.
+    solution
+        A solution of it that has efforts.
+
+    Returns
+    -------
+    dict of str to Holding
+        By joint the least and the largest effort, by sign, at each instant (t,) [N m or N].
+
+    Raises
+    ------
+    DeclarationError
+        For what is no scene or no solution.
     """
     efforts = {
         output.part: values

@@ -144,7 +144,7 @@ def distributed_load(
     }
     many = {len(rows) for rows in (*powers.values(), *terms.values())}
     if set(members) != {"width", "end"} or len(many) != 1:
-        raise ValueError(f"the load along the link '{name}' is not whole")
+        raise ValueError(f"the load along the link '{name}' is incomplete")
     return DistributedLoad(name, members["width"], members["end"], powers)
 
 

@@ -190,8 +190,8 @@ class Solution:
         )
 
     def output(self, name: str) -> Array:
-        """An output of the mechanism's own (t,), in the unit that it was declared with."""
-        return self._find("output of the mechanism's own", Output("output", name))
+        """An user-defined output of the mechanism (t,), in the unit that it was declared with."""
+        return self._find("user-defined output of the mechanism", Output("output", name))
 
     def pose(self, body: str) -> Pose:
         """Place and direction of a link or point mass, in ground axes."""
@@ -221,7 +221,7 @@ class Solution:
             raise UnknownNameError("link with sections", link, self._sections)
         if "density" in bodies[link]:
             raise DeclarationError(
-                f"the sections of link '{link}' were not wanted; want section:{link} too"
+                f"the sections of link '{link}' were not evaluated; add section:{link} too"
             )
         links = [name for name, body in bodies.items() if body["length"] is not None]
         raise DeclarationError(no_sections(link, link=link in links, links=links))

@@ -34,24 +34,32 @@ _HALFWAY = np.array([float(weight) for weight in weights(np.array(0.5))])
 def tabulate(
     program: Program, p: Array, table: int | float, rates: tuple[float, float]
 ) -> CycleTable:
-    """The table of a scene's cycle for parameters ``p`` (in the mechanism's order), which serves
-    any motion of its one drive.
+    """Tabulate a scene's cycle, for any motion of its one drive.
 
     Parameters
     ----------
+    program
+        The compiled scene.
+    p
+        Parameters in the mechanism's order.
     table
-        A whole number from 8 to 16384: how many nodes. Or a number between 0 and 1: the accuracy;
-        then nodes are doubled, from 16 on, until no column's largest error is more than that, of
-        its peak over the cycle.
+        Number of nodes, from 8 to 16384. Or an accuracy between 0 and 1: nodes are then doubled,
+        from 16 on, until no column's largest error, halfway between nodes and beyond rounding, is
+        more than that times its peak over the cycle.
     rates
-        The largest rate [rad/s] and acceleration [rad/s^2] of the motion that it will serve: peaks
-        and errors are those at both signs of these. A faster motion is served too, with errors that
-        are larger in proportion.
+        The largest rate [rad/s] and acceleration [rad/s^2] of the motion, of either sign. A faster
+        motion has errors that are larger in proportion.
 
-    Errors are those halfway between nodes, beyond the rounding of the graph itself.
+    Returns
+    -------
+    CycleTable
+        The columns at the nodes.
 
-    Raises :class:`DeclarationError`, with the reason, for a scene whose cycle cannot be tabulated,
-    for an accuracy that is not reached, and for mistakes in the arguments.
+    Raises
+    ------
+    DeclarationError
+        For a scene whose cycle cannot be tabulated, an accuracy that is not reached, and mistakes
+        in the arguments.
     """
     accuracy, nodes = _asked(table)
     for output in program.outputs:

@@ -23,7 +23,7 @@ from .naming import constants, members, prefix
 REST = "rest:"
 """First part of the full name of a rest."""
 
-CORNERS = "Corners of motions, constraints and lifts were looked for with the defaults alone."
+CORNERS = "Corners of motions, constraints and lifts were checked with the default parameters only."
 """Note for whoever changes parameters."""
 
 _DIGITS = 3
@@ -244,7 +244,7 @@ def _inputs(program: Program, precision: Precision, timed: bool) -> dict[str, Me
     ) -> None:
         found[key] = Member("", key, unit, meaning, sign, range_)
 
-    rest = "what rounding to single precision left of {}, 0 where it is not known"
+    rest = "remainder of {} that single precision does not hold, 0 if unknown"
     if timed:
         add("time", "s", "time, which loads of this mechanism depend on")
         if rests:
@@ -299,7 +299,7 @@ def _where(output: Output) -> str:
             f" {output.load_point}{'' if output.power is None else f', power {output.power}'}"
         )
     found = f"{kinds.get(output.group, output.group)} {output.part}"
-    return f"{found}, station {output.load_point}" if output.load_point else found
+    return f"{found}, load point {output.load_point}" if output.load_point else found
 
 
 def _brief(meaning: str) -> str:

@@ -28,19 +28,18 @@ never occur.
 """
 
 _OWN = {
-    "OK": "everything is well",
+    "OK": "there is a result",
     "NOT_PREPARED": "the model was not prepared",
     "BAD_PARAMETER": (
-        "a parameter is not finite, or out of its range, or leaves a link without length or with a"
-        " negative mass"
+        "a parameter is not finite, or out of its range, or gives a link no length or a negative"
+        " mass"
     ),
     "BAD_INPUT": "an input is not finite",
     "BAD_TIME": "the time is not finite, or outside the samples or beyond the curves of the motion",
     "BAD_RATIO": "a ratio xi/l is outside 0 to 1",
     "NO_LINK": "there is no such link",
     "UNDETERMINED": (
-        "equilibrium does not determine all outputs: the mechanism has more constraints than it"
-        " needs"
+        "equilibrium does not determine all outputs: the mechanism is over-constrained"
     ),
 }
 

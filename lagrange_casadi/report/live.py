@@ -36,8 +36,8 @@ from ..portable.wasm import check_zig, layout, page_build, places
 from .arrays import Arrays
 
 _CORNERS = (
-    "Corners of motions, constraints and lifts were looked for with the first values of the"
-    " parameters alone, not with sliders'."
+    "Corners of motions, constraints and lifts were checked with the first values of the"
+    " parameters only, not with those of the sliders."
 )
 
 _NUMBERS = """#include <math.h>

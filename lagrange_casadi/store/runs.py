@@ -95,16 +95,20 @@ def save(
     *,
     grids: bool | Sequence[str] | None = None,
 ) -> None:
-    """Write a solution, replacing the file at ``path`` whole or not at all.
+    """Write a solution to a file; an existing file is replaced completely or not at all.
 
     Parameters
     ----------
-    figures : str
-        Kept for :mod:`.figures`, which reads from it how the case wants to be drawn.
-    grids : bool or sequence of str, optional
+    solution
+        The solution.
+    path
+        The file, HDF5.
+    figures
+        Specifications of figures as JSON, which :mod:`.figures` reads from the file.
+    grids
         Links whose section forces are stored at every ratio xi/l too, beside their laws: all or
         none, or those that are named; by default all but the pieces of bent bars. Nothing is lost
-        without: :func:`load` fills grids from the laws.
+        without them: :func:`load` fills grids from the laws.
 
     Raises
     ------
@@ -197,10 +201,24 @@ def _require_space(solution: Solution, target: Path, grids: int) -> None:
 
 @public
 def load(path: str | os.PathLike[str]) -> Solution:
-    """Read a solution.
+    """Read a solution from its file.
 
-    Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for
-    none.
+    Parameters
+    ----------
+    path
+        The file of a run.
+
+    Returns
+    -------
+    Solution
+        The solution, without its scene.
+
+    Raises
+    ------
+    PathError
+        If there is no such file.
+    StoreError
+        If the file is damaged, incomplete, or of another schema.
     """
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         return _read(file)
@@ -217,11 +235,26 @@ def figure_specs(path: str | os.PathLike[str]) -> str:
 
 @public
 def check(path: str | os.PathLike[str]) -> list[str]:
-    """Faults of a file, one line each; none if it is whole and consistent.
+    """Check a file of a run, and return its faults.
 
     Every dataset is read, so its checksum is verified; every value must be finite, every axis have
-    its scale, every unit and sign be the schema's; and the section grids must be what the laws
-    give, to 1e-12 of their peak, of links that have grids. Raises what :func:`load` does.
+    its scale, every unit and sign be the schema's; and section grids, where stored, must agree with
+    the laws to 1e-12 of their peak.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    list of str
+        The faults, one line each; empty if the file is complete and consistent.
+
+    Raises
+    ------
+    PathError, StoreError
+        As :func:`load`.
     """
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         solution = _read(file)
@@ -542,7 +575,7 @@ def _read(file: h5py.File) -> Solution:
             distributed.sound for distributed in law.distributed_loads
         )
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
-            raise ValueError(f"the law or the density of '{link}' is not whole")
+            raise ValueError(f"the law or the density of '{link}' is incomplete")
     return replace(
         solution, sensitivities=slopes_of(file, solution, numbers), holding=_held(file, solution)
     )

@@ -76,8 +76,8 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
     all instants: by how much its reaction may grow.
 
     Of speed and heating it is by how much these may. ``not_evaluated`` names what is missing, and
-    why. Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted,
-    equilibrium leaves it open, or a number that depends on parameters is not positive.
+    why. Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not evaluated
+    or is indeterminate, or a number that depends on parameters is not positive.
     """
     fitted = solution.description["joints"].get(joint, {}).get("fitted", {})
     if not fitted and parts is None:
@@ -89,7 +89,7 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
     members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
     if not members:
         raise DeclarationError(
-            f"the reaction of joint '{joint}' was not wanted; want reaction:{joint} too"
+            f"the reaction of joint '{joint}' was not evaluated; add reaction:{joint} too"
         )
     if any(not solution.determined(member) for member in members):
         raise DeclarationError(
@@ -118,10 +118,7 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
             verdicts += found
             left += missing
         elif rate is None:
-            left.append(
-                f"rolling bearing: the motion of joint '{joint}' was not wanted, or is not"
-                " evaluated"
-            )
+            left.append(f"rolling bearing: the motion of joint '{joint}' is not evaluated")
         else:
             verdicts += _rolling(part, across, along, rate, solution.t)
     return Safety(joint, tuple(verdicts), tuple(left))
@@ -197,7 +194,7 @@ def _plain(
     if bearing.speed is None and bearing.heating is None:
         return found, []
     if rate is None and slide is None:
-        return found, ["plain bearing: its joint's motion was not wanted, or is not evaluated"]
+        return found, ["plain bearing: its joint's motion is not evaluated"]
     speed = np.hypot(0.0 if rate is None else rate * d / 2, 0.0 if slide is None else slide)
     if bearing.speed is not None:
         found.append(_verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s"))

@@ -38,37 +38,51 @@ def evaluate(
 ) -> Solution:
     """Evaluate a scene, with its own grids and outputs or with others.
 
+    The method is that of Nguyen, Petre, Stroe, *Application of Lagrange equations for calculus of
+    internal forces in a mechanism*; ``docs/method.md`` follows it step by step.
+
     Parameters
     ----------
+    scene
+        The scene.
     parameters
-        Values that replace defaults, by name; of a parameter in rad a text such as ``"30 deg"``
-        too. Nothing is derived or compiled again for them where the defaults can be assembled.
+        Values that replace defaults, by name; for a parameter in rad also a text such as
+        ``"30 deg"``. The scene is not compiled again for them if the defaults can be assembled.
     t, xi
         Start, stop and count of the instants [s] and of the section ratios xi/l.
     over
         Instants in equal steps of a driven coordinate, in place of ``t``: see :class:`.Scene`.
     wanted
-        Output names; with ``sensitivity`` or ``sensitivity:PARAMETER`` among them the derivatives
-        of all others too, by all parameters or by some: see :class:`.Derivatives`.
+        Output names; with ``sensitivity`` or ``sensitivity:PARAMETER`` among them also the
+        derivatives of all others by all parameters or by some: see :class:`.Derivatives`.
     backend, precision, newton, table, flags
-        How it is evaluated: see :class:`.EvaluationMethod`.
+        Method of evaluation: see :class:`.EvaluationMethod`.
     threads
-        How many threads share the instants; default: one a core. The result does not depend on it.
+        Number of threads that share the instants; default: one a core. The result does not depend
+        on it.
     certificate
-        Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow,
-        and to estimate its errors by :mod:`.accuracy`.
+        Check the solution by :mod:`.certificate`, as far as the wanted outputs allow, and estimate
+        its errors by :mod:`.accuracy`.
     elastic
-        Whether least strain energy tells what equilibrium leaves open: see :class:`.Scene`.
+        Determine statically indeterminate forces by least strain energy: see :class:`.Scene`.
 
-    Notes ----- Returns the :class:`.Solution`: arrays over the instants (t,), section forces (t,
-    xi), in SI units; :mod:`.base.tables` lists units and signs. A solution whose certificate fails
-    says so: it is not :attr:`~.Solution.certified`, and :class:`CertificateWarning` is given. The
-    method is that of Nguyen, Petre, Stroe, *Application of Lagrange equations for calculus of
-    internal forces in a mechanism*; ``docs/method.md`` follows it step by step.
+    Returns
+    -------
+    Solution
+        Arrays over the instants (t,), section forces (t, xi), in SI units; :mod:`.base.tables`
+        lists units and signs. If the certificate fails, the solution is not
+        :attr:`~.Solution.certified`, and :class:`CertificateWarning` is given.
 
-    Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`SizeError`
-    where the outputs over time do not fit into memory, :class:`CompilerError`, and for mistakes in
-    the arguments :class:`UnknownNameError`, :class:`ParameterError` or :class:`DeclarationError`.
+    Raises
+    ------
+    AssemblyError
+        If a loop cannot be closed at some instant.
+    SizeError
+        If the outputs over time do not fit into memory.
+    CompilerError
+        If a backend needs a compiler, and there is none or it fails.
+    UnknownNameError, ParameterError, DeclarationError
+        For mistakes in the arguments.
     """
     method = EvaluationMethod(backend, precision, newton, table, flags)
     request = Request(parameters, t, over, xi, wanted, method)

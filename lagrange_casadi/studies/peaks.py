@@ -55,22 +55,37 @@ _TRIALS = 5
 
 @public
 def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None) -> list[Peak]:
-    """The peaks of quantities of a solution, by full name, or of all: as :meth:`.Solution.peak`,
-    but over all times of its span.
+    """Return the peaks of quantities over all times of a solution's span, between its instants too.
 
     A smooth peak is exact to rounding, and its time to 1e-12 of the step or to the derivative's
-    rounding. So is a peak at a kink, and one at a jump, where the higher side counts. Where a
-    quantity grows without bound, the peak is infinite. No peak is below that of the instants. Of
-    several peaks that differ by rounding only, the first one in time is returned.
+    rounding. So is a peak at a kink, and one at a jump, where the higher side counts. No peak is
+    below that of the instants. Of several peaks that differ by rounding only, the first one in time
+    is returned.
 
-    Where the search would take too long, because much may hide between the instants, a peak cannot
-    be told: its value is NaN, and ``least`` the largest size that was found. More instants may
-    help. What equilibrium does not determine is NaN too, without a ``least``; what elasticity tells
-    of it has the peak of the instants.
+    Parameters
+    ----------
+    scene
+        The scene.
+    solution
+        A solution of it.
+    names
+        Full names of quantities; default: all.
 
-    Raises :class:`DeclarationError` where the solution is not of this scene, or a motion or
-    constraint is other at a place between instants than on both sides of it;
-    :class:`UnknownNameError` for a name that is none.
+    Returns
+    -------
+    list of Peak
+        The peaks, as of :meth:`.Solution.peak`. The value is infinite for a quantity that grows
+        without bound. It is NaN, with the largest magnitude found as ``least``, if the search would
+        take too long: take more instants. It is NaN without a ``least`` for what equilibrium does
+        not determine; where least strain energy does, the peak is that of the instants.
+
+    Raises
+    ------
+    DeclarationError
+        If the solution is not of this scene, or the value of a motion or constraint at a point
+        between instants differs from that on both sides.
+    UnknownNameError
+        For a name that the solution does not have.
     """
     sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
     return ContinuousSolution.of(scene, solution.by_equilibrium).refined(sampled)[0]

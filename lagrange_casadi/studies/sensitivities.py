@@ -205,15 +205,31 @@ class Sensitivities:
 
 @public
 def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto") -> Sensitivities:
-    """Derivatives of a scene's solution by its parameters.
+    """Return the derivatives of a scene's solution by its parameters.
 
         changes = sensitivities(scene, solution)
         changes.array("effort:O", "l")  # (t,) [N m/m]
         changes.peak("section:rod:bending").slopes["r"]
 
-    What elasticity tells has no derivatives here: it counts as open.
+    Parameters
+    ----------
+    scene
+        The scene.
+    solution
+        A solution of it.
+    backend
+        Backend that evaluates them, as in :func:`.evaluate`; always in doubles.
 
-    Raises :class:`.DeclarationError` where the solution is not one of this scene.
+    Returns
+    -------
+    Sensitivities
+        Derivatives of arrays, peaks, means and root mean squares. Forces that least strain energy
+        determines have none here.
+
+    Raises
+    ------
+    DeclarationError
+        If the solution is not of this scene.
     """
     solution = solution.by_equilibrium
     continuous = ContinuousSolution.of(scene, solution)

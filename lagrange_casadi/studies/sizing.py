@@ -110,21 +110,44 @@ def size(
     yield_criterion: str = "von_mises",
     deflection: Positive | None = None,
 ) -> Sizing:
-    """Choose for each link the lightest of some profiles with a factor of safety, against yielding,
-    buckling and fatigue.
-
-    Where a ``deflection`` is given, the largest deflection across a link over its length is at most
-    that too, as 1/500; the factors of safety are :class:`StiffSafety` then.
+    """Choose for each link the lightest of some profiles that is safe.
 
     Dimensions of a link's cross-section that are parameters take a profile's values. Links begin
-    with their lightest profile. As long as one is not safe it takes the next that is under the
-    loads as they are, and loads are evaluated anew. Then each link is tried lighter, the others as
-    they are, until none can be: no link alone can be lighter. The result is evaluated with its
-    certificate.
+    with their lightest profile. A link that is not safe takes the next one that is safe under the
+    present loads, and loads are evaluated again. Then each link is tried lighter, with the others
+    unchanged, until no single link can be lighter. The result is evaluated with its certificate.
 
-    Raises :class:`DeclarationError` where profiles fit no link, or not those that are named;
-    :class:`NoDesignError` where no profile is safe; and what :func:`.evaluate` and
-    :func:`.strength.safety` do.
+    Parameters
+    ----------
+    scene
+        The scene.
+    profiles
+        The profiles, as of :func:`.read_profiles`.
+    safety
+        Least factor of safety against yielding, buckling and fatigue.
+    links
+        Names of the links to size; default: all whose dimensions are parameters of the profiles.
+    parameters, t, over
+        As in :func:`.evaluate`.
+    criterion, yield_criterion
+        Criteria of fatigue and of yielding, as in :func:`.strength.safety`.
+    deflection
+        Largest deflection across a link over its length, as 1/500; default: no limit. With it the
+        factors of safety are :class:`StiffSafety`.
+
+    Returns
+    -------
+    Sizing
+        The profile of each link, and the solution with them.
+
+    Raises
+    ------
+    DeclarationError
+        If profiles fit no link, or not those that are named.
+    NoDesignError
+        If no profile is safe.
+    LagrangeCasadiError
+        As :func:`.evaluate` and :func:`.strength.safety`.
     """
     enough = _Enough(float(safety), criterion, yield_criterion, deflection)
     search = _Search.of(scene, profiles, links, Request(parameters, t, over), enough)

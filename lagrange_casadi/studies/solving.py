@@ -154,7 +154,7 @@ def checked_span(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tup
         if start < low or stop > high:
             raise DeclarationError(
                 f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s,"
-                f" but t from {start:g} to {stop:g} s is asked for"
+                f" but t from {start:g} to {stop:g} s was requested"
             )
     return start, stop
 

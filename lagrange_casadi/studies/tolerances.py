@@ -109,15 +109,33 @@ def tolerances(
     samples: Annotated[int, Within(2, _LARGEST)] = SAMPLES,
     backend: Backend = "auto",
 ) -> Spreads:
-    """Spread of peaks if parameters are ``within`` tolerances: by name plus or minus so much, as
-    ``{"l": "0.1mm"}``.
+    """Return the spread of peaks if parameters vary within tolerances.
 
-    To first order by exact derivatives; and by ``samples`` designs, whose parameters are drawn
-    evenly from their tolerances and independently, the same ones in every run. A standard deviation
-    is that of even distributions: a tolerance over the root of 3.
+    It is computed to first order by exact derivatives, and by samples, the same ones in every run.
+    A standard deviation is that of uniform distributions: a tolerance over the root of 3.
 
-    ``parameters``, ``wanted``, ``t``, ``over`` and ``backend`` are as in :func:`.evaluate`. Raises
-    what that does, and :class:`DeclarationError` for what is no tolerance.
+    Parameters
+    ----------
+    scene
+        The scene.
+    within
+        Tolerances by parameter, plus or minus, as ``{"l": "0.1mm"}``.
+    parameters, wanted, t, over, backend
+        As in :func:`.evaluate`.
+    samples
+        Number of designs whose parameters are drawn uniformly and independently.
+
+    Returns
+    -------
+    Spreads
+        Spread of each peak, and the share of each parameter.
+
+    Raises
+    ------
+    DeclarationError
+        For an invalid tolerance.
+    LagrangeCasadiError
+        As :func:`.evaluate`.
     """
     if not isinstance(within, Mapping) or not within:
         raise DeclarationError(

@@ -65,14 +65,32 @@ def tool_deflection(
     t: Times | None = None,
     over: Over | None = None,
 ) -> ToolDeflection:
-    """Quasi-static displacement of a point of a scene by elastic links, with the drives held.
+    """Return the quasi-static displacement of a point by elastic links, with the drives held.
 
-    Links that have a beam give way, others are rigid. Where equilibrium leaves forces open, least
-    strain energy tells them. Parameters are those of :func:`.evaluate`.
+    Links with a beam are elastic, others are rigid. Statically indeterminate forces follow from
+    least strain energy.
 
-    Raises :class:`.DeclarationError` where no link has a beam, a material has no elasticity, forces
-    of a link that gives way stay open, or the point is on the ground or of another mechanism; and
-    what :func:`.evaluate` does.
+    Parameters
+    ----------
+    scene
+        The scene.
+    point
+        A body or a point of it.
+    parameters, t, over
+        As in :func:`.evaluate`.
+
+    Returns
+    -------
+    ToolDeflection
+        Displacement over the instants (t,) [m], in ground axes.
+
+    Raises
+    ------
+    DeclarationError
+        If no link has a beam, a material has no elasticity, forces of an elastic link stay
+        indeterminate, or the point is on the ground or of another mechanism.
+    LagrangeCasadiError
+        As :func:`.evaluate`.
     """
     pushed, pushes, body = with_push(scene, point)
     links = beams_of(template(scene).content)

@@ -45,7 +45,9 @@ def rounding_error(code: int, result: Array, *operands: Array) -> Array:
 
 
 def _product(a: Array, b: Array, c: Array) -> Array:
-    """a b - c, where that is but the rounding of a product or quotient; NaN where it underflows."""
+    """Return a b - c, where that is but the rounding of a product or quotient; NaN where it
+    underflows.
+    """
     if a.dtype == np.float32:
         return np.asarray(a.astype(float) * b - c)
     (a_high, a_low), (b_high, b_low) = _halves(a), _halves(b)

@@ -18,21 +18,21 @@ Scalar = Any
 
 
 def total(a: Scalar, b: Scalar) -> Scalar:
-    """a + b."""
+    """Return a + b."""
     if type(a) is float and a == 0.0:
         return b
     return a if type(b) is float and b == 0.0 else a + b
 
 
 def less(a: Scalar, b: Scalar) -> Scalar:
-    """a - b."""
+    """Return a - b."""
     if type(b) is float and b == 0.0:
         return a
     return -b if type(a) is float and a == 0.0 else a - b
 
 
 def product(a: Scalar, b: Scalar) -> Scalar:
-    """a b."""
+    """Return a b."""
     if type(a) is float:
         if a == 0.0 or a == 1.0:
             return b if a else 0.0

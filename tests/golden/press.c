@@ -4,7 +4,7 @@
 #include <math.h>
 
 #if defined __FAST_MATH__ || (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__ > 0) || defined __ASSOCIATIVE_MATH__ || defined _M_FP_FAST
-#error "compile without -ffast-math and what it stands for: it takes away NaN, by which failures are told, and digits of phases"
+#error "compile without -ffast-math and the flags it implies: they remove NaN, which marks failures, and digits of phases"
 #endif
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -510,11 +510,11 @@ press_status press_sections(const press_model* model, const press_outputs* outpu
 const char* press_message(press_status status) {
   switch (status) {
   case PRESS_OK:
-    return "everything is well";
+    return "there is a result";
   case PRESS_NOT_PREPARED:
     return "the model was not prepared";
   case PRESS_BAD_PARAMETER:
-    return "a parameter is not finite, or out of its range, or leaves a link without length or with a negative mass";
+    return "a parameter is not finite, or out of its range, or gives a link no length or a negative mass";
   case PRESS_BAD_INPUT:
     return "an input is not finite";
   case PRESS_BAD_TIME:
@@ -526,29 +526,29 @@ const char* press_message(press_status status) {
   case PRESS_NOT_ASSEMBLED:
     return "a loop cannot be closed: its links do not reach";
   case PRESS_DEAD_CENTRE:
-    return "a loop is at a dead centre, a joint in gimbal lock, a bar along its beside, or drives cannot make the motion: forces are open";
+    return "a loop is at a dead centre, a joint is in gimbal lock, a two-force link lies along its beside= direction, or the drives cannot produce the motion: forces are indeterminate";
   case PRESS_NOT_CONVERGED:
     return "the iterated loops did not converge";
   case PRESS_JUMPED:
-    return "an iterated loop has jumped to another branch: more instants may help";
+    return "an iterated loop has jumped to another branch: take more instants";
   case PRESS_SLOW:
     return "the iterated loops converge slowly: they are near a dead centre";
   case PRESS_INCONSISTENT:
-    return "loops are over-constrained and do not fit, or the motion violates a non-holonomic constraint";
+    return "the loops are over-constrained and do not fit, or the motion violates a non-holonomic constraint";
   case PRESS_NOT_CLOSED:
-    return "what was found for a loop does not satisfy its equations";
+    return "the solution of a loop does not satisfy its equations";
   case PRESS_UNDETERMINED:
-    return "equilibrium does not determine all outputs: the mechanism has more constraints than it needs";
+    return "equilibrium does not determine all outputs: the mechanism is over-constrained";
   case PRESS_NOT_FINITE:
     return "a result is not finite: the mechanism is singular, or its numbers overflow";
   case PRESS_TURNED:
-    return "an angle that a load sees with its turns might be a turn further";
+    return "a load depends on the number of revolutions of an angle, which cannot be determined";
   case PRESS_BEYOND_ENDS:
-    return "what is put into a curve is beyond its ends";
+    return "the argument of a curve is outside the curve's range";
   case PRESS_JAMS:
-    return "the mechanism jams: friction has no force that holds its law, or several";
+    return "the mechanism jams: its friction forces have no unique solution";
   case PRESS_AT_REST:
-    return "a joint that rubs is at rest: its friction is open; take instants that move, or smooth friction";
+    return "a joint with friction is at rest, so its friction is indeterminate: take instants of motion, or give the friction smooth=";
   }
-  return "no status of this mechanism";
+  return "unknown status";
 }

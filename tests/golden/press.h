@@ -43,30 +43,30 @@ extern "C" {
 typedef double press_real;
 
 typedef enum {
-  PRESS_OK = 0 /* everything is well */,
+  PRESS_OK = 0 /* there is a result */,
   PRESS_NOT_PREPARED = 1 /* the model was not prepared */,
-  PRESS_BAD_PARAMETER = 2 /* a parameter is not finite, or out of its range, or leaves a link without length or with a negative mass */,
+  PRESS_BAD_PARAMETER = 2 /* a parameter is not finite, or out of its range, or gives a link no length or a negative mass */,
   PRESS_BAD_INPUT = 3 /* an input is not finite */,
   PRESS_BAD_TIME = 4 /* the time is not finite, or outside the samples or beyond the curves of the motion */,
   PRESS_BAD_RATIO = 5 /* a ratio xi/l is outside 0 to 1 */,
   PRESS_NO_LINK = 6 /* there is no such link */,
   PRESS_NOT_ASSEMBLED = 7 /* a loop cannot be closed: its links do not reach */,
-  PRESS_DEAD_CENTRE = 8 /* a loop is at a dead centre, a joint in gimbal lock, a bar along its beside, or drives cannot make the motion: forces are open */,
+  PRESS_DEAD_CENTRE = 8 /* a loop is at a dead centre, a joint is in gimbal lock, a two-force link lies along its beside= direction, or the drives cannot produce the motion: forces are indeterminate */,
   PRESS_NOT_CONVERGED = 9 /* the iterated loops did not converge */,
-  PRESS_JUMPED = 10 /* an iterated loop has jumped to another branch: more instants may help */,
+  PRESS_JUMPED = 10 /* an iterated loop has jumped to another branch: take more instants */,
   PRESS_SLOW = 11 /* the iterated loops converge slowly: they are near a dead centre */,
-  PRESS_INCONSISTENT = 12 /* loops are over-constrained and do not fit, or the motion violates a non-holonomic constraint */,
-  PRESS_NOT_CLOSED = 13 /* what was found for a loop does not satisfy its equations */,
-  PRESS_UNDETERMINED = 14 /* equilibrium does not determine all outputs: the mechanism has more constraints than it needs */,
+  PRESS_INCONSISTENT = 12 /* the loops are over-constrained and do not fit, or the motion violates a non-holonomic constraint */,
+  PRESS_NOT_CLOSED = 13 /* the solution of a loop does not satisfy its equations */,
+  PRESS_UNDETERMINED = 14 /* equilibrium does not determine all outputs: the mechanism is over-constrained */,
   PRESS_NOT_FINITE = 15 /* a result is not finite: the mechanism is singular, or its numbers overflow */,
-  PRESS_TURNED = 16 /* an angle that a load sees with its turns might be a turn further */,
-  PRESS_BEYOND_ENDS = 17 /* what is put into a curve is beyond its ends */,
-  PRESS_JAMS = 18 /* the mechanism jams: friction has no force that holds its law, or several */,
-  PRESS_AT_REST = 19 /* a joint that rubs is at rest: its friction is open; take instants that move, or smooth friction */
+  PRESS_TURNED = 16 /* a load depends on the number of revolutions of an angle, which cannot be determined */,
+  PRESS_BEYOND_ENDS = 17 /* the argument of a curve is outside the curve's range */,
+  PRESS_JAMS = 18 /* the mechanism jams: its friction forces have no unique solution */,
+  PRESS_AT_REST = 19 /* a joint with friction is at rest, so its friction is indeterminate: take instants of motion, or give the friction smooth= */
 } press_status;
 
 /* Numbers that may change without generating anything again.
-   Corners of motions, constraints and lifts were looked for with the defaults alone. */
+   Corners of motions, constraints and lifts were checked with the default parameters only. */
 typedef struct {
   press_real r; /* parameter r [m]; in (-inf, inf); default 0.1 */
   press_real l; /* parameter l [m]; in (-inf, inf); default 0.2 */

@@ -39,7 +39,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   if (!made.name) return NULL;
   memcpy(made.name, name, length);
   if (!guid || strcmp(guid, GUID) != 0) {
-    tell(&made, fmi2Error, "the GUID is not that of this unit: ", guid ? guid : "none");
+    tell(&made, fmi2Error, "the GUID differs from that of this unit: ", guid ? guid : "none");
     made.release(made.name);
     return NULL;
   }

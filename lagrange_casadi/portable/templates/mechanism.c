@@ -4,7 +4,7 @@
 #include <math.h>$includes
 
 #if defined __FAST_MATH__ || (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__ > 0) || defined __ASSOCIATIVE_MATH__ || defined _M_FP_FAST
-#error "compile without -ffast-math and what it stands for: it takes away NaN, by which failures are told, and digits of phases"
+#error "compile without -ffast-math and the flags it implies: they remove NaN, which marks failures, and digits of phases"
 #endif
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -90,5 +90,5 @@ const char* ${p}_message(${p}_status status) {
   switch (status) {
 $messages
   }
-  return "no status of this mechanism";
+  return "unknown status";
 }

@@ -99,7 +99,7 @@ static void vectors_of(const mxArray* given, const char* what, const member* mem
       mexErrMsgIdAndTxt("${p}:type", "member '%s' of %s must be a vector of real numbers.", members[k].name, what);
     }
     if (mxGetNumberOfElements(found[k]) != mxGetNumberOfElements(found[0])) {
-      mexErrMsgIdAndTxt("${p}:size", "member '%s' of %s has %lu numbers, and '%s' has %lu; all must have as many.",
+      mexErrMsgIdAndTxt("${p}:size", "member '%s' of %s has %lu numbers, and '%s' has %lu; all must have the same count.",
                         members[k].name, what, (unsigned long) mxGetNumberOfElements(found[k]), members[0].name,
                         (unsigned long) mxGetNumberOfElements(found[0]));
     }
@@ -109,7 +109,7 @@ static void vectors_of(const mxArray* given, const char* what, const member* mem
 /* A new member of a struct. */
 static void* added(mxArray* to, const char* name, size_t rows, size_t columns, mxClassID type) {
   mxArray* values = mxCreateNumericMatrix((mwSize) rows, (mwSize) columns, type, mxREAL);
-  if (mxAddField(to, name) < 0) mexErrMsgIdAndTxt("${p}:name", "'%s' cannot be the name of a member here.", name);
+  if (mxAddField(to, name) < 0) mexErrMsgIdAndTxt("${p}:name", "'%s' is not a valid name of a member.", name);
   mxSetField(to, 0, name, values);
   return mxGetData(values);
 }
@@ -178,7 +178,7 @@ void mexFunction(int nlhs, mxArray* plhs[], int nrhs, const mxArray* prhs[]) {
   char word[16] = "";
   const int named = nrhs > 0 && mxIsChar(prhs[0]);
   if (named && mxGetString(prhs[0], word, sizeof word) != 0) word[0] = 0;
-  if (nlhs > 1) mexErrMsgIdAndTxt("${p}:arguments", "there is one result, and %d are asked for.", nlhs);
+  if (nlhs > 1) mexErrMsgIdAndTxt("${p}:arguments", "%d results were requested; there is one.", nlhs);
   if (!named && (nrhs == 1 || nrhs == 2)) {
     plhs[0] = evaluate(prhs[0], nrhs > 1 ? prhs[1] : 0);
   } else if (strcmp(word, "motion") == 0 && (nrhs == 2 || nrhs == 3)) {

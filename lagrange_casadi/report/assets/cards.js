@@ -10,7 +10,7 @@ class Card {
     this.field = element("div", { class: "field" });
     this.choices = element("div", { class: "choices" });
     this.legend = element("ul", { class: "legend" });
-    const close = signButton("✕", "Take this plot away", () => this.remove(), { class: "sign small" });
+    const close = signButton("✕", "Remove this plot", () => this.remove(), { class: "sign small" });
     this.body = element("section", { class: "card" }, element("header", {}, this.title, this.choices, saveList(this), close), this.legend, this.field);
     this.seen = true;
     // What is out of sight need not go with the motion.

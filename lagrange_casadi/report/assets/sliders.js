@@ -26,7 +26,7 @@ async function comeAlive(panel) {
     panel.append(...slidersOf(live.engine));
     if (window.parent !== window) listenToPage();
   } catch (error) {
-    panel.append(element("p", { class: "alarm" }, `This browser does not run the engine of this page (${error.message}). What is shown is the design of the file.`));
+    panel.append(element("p", { class: "alarm" }, `This browser cannot run the engine of this page (${error.message}); the design of the file is shown.`));
     if (!(error instanceof WebAssembly.CompileError)) throw error;
   }
 }

@@ -126,7 +126,7 @@ function certificateText() {
   const told = (one) => (one.largest === null ? "–" : format(one.largest, 2));
   const lines = residuals.filter((one) => one.name !== "condition").map((one) => [one.what, told(one)]);
   const limit = lines.length > 0 && element("p", {}, `No residual may be above ${format(tolerance, 2)}.`);
-  const loops = residuals.filter((one) => one.name === "condition").map((one) => element("p", {}, `The loops magnify errors by at most ${told(one)}; 1 is the least, and near a dead centre it is very many.`));
+  const loops = residuals.filter((one) => one.name === "condition").map((one) => element("p", {}, `The condition of the loops is at most ${told(one)}; 1 is the least, and near a dead centre it is very many.`));
   const alarm = state === "failed" && element("p", { class: "alarm" }, words);
   const forces = "The reported motions, reactions, efforts and loads were put into Newton's and Euler's equations of every body anew, in plain arithmetic, at every instant.";
   const sentence = forcesChecked ? forces : "The bodies were placed anew by the reported motion, in plain arithmetic, at every instant.";

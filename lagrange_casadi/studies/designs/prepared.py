@@ -398,18 +398,34 @@ def prepare(
     newton: Annotated[int | None, LATER] = None,
     flags: Annotated[str, LATER] = "",
 ) -> Prepared:
-    """Make a scene ready for many evaluations one after another, as an optimiser asks for them.
+    """Make a scene ready for many evaluations one after another, as in an optimiser.
 
-    Takes what :func:`.evaluate` takes, but for values of parameters, which each evaluation is told.
-    It derives and compiles once; an evaluation is then a call of the compiled code, with the
-    verdicts of :func:`.sweep`. There is no certificate and no estimate of errors: :func:`.evaluate`
-    the design that is chosen.
+    It is compiled once; an evaluation is then a call of the compiled code, with the statuses of
+    :func:`.sweep`. There is no certificate and no estimate of errors: :func:`.evaluate` the design
+    that is chosen.
 
         f = prepare(scene, wanted=["effort"])
         largest = abs(f(l=0.25)["effort:O"]).max()
         peaks = dict(zip(f.quantities, f.peaks(l=0.25).value))
 
-    Raises what :func:`.evaluate` does for mistakes in the arguments, and :class:`CompilerError`.
+    Parameters
+    ----------
+    scene
+        The scene.
+    t, over, wanted, backend, precision, newton, flags
+        As in :func:`.evaluate`.
+
+    Returns
+    -------
+    Prepared
+        A function of parameters by name.
+
+    Raises
+    ------
+    CompilerError
+        If a backend needs a compiler, and there is none or it fails.
+    LagrangeCasadiError
+        As :func:`.evaluate`, for mistakes in the arguments.
     """
     named = () if wanted is None else wanted
     without_life(named, "prepared scenes")

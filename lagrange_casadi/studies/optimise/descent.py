@@ -172,7 +172,9 @@ class Descent:
             x = found.x
             if not np.isfinite(x).all():
                 self._better(
-                    current, None, "the program has no solution: no derivative where it looked"
+                    current,
+                    None,
+                    "the program has no solution: a derivative is missing at an evaluated point",
                 )
                 return
             following = self.evaluator.evaluate(box.all(x))

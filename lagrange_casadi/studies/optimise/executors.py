@@ -26,7 +26,7 @@ class Executor(Protocol):
 
 
 class LocalExecutor:
-    """This process, one way after another."""
+    """The present process, one start after another."""
 
     def go(
         self, solver: Solver, tasks: Sequence[SearchTask], progress: Progress

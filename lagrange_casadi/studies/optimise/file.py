@@ -106,7 +106,7 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
         if not begins or (
             len(rows) and not any(_alike(np.delete(row, [0, 3]), came) for row in rows)
         ):
-            yield f"{start.name}: is not the way that the history tells"
+            yield f"{start.name}: does not agree with the history"
         shown(start.attrs["ending"])
         ways.append(np.delete(came, 1))
         if start.attrs["ending"] == CONVERGED:

@@ -133,7 +133,7 @@ def _read(journal: Journal, path: Path, identity: Mapping[str, Json]) -> bool:
     if not lines or "identity" not in lines[0]:
         if not _holds_nothing(content):
             raise StoreError(
-                f"{path} holds what no search wrote, or is damaged: force=True starts anew"
+                f"{path} is not the file of a search, or is damaged: force=True replaces it"
             )
         return False
     for words in lines:

@@ -94,54 +94,69 @@ def optimise(
     force: bool = False,
     progress: Progress | None = None,
 ) -> Optimum | Front:
-    """Find the values of parameters for which a peak, or a mean, is least; of several terms, their
-    front.
+    """Find the values of parameters that minimise a peak or a mean; for several terms, their front.
+
+    Nonlinear programs with some points of every quantity are solved by IPOPT with exact
+    derivatives. Points where a limit is exceeded are added until there are none. An interrupt ends
+    the search; the best design so far is returned. A design that violates a constraint is not
+    ``feasible``.
 
     Parameters
     ----------
     scene
-        A scene, or a case from :func:`.load_case`. Workers of a cluster need no file of it: they
-        are sent what is derived.
+        A scene, or a case from :func:`.load_case`. Workers of a cluster do not need its file.
     minimise
-        ``peak:QUANTITY``, the largest size of a quantity over the whole motion; ``max:QUANTITY``,
-        its largest value; ``mean:`` or ``rms:`` of an effort or an output; or a parameter's name. A
-        list of them asks for a :class:`.Front`: designs of which none is better in all of them.
+        ``peak:QUANTITY``, the largest magnitude of a quantity over the whole motion;
+        ``max:QUANTITY``, its largest value; ``mean:`` or ``rms:`` of an effort or an output; or a
+        parameter's name. A list of them asks for a :class:`.Front`: designs of which none is better
+        in all of them.
     over
-        The parameters to choose, and of each its least and its largest value.
+        The parameters to choose, each with its lower and upper bound.
     subject_to
-        Constraints, as ``"peak:effort:O <= 12"``; ``min:QUANTITY`` is for those from below. They
-        hold at all times of the motion, and along the whole link.
+        Constraints, as ``"peak:effort:O <= 12"``; ``min:QUANTITY`` is for lower limits. They hold
+        at all times of the motion, and along the whole link.
     starts
-        How many designs the search starts from: the best of designs spread evenly over the bounds,
-        with the parameters' own values among them. Or values of parameters for each start.
+        Number of designs from which the search starts: the best of designs spread evenly over the
+        bounds, with the parameters' own values among them. Or values of parameters for each start.
     screen
-        Among how many designs the starts are chosen.
+        Number of designs among which the starts are chosen.
     points
-        How many points a front has at most.
+        Largest number of points of a front.
     transmission
-        The least sine of a loop's transmission angle, of an iterated loop its volume.
+        Least sine of a loop's transmission angle; for an iterated loop its volume.
     t
-        Instants, as in :func:`.evaluate`; they may go with parameters that are chosen.
+        Instants, as in :func:`.evaluate`; they may depend on parameters that are chosen.
     parameters
         Values of the parameters that are not chosen.
+    backend
+        Backend that evaluates designs, as in :func:`.evaluate`.
     dask
-        The address of a Dask scheduler, whose workers go the ways from the starts.
+        Address of a Dask scheduler whose workers run the starts.
     out
-        The file to write. Beside it a journal keeps what is done, until all is: a search that was
-        stopped, or killed, goes on with ``resume``; ``force`` starts it anew.
+        The file to write. A journal beside it keeps finished steps until the search ends.
+    resume
+        Continue a search that was stopped or killed, from its journal.
+    force
+        Start anew, replacing the file and its journal.
     progress
-        Is called after each step with the number of the start, the objective and the worst excess
-        over a limit.
+        Function that is called after each step with the number of the start, the objective and the
+        largest violation of a limit.
 
-    Notes ----- Programs with some points of every quantity are solved by IPOPT with exact
-    derivatives. What exceeds a limit elsewhere is added to them, until nothing does. An interrupt
-    ends the search; the best design so far is given. One that violates a constraint is marked: it
-    is not ``feasible``.
+    Returns
+    -------
+    Optimum or Front
+        The best design with its history; for several terms the front.
 
-    Raises :class:`DeclarationError`, :class:`UnknownNameError` and :class:`ParameterError` for
-    mistakes in the arguments, :class:`NoDesignError` where no design has a result,
-    :class:`PathError`, :class:`StoreError` or :class:`BusyError` where the file or its journal is
-    another search's or cannot be written, :class:`ClusterError` where a cluster cannot serve.
+    Raises
+    ------
+    DeclarationError, UnknownNameError, ParameterError
+        For mistakes in the arguments.
+    NoDesignError
+        If no design has a result.
+    PathError, StoreError, BusyError
+        If the file or its journal belongs to another search, or cannot be written.
+    ClusterError
+        If a cluster is not available.
     """
     own = scene_of(scene)
     question = Question.of(

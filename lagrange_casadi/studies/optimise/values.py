@@ -245,8 +245,8 @@ class PointValues:
         if times.law is not None:
             if not times.law.steady:
                 raise DeclarationError(
-                    f"optimise: the motion of joint '{times.timing.joint}', which says when the"
-                    " instants are, goes with parameters and is not steady; give t as expressions"
+                    f"optimise: the motion of joint '{times.timing.joint}', which defines the"
+                    " instants, depends on parameters and is not uniform; give t as expressions"
                     " of the parameters"
                 )
             d, rate, _ = times.law.law(0.0, symbols)

@@ -433,7 +433,7 @@ def not_parameter(name: str) -> str:
     """Say of a column's name that it is no parameter's."""
     return (
         f"'{name}' is a result of a sweep, not a parameter: take the results out; `lagrange-casadi"
-        " table` writes what it is told"
+        " table` writes the chosen columns"
     )
 
 

@@ -103,16 +103,36 @@ def best(
     count: int | None = None,
     columns: str | Sequence[str] = (),
 ) -> list[Design]:
-    """The ``count`` best designs that have a result and meet all conditions, the best first; by
-    default one.
+    """Return the best designs of a sweep that have a result and meet all conditions.
 
-    With two objectives it is their front, in the order of the first one, by default all of it: a
-    design is on the front where no other is at least as good in both and better in one. Each
-    :class:`Design` comes with its number, its parameters, the objectives and ``columns``, in the
-    columns' units. Peaks are compared by size. A single name or condition may stand without a list.
+    With two objectives it is their front: a design is on the front where no other is at least as
+    good in both and better in one. Peaks are compared by magnitude.
 
-    Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for
-    no objective or more than two.
+    Parameters
+    ----------
+    sweep
+        The sweep.
+    minimise, maximise
+        Names of columns, one or a list; one or two objectives in all.
+    where
+        Conditions on columns, as ``"peak:effort:O<12"``, in the columns' units.
+    count
+        Number of designs; default: 1, or the whole front.
+    columns
+        Other columns of which each design has the value.
+
+    Returns
+    -------
+    list of Design
+        The designs, the best first, a front in the order of its first objective: number,
+        parameters, objectives and ``columns``, in the columns' units.
+
+    Raises
+    ------
+    UnknownNameError
+        For a column that the sweep does not have.
+    DeclarationError
+        For no objective, or more than two.
     """
     objectives = [
         *((name, 1.0) for name in names_in(minimise)),

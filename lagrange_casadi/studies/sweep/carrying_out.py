@@ -98,12 +98,12 @@ def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
         )
     if there and not (resume or force):
         raise PathError(
-            f"{folder.target} exists: force=True replaces it, resume=True goes on with a sweep that"
-            " was not finished"
+            f"{folder.target} exists: force=True replaces it, resume=True continues an unfinished"
+            " sweep"
         )
     if not (folder.begun or force) and folder.done():
         raise PathError(
-            f"{folder.path} holds parts, and no plan.json that tells what they are of: force=True"
+            f"{folder.path} holds parts, and no plan.json that describes them: force=True"
             " starts anew"
         )
     if force or not (folder.begun or there):
@@ -223,6 +223,6 @@ def _require_space(folder: Folder, size: float) -> None:
     free = shutil.disk_usage(folder.target.parent).free
     if size > free:
         raise StoreError(
-            f"cannot write {folder.target}: what is still to be written takes about"
+            f"cannot write {folder.target}: the rest of the file takes about"
             f" {size / 1e9:.3g} GB, and the disk has {free / 1e9:.3g} GB left"
         )

@@ -1,4 +1,4 @@
-"""Is a sweep's file whole and consistent?"""
+"""The faults of a sweep's file."""
 
 from __future__ import annotations
 
@@ -66,8 +66,8 @@ def progress(folder: Folder) -> str:
     with reported_as("damaged", folder.path):
         size = size_of(folder.identity["grid"])
     return (
-        f"unfinished: {grouped(folder.done())} of {counted(size)} done; the same sweep goes on when"
-        " it is resumed"
+        f"unfinished: {grouped(folder.done())} of {counted(size)} done; run it again with"
+        " resume=True to continue"
     )
 
 
@@ -103,14 +103,14 @@ def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
         yield "case or parameters: differ from those of the mechanism"
     values = {name: file["grid"][name][()] for name in sweep.parameters}
     if not are_described(identity["grid"], values):
-        yield "grid: is not what was asked for"
+        yield "grid: differs from the plan"
     for axis in ("t", "xi"):
         if (
             axis in file
             and axis not in sweep.dimensions
             and not np.array_equal(file[axis][()], points(identity[axis]))
         ):
-            yield f"{axis}: is not what was asked for"
+            yield f"{axis}: differs from the plan"
 
 
 def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[str]:

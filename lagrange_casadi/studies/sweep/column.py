@@ -8,10 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-MISSING = (
-    "NaN for designs of which it is open: equilibrium does not determine it, or friction at rest"
-    " does not"
-)
+MISSING = "NaN for designs for which it is indeterminate, by equilibrium or by friction at rest"
 """Attribute ``missing`` of a column that may lack a number for a design with a result."""
 
 

@@ -90,10 +90,10 @@ class Harvest:
     def __post_init__(self) -> None:
         check_keep(self.keep)
         if self.xi.size and not self._links:
-            raise DeclarationError("xi: ratios are kept of section forces, and none is wanted")
+            raise DeclarationError("xi: ratios apply to section forces, and none is in wanted=")
         if self.keep == "laws" and not self._links:
             raise DeclarationError(
-                "keep laws: the laws are those of section forces, and none is wanted"
+                "keep laws: laws describe section forces, and none is in wanted="
             )
 
     @cached_property

@@ -94,7 +94,7 @@ def default_plots(
     if not specs:
         one = sweep.select(**at).size == 1
         why = (
-            "it comes to one design"
+            "it has only one design"
             if one
             else "it keeps no peak of an effort, a reaction, a section force or a load"
         )

@@ -58,7 +58,7 @@ def check_names(designs: Designs, axis: InstantAxis, columns: Sequence[Column] =
     for name in designs.dimensions:
         if name in taken and isinstance(designs, Grid):
             raise DeclarationError(
-                f"parameter '{name}' cannot be an axis: the file keeps that name for its own; sweep"
+                f"parameter '{name}' cannot be an axis: the file uses that name itself; sweep"
                 " a list of designs instead"
             )
 

@@ -24,17 +24,31 @@ _HEAD = re.compile(r"(.*?) *\[([^]]+)\]")
 
 @public
 def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | None = None) -> Listed:
-    """Read a list of designs, for :func:`.sweep`: a first line of parameters' names, then a line of
-    values for each design.
+    """Read a list of designs from CSV, for :func:`.sweep`.
 
-    Cells are parted as :func:`.read_rows` says. Values may have a unit, as ``30 deg``, or the head
-    has that of its column, as ``l [mm]``. Returns a :class:`.Listed`.
+    The first line names parameters; every other line has the values of a design. Cells are
+    separated as :func:`.read_rows` says. Values may have a unit, as ``30 deg``, or the head has that
+    of its column, as ``l [mm]``.
 
-    With the names of ``parameters``, as of a mechanism, the head is checked against them before any
-    number is read; without, a sweep checks it.
+    Parameters
+    ----------
+    path
+        The file.
+    parameters
+        Names of a mechanism's parameters, with which the first line is compared before any number
+        is read; by default the sweep compares them.
 
-    Raises :class:`PathError` for no file, :class:`DeclarationError` for a head or a cell that is
-    wrong, with its line and column.
+    Returns
+    -------
+    Listed
+        The designs.
+
+    Raises
+    ------
+    PathError
+        If there is no such file.
+    DeclarationError
+        For a wrong name or cell, with its line and column.
     """
     rows = read_rows(path, "a first line of parameters' names")
     head = next(rows)
@@ -79,7 +93,7 @@ def _check_head(head: Row, names: Sequence[str]) -> None:
             raise DeclarationError(f"{place}: {not_parameter(name)}")
         if names.index(name) != column - 1:
             raise DeclarationError(
-                f"{place}: '{name}' stands there already as column {names.index(name) + 1}"
+                f"{place}: '{name}' is already column {names.index(name) + 1}"
             )
 
 

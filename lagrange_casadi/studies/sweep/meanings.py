@@ -39,15 +39,15 @@ LEAST, LIFE, MASS = "least", "life", "mass"
 WAYS = ("yield", "buckling", "fatigue")
 """Modes of failure of links."""
 
-NO_SLOPE = "NaN for designs of which it has no derivative"
+NO_SLOPE = "NaN for designs for which it has no derivative"
 
 SLOPES_OF = {"peak": "peak", "mean": "mean over time", "rms": "root of the mean square over time"}
 """Quantities whose derivatives are kept, in words."""
 
 _OF_OUTPUTS = {
-    "peak": "largest in size over time: ",
+    "peak": "largest magnitude over time: ",
     "mean": "mean over time: ",
-    "peak_at": "largest in size over the instants: ",
+    "peak_at": "largest magnitude over the instants: ",
     "history": "",
 }
 """Kinds of columns that have the sign of their quantity."""
@@ -139,9 +139,9 @@ class Meanings:
         """The meaning of an axis: one that every sweep may have, or that of a parameter."""
         unit, long_name = {
             "t": ("s", "time"),
-            "xi": ("1", "place along a link, ratio xi/l"),
+            "xi": ("1", "position along a link, ratio xi/l"),
             OVER: (self.drive_unit, f"coordinate of joint '{self.joint}'"),
-            CYCLE: ("1", "place in the cycle, from the first instant of a design to its last"),
+            CYCLE: ("1", "fraction of the cycle, from the first instant of a design to its last"),
             DESIGN: ("1", "number of the design"),
         }.get(name) or (self.parameters[name], f"parameter {name}")
         return unit, {"long_name": long_name}
@@ -153,7 +153,7 @@ class Meanings:
             if self.axis != "t" or number != Status.NO_INSTANTS
         }
         return {
-            "long_name": "whether a design has a result, or why it has none",
+            "long_name": "status: validity of the result, or the reason why there is none",
             "flag_meanings": " ".join(word for word, _ in words_by_number.values()),
             "sentences": json.dumps(
                 {number: sentence for number, (_, sentence) in words_by_number.items()}
@@ -168,7 +168,7 @@ def _of_strength(kind: str, rest: str, among: Collection[str]) -> Meaning:
             "long_name": "mass of all links and point masses" if rest == ALL else "mass of the link"
         }
     if kind == LIFE:
-        return "1", {"long_name": "life in cycles, each the whole span"}
+        return "1", {"long_name": "life in cycles of the whole time span"}
     way, _, link = rest.partition(":")
     if way in WAYS:
         return "1", {"long_name": f"least factor of safety {_AGAINST[way]}"}

@@ -141,8 +141,8 @@ class Folder:
         for name in names:
             if name not in (_PLAN, _LOCK, _FORCED, _JOINED) and not name.endswith((_PART, _DRAFT)):
                 raise PathError(
-                    f"{self.path} holds '{name}', which is no sweep's: move it, or write another"
-                    " file"
+                    f"{self.path} holds '{name}', which is not part of a sweep: move it, or write"
+                    " to another file"
                 )
 
     def _lock(self) -> int:

@@ -524,5 +524,5 @@ def _refuse_unfinished(path: str | Path) -> None:
     """Raise :class:`PathError` where there are parts, and no file yet."""
     if not os.path.exists(path) and Folder.of(Path(path)).begun:
         raise PathError(
-            f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is"
+            f"{path}: its sweep is not finished: `lagrange-casadi info` shows its progress"
         )

@@ -51,52 +51,65 @@ def sweep(
     many: bool = False,
     progress: Progress | None = None,
 ) -> Sweep:
-    """Evaluate a scene for many designs, and keep of each what sizes its parts.
+    """Evaluate a scene for many designs, and keep the results that size its parts.
 
-    Nothing is derived or compiled for a design.
+    Nothing is compiled for a single design.
 
     Parameters
     ----------
     scene
-        A scene, or a case from :func:`.load_case`. Workers of a cluster need no file of it: they
-        are sent what is derived.
+        A scene, or a case from :func:`.load_case`. Workers of a cluster do not need its file.
     grid
         A mapping of parameters to axes, each a tuple (start, stop, count), a sequence of values, or
         a :class:`.Range`; or a :class:`.Listed` of designs, as :func:`.read_designs` reads it from
         CSV.
     out
-        The file; by default one that lives as long as what is returned.
+        The file; default: a temporary one, removed with the result.
     parameters
         Values of parameters that are not swept.
     t, over, wanted
-        As in :func:`.evaluate`; ``all`` leaves out the motion, unless that is wanted by name. With
-        ``over``, or with bounds of ``t`` that are expressions of parameters, every design has times
-        of its own.
+        As in :func:`.evaluate`; ``all`` leaves out the motion, unless it is named too. With
+        ``over``, or with bounds of ``t`` that are expressions of parameters, every design has its
+        own times.
     xi
-        Ratios xi/l at which section forces are kept too: over the instants, the value largest in
-        size at each.
+        Ratios xi/l at which section forces are kept too: at each the value of largest magnitude
+        over the instants.
     keep
         ``peaks``; with ``laws`` also the section laws over time; with ``histories`` also all
         outputs over time.
     backend, precision, newton, flags
-        How it is evaluated: see :class:`.EvaluationMethod`.
+        Method of evaluation: see :class:`.EvaluationMethod`.
     workers
-        How many threads share the designs; default: one a core.
+        Number of threads that share the designs; default: one a core.
     dask
-        The address of a Dask scheduler whose workers evaluate instead.
+        Address of a Dask scheduler whose workers evaluate instead.
     resume, force
-        Go on with what an earlier sweep into ``out`` left, or start anew whatever is there.
+        Continue an earlier sweep into ``out``, or replace what is there.
     many
-        Mean it where there are more than 10^9 designs.
+        Confirm a sweep of more than 10^9 designs.
     progress
-        Called with what is being done (``designs``, after an interrupt ``stopping``, then
-        ``file``), how much of it is done, and of how much.
+        Function that is called with the name of the present step (``designs``, after an interrupt
+        ``stopping``, then ``file``), the amount that is done, and the total.
 
-    Notes ----- Raises :class:`DeclarationError`, :class:`UnknownNameError`, :class:`ParameterError`
-    or :class:`PathError` for mistakes, :class:`StoreError` where the file is another sweep's or
-    cannot be written, :class:`BusyError` where another process writes it, :class:`ClusterError`
-    where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
-    :class:`StoppedError` after an interrupt. What was done is kept.
+    Returns
+    -------
+    Sweep
+        The designs with their results and statuses, read from the file when asked for.
+
+    Raises
+    ------
+    DeclarationError, UnknownNameError, ParameterError, PathError
+        For mistakes in the arguments.
+    StoreError
+        If the file belongs to another sweep, or cannot be written.
+    BusyError
+        If another process writes it.
+    ClusterError
+        If a cluster is not available.
+    SizeError
+        If memory does not hold the results of a design.
+    StoppedError
+        After an interrupt; finished designs are kept.
     """
     one, designs = scene_of(scene), designs_of(grid)
     method = EvaluationMethod(backend, precision, newton, None, flags)
