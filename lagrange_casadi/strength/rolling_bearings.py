@@ -187,6 +187,8 @@ def select_bearing(
     ----------
     solution : Solution
         Has the joint's reaction and motion.
+    joint : str
+        Name of the joint.
     bearings : sequence of RollingBearing
         What there is to choose from.
     hours : float
@@ -195,6 +197,11 @@ def select_bearing(
         Least bore, as the shaft needs it [m].
     static : float
         Least factor of C0 on the largest load.
+
+    Returns
+    -------
+    RollingBearing
+        The first, by outer diameter, that lives long enough.
 
     Raises
     ------

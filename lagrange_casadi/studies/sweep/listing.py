@@ -27,8 +27,8 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
     """Read a list of designs from CSV, for :func:`.sweep`.
 
     The first line names parameters; every other line has the values of a design. Cells are
-    separated as :func:`.read_rows` says. Values may have a unit, as ``30 deg``, or the head has that
-    of its column, as ``l [mm]``.
+    separated as :func:`.read_rows` says. Values may have a unit, as ``30 deg``, or the head has
+    that of its column, as ``l [mm]``.
 
     Parameters
     ----------
@@ -92,9 +92,7 @@ def _check_head(head: Row, names: Sequence[str]) -> None:
         if ":" in name:
             raise DeclarationError(f"{place}: {not_parameter(name)}")
         if names.index(name) != column - 1:
-            raise DeclarationError(
-                f"{place}: '{name}' is already column {names.index(name) + 1}"
-            )
+            raise DeclarationError(f"{place}: '{name}' is already column {names.index(name) + 1}")
 
 
 def _number(row: Row, name: str, cell: str) -> float:
