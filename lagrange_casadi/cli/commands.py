@@ -70,6 +70,12 @@ from .options import (
 @click.option("--no-figures", is_flag=True, help="Draw no figures.")
 @table_file("Also write the results as CSV, one row per instant.")
 @click.option(
+    "--grids/--no-grids",
+    default=None,
+    help="Store section forces at all ratios xi/l beside their laws, of all links or of none;"
+    " default: of all but pieces of bent bars.",
+)
+@click.option(
     "--refine-peaks", is_flag=True, help="Search for the listed peaks between the instants too."
 )
 @click.option(

@@ -19,6 +19,7 @@ from ..base.arrays import Array
 from ..base.publish import writing
 from ..base.table_file import TableFile
 from ..errors import DeclarationError, LagrangeCasadiError, shown
+from ..renamed import renamed
 
 if TYPE_CHECKING:
     import casadi as ca
@@ -30,6 +31,7 @@ _SAME = 1e-9
 _MILLIMETRES = 1e3
 
 
+@renamed
 @public
 @dataclass(frozen=True, eq=False)
 class CamProfile:
@@ -53,7 +55,7 @@ class CamProfile:
     closes: bool
 
     @property
-    def told_undercut(self) -> str:
+    def undercut_summary(self) -> str:
         """Places of undercut, in words; empty if there are none."""
         found = np.degrees(self.angle[self.undercut])
         return (
@@ -102,7 +104,7 @@ class CamProfile:
     def _refuse_undercut(self) -> None:
         if self.undercut.any():
             raise LagrangeCasadiError(
-                f"cam '{self.name}': {self.told_undercut}; no profile has this motion"
+                f"cam '{self.name}': {self.undercut_summary}; no profile has this motion"
             )
 
 
