@@ -223,7 +223,7 @@ def test_the_page_opens_on_what_varies_most_and_tells_the_rest_in_a_line(page, f
     assert one.run(choices)[0] == max(spread, key=spread.get)
     same = one.run("document.querySelector('.designs .fine').textContent")
     assert same.startswith("The same in all designs: ")
-    assert "peak:reaction:guide:fx 0;" in same
+    assert "peak:reaction:guide:fx 0\u00a0N;" in same
     options = one.run("[...document.querySelectorAll('.card option')].map((one) => one.value)")
     heads = one.run("[...document.querySelectorAll('.designs th')].map((one) => one.textContent)")
     names = one.run("[...document.querySelectorAll('.readings dt')].map((one) => one.textContent)")

@@ -97,9 +97,7 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
         check_zig("the mechanism of a design in motion")
         scene = found.scene
         if case is None and not is_of(sweep, scene):
-            raise DeclarationError(
-                f"the case '{found.reference(Path())}' is not as it was swept"
-            )
+            raise DeclarationError(f"the case '{found.reference(Path())}' is not as it was swept")
     except LagrangeCasadiError as error:
         if case is not None:
             raise
@@ -110,7 +108,9 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
         )
         found = scene = None
     with reported_as(_UNSHOWN, target):
-        write_sweep_report(sweep, out, scene, run_of(found.reference(Path()) if found else sweep.case))
+        write_sweep_report(
+            sweep, out, scene, run_of(found.reference(Path()) if found else sweep.case)
+        )
     echo(f"wrote {out}: open it in a browser")
 
 

@@ -97,7 +97,7 @@ function designWords(row) {
 /** What a column of a design is, in words. */
 function columnWords(column, row) {
   const value = column.values[row];
-  return Number.isNaN(value) ? "–" : column.nothing ? "0" : shown(value, column.unit, 5);
+  return Number.isNaN(value) ? "–" : shown(column.nothing ? 0 : value, column.unit, 5);
 }
 
 filter("");

@@ -83,7 +83,7 @@ function glanceOf() {
     const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
     places[k].row = row;
     say(places[k].what, `Largest ${row.what.replace("resultant ", "")}`);
-    say(places[k].value, nothing ? "0" : known ? shown(row.peak.value, row.unit, 4) : "–");
+    say(places[k].value, known ? shown(nothing ? 0 : row.peak.value, row.unit, 4) : "–");
     say(places[k].where, nothing ? "" : known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
   });
   fill();
@@ -110,12 +110,12 @@ function linksTable() {
   const fill = (sizes = sizesOfUnits()) => cells.forEach(([row, value, when]) => {
     const { peak } = row;
     const known = Number.isFinite(peak.value) && !isNothing(row, sizes);
-    say(value, known ? shown(peak.value, row.unit, 4) : Number.isFinite(peak.value) ? "0" : "–");
-    say(when, !known ? "" : over ? `${over.joint} = ${shown(peak.over, over.unit, 4)}` : whenOf(peak.t, null));
+    say(value, known ? shown(peak.value, row.unit, 4) : Number.isFinite(peak.value) ? shown(0, row.unit) : "–");
+    say(when, !known ? "" : over ? shown(peak.over, over.unit, 4) : whenOf(peak.t, null));
   });
   fill();
   reading.watchers.add(() => fill());
-  return element("section", { class: "card links" }, element("header", {}, element("h3", {}, "Largest in each link")),
+  return element("section", { class: "card links" }, element("header", {}, element("h3", {}, "Largest in each link"), over && element("span", { class: "fine" }, `with the ${over.unit === "rad" ? "angle" : "place"} of ${over.joint}`)),
     element("div", { class: "scroll" }, element("table", { "aria-label": "Largest in each link" }, element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "link"), heads)), element("tbody", {}, lines))));
 }
 

@@ -38,7 +38,7 @@ function resultTables(show) {
     if (one === null || one === undefined) return "";
     const size = Math.abs(row.peak.value);
     const rounding = (state.all && isNothing(row)) || Math.abs(one) <= Math.max(UNSEEN * size, row.error ?? 0);
-    return Number.isNaN(one) ? "–" : rounding ? "0" : shown(one, row.unit, 6, size);
+    return Number.isNaN(one) ? "–" : shown(rounding ? 0 : one, row.unit, 6, size);
   };
   const when = (mark) => (mark && !Number.isNaN(mark.t) ? shown(mark.t, "s", 5, Math.max(Math.abs(instants.t[0]), Math.abs(instants.t.at(-1)))) : "");
   const names = [["name", (row) => row.name], ["part", (row) => row.part], ["quantity", whatOf], ["unit", (row) => row.unit]];
