@@ -45,6 +45,14 @@ class Case:
         """The name of its folder, or of its file without the ending."""
         return self.path.parent.name if self.path.name == "case.py" else self.path.stem
 
+    def reference(self, folder: Path) -> str:
+        """Path of the case from a folder, or the name of one that comes with the package."""
+        place = self.path.parent if self.path.name == "case.py" else self.path
+        shipped = shipped_cases().get(self.name)
+        if shipped and shipped.resolve() == place:
+            return self.name
+        return Path(os.path.relpath(place, folder.resolve())).as_posix()
+
     def __reduce__(self) -> tuple[Callable[[Path], Case], tuple[Path]]:
         """Sent to another process, a case is loaded there from its file."""
         return load_case, (self.path,)

@@ -6,6 +6,7 @@ import csv
 import io
 import shutil
 import time
+from pathlib import Path
 
 import alive
 import browser
@@ -203,3 +204,79 @@ def test_from_python_it_is_the_same_page(file, tmp_path, monkeypatch):
     assert found["columns"] == other["columns"]
     assert found["numbers"] == other["numbers"]
     assert found["note"].startswith("For the mechanism in motion")
+
+
+def test_the_page_opens_on_what_varies_most_and_tells_the_rest_in_a_line(page, file):
+    """A column that is the same for all designs is no map, no column of the table, no reading."""
+    one, sweep = page(), Sweep.open(file)
+    ok = sweep["status"] == 0
+    sizes = {name: np.abs(sweep[name][ok]) for name in sweep.columns if name.startswith("peak:")}
+    largest = {}
+    for name, values in sizes.items():
+        largest[sweep.unit(name)] = max(largest.get(sweep.unit(name), 0.0), values.max())
+    spread = {
+        name: np.ptp(values) / values.max()
+        for name, values in sizes.items()
+        if values.max() > 1e-12 * largest[sweep.unit(name)]
+    }
+    choices = "[...document.querySelectorAll('.card select')].map((one) => one.value)"
+    assert one.run(choices)[0] == max(spread, key=spread.get)
+    same = one.run("document.querySelector('.designs .fine').textContent")
+    assert same.startswith("The same in all designs: ")
+    assert "peak:reaction:guide:fx 0\u00a0N;" in same
+    options = one.run("[...document.querySelectorAll('.card option')].map((one) => one.value)")
+    heads = one.run("[...document.querySelectorAll('.designs th')].map((one) => one.textContent)")
+    names = one.run("[...document.querySelectorAll('.readings dt')].map((one) => one.textContent)")
+    for words in (options, heads, names):
+        assert "peak:reaction:guide:fx" not in [word.replace("\u200b", "") for word in words]
+
+
+@pytest.mark.parametrize("width", [1280, 400])
+def test_no_number_lies_over_a_name(page, width):
+    one = page()
+    one.size(width, 900)
+    one.run("new Promise((done) => setTimeout(() => done(0), 100))")
+    over = one.run(
+        "[...document.querySelectorAll('.readings div')].filter((row) => { const box = document"
+        ".createRange(); box.selectNodeContents(row.firstChild); return box.getBoundingClientRect()"
+        ".right > row.lastChild.getBoundingClientRect().left; }).length"
+    )
+    assert over == 0
+    one.size(1500, 1000)
+
+
+def test_on_paper_heads_are_no_buttons(page):
+    """A browser repeats a head on each page, but for what is in a button."""
+    one = page()
+    one.call("Emulation.setEmulatedMedia", media="print")
+    assert set(
+        one.run(
+            "[...document.querySelectorAll('thead button')].map((one) =>"
+            " getComputedStyle(one).display)"
+        )
+    ) == {"contents"}
+    one.call("Emulation.setEmulatedMedia", media="")
+
+
+@alive.NEEDS_ENGINE
+def test_the_page_takes_the_case_that_was_swept(tmp_path, capsys, monkeypatch):
+    """Whatever the mechanism is called, and wherever the command runs."""
+    (tmp_path / "made").mkdir()
+    text = (CASES / "four_bar" / "case.py").read_text()
+    (tmp_path / "mine.py").write_text(text.replace('"four_bar"', '"linkage"'))
+    grid = ["--grid", "b=0.35,0.36", "--t", "0:0.1:5", "--want", "effort"]
+    monkeypatch.chdir(tmp_path)
+    assert main(["sweep", "mine.py", *grid, "--out", "made/s.h5"]) == 0
+    sweep = Sweep.open("made/s.h5")
+    assert sweep.case_file == Path("made/../mine.py")
+    for folder, place in ((tmp_path, "mine.py"), (tmp_path / "made", "../mine.py")):
+        monkeypatch.chdir(folder)
+        out = tmp_path / "page.html"
+        assert main(["report", str(tmp_path / "made" / "s.h5"), "--out", str(out)]) == 0
+        assert capsys.readouterr().err == ""
+        found, _ = held(out.read_text())
+        assert found["command"] == f"lagrange-casadi run {place}"
+        assert found["frame"] is not None
+    (tmp_path / "mine.py").write_text((CASES / "quick_return" / "case.py").read_text())
+    assert main(["report", str(tmp_path / "made" / "s.h5"), "--out", str(out)]) == 0
+    assert "the case '../mine.py' is not as it was swept" in capsys.readouterr().err

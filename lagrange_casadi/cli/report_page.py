@@ -88,7 +88,7 @@ def report(
         engine = None
         if asked.live:
             say_step(2, f"deriving the equations of {loaded.name}")
-            engine = Live.of(scene, timing, wanted, run_of(loaded.name), given)
+            engine = Live.of(scene, timing, wanted, run_of(loaded.reference(Path())), given)
             size = grouped(statements(engine.source.code))
             say_step(3, f"compiling {size} statements for this machine and for the browser at once")
         solution = _evaluated(loaded, asked, given)
@@ -156,11 +156,11 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
     sweep = Sweep.open(target)
     found = None
     try:
-        found = load_case(case or Path(sweep.case))
+        found = load_case(case or sweep.case_file or Path(sweep.case))
         check_zig("the mechanism of a design in motion")
         scene = found.scene
         if case is None and not is_of(sweep, scene):
-            raise DeclarationError(f"the case '{sweep.case}' is not as it was swept")
+            raise DeclarationError(f"the case '{found.reference(Path())}' is not as it was swept")
     except LagrangeCasadiError as error:
         if case is not None:
             raise
@@ -171,7 +171,9 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
         )
         found = scene = None
     with reported_as(_UNSHOWN, target):
-        write_sweep_report(sweep, out, scene, run_of(found.name if found else sweep.case))
+        write_sweep_report(
+            sweep, out, scene, run_of(found.reference(Path()) if found else sweep.case)
+        )
     echo(f"wrote {out}: open it in a browser")
 
 

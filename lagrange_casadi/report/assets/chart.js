@@ -47,7 +47,10 @@ class Chart {
     this.fields = units.map((unit, k) => {
       const top = FIELD.top + k * (high + FIELD.between);
       const own = this.curves.filter((curve) => curve.unit === unit);
-      const up = scaled(endsOf(own.map((curve) => curve.values), true), [top + high, top], unit, "", 0.06);
+      const ends = endsOf(own.map((curve) => curve.values), true);
+      // The rounding of nothing is drawn as nothing.
+      const nothing = Math.max(-ends[0], ends[1]) <= UNSEEN * (sizesOfUnits().get(unit) ?? 0);
+      const up = scaled(nothing ? [0, 0] : ends, [top + high, top], unit, "", 0.06);
       return { up, own, top, bottom: top + high, lines: own.map((curve) => this.line(curve, up)) };
     });
     this.sheet.fill(

@@ -4,8 +4,32 @@ const designs = { count: contents.designs.shown, numbers: array(contents.designs
 const columns = [...contents.parameters, ...contents.columns].map((one) => ({ ...one, values: array(one.values) }));
 const columnOf = new Map(columns.map((one) => [one.name, one]));
 const status = array(contents.designs.status);
+for (const one of columns) one.range = rangeOfColumn(one);
+for (const one of columns) one.nothing = one.range[2] <= UNSEEN * Math.max(...columns.filter((other) => other.unit === one.unit).map((other) => other.range[2]));
+const varying = columns.filter(varies);
 
 const picked = { row: -1, where: "", met: null, watchers: new Set() };
+
+/** The least, the largest, and the largest in size, of what a column is compared by, over designs with a result. */
+function rangeOfColumn(column) {
+  let [low, high] = [Infinity, -Infinity];
+  for (let row = 0; row < designs.count; row += 1) {
+    const value = status[row] === 0 ? costOf(column, row) : NaN;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return low <= high ? [low, high, Math.max(Math.abs(low), Math.abs(high))] : [0, 0, 0];
+}
+
+/** The part of its size by which a column varies. */
+function variation({ range: [low, high, size], nothing }) {
+  return nothing || !size ? 0 : (high - low) / size;
+}
+
+/** Whether a column is not the same, or nothing, for all designs. */
+function varies(column) {
+  return variation(column) > 1e-9;
+}
 
 /** What a column is compared by: peaks by their size. */
 function costOf(column, row) {
@@ -72,7 +96,8 @@ function designWords(row) {
 
 /** What a column of a design is, in words. */
 function columnWords(column, row) {
-  return Number.isNaN(column.values[row]) ? "–" : shown(column.values[row], column.unit, 5);
+  const value = column.values[row];
+  return Number.isNaN(value) ? "–" : shown(column.nothing ? 0 : value, column.unit, 5);
 }
 
 filter("");

@@ -2,6 +2,8 @@
 
 const MOST_ROWS = 300; // Of the table at once.
 
+const TALLEST = 4000; // Points that the mechanism in motion may take, with what is largest in its links.
+
 function buildSweep() {
   const root = document.getElementById("report");
   const looked = element("section", { class: "left looked-at" });
@@ -20,7 +22,7 @@ function buildSweep() {
     renew();
   }).observe(cards);
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", renew);
-  const [first, second] = contents.pair.map((name) => columnOf.get(name));
+  const [first, second] = pair;
   pick(first ? frontOf(first, second ?? first)[0] ?? 0 : 0);
 }
 
@@ -42,7 +44,7 @@ function conditionBar() {
   const wrong = element("output", { class: "alarm" });
   const count = element("output", {});
   const tell = () => (count.textContent = `${picked.met.length} of ${designs.count} designs`);
-  const field = element("input", { type: "search", placeholder: `conditions, as ${contents.parameters[0].name}<0.3, ${contents.pair[0] ?? contents.parameters[0].name}<=12`, "aria-label": "Conditions", input: () => {
+  const field = element("input", { type: "search", placeholder: `conditions, as ${contents.parameters[0].name}<0.3, ${pair[0]?.name ?? contents.parameters[0].name}<=12`, "aria-label": "Conditions", input: () => {
     wrong.textContent = filter(field.value);
   } });
   picked.watchers.add(tell);
@@ -67,11 +69,25 @@ function plotCard(title, choices, make) {
   return { body, draw };
 }
 
-const columnEntries = () => columns.map((one) => [one.name, one.title]);
+const columnEntries = () => (varying.length ? varying : columns).map((one) => [one.name, one.title]);
+
+/** The columns that vary, peaks first, those that vary most before others. */
+const ranked = varying.filter((one) => !contents.parameters.some(({ name }) => name === one.name)).sort((a, b) => b.sized - a.sized || variation(b) - variation(a));
+
+/** The two columns of the front: the usual ones, or in the place of one that is the same for all designs another. */
+const pair = [...contents.pair.map((name) => columnOf.get(name)).filter(varies), ...ranked].filter((one, k, all) => all.indexOf(one) === k).slice(0, contents.pair.length);
+
+/** What is the same in all designs, in one line. */
+function sameLine() {
+  const same = columns.filter((one) => !varies(one));
+  if (!same.length || designs.count < 2) return null;
+  const first = status.indexOf(0);
+  return element("p", { class: "fine" }, `The same in all designs: ${same.map((one) => `${one.title} ${columnWords(one, Math.max(first, 0))}`).join("; ")}.`);
+}
 
 function mapCards() {
   const names = contents.varied;
-  const column = columnOf.get(contents.pair[1] ?? contents.pair[0] ?? contents.columns[0]?.name);
+  const column = ranked[0] ?? columnOf.get(contents.columns[0]?.name);
   if (!column || !names.length) return [];
   if (names.length === 1) {
     const state = { column };
@@ -91,8 +107,8 @@ function mapCards() {
 }
 
 function frontCard() {
-  if (!contents.pair.length) return null;
-  const state = { x: columnOf.get(contents.pair[0]), y: columnOf.get(contents.pair[1] ?? contents.parameters[0].name) };
+  if (!pair.length) return null;
+  const state = { x: pair[0], y: pair[1] ?? columnOf.get(contents.parameters[0].name) };
   const choose = (what, words, renew) => chooser(words, columnEntries(), state[what].name, (name) => {
     state[what] = columnOf.get(name);
     renew();
@@ -102,14 +118,14 @@ function frontCard() {
 
 /** The table of designs that meet the conditions. */
 function designTable() {
-  const first = [...contents.parameters.map((one) => one.name), ...contents.pair.filter((name) => !contents.parameters.some((one) => one.name === name))];
-  const chosen = [...new Set([...first, ...contents.columns.map((one) => one.name)])].slice(0, 9).map((name) => columnOf.get(name));
+  const parameters = varying.filter((one) => contents.parameters.some(({ name }) => name === one.name));
+  const chosen = [...new Set([...parameters, ...pair, ...varying])].slice(0, 9);
   const heads = [["design", (row) => String(designs.numbers[row.at]), (row) => designs.numbers[row.at]],
     // A long name may go on in the next line, behind a colon.
     ...chosen.map((one) => [one.title.replaceAll(":", ":\u200b"), (row) => (status[row.at] ? "–" : columnWords(one, row.at)), (row) => costOf(one, row.at)]),
     ["result", (row) => (status[row.at] ? contents.statuses[status[row.at]] : "ok")]];
   const plain = [["design", (row) => designs.numbers[row.at]], ...columns.map((one) => [`${one.name} [${one.unit}]`, (row) => one.values[row.at]]), ["status", (row) => status[row.at]]];
-  const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), told: "Look at this design", plain, most: MOST_ROWS });
+  const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), told: "Look at this design", aside: sameLine(), plain, most: MOST_ROWS });
   table.body.classList.add("designs");
   let met = picked.met;
   picked.watchers.add(() => {
@@ -133,13 +149,17 @@ function lookedAt(body) {
   const frame = contents.frame && element("iframe", { sandbox: "allow-scripts allow-modals allow-downloads", title: "The mechanism of the design, in motion", srcdoc: contents.frame });
   const send = () => frame?.contentWindow?.postMessage({ design: Object.fromEntries(contents.parameters.map((one) => [one.name, columnOf.get(one.name).values[picked.row]])) }, "*");
   // The page within says when its engine is ready.
-  window.addEventListener("message", (event) => event.source === frame?.contentWindow && event.data === "alive" && send());
+  window.addEventListener("message", (event) => {
+    if (!frame || event.source !== frame.contentWindow) return;
+    if (event.data === "alive") send();
+    else if (event.data?.height > 0) frame.style.height = `${Math.min(event.data.height, TALLEST)}px`;
+  });
   body.append(frame || element("p", { class: "none" }, contents.note));
   const tell = () => {
     if (picked.row < 0) return;
     words.textContent = designWords(picked.row);
-    const told = status[picked.row] ? [["no result", contents.statuses[status[picked.row]]]] : contents.columns.filter((one) => one.name.startsWith("peak:")).map((one) => [one.title, columnWords(columnOf.get(one.name), picked.row)]);
-    list.replaceChildren(...told.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+    const told = status[picked.row] ? [["no result", contents.statuses[status[picked.row]]]] : varying.filter((one) => one.name.startsWith("peak:")).map((one) => [one.title, columnWords(one, picked.row)]);
+    list.replaceChildren(...told.map(([name, value]) => element("div", {}, element("dt", {}, name.replaceAll(":", ":\u200b")), element("dd", {}, value))));
     announce(words.textContent);
   };
   picked.watchers.add(tell);

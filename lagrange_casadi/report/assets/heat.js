@@ -6,6 +6,7 @@ function fieldOfForce(section, force) {
   const { values } = curveOf(alongInstants);
   return {
     link: section.link, what: force.what, unit: force.unit, signed: signed(force), xi: section.xi, where: "",
+    row: () => row,
     peak: () => (!row || row.open ? null : isNothing(row) ? { ...row.peak, value: 0 } : row.peak),
     column: (place, near) => (over ? nearest(values, place, near) : instantAt(place)),
     fill: (column, found, step) => (row && isNothing(row) ? found.fill(0) : sectionForces(section, force.name, column, found, step)),
@@ -82,7 +83,8 @@ class Heat {
   /** Tell the ends of the colours, and where the force is largest. */
   markEnds() {
     const { field, up } = this;
-    const peak = field.peak();
+    const row = field.row?.();
+    const peak = row && isNothing(row) ? null : field.peak();
     this.most = Math.abs(peak?.value ?? 0) || 1;
     const scale = scaleFor(field.unit, this.most);
     this.marks.replaceChildren(...this.key(scale, this.sheet.width - FIELD.right - 44, up), ...(peak ? this.peakMark(peak, scale) : []));
@@ -93,6 +95,8 @@ class Heat {
     const { field } = this;
     const peak = field.peak();
     if (!peak || !Number.isFinite(peak.value)) return [];
+    const row = field.row?.();
+    if (row && isNothing(row)) return [element("li", {}, "it is 0")];
     const words = `largest: ${shown(peak.value, field.unit)} at ξ/l = ${format(peak.xi, 3)}, ${whenOf(peak.t, peak.over)}${field.where ? `, ${field.where}` : ""}`;
     return [element("li", {}, element("button", { type: "button", class: "told-peak", title: "Show when and where", click: field.show }, words))];
   }

@@ -98,11 +98,12 @@ function glanceOf() {
   });
   const fill = () => tiles().forEach((row, k) => {
     const known = Number.isFinite(row.peak.value);
+    const nothing = known && isNothing(row);
     const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
     places[k].row = row;
     say(places[k].what, `Largest ${row.what.replace("resultant ", "")}`);
-    say(places[k].value, known ? shown(row.peak.value, row.unit, 4) : "–");
-    say(places[k].where, known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
+    say(places[k].value, known ? shown(nothing ? 0 : row.peak.value, row.unit, 4) : "–");
+    say(places[k].where, nothing ? "" : known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
   });
   fill();
   reading.watchers.add(fill);
@@ -125,15 +126,15 @@ function linksTable() {
   };
   const heads = columns.map((k) => element("th", { scope: "col" }, links.map(([, rows]) => rows[k]).find(Boolean).what.replace("resultant ", "")));
   const lines = links.map(([link, rows]) => element("tr", {}, element("th", { scope: "row" }, link), columns.map((k) => cellOf(rows[k]))));
-  const fill = () => cells.forEach(([row, value, when]) => {
+  const fill = (sizes = sizesOfUnits()) => cells.forEach(([row, value, when]) => {
     const { peak } = row;
-    const known = Number.isFinite(peak.value);
-    say(value, known ? shown(peak.value, row.unit, 4) : "–");
-    say(when, !known ? "" : over ? `${over.joint} = ${shown(peak.over, over.unit, 4)}` : whenOf(peak.t, null));
+    const known = Number.isFinite(peak.value) && !isNothing(row, sizes);
+    say(value, known ? shown(peak.value, row.unit, 4) : Number.isFinite(peak.value) ? shown(0, row.unit) : "–");
+    say(when, !known ? "" : over ? shown(peak.over, over.unit, 4) : whenOf(peak.t, null));
   });
   fill();
-  reading.watchers.add(fill);
-  return element("section", { class: "card links" }, element("header", {}, element("h3", {}, "Largest in each link")),
+  reading.watchers.add(() => fill());
+  return element("section", { class: "card links" }, element("header", {}, element("h3", {}, "Largest in each link"), over && element("span", { class: "fine" }, `with the ${over.unit === "rad" ? "angle" : "place"} of ${over.joint}`)),
     element("div", { class: "scroll" }, element("table", { "aria-label": "Largest in each link" }, element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "link"), heads)), element("tbody", {}, lines))));
 }
 

@@ -106,6 +106,12 @@ function listenToPage() {
     settle();
   });
   window.parent.postMessage("alive", "*");
+  // The page around this one has room for all that is largest in links.
+  const watcher = new ResizeObserver(() => {
+    const links = document.querySelector(".links") ?? document.querySelector(".left");
+    window.parent.postMessage({ height: Math.ceil(links.getBoundingClientRect().bottom + window.scrollY) + 12 }, "*");
+  });
+  for (const part of [document.querySelector(".left"), document.querySelector(".links")]) if (part) watcher.observe(part);
 }
 
 /** The command line that evaluates the design. */
@@ -167,8 +173,19 @@ function renewAll() {
   deck.stage.trace();
   player.renew();
   live.alarm.hidden = !why;
-  live.alarm.textContent = why ? `There is no such design: ${why}.` : "";
+  live.alarm.textContent = why ? `There is no such design: ${outOfRange().join("; ") || why}.` : "";
   for (const watcher of reading.watchers) watcher();
+}
+
+/** The parameters of the design that are out of their declared ranges, with these. */
+function outOfRange() {
+  const { values } = live.engine;
+  return contents.parameters.flatMap(({ name, unit, low, high }, k) => {
+    if ((low === null || values[k] >= low) && (high === null || values[k] <= high)) return [];
+    const [from, to] = [low, high].map((end) => (end === null ? "" : shown(end, unit)));
+    const range = !to ? `at least ${from}` : !from ? `at most ${to}` : `from ${from} to ${to}`;
+    return [`${name} = ${shown(values[k], unit)} is out of range; it must be ${range}`];
+  });
 }
 
 /** When a slider is let go: scales and the sheet fit what is shown now. */

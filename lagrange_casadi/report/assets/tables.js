@@ -1,8 +1,15 @@
 // The tables of a report, and what else is told in words.
 
-/** Whether a quantity is nothing but rounding. */
-function isNothing(row) {
-  return !row.open && Math.abs(row.peak.value) <= Math.max(2 * (row.error ?? 0), 0);
+/** The largest size of each unit. */
+function sizesOfUnits() {
+  const sizes = new Map();
+  for (const row of contents.rows) if (!row.open) sizes.set(row.unit, Math.max(sizes.get(row.unit) ?? 0, Math.abs(row.peak.value)));
+  return sizes;
+}
+
+/** Whether a quantity is nothing but rounding: by its error, or beside the largest of its unit. */
+function isNothing(row, sizes = sizesOfUnits()) {
+  return !row.open && Math.abs(row.peak.value) <= Math.max(2 * (row.error ?? 0), UNSEEN * sizes.get(row.unit));
 }
 
 const whatOf = (row) => row.what || row.part;
@@ -11,9 +18,9 @@ const KIND_WORDS = { effort: "effort", reaction: "joint", section: "link", outpu
 /** The two large tables: peaks, and what quantities are over the cycle. */
 function resultTables(show) {
   const state = { all: false, words: [] };
-  const nothing = contents.rows.filter(isNothing).length;
-  const rows = () =>
-    contents.rows.filter((row) => !row.open && (state.all || !isNothing(row)) && state.words.every((word) => `${row.name} ${row.what}`.toLowerCase().includes(word)));
+  const nothing = contents.rows.filter((row) => isNothing(row)).length;
+  const rows = (sizes = sizesOfUnits()) =>
+    contents.rows.filter((row) => !row.open && (state.all || !isNothing(row, sizes)) && state.words.every((word) => `${row.name} ${row.what}`.toLowerCase().includes(word)));
   const tables = [];
   const renew = () => tables.forEach((table) => table.fill());
   const find = element("input", { type: "search", placeholder: "find, as: rod bending", "aria-label": "Find a part or quantity", class: "find", title: "Find (/); Enter shows the first that is found", input: () => {
@@ -27,7 +34,12 @@ function resultTables(show) {
     state.all = event.target.checked;
     renew();
   } }), ` also what is zero (${nothing})`);
-  const value = (one, row) => (one === null || one === undefined ? "" : Number.isNaN(one) ? "–" : shown(one, row.unit, 6, Math.abs(row.peak.value)));
+  const value = (one, row) => {
+    if (one === null || one === undefined) return "";
+    const size = Math.abs(row.peak.value);
+    const rounding = (state.all && isNothing(row)) || Math.abs(one) <= Math.max(UNSEEN * size, row.error ?? 0);
+    return Number.isNaN(one) ? "–" : shown(rounding ? 0 : one, row.unit, 6, size);
+  };
   const when = (mark) => (mark && !Number.isNaN(mark.t) ? shown(mark.t, "s", 5, Math.max(Math.abs(instants.t[0]), Math.abs(instants.t.at(-1)))) : "");
   const names = [["name", (row) => row.name], ["part", (row) => row.part], ["quantity", whatOf], ["unit", (row) => row.unit]];
   const driveHead = over && [`${over.joint} [${over.unit}]`, (row) => row.peak.over];

@@ -150,6 +150,8 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
     file.attrs.update(conventions(meanings.table))
     file.attrs["parameters"] = json.dumps(dict(plan.values))
     file.attrs["columns"] = len(plan.columns)
+    if plan.case_file:
+        file.attrs["case_file"] = plan.case_file
 
 
 def _stream(

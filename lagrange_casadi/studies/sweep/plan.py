@@ -145,7 +145,7 @@ class Plan:
     defaults.
 
     ``graph`` is that of what is wanted, and ``description`` describes the mechanism with these
-    values.
+    values. ``case_file`` is the case that is swept, as it is found from the file.
     """
 
     program: Program
@@ -154,6 +154,7 @@ class Plan:
     values: Mapping[str, float]
     task: Task
     harvest: Harvest
+    case_file: str = ""
 
     @classmethod
     def of(

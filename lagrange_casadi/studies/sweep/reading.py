@@ -112,6 +112,18 @@ class Sweep:
         return str(self.identity["case"])
 
     @property
+    def case_file(self) -> Path | None:
+        """The file or folder of the case that was swept, or its name if it comes with the package;
+        None where the file does not say.
+        """
+        with self.opened() as file:
+            reference = str(file.attrs.get("case_file", ""))
+        if not reference or "\0" in reference:
+            return None
+        there = self.path.parent / reference
+        return there if there.exists() else Path(reference)
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """The lengths of the designs' axes, as far as they are selected."""
         return tuple(

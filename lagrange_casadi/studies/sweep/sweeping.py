@@ -7,6 +7,7 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -117,6 +118,8 @@ def sweep(
     plan = Plan.of(one, designs, request, keep, many=many)
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
+    if isinstance(scene, Case) and not keeper:
+        plan = replace(plan, case_file=scene.reference(target.parent))
     workforce = hired(workers, dask)
     seen = carry_out(
         plan, target, workforce, resume=resume, force=force, progress=progress or (lambda *_: None)
