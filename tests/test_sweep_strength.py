@@ -12,19 +12,19 @@ import pytest
 from click.testing import CliRunner
 from internals import (
     CRITERIA,
-    DesignEngine,
     EvaluationMethod,
-    FibreStresses,
     Histories,
+    LinkHistories,
+    Member,
     Plan,
     Request,
+    _scores,
     check_sweep,
     designs_of,
     factor,
-    factor_score,
     lacking,
     loaded,
-    worst,
+    use_score,
 )
 from internals import fatigue_used as used
 from strong import STEEL, press, robot, slider
@@ -90,11 +90,11 @@ def test_a_life_that_ends_between_the_places_that_are_looked_at():
     above 1, elsewhere below.
     """
     solution = evaluate(slider(50e6), wanted=["section:rod"], certificate=False, backend="vm")
-    _, place, _, swings = worst(
-        solution.stress("rod"), factor_score(STEEL.but(endurance=50e6), "goodman")
-    )
+    histories = LinkHistories.of(Member.of(solution, "rod"))
+    worst = histories.worst(use_score(STEEL.but(endurance=50e6)))
+    swings = loaded(histories.history(worst))
     k = int(np.argmax(used(swings.amplitude, swings.mean, STEEL.but(endurance=50e6))))
-    assert place.xi * 32 % 1.0 > 0.01
+    assert np.abs(histories.places(worst.part) - worst.x).min() > 1e-3
     scene = slider(
         float(swings.amplitude[k] / (1.0 - swings.mean[k] / STEEL.ultimate)) * (1.0 - 1e-7)
     )
@@ -154,7 +154,10 @@ def test_bounds_leave_out_no_swing():
         axes = ((0, 1), (0,), (1,))[trial % 3]
         shears[:, [axis for axis in (0, 1) if axis not in axes]] = 0.0
         material = STEEL.but(endurance=200e6 if trial % 2 else 600e6)
-        found = Histories(normal, shears[:, list(axes)], sheared, axes).utilisation(material)[0]
+        histories = Histories(normal, shears[:, list(axes)], sheared, axes)
+        best = [()]
+        _scores(histories, use_score(material), np.zeros(1, int), best)
+        ((found,),) = best
         every = []
         for k in range(6):
             own = shears[0, :, list(sheared).index(k)] if k in sheared else np.zeros((2, 30))
@@ -164,23 +167,13 @@ def test_bounds_leave_out_no_swing():
 
 
 def at_once(scene, link):
-    """Utilisation against fatigue of a link of one design as sweeps tell it of many, and as its
-    solution does.
+    """Utilisation against fatigue of a link of one design as sweeps tell it, and as its solution
+    does.
     """
-    engine, mechanism = DesignEngine.of(scene, method=EvaluationMethod("vm")), scene.mechanism
-    p = np.array([list(mechanism.values().values())])
-    names, own = {name: k for k, name in enumerate(engine.columns)}, mechanism.links[link]
-    fatigue = FibreStresses.of(
-        engine.program.data, link, [output for output in engine.outputs if output.along]
-    )
-    members = engine.evaluate(p, histories=True).series[
-        :, [names[str(member)] for member in fatigue.members]
-    ]
-    assert fatigue.stands(members).all()
-    (found,) = fatigue.histories(members, p).utilisation(own.beam.material)
-    return found, 1.0 / evaluate(scene, backend="vm", certificate=False).safety(link).against(
-        "fatigue"
-    )
+    (name, value), *_ = scene.mechanism.values().items()
+    found = sweep(scene, {name: [value]}, wanted=[f"safety:{link}"], backend="vm")
+    solution = evaluate(scene, backend="vm", certificate=False)
+    return 1.0 / found[f"least:fatigue:{link}"][0], 1.0 / solution.safety(link).against("fatigue")
 
 
 @pytest.mark.parametrize("law", [harmonic(0.2, 0.6, 2.0), polynomial(0.3)], ids=["swings", "rests"])
