@@ -120,7 +120,7 @@ class FibrePart(Graphs):
     span: ca.Function
     notch: Notch | None
 
-    @property
+    @cached_property
     def plain(self) -> npt.NDArray[np.intp]:
         """The fibres that have normal stress alone."""
         return np.setdiff1d(np.arange(len(self.fibres)), self.sheared)
@@ -130,24 +130,47 @@ class FibrePart(Graphs):
         """Number of stresses at a place."""
         return len(self.fibres) + len(self.axes) * self.sheared.size
 
-    def at(self, members: Array, numbers: Array, x: Array, *, still: bool = True) -> Array:
+    def at(
+        self,
+        members: Array,
+        numbers: Array,
+        x: Array,
+        *,
+        still: bool = True,
+        chosen: Array | None = None,
+    ) -> Array:
         """The stresses (n, places, stresses, t) of n designs, whose members are (n, members, t) and
-        numbers (n, numbers), at places ``x`` (n, places).
+        numbers (n, numbers), at places ``x`` (n, places): all, or those ``chosen`` (n, some).
 
         Where loads do not stand ``still``, each instant has its own rows.
         """
         n, k, t = members.shape
         if still:
-            rows = self._matrices(members[:, :, 0], numbers, x).reshape(n, -1, k)
-            found = np.asarray(np.matmul(rows, members))
-            return found.reshape(n, x.shape[1], self.count, t)
+            rows = self._matrices(members[:, :, 0], numbers, x).reshape(n, -1, self.count, k)
+            if chosen is not None:
+                rows = np.take_along_axis(rows, chosen[:, None, :, None], axis=2)
+            found = np.asarray(np.matmul(rows.reshape(n, -1, k), np.ascontiguousarray(members)))
+            return found.reshape(n, x.shape[1], -1, t)
         found = np.empty((n, self.count, x.shape[1], t))
         for i in range(n):
             given = [[*members[i]], [*numbers[i]], [x[i][:, None]]]
             (values,) = interpret(self.stresses, given, numpy_arithmetic())
             for row, value in zip(found[i], values, strict=True):
                 row[:] = value
-        return np.asarray(np.moveaxis(found, 1, 2))
+        every = np.moveaxis(found, 1, 2)
+        if chosen is not None:
+            every = np.take_along_axis(every, chosen[:, None, :, None], axis=2)
+        return np.asarray(every)
+
+    def stresses_of(self, fibres: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+        """The numbers of the stresses of fibres (n,), which are all sheared, or all not: (n,
+        stresses).
+        """
+        first, column = len(self.fibres), np.searchsorted(self.sheared, fibres)
+        sheared = self.sheared.size and fibres[0] in self.sheared
+        axes = range(len(self.axes)) if sheared else ()
+        rows = [fibres, *(first + k * self.sheared.size + column for k in axes)]
+        return np.stack(rows, axis=1)
 
     def ends(self, members: Array, numbers: Array) -> tuple[Array, Array]:
         """Where the part begins, and its width, of designs: each (n,)."""

@@ -170,8 +170,7 @@ def loaded(values: Array) -> Loaded:
     """The swings of a history of stresses (3, t), normal and shear along y and z, which repeats for
     ever.
     """
-    vector = values * np.array([1.0, math.sqrt(3.0), math.sqrt(3.0)])[:, None]
-    first, last = _farthest(vector)
+    vector, (first, last) = values * _VON_MISES, widest(values)
     along = vector[:, last] - vector[:, first]
     size = float(np.linalg.norm(along))
     stress_cycles = rainflow(along @ vector / size, repeating=True) if size else []
@@ -182,6 +181,14 @@ def loaded(values: Array) -> Loaded:
     a, b = (values[:, list(side)] for side in zip(*pairs, strict=True))
     amplitude, mean = (np.sqrt(square) for square in cycle_squares(a, b))
     return Loaded(amplitude, mean, np.array(counts), pairs)
+
+
+def widest(values: Array) -> tuple[int, int]:
+    """The two instants between which stresses (3, t) differ most, by von Mises."""
+    return _farthest(values * _VON_MISES)
+
+
+_VON_MISES = np.array([[1.0], [math.sqrt(3.0)], [math.sqrt(3.0)]])
 
 
 def cycle_squares(first: Operand, last: Operand) -> tuple[Operand, Operand]:
@@ -258,21 +265,6 @@ class Histories:
         many = count - len(axes) * sheared.size
         shears = values[:, many:].reshape(n, len(axes), sheared.size, t)
         return cls(values[:, :many], shears, sheared, axes)
-
-    @property
-    def plain(self) -> npt.NDArray[np.intp]:
-        """The places that have normal stress alone."""
-        return np.setdiff1d(np.arange(self.normal.shape[1]), self.sheared)
-
-    def of_fibres(self, chosen: npt.NDArray[np.intp]) -> Histories:
-        """The same of one place of each design (n,): places that are all sheared, or all not."""
-        rows, column = np.arange(chosen.size), np.searchsorted(self.sheared, chosen)
-        normal = self.normal[rows, chosen][:, None]
-        if not np.isin(chosen, self.sheared).all():
-            return Histories(normal, self.shears[:, :, :0], self.sheared[:0], self.axes)
-        return Histories(
-            normal, self.shears[rows, :, column][:, :, None], np.zeros(1, np.intp), self.axes
-        )
 
     def at(self, design: int, place: int) -> Array:
         """The stresses of a design at a place: (3, t)."""

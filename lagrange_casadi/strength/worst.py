@@ -9,6 +9,8 @@ places are looked at from both sides.
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -20,17 +22,21 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from ..equations.fibre_stresses import FibrePart, FibreStresses, numbers_of
 from ..equations.strength import followed, places_along
-from .fatigue import Histories, Score
+from .fatigue import Histories, Score, widest
 from .member import Member
 
-_BESIDE = 0.95
-"""Fraction of the largest score for which a local maximum may be the largest."""
+_MISSED = 0.02
+"""Fraction of a score by which its local maximum is above it at the places that are looked at, at
+most where these do not tell.
+"""
 
 _FINER, _TRAVELLING = 2, 8
 """Factors of the number of places of a part: where loads stand still, and where one travels."""
 
 _LARGE = 700.0
 """Logarithm of a number that is large, and of which there are squares."""
+
+_HUGE = 1e300
 
 _PASSED, _ASIDE = 200, 2e-6
 """Number of places that a load passes, of which each is looked at at least, and how far to their
@@ -46,9 +52,9 @@ class Maximum:
     """Local maximum of a score along a fibre, at a place ``x`` from 0 to 1 of a part of a link."""
 
     value: tuple[float, ...]
+    x: float
     part: FibrePart
     fibre: int
-    x: float
 
     @property
     def name(self) -> str:
@@ -103,19 +109,27 @@ class LinkHistories:
         low, width = maximum.part.ends(self.members[:1], self.numbers[:1])
         return float(low[0] + width[0] * maximum.x)
 
-    def at(self, part: FibrePart, x: Array) -> Histories:
-        """The stresses at places (n, places) of a part, one design after another."""
-        values = part.at(self.members, self.numbers, x, still=self.still)
-        return Histories.of(values.reshape(-1, *values.shape[2:]), part.sheared, part.axes)
+    def at(
+        self, part: FibrePart, x: Array, fibres: npt.NDArray[np.intp] | None = None
+    ) -> Histories:
+        """The stresses at places (n, places) of a part, one design after another; of all fibres, or
+        of one in each design, which are all sheared or all not.
+        """
+        chosen = None if fibres is None else part.stresses_of(fibres)
+        values = part.at(self.members, self.numbers, x, still=self.still, chosen=chosen)
+        values, sheared = values.reshape(-1, *values.shape[2:]), part.sheared
+        if chosen is not None:
+            sheared = np.arange(min(1, chosen.shape[1] - 1))
+        return Histories.of(values, sheared, part.axes)
 
     def history(self, maximum: Maximum) -> Array:
         """The stresses (3, t) of the first design at a place."""
         first = replace(self, members=self.members[:1], numbers=self.numbers[:1])
         return first.at(maximum.part, np.array([[maximum.x]])).at(0, maximum.fibre)
 
-    def maxima(self, score: Score, beside: float = _BESIDE) -> Iterator[list[Maximum]]:
-        """The local maxima of each design, the largest first, down to a fraction ``beside`` of
-        it.
+    def maxima(self, score: Score, beside: float = 1.0) -> Iterator[list[Maximum]]:
+        """The local maxima of each design that may be the largest, which comes first; also those
+        down to a fraction ``beside`` of it.
         """
         many = self._many if self.still else 1
         for start in range(0, len(self.members), many):
@@ -135,28 +149,30 @@ class LinkHistories:
 
     def _maxima(self, score: Score, beside: float) -> list[list[Maximum]]:
         best: list[tuple[float, ...]] = [()] * len(self.members)
-        sampled = [self._sampled(part, score, best) for part in self.parts]
+        sampled = [self._bounds(part, score) for part in self.parts]
+        if score.exact:
+            for part, values in zip(self.parts, sampled, strict=True):
+                most = values[:, :, part.plain, 0].max(axis=(1, 2), initial=-np.inf).tolist()
+                best[:] = [max(one, (value,)) for one, value in zip(best, most, strict=True)]
+        self._count(sampled, score, best)
         found: list[list[Maximum]] = [[] for _ in best]
         least = np.array([beside * value[-1] for value in best])
-        for part, values in zip(self.parts, sampled, strict=True):
-            size = values[..., -1]
-            edge = np.full_like(size[:, :1], -np.inf)
-            higher = (size > np.concatenate([edge, size[:, :-1]], axis=1)) & (
-                size >= np.concatenate([size[:, 1:], edge], axis=1)
-            )
-            near = higher & (size >= least[:, None, None])
-            for fibres in (part.plain, part.sheared):
-                designs, places, index = np.nonzero(near[:, :, fibres])
-                if designs.size:
-                    maxima = _Followed(
-                        self.of_designs(designs),
-                        part,
-                        fibres[index],
-                        score,
-                        [best[i] for i in designs],
-                    ).maxima(values[designs, places, fibres[index]], self.places(part)[places])
-                    for i, maximum in zip(designs.tolist(), maxima, strict=True):
-                        found[i].append(maximum)
+        # Those with normal stress alone cost less to follow, and leave out others.
+        for sheared, (part, values) in itertools.product(
+            (False, True), zip(self.parts, sampled, strict=True)
+        ):
+            fibres = part.sheared if sheared else part.plain
+            size = values[:, :, fibres, -1]
+            higher = _summits(size) & (_promised(size) >= least[:, None, None])
+            designs, places, index = np.nonzero(higher)
+            if designs.size:
+                some = self.of_designs(designs)
+                maxima = _Followed(some, part, fibres[index], score).maxima(
+                    values[designs, places, fibres[index]], self.places(part)[places]
+                )
+                for i, maximum in zip(designs.tolist(), maxima, strict=True):
+                    found[i].append(maximum)
+                    best[i] = max(best[i], maximum.value)
         return [sorted(one, key=lambda maximum: maximum.value, reverse=True) for one in found]
 
     def _wide(self, part: FibrePart) -> npt.NDArray[np.bool_]:
@@ -170,87 +186,133 @@ class LinkHistories:
         """The same of some of the designs."""
         return replace(self, members=self.members[designs], numbers=self.numbers[designs])
 
-    def _sampled(self, part: FibrePart, score: Score, best: list[tuple[float, ...]]) -> Array:
-        """Scores (n, places, fibres, numbers) of a part, lower than any where they cannot be above
-        ``best``, which they raise.
-        """
+    def _bounds(self, part: FibrePart, score: Score) -> Array:
+        """Bounds on scores (n, places, fibres, numbers) of a part."""
         (n, _, t), places = self.members.shape, self.places(part)
         there = np.flatnonzero(self._wide(part))
         some, found = self.of_designs(there), list[Array]()
         step = max(1, _NUMBERS // (n * part.count * t))
         for start in range(0, places.size, step):
             x = np.tile(places[start : start + step], (there.size, 1))
-            designs = np.repeat(there, x.shape[1])
-            values, counted = _scores(some.at(part, x), score, designs, best)
-            values[~counted] = -np.inf
+            values = score.bound(some.at(part, x))
             found.append(values.reshape(*x.shape, *values.shape[1:]))
         values = np.concatenate(found, axis=1)
         every = np.full((n, *values.shape[1:]), -np.inf)
         every[there] = values
         return every
 
+    def _count(self, sampled: list[Array], score: Score, best: list[tuple[float, ...]]) -> None:
+        """Put scores in the place of bounds that are above the ``best`` of a design, which they
+        raise, from the largest on; and in that of others less than any.
+        """
+        found: list[tuple[tuple[float, ...], int, int, int, int]] = []
+        for number, (part, values) in enumerate(zip(self.parts, sampled, strict=True)):
+            least = np.array([value[0] if value else -np.inf for value in best])
+            for fibre in part.sheared if score.exact else range(len(part.fibres)):
+                own = values[:, :, fibre]
+                for i, j in np.argwhere(own[..., 0] >= least[:, None]).tolist():
+                    found.append((tuple(own[i, j].tolist()), number, i, j, int(fibre)))
+                own[own[..., 0] < least[:, None]] = -np.inf
+        for bound, number, i, j, fibre in sorted(found, reverse=True):
+            part, value = self.parts[number], (-math.inf,) * len(bound)
+            if bound > best[i]:
+                place = self.places(part)[j : j + 1, None]
+                one = self.of_designs(np.array([i])).at(part, place, np.array([fibre]))
+                value = score.of(one.at(0, 0))
+                best[i] = max(best[i], value)
+            sampled[number][i, j, fibre] = value
 
-def _scores(
-    histories: Histories,
-    score: Score,
-    designs: npt.NDArray[np.intp],
-    best: list[tuple[float, ...]],
-) -> tuple[Array, npt.NDArray[np.bool_]]:
-    """Scores (n, fibres, numbers) of histories, each of one of some designs, and which of them are
-    no mere bounds: where they can be above the ``best`` of a design, which they raise.
+
+def _beside(sizes: Array) -> tuple[Array, Array]:
+    """Neighbours of sizes (n, places, fibres), lower than any beyond the ends."""
+    edge = np.full_like(sizes[:, :1], -np.inf)
+    return (
+        np.concatenate([edge, sizes[:, :-1]], axis=1),
+        np.concatenate([sizes[:, 1:], edge], axis=1),
+    )
+
+
+def _summits(sizes: Array) -> npt.NDArray[np.bool_]:
+    """Find sizes (n, places, fibres) that are not below their neighbours; of equals the first."""
+    before, after = _beside(sizes)
+    return np.asarray((sizes > before) & (sizes >= after))
+
+
+def _promised(sizes: Array) -> Array:
+    """How high local maxima are at most, by twice what a parabola through neighbours is above them,
+    or as told by :data:`_MISSED`.
     """
-    found = score.bound(histories)
-    counted = np.zeros(found.shape[:2], bool)
-    if score.exact:
-        counted[:, histories.plain] = True
-        most = np.full(len(best), -np.inf)
-        np.maximum.at(most, designs, np.where(counted, found[..., 0], -np.inf).max(axis=1))
-        best[:] = [max(one, (value,)) for one, value in zip(best, most.tolist(), strict=True)]
-    rows, fibres = np.nonzero(~counted)
-    order = np.lexsort(found[rows, fibres].T[::-1])[::-1]
-    for row, fibre in zip(rows[order].tolist(), fibres[order].tolist(), strict=True):
-        i = int(designs[row])
-        if not best[i] or tuple(found[row, fibre].tolist()) > best[i]:
-            value = score.of(histories.at(row, fibre))
-            found[row, fibre], counted[row, fibre] = value, True
-            best[i] = max(best[i], value)
-    return found, counted
+    before, after = _beside(sizes)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        gain = (after - before) ** 2 / (8.0 * (2.0 * sizes - before - after))
+    sizes = np.maximum(sizes, -_HUGE)
+    most = _MISSED * np.abs(sizes)
+    return sizes + np.where(np.isfinite(gain), np.minimum(2.0 * gain, most), most)
 
 
 @dataclass(frozen=True, eq=False)
 class _Followed:
-    """Local maxima of a part, one of a fibre in each of ``histories``, that are followed."""
+    """Local maxima of a part, one of a fibre in each of ``histories``, that are followed.
+
+    The widest swing goes between two instants. These are kept while the place moves; all are
+    counted where the swing is largest.
+    """
 
     histories: LinkHistories
     part: FibrePart
     fibres: npt.NDArray[np.intp]
     score: Score
-    best: list[tuple[float, ...]]
 
     def maxima(self, values: Array, places: Array) -> list[Maximum]:
         """The maxima, from ``values`` (n, numbers) at ``places`` on."""
-        part, rows = self.part, np.arange(len(values))
-        found = [
-            Maximum(tuple(value), part, fibre, x)
-            for value, fibre, x in zip(
-                values.tolist(), self.fibres.tolist(), places.tolist(), strict=True
-            )
-        ]
-        wears = values[:, 0] > 0.0
-
-        def guide(x: Array) -> Array:
-            chosen = self.histories.at(part, x[:, None]).of_fibres(self.fibres)
-            numbers, counted = _scores(chosen, self.score, rows, self.best)
-            for k in np.flatnonzero(counted[:, 0]).tolist():
-                if (value := tuple(numbers[k, 0].tolist())) > found[k].value:
-                    found[k] = replace(found[k], value=value, x=float(x[k]))
-            if numbers.shape[2] == 1:
-                return numbers[:, 0, 0]
-            with np.errstate(divide="ignore"):
-                sizes = np.log(np.where(wears, numbers[:, 0, 0], numbers[:, 0, -1]))
-            return np.clip(sizes, -_LARGE, _LARGE)
-
+        found, part = places.copy(), self.part
         if part.notch is None:
+            swings, most = self._swings(places), np.full(len(places), -np.inf)
+            wears = values[:, 0] > 0.0
+
+            def guide(x: Array) -> Array:
+                sizes = self._guide(swings, x, wears)
+                better = sizes > most
+                found[better], most[better] = x[better], sizes[better]
+                return sizes
+
             with np.errstate(invalid="ignore"):
                 followed(guide, places, 1.0 / (2 * (self.histories.places(part).size - 1)))
-        return found
+        there = self._values(self.histories, found)
+        return [
+            Maximum(*max((tuple(old), x), (tuple(new), y)), part, fibre)
+            for old, x, new, y, fibre in zip(
+                values.tolist(),
+                places.tolist(),
+                there.tolist(),
+                found.tolist(),
+                self.fibres.tolist(),
+                strict=True,
+            )
+        ]
+
+    def _swings(self, places: Array) -> LinkHistories:
+        """The histories at the two instants of the widest swing at each place alone."""
+        members, chosen = self.histories.members, self._at(self.histories, places)
+        ends = [list(widest(chosen.at(k, 0))) for k in range(len(members))]
+        pairs = [one[:, pair] for one, pair in zip(members, ends, strict=True)]
+        return replace(self.histories, members=np.array(pairs))
+
+    def _guide(self, swings: LinkHistories, x: Array, wears: npt.NDArray[np.bool_]) -> Array:
+        """How bad swings are at places: by damage where a place wears, else by size."""
+        numbers = self._values(swings, x)
+        if numbers.shape[1] == 1:
+            return np.asarray(numbers[:, 0])
+        with np.errstate(divide="ignore"):
+            sizes = np.log(np.where(wears, numbers[:, 0], numbers[:, -1]))
+        return np.asarray(np.clip(sizes, -_LARGE, _LARGE))
+
+    def _at(self, histories: LinkHistories, x: Array) -> Histories:
+        return histories.at(self.part, x[:, None], self.fibres)
+
+    def _values(self, histories: LinkHistories, x: Array) -> Array:
+        """Scores (n, numbers) at places."""
+        chosen = self._at(histories, x)
+        if self.score.exact and not chosen.sheared.size:
+            return np.asarray(self.score.bound(chosen)[:, 0])
+        return np.array([self.score.of(chosen.at(k, 0)) for k in range(len(x))])
