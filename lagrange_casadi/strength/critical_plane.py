@@ -104,7 +104,10 @@ def plane_score(share: float = DUCTILE) -> Score:
         most = np.sqrt(wide) / 4 + share * np.maximum(principal.max(axis=2), 0.0)
         return np.asarray(most * ROUNDED)[..., None]
 
-    return Score(lambda values: (critical_plane(values, share).value(share),), bound)
+    def of(values: Array) -> tuple[float]:
+        return (critical_plane(values, share).value(share),)
+
+    return Score(of, bound, lambda amplitude, mean: amplitude + share * mean)
 
 
 def _best(

@@ -326,11 +326,13 @@ class Score:
     equals the next of its numbers decides.
 
     ``bound`` has for every place of designs numbers that it is not above, (n, places, numbers).
-    Where it is ``exact`` it is the score of fibres that have normal stress alone.
+    Where it is ``exact`` it is the score of fibres that have normal stress alone. ``swing`` tells
+    how bad a swing is by its amplitude and its mean.
     """
 
     of: Callable[[Array], tuple[float, ...]]
     bound: Callable[[Histories], Array]
+    swing: Callable[[Array, Array], Operand]
     exact: bool = False
 
 
@@ -349,7 +351,10 @@ def use_score(material: Material, criterion: str = "goodman") -> Score:
         most = used(*histories.widest(), material, criterion)
         return np.asarray(most * ROUNDED)[..., None]
 
-    return Score(of, bound, exact=goodman)
+    def swing(amplitude: Array, mean: Array) -> Operand:
+        return used(amplitude, mean, material, criterion)
+
+    return Score(of, bound, swing, exact=goodman)
 
 
 def damage_score(material: Material, criterion: str = "goodman") -> Score:
@@ -372,4 +377,7 @@ def damage_score(material: Material, criterion: str = "goodman") -> Score:
         with np.errstate(divide="ignore"):
             return np.stack([many / cycles(sizes, material), sizes], axis=-1)
 
-    return Score(of, bound)
+    def swing(amplitude: Array, mean: Array) -> Operand:
+        return used(amplitude, mean, material, criterion)
+
+    return Score(of, bound, swing)

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from ..equations.fibre_stresses import FibrePart, FibreStresses, numbers_of
 from ..equations.strength import followed, places_along
-from .fatigue import Histories, Score, widest
+from .fatigue import Histories, Score, cycle_squares, widest
 from .member import Member
 
 _MISSED = 0.02
@@ -30,11 +30,9 @@ _MISSED = 0.02
 most where these do not tell.
 """
 
-_FINER, _TRAVELLING = 2, 8
-"""Factors of the number of places of a part: where loads stand still, and where one travels."""
-
-_LARGE = 700.0
-"""Logarithm of a number that is large, and of which there are squares."""
+_LEAST, _TRAVELLING = 8, 8
+"""Degree for which parts have places at least, and the factor of their number where a load travels.
+"""
 
 _HUGE = 1e300
 
@@ -42,6 +40,9 @@ _PASSED, _ASIDE = 200, 2e-6
 """Number of places that a load passes, of which each is looked at at least, and how far to their
 sides.
 """
+
+_MANY = 16
+"""Number of designs that are looked at together."""
 
 _NUMBERS = 1 << 19
 """Stresses that are at hand at once: so many stay in the memory next to a processor."""
@@ -96,7 +97,7 @@ class LinkHistories:
         if part.notch:
             return np.zeros(1)
         if self.still:
-            return np.array(places_along(part.degree, _FINER))
+            return np.array(places_along(max(_LEAST, part.degree)))
         (low,), (width,) = part.ends(self.members[:1], self.numbers[:1])
         passed = np.unique(self.members[0, self.stresses.places])
         passed = passed[:: 1 + passed.size // _PASSED, None] + np.array([-_ASIDE, _ASIDE])
@@ -131,17 +132,11 @@ class LinkHistories:
         """The local maxima of each design that may be the largest, which comes first; also those
         down to a fraction ``beside`` of it.
         """
-        many = self._many if self.still else 1
+        many = _MANY if self.still else 1
         for start in range(0, len(self.members), many):
             few = slice(start, start + many)
             some = replace(self, members=self.members[few], numbers=self.numbers[few])
             yield from some._maxima(score, beside)
-
-    @property
-    def _many(self) -> int:
-        """Number of designs that are looked at together."""
-        largest = max(part.count * self.places(part).size for part in self.parts)
-        return max(1, _NUMBERS // (largest * self.members.shape[2]))
 
     def worst(self, score: Score) -> Maximum:
         """The largest of the first design."""
@@ -268,10 +263,9 @@ class _Followed:
         found, part = places.copy(), self.part
         if part.notch is None:
             swings, most = self._swings(places), np.full(len(places), -np.inf)
-            wears = values[:, 0] > 0.0
 
             def guide(x: Array) -> Array:
-                sizes = self._guide(swings, x, wears)
+                sizes = self._guide(swings, x)
                 better = sizes > most
                 found[better], most[better] = x[better], sizes[better]
                 return sizes
@@ -298,14 +292,15 @@ class _Followed:
         pairs = [one[:, pair] for one, pair in zip(members, ends, strict=True)]
         return replace(self.histories, members=np.array(pairs))
 
-    def _guide(self, swings: LinkHistories, x: Array, wears: npt.NDArray[np.bool_]) -> Array:
-        """How bad swings are at places: by damage where a place wears, else by size."""
-        numbers = self._values(swings, x)
-        if numbers.shape[1] == 1:
-            return np.asarray(numbers[:, 0])
-        with np.errstate(divide="ignore"):
-            sizes = np.log(np.where(wears, numbers[:, 0], numbers[:, -1]))
-        return np.asarray(np.clip(sizes, -_LARGE, _LARGE))
+    def _guide(self, swings: LinkHistories, x: Array) -> Array:
+        """How bad swings are at places."""
+        chosen = self._at(swings, x)
+        values = np.zeros((3, len(x), 2))
+        values[0] = chosen.normal[:, 0]
+        if chosen.sheared.size:
+            values[[1 + axis for axis in chosen.axes]] = np.moveaxis(chosen.shears[:, :, 0], 1, 0)
+        amplitude, mean = cycle_squares(values[..., 0], values[..., 1])
+        return np.asarray(self.score.swing(np.sqrt(amplitude), np.sqrt(mean)))
 
     def _at(self, histories: LinkHistories, x: Array) -> Histories:
         return histories.at(self.part, x[:, None], self.fibres)
