@@ -163,9 +163,9 @@ class NumberError(DeclarationError, ValueError):
 
 
 class PostureError(DeclarationError):
-    """A posture that leaves open how loops are assembled.
+    """A posture that does not determine how loops are assembled.
 
-    ``ways`` are those of each loop that may be closed in several, as entries of a posture;
+    ``assembly_modes`` are those of each loop that has several, as entries of a posture;
     ``lacking`` tells whether others need rough values to be iterated from. ``scene`` is what it was
     tried with, where that is known.
     """
@@ -173,16 +173,16 @@ class PostureError(DeclarationError):
     def __init__(
         self,
         message: str,
-        ways: Sequence[tuple[Mapping[str, float], ...]] = (),
+        assembly_modes: Sequence[tuple[Mapping[str, float], ...]] = (),
         lacking: bool = False,
     ):
         super().__init__(message)
-        self.ways, self.lacking = tuple(ways), lacking
+        self.assembly_modes, self.lacking = tuple(assembly_modes), lacking
         self.scene: object = None
 
     def __reduce__(self) -> tuple[object, ...]:
         """Sent to another process, it goes without its scene, which lives in this one."""
-        return type(self), (str(self), self.ways, self.lacking)
+        return type(self), (str(self), self.assembly_modes, self.lacking)
 
 
 class MobilityError(DeclarationError):

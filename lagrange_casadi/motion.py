@@ -4,7 +4,7 @@
 
 from .declare.motion import Motion, expression, harmonic, polynomial, samples
 from .declare.moves import Dwell, Move, dwell, move, moves
-from .declare.recordings import read_samples
+from .declare.recordings import read_motion, read_samples
 from .declare.rest_laws import s_curve, trapezoid
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "move",
     "moves",
     "polynomial",
+    "read_motion",
     "read_samples",
     "s_curve",
     "samples",

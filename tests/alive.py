@@ -39,7 +39,7 @@ def opened(one, path, text):
     tell any.
     """
     text = re.sub(r"<meta http-equiv=[^>]*>", "", text)
-    parts = "live, contents, array, sections, sectionForce, player, deck"
+    parts = "live, contents, array, sections, sectionForce, player, deck, C"
     assert text.count("buildPage();\n})();") == 1
     path.write_text(
         text.replace("buildPage();\n})();", f"buildPage();\nwindow.page = {{ {parts} }};\n}})();")

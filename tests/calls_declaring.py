@@ -206,6 +206,18 @@ def declarations() -> Iterator[tuple[str, Call]]:
             "follower": d.slide,
             "lift": lift,
         },
+        "two_bearings": {
+            **steel,
+            "housing": w.m.ground,
+            "fixed": w.m.link("axle", length=0.2, mass=1.0),
+            "floating": w.m.links["axle"].tip,
+        },
+        "two_bushes": {
+            **steel,
+            "rod": w.m.link("rod", length=0.2, mass=1.0),
+            "first": w.m.ground,
+            "second": w.m.ground.at(0.1, 0.0),
+        },
         "profile_lift": {"mechanism": w.m, "cam": w.turn, "follower": w.slide, "points": points},
         "read_profile": {"path": "profile.csv"},
     }.items():

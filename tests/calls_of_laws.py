@@ -50,6 +50,7 @@ def laws() -> Iterator[tuple[str, Call]]:
         "move": {"to": 1.0, "time": 1.0},
         "moves": {"parts": [move, motion.dwell(1.0)]},
         "read_samples": {"path": "samples.csv"},
+        "read_motion": {"path": "samples.csv"},
         "s_curve": {"share": 0.3, "rounding": 0.5},
         "trapezoid": {"share": 0.3},
     }.items():

@@ -153,7 +153,7 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     yield "Scene.timing", (scene.timing, {"t": SPAN})
     yield "Scene.values", (scene.values, {"parameters": {"l": 0.5}})
     yield "Scene.wants", (scene.wants, {"names": ["effort"]})
-    yield "Scene.giving", (scene.giving, {"elastic": True})
+    yield "Scene.with_elastic", (scene.with_elastic, {"elastic": True})
     yield (
         "Deflection.at",
         (solution.deflection("arm").at, {"name": solution.deflection("arm").names[0], "u": 0.5}),
@@ -216,7 +216,7 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     for name, given in {
         "duty_of": held,
         "inertia_at": {"scene": scene, "joint": "O"},
-        "judge": {"motor": of.motor, "duty": of.duty},
+        "assess": {"motor": of.motor, "duty": of.duty},
         "plot_duty": {"duty": of.duty, "path": "duty.png"},
         "select": {
             "motors": [of.motor],
@@ -224,8 +224,8 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         },
     }.items():
         yield name, (getattr(actuators, name), given)
-    yield "Motor.at_most", (of.motor.at_most, {"speed": 10.0})
-    yield "Motor.lasting", (of.motor.lasting, {"speed": 10.0})
+    yield "Motor.short_time_torque", (of.motor.short_time_torque, {"speed": 10.0})
+    yield "Motor.continuous_torque", (of.motor.continuous_torque, {"speed": 10.0})
     yield "write_animation", (animation.write_animation, {"solution": solution, "path": "made.svg"})
     yield "default_figures", (figures.default_figures, {"solution": solution})
     drawn = {"solution": solution, "specs": [figures.TimePlot("f", ("effort:O",))], "folder": "."}

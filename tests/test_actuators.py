@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.actuators import Motor, duty_of, judge, plot_duty, read_motors, select
+from lagrange_casadi.actuators import Motor, assess, duty_of, plot_duty, read_motors, select
 from lagrange_casadi.elements import cylinder
 from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
 from lagrange_casadi.motion import harmonic, move, moves, polynomial, trapezoid
@@ -117,7 +117,7 @@ def test_a_rotor_may_be_without_inertia(here):
     )
     with pytest.raises(DeclarationError, match="expected the inertia seen by the drive"):
         assert duty.inertia_ratio
-    assert judge(motor, duty).heat > 0.0
+    assert assess(motor, duty).heat > 0.0
 
 
 def test_where_no_motor_serves_the_nearest_is_named(here):
@@ -214,7 +214,7 @@ def test_misuse_is_named(here):
     with pytest.raises(DeclarationError, match="expected motors, and ratios"):
         select([], lambda ratio, inertia: duty_of(solution, "J"))
     motor = Motor("m", 2.0, 1.0, 300.0, 5.0, 500.0, 0.0)
-    assert motor.lasting(np.array([0.0, 300.0, -300.0, 600.0, 900.0])).tolist() == [
+    assert motor.continuous_torque(np.array([0.0, 300.0, -300.0, 600.0, 900.0])).tolist() == [
         2.0,
         1.0,
         1.0,

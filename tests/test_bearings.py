@@ -105,7 +105,7 @@ def test_factors_follow_from_the_reaction(solution):
     assert {verdict.against: verdict.factor for verdict in found.verdicts} == pytest.approx(
         told, rel=1e-9
     )
-    assert found.is_open == ()
+    assert found.not_evaluated == ()
 
 
 def test_a_file_tells_the_same_again(solution, tmp_path):
@@ -130,7 +130,7 @@ def test_in_space_the_force_along_the_pin_is_axial():
 def test_what_is_open_is_told():
     scene = rotor(bearings.Plain(0.012, 0.02, heating=1e6), bearings.Rolling(5e3, hours=1.0))
     solution = evaluate(scene, wanted=["reaction:O"])
-    assert [told.partition(":")[0] for told in solution.safety("O").is_open] == [
+    assert [told.partition(":")[0] for told in solution.safety("O").not_evaluated] == [
         "plain bearing",
         "rolling bearing",
     ]

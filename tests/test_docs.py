@@ -115,7 +115,7 @@ def options(name):
     return {
         option
         for parameter in program.commands[name].params
-        for option in parameter.opts
+        for option in (*parameter.opts, *parameter.secondary_opts)
         if option.startswith("--")
     }
 

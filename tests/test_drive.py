@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from internals import RigidMass, warmest
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case
-from lagrange_casadi.actuators import Motor, duty_of, inertia_at, judge, plot_duty, read_motors
+from lagrange_casadi.actuators import Motor, assess, duty_of, inertia_at, plot_duty, read_motors
 from lagrange_casadi.cli import main
 from lagrange_casadi.density import Density
 from lagrange_casadi.elements import cylinder
@@ -255,14 +255,19 @@ def test_a_motor_that_its_voltage_limits_gives_less_at_speed():
         end_torque=1.0,
         time_constant=0.05,
     )
-    assert weak.at_most(np.array([0.0, -200.0, 350.0, 500.0])).tolist() == [6.0, 6.0, 3.5, 1.0]
+    assert weak.short_time_torque(np.array([0.0, -200.0, 350.0, 500.0])).tolist() == [
+        6.0,
+        6.0,
+        3.5,
+        1.0,
+    ]
     m = Mechanism("table")
     m.set_gravity(0, 0)
     m.revolute("J", m.ground, m.link("a", length=0.6, mass=2.0, centre=(0, 0), inertia=0.1))
     law = moves([move(2.0, time=0.5, law=trapezoid(1 / 2)), dwell(0.1)])
     solution = evaluate(Scene(m, {"J": law}, t=(0, 0.6, 601)), wanted=["effort", "motion"])
     duty = duty_of(solution, "J", ratio=50.0)
-    first, second = judge(plain, duty), judge(weak, duty)
+    first, second = assess(plain, duty), assess(weak, duty)
     pull, speed = 0.1 / 50.0 * 2.0 / 0.25**2, 50.0 * 2.0 / 0.25  # steady, and the largest speed
     assert first.torque == pytest.approx(pull / 6.0, rel=1e-9)
     assert second.torque == pytest.approx(pull / (6.0 - 5.0 * (speed - 200.0) / 300.0), rel=1e-2)
@@ -284,14 +289,14 @@ def test_linear_motors_have_forces_and_masses(here):
     solution = evaluate(
         Scene(m, {"X": harmonic(0.0, 0.1, 1.0)}, t=(0, 1, 401)), wanted=["effort", "motion"]
     )
-    choice = judge(motor, duty_of(solution, "X", inertia=motor.inertia, linear=True))
+    choice = assess(motor, duty_of(solution, "X", inertia=motor.inertia, linear=True))
     assert choice.torque == pytest.approx(11.5 * 0.1 * (2 * math.pi) ** 2 / 300.0, rel=1e-6)
     assert choice.governs in choice.shares
     with pytest.raises(
         DeclarationError,
         match="motor 'L1' is a linear one, and the duty of 'X' is that of a rotary one",
     ):
-        judge(motor, duty_of(solution, "X", ratio=600.0))
+        assess(motor, duty_of(solution, "X", ratio=600.0))
     solution = evaluate(press(polynomial(0.1, 7.0), t=(0, 0.9, 37)), wanted=["effort", "motion"])
     with pytest.raises(
         DeclarationError, match="drive 'O' turns, and a linear motor slides; expected a rotary one"
@@ -339,7 +344,7 @@ def test_one_command_chooses_a_motor_for_every_drive(gantry, capsys):
     for name, mass in (("X", 20.0), ("Y", 8.0)):
         turns = math.tau / 0.02
         choices = [
-            judge(
+            assess(
                 motor,
                 duty_of(
                     solution,
@@ -456,5 +461,5 @@ def test_friction_at_rest_leaves_a_duty_open_but_for_its_range(here):
         match=r"the effort of drive 'X' is indeterminate at 2\d of 61 instants; joints with"
         r" friction are at rest",
     ):
-        duty_of(replace(solution, held={}), "X")
+        duty_of(replace(solution, holding={}), "X")
     assert np.abs(duty_of(solution, "X").torque[-1]) == pytest.approx(0.1 * 10.0 * 9.81)

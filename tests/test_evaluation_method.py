@@ -216,5 +216,5 @@ def test_a_rung_is_told_in_the_provenance():
         slider_crank(["effort"]), backend="c", precision="single", flags="-O1", certificate=False
     )
     assert (solution.provenance.precision, solution.provenance.backend) == ("single", "c")
-    assert solution.provenance.rung == "--backend c --precision single --flags -O1"
+    assert solution.provenance.method == "--backend c --precision single --flags -O1"
     assert solution.provenance.flags.endswith(" -O1")

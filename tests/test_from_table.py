@@ -114,4 +114,4 @@ def test_what_cannot_be_tabulated_is_refused_with_the_reason():
 
 
 def test_the_rung_is_told():
-    assert evaluate(slider_crank(["effort"]), table=64).provenance.rung == "--table 64"
+    assert evaluate(slider_crank(["effort"]), table=64).provenance.method == "--table 64"

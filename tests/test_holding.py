@@ -118,7 +118,7 @@ def limit(rub, fx, fy, mz):
 def test_no_friction_within_its_limits_asks_for_more(seed, kind):
     scene = drawn_scene(seed, kind)
     held = holding(scene, evaluate(scene))["O"]
-    assert held.untold == ""
+    assert held.reason == ""
     corners, within = by_drawing(scene, np.random.default_rng(seed))
     size = np.abs(corners).max()
     assert held.least[0] == pytest.approx(corners.min(), abs=1e-9 * size)
@@ -202,7 +202,7 @@ def in_space(kind):
 def test_what_is_not_exact_is_not_told(scene, joint, why):
     solution = evaluate(scene)
     ranges = holding(scene, solution)
-    assert ranges[joint].untold == why
+    assert ranges[joint].reason == why
     assert f"held at rest: effort:{joint} is not evaluated: {why}" in solution.notes
     open_ = np.isnan(solution.effort(joint))
     assert open_.any()
@@ -210,7 +210,7 @@ def test_what_is_not_exact_is_not_told(scene, joint, why):
     with pytest.raises(
         DeclarationError, match=f"joints with friction are at rest there, and {why}"
     ):
-        duty_of(solution, joint, held=ranges[joint])
+        duty_of(solution, joint, holding=ranges[joint])
 
 
 def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
@@ -218,7 +218,7 @@ def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
     scene = packer()
     solution = evaluate(scene)
     held = holding(scene, solution)["O"]
-    duty = duty_of(solution, "O", efficiency=0.8, held=held)
+    duty = duty_of(solution, "O", efficiency=0.8, holding=held)
     rests = np.isnan(solution.effort("O"))
     assert duty.torque[rests] == pytest.approx(held.worst[rests] / 0.8, rel=1e-12)
     assert duty.torque[~rests] == pytest.approx(
@@ -226,7 +226,7 @@ def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
     )
     assert duty_of(solution, "O", efficiency=0.8).torque.tolist() == duty.torque.tolist()
     with pytest.raises(DeclarationError, match=r"use the range of holding\(\)"):
-        duty_of(replace(solution, held={}), "O")
+        duty_of(replace(solution, holding={}), "O")
     told = (
         f"held at rest: effort:O may be anything from {held.least[rests].min():.5g} to"
         f" {held.largest[rests].max():.5g} N m"
@@ -261,23 +261,23 @@ def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
 )
 def test_ranges_are_in_the_file_and_on_the_page(scene, tmp_path):
     solution = evaluate(scene)
-    assert solution.held
-    assert solution.held.keys() <= holding(scene, solution).keys()
+    assert solution.holding
+    assert solution.holding.keys() <= holding(scene, solution).keys()
     save(solution, tmp_path / "held.h5")
     assert check(tmp_path / "held.h5") == []
     read = load(tmp_path / "held.h5")
     assert read.notes == solution.notes
     shown = solution.during(slice(1, None))
-    for name, held in solution.held.items():
-        again = read.held[name]
-        assert (again.unit, again.untold) == (held.unit, held.untold)
+    for name, held in solution.holding.items():
+        again = read.holding[name]
+        assert (again.unit, again.reason) == (held.unit, held.reason)
         for end in ("least", "largest"):
             np.testing.assert_array_equal(getattr(again, end), getattr(held, end))
-            np.testing.assert_array_equal(getattr(shown.held[name], end), getattr(held, end)[1:])
+            np.testing.assert_array_equal(getattr(shown.holding[name], end), getattr(held, end)[1:])
     for found in (solution, read):
         page = contents(found)
         assert {
-            f"holding:{name}:{end}" for name in solution.held for end in ("least", "largest")
+            f"holding:{name}:{end}" for name in solution.holding for end in ("least", "largest")
         } <= {one["name"] for one in page["series"]}
         assert set(solution.notes) <= set(page["notes"])
 

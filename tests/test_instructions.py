@@ -40,9 +40,16 @@ INSTANT = {
     "five_link_suspension": 2601,
     "delta": 4560,
     "bricard": 2044,
+    "v6": 8042,
 }
 LOOPS = {"rrr3": 239, "beam_pump": 50, "cardan_shaft": 62}
-LOOPS |= {"parallel_leg": 1267, "five_link_suspension": 783, "delta": 1002, "bricard": 338}
+LOOPS |= {
+    "parallel_leg": 1267,
+    "five_link_suspension": 783,
+    "delta": 1002,
+    "bricard": 338,
+    "v6": 1357,
+}
 
 
 @pytest.mark.parametrize("name", INSTANT)

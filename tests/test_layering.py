@@ -22,6 +22,7 @@ CASE = Path(__file__).parents[1] / "cases" / "four_bar"
 ORDER = (
     "version",
     "errors",
+    "renamed",
     "methods",
     "base",
     "arguments",

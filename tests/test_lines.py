@@ -103,7 +103,7 @@ def test_all_ways_of_a_rod_that_lies_askew():
         open_ = askew({}, offset)
         with pytest.raises(PostureError, match="can be assembled in several ways") as error:
             evaluate(open_)
-        (ways,) = error.value.ways
+        (ways,) = error.value.assembly_modes
         assert len(ways) == 4
         found = []
         for way in ways:
@@ -121,8 +121,8 @@ def test_a_sign_that_cannot_be_is_no_way():
     """At a distance from the line the rod reaches the crank on one side only."""
     with pytest.raises(PostureError, match="can be assembled in two ways") as error:
         evaluate(askew({}, 0.2, 0.25), t=(0.0, 0.1, 3))
-    assert {round(math.sin(way["B"]), 6) for way in error.value.ways[0]} == {
-        round(math.sin(error.value.ways[0][0]["B"]), 6)
+    assert {round(math.sin(way["B"]), 6) for way in error.value.assembly_modes[0]} == {
+        round(math.sin(error.value.assembly_modes[0][0]["B"]), 6)
     }
     with pytest.raises(
         AssemblyError, match="the loop closed by joint 'A' cannot be closed at the start"

@@ -9,12 +9,14 @@ import re
 from dataclasses import replace
 
 import pytest
-from internals import assemblies
+from internals import assemblies, draw_postures
+from matplotlib.figure import Figure
 from mechanisms import four_bar
 
-from lagrange_casadi import evaluate, load_case
+from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import AssemblyError, DeclarationError, PostureError, UnknownNameError
+from lagrange_casadi.motion import polynomial
 
 CLOSED = ["four_bar", "six_bar", "andrews_squeezer", "quick_return", "slider_crank", "engine"]
 
@@ -84,7 +86,7 @@ def test_what_is_open_is_told_at_once_in_lines_to_paste(case):
     assert lines
     assert "\n" not in str(error.value)
     found = [moved(scene, posture=line)[0] for line in lines]
-    assert len(lines) == (2 if len(error.value.ways) == 1 else 1)
+    assert len(lines) == (2 if len(error.value.assembly_modes) == 1 else 1)
     if len(found) == 2:
         assert not same(*found)
 
@@ -116,7 +118,7 @@ def test_names_that_iterations_need_are_told_at_once():
     )
     with pytest.raises(PostureError, match=says) as error:
         evaluate(replace(scene, posture={}))
-    assert (error.value.ways, error.value.lacking) == ((), True)
+    assert (error.value.assembly_modes, error.value.lacking) == ((), True)
 
 
 def test_a_part_of_a_posture_leaves_the_rest_open():
@@ -134,8 +136,8 @@ def test_a_part_of_a_posture_leaves_the_rest_open():
 )
 def test_all_ways_are_there_and_differ(case, many):
     scene = replace(load_case(case).scene, posture={})
-    found = list(assemblies(scene))
-    assert len(found) == many
+    found, possible = assemblies(scene)
+    assert len(found) == many <= possible
     for entries, solution in found:
         posture = ast.literal_eval(f"{{{entries}}}")
         own = {name: solution.pose(name) for name in scene.mechanism.links}
@@ -174,6 +176,77 @@ def test_where_nothing_can_be_drawn_there_is_no_file(here, capfd):
     assert [path.name for path in here.iterdir()] == ["own"]
 
 
+def double_slider(lengths=(0.3, 0.34)):
+    """A crank that moves sliders along the line about which it turns: each closes a loop in four
+    ways.
+    """
+    m = SpatialMechanism("double_slider")
+    crank = m.link("crank", length=0.08, mass=0.1)
+    turned = ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
+    m.revolute("A", m.ground.at(0.0, 0.1, 0.12), crank, axis=(1.0, 0.0, 0.0), turned=turned)
+    for k, length in enumerate(lengths):
+        rod = m.link(f"rod_{k}", length=length, mass=0.5)
+        slider = m.link(f"slider_{k}", length=0.05, mass=2.0)
+        m.spherical(f"ball_{k}", crank.tip, rod)
+        axes = {"axis": (1.0, 0.0, 0.0), "second": (0.0, 1.0, 0.0)}
+        m.universal(f"cross_{k}", slider, rod.tip, **axes)
+        m.prismatic(f"guide_{k}", m.ground.at(0, 0.02 * k, 0.05 * k), slider, axis=(1, 0, 0))
+    return Scene(m, {"A": polynomial(0.0, 6.0)}, t=(0.0, 1.0, 3))
+
+
+def test_two_loops_with_sixteen_ways_are_drawn_whole(monkeypatch):
+    """Each way has a number and its posture, in the table's order; ways that look the same share a
+    picture; no title is cut, and no two of them overlap.
+    """
+    figures = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+    postures, complete = draw_postures(double_slider(), None)
+    (figure,) = figures
+    assert (len(set(postures)), complete) == (16, True)
+    chosen = [ast.literal_eval(posture.removeprefix("posture=")) for posture in postures]
+    signs = [tuple(float(value.split()[0]) for value in one.values()) for one in chosen]
+    one, other = 48.1897, 131.81
+    assert sorted({first for first, _ in signs}) == [-other, -one, one, other]
+    assert sorted({second for _, second in signs}) == [-150.0, -30.0, 30.0, 150.0]
+    table = [text.get_text() for text in figure.texts]
+    written = [" ".join(text.split()) for text in table if text.startswith("posture")]
+    assert written == postures
+    assert [text for text in table if text.isdigit()] == [str(k) for k in range(1, 17)]
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert titles == ["1, 3, 9, 11", "2, 4, 10, 12", "5, 7, 13, 15", "6, 8, 14, 16"]
+    figure.draw_without_rendering()
+    words = [*figure.texts, *(axes._left_title for axes in figure.axes)]
+    boxes = [text.get_window_extent() for text in words]
+    for k, box in enumerate(boxes):
+        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+        assert figure.bbox.y0 <= box.y0 < box.y1 <= figure.bbox.y1
+        assert not any(box.overlaps(after) for after in boxes[:k])
+    # The last of them, which was not drawn before, is assembled by what is pasted.
+    scene = replace(double_slider(), posture=chosen[-1])
+    assert evaluate(replace(scene, wanted=("motion",)), backend="vm").certified
+
+
+def test_of_more_ways_some_are_drawn_and_it_is_said_how_to_get_the_others(monkeypatch):
+    """Sixty-four combinations; what is drawn differs in the first loop, and a part of a posture
+    leads to the others.
+    """
+    figures = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+    postures, complete = draw_postures(double_slider((0.3, 0.34, 0.38)), None)
+    firsts = {posture.partition(",")[0] for posture in postures}
+    assert (len(postures), len(firsts), complete) == (4, 4, False)
+    words = "\n".join(text.get_text() for text in figures[0].texts)
+    assert "4 of at most 64 ways to assemble it" in words
+    assert "For the others put the first entry of a row" in words
+
+
+def test_rounding_is_never_proposed():
+    scene = replace(load_case("screw_lift").scene, posture={})
+    with pytest.raises(PostureError, match=r"or posture=\{'thread': '0 deg'\}") as error:
+        moved(scene)
+    assert error.value.assembly_modes[0][1] == {"thread": 0.0}
+
+
 def test_what_a_posture_may_tell():
     scene = four_bar()
     with pytest.raises(
@@ -190,4 +263,8 @@ def test_the_error_can_be_sent_to_another_process():
     with pytest.raises(PostureError) as error:
         evaluate(replace(four_bar(), posture={}))
     told = pickle.loads(pickle.dumps(error.value))
-    assert (str(told), told.ways, told.lacking) == (str(error.value), error.value.ways, False)
+    assert (str(told), told.assembly_modes, told.lacking) == (
+        str(error.value),
+        error.value.assembly_modes,
+        False,
+    )

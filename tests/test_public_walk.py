@@ -258,9 +258,9 @@ def test_calls_that_do_not_fit_are_refused(things):
 
 
 RESULTS = """
-Belt Bent Cam CamProfile Cylinder CylindricalCam Gears Planetary Plate ProfileLift Choice
-InertiaRatio Animation Fibre Properties Course Density Slices Dwell Motion Move Column Life
-Plane Safety Stress StressPeak Swing Verdict Constraint Front FrontPoint Limit LocalOptimum
+Bearings Belt Bent Bushes Cam CamProfile Cylinder CylindricalCam Gears Planetary Plate ProfileLift
+Choice InertiaRatio Animation Fibre Properties Course Density Slices Dwell Motion Move Column Life
+Plane Safety Stress StressPeak StressCycle Verdict Constraint Front FrontPoint Limit LocalOptimum
 Optimum Start Term Axis Design Sweep Case Curve Peak Prepared Sensitivities Solution Keep
 Duty Spec
 """.split()
@@ -268,7 +268,7 @@ Duty Spec
 
 INNER = """
 direction
-multiplier output check_ending analysed mapped needs rows demands refined instants timetable block scale outside at_number made_of
+multiplier output check_ending analysed mapped needs rows parameter_constraints refined instants timetable block scale outside at_number made_of
 at ends tails cell_at whole holds excess of_parameters unit __getitem__ __call__ largest
 grid size draw needs count index curvature copy
 """.split()  # noqa: E501

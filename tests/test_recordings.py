@@ -8,10 +8,10 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi import Mechanism, Scene, curve, evaluate
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError, UnknownNameError
-from lagrange_casadi.motion import dwell, move, moves, read_samples, samples
+from lagrange_casadi.motion import dwell, move, moves, read_motion, read_samples, samples
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -106,7 +106,7 @@ def test_smoothing_takes_the_noise_out_of_accelerations(here, smoothing, points)
     assert errors[0] > 2.0 * np.abs(clean[2]).max()
     assert errors[1] < 0.01 * errors[0]
     assert errors[1] < 0.02 * np.abs(clean[2]).max()
-    assert "smoothed by 0.00" in smooth.told
+    assert "smoothed by 0.00" in smooth.description
     distance = np.degrees(derivatives(smooth, t)[0]) - np.round(noisy, 13)
     if points is None:
         assert np.sqrt(np.mean(distance[:-1] ** 2)) == pytest.approx(0.001, rel=0.1)
@@ -226,7 +226,7 @@ def test_misuse_is_named(here, rows, options, error, says):
 def test_a_first_row_that_is_no_head_is_not_passed_over(here, cell):
     with pytest.raises(DeclarationError, match=r"axis\.csv, line 1: expected a finite number, got"):
         read_samples(write(here / "axis.csv", ["0", cell], RAMP))
-    assert read_samples(write(here / "axis.csv", ["", "0"], RAMP), value=2).told.startswith(
+    assert read_samples(write(here / "axis.csv", ["", "0"], RAMP), value=2).description.startswith(
         f"{len(RAMP)} samples of "
     )
 
@@ -242,6 +242,102 @@ def test_files_that_cannot_be_read(here):
         DeclarationError, match=r"short\.csv, line 5: expected a finite number, got ''"
     ):
         read_samples(here / "short.csv")
+
+
+def same(one, other, at):
+    """Two laws have the same values, rates and accelerations."""
+    for mine, theirs in zip(derivatives(one, at), derivatives(other, at), strict=True):
+        assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-9)
+
+
+TIMES = np.linspace(0.0, 1.2, 61)
+KNEE, SLIDE, HIP = 40.0 * np.sin(5.0 * TIMES), 0.2 * np.cos(3.0 * TIMES), 20.0 * TIMES**2
+AT = np.linspace(0.0, 1.2, 29)
+
+
+@pytest.mark.parametrize("layout", ["brackets", "row below", "opensim", "opensim in spaces"])
+def test_several_joints_are_read_with_the_units_of_the_file(here, layout):
+    """The units stand in the heads, in a row below them, or in OpenSim's header."""
+    rows = np.column_stack([TIMES, KNEE, SLIDE, HIP])
+    file = here / ("walk.mot" if "opensim" in layout else "walk.csv")
+    if layout == "brackets":
+        write(file, ["time [ms]", "knee (deg)", "pelvis_tx [mm]", "hip"], rows * [1e3, 1, 1e3, 1])
+    else:
+        write(file, ["time", "knee", "pelvis_tx", "hip"], rows, "\t")
+        head, *lines = file.read_text().splitlines()
+        if layout == "row below":
+            lines.insert(0, "s\tdeg\tm\t")
+        else:
+            told = "Coordinates\nversion=1\nnRows=61\nnColumns=4\ninDegrees=yes\n\nendheader"
+            head = f"{told}\n{head}"
+        text = "\n".join([head, *lines, ""])
+        file.write_text(text.replace("\t", "   ") if "spaces" in layout else text)
+    found = read_motion(file)
+    assert list(found) == ["knee", "pelvis_tx", "hip"]
+    hip = np.radians(HIP) if "opensim" in layout else HIP
+    for law, values in zip(found.values(), (np.radians(KNEE), SLIDE, hip), strict=True):
+        same(law, curve(TIMES, np.round(values, 15)), AT)
+    chosen = read_motion(file, {"left": "knee", "right": 4}, unit={"right": "turn"}, ratio=2.0)
+    same(chosen["left"], curve(TIMES, 2.0 * np.radians(KNEE)), AT)
+    same(chosen["right"], curve(TIMES, 2.0 * math.tau * HIP), AT)
+
+
+def test_each_column_is_what_read_samples_makes_of_it(here):
+    rows = np.column_stack([TIMES, KNEE + 0.01 * np.sin(900.0 * TIMES), SLIDE])
+    file = write(here / "two.csv", ["t", "a", "b"], rows)
+    options = {"points": 31, "stretch": 1.5}
+    found = read_motion(
+        file, ["b", "a"], unit={"a": "deg", "b": "m"}, smoothing={"a": 0.01}, **options
+    )
+    assert list(found) == ["b", "a"]
+    one = read_samples(file, value="a", unit="deg", smoothing=0.01, **options)
+    other = read_samples(file, value="b", unit="m", **options)
+    same(found["a"], one, 1.5 * AT)
+    same(found["b"], other, 1.5 * AT)
+
+
+def test_counts_of_an_encoder_are_turns(here):
+    counts = np.round(4096 / 360.0 * KNEE)
+    file = write(here / "encoder.csv", ["t", "motor [counts]"], np.column_stack([TIMES, counts]))
+    (law,) = read_motion(file, counts_per_turn=4096, ratio=0.1).values()
+    same(law, curve(TIMES, 0.1 * math.tau / 4096 * counts), AT)
+
+
+def test_a_scene_takes_motions_of_several_joints(here):
+    file = write(here / "arm.csv", ["t", "A [deg]", "B"], np.column_stack([TIMES, KNEE, SLIDE]))
+    m = Mechanism("arm")
+    upper, lower = m.link("upper", length=0.4, mass=1.0), m.link("lower", length=0.3, mass=1.0)
+    m.revolute("A", m.ground, upper)
+    m.revolute("B", upper.tip, lower)
+    found = evaluate(Scene(m, read_motion(file), t=(0, 1.2, 61)))
+    assert found.motion("A").value == pytest.approx(np.radians(KNEE), abs=1e-12)
+    assert found.motion("B").value == pytest.approx(SLIDE, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("heads", "options", "says"),
+    [
+        (["t", "a [deg]"], {"columns": ["b"]}, "two.csv: unknown column 'b'; valid: t, a"),
+        (["t", "a [yd]"], {}, "two.csv: unknown unit 'yd'; valid: .*counts"),
+        (["t [h]", "a"], {}, "two.csv: unknown time unit 'h'; valid: s, ms, us"),
+        (["t", "a [counts]"], {}, r"two.csv: its column is in counts; expected counts_per_turn="),
+        (["t", "a"], {"unit": {"b": "deg"}}, "two.csv: unknown coordinate of unit= 'b'; valid: a"),
+        (["t", "a"], {"columns": []}, "two.csv: columns= expected at least one coordinate"),
+        ([], {}, "two.csv: it has no heads; expected columns="),
+        (["t", "a"], {"smoothing": {"a": -1.0}}, "two.csv, column a: smoothing expected the noise"),
+    ],
+)
+def test_misuse_of_several_columns_is_named(here, heads, options, says):
+    with pytest.raises((DeclarationError, UnknownNameError), match=says):
+        read_motion(write(here / "two.csv", heads, np.column_stack([TIMES, KNEE])), **options)
+
+
+def test_a_motion_of_opensim_without_its_header_is_refused(here):
+    file = write(here / "walk.sto", ["time", "knee"], np.column_stack([TIMES, KNEE]))
+    with pytest.raises(DeclarationError, match="expected a header that ends in the line 'endhead"):
+        read_motion(file)
+    with pytest.raises(PathError, match=r"none\.mot"):
+        read_motion(here / "none.mot")
 
 
 CASE = """

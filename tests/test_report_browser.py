@@ -470,7 +470,7 @@ def changed(change, left_open=()):
         whole,
         outputs=outputs,
         errors={},
-        left_open=tuple(o for o in outputs if o.group in left_open),
+        indeterminate=tuple(o for o in outputs if o.group in left_open),
     )
 
 

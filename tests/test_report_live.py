@@ -5,6 +5,7 @@ what has no result says so.
 import csv
 import io
 import json
+import math
 import re
 
 import alive
@@ -36,6 +37,7 @@ SCENES = {
     "a machine over time": lambda: (alive.sheller(over=False), {}),
     "one in space": lambda: case("rssr"),
     "one whose loops are iterated": lambda: case("bricard"),
+    "a cam, which repeats": lambda: case("roller_cam"),
 }
 
 INNER = """(() => {
@@ -320,6 +322,38 @@ def test_a_design_that_cannot_be_assembled_says_so_in_place_of_numbers(crank):
     put(one, "l", 0.2)
     assert one.run("document.querySelector('.alive .alarm').hidden")
     assert one.complaints == []
+
+
+def test_functions_that_a_browser_lacks_are_those_of_c(chromium, tmp_path):
+    """To the last bit, signs of zero too: none of them rounds."""
+    scene, asked = case("slider_crank", 3)
+    live = Live.of(scene, scene.timing(**asked), ["motion"], "run")
+    alive.opened(
+        chromium, tmp_path / "live.html", page(evaluate(scene, wanted=["motion"], **asked), live)
+    )
+    rng = np.random.default_rng(5)
+    ends = [1.0, -1.0, 2.5, 0.5, 1e300, -5e-324]
+    pairs = [(x, y) for x in (0.0, -0.0, *ends) for y in ends]
+    pairs += (10 ** rng.uniform(-9, 9, (300, 2))).tolist()
+    pairs += [(k * y / 2, y) for k in range(-9, 10) for y in (0.1, -math.tau)]
+    told = "(value) => (Object.is(value, -0) ? '-0' : String(value))"
+    for name, exact in (("fmod", math.fmod), ("remainder", math.remainder)):
+        of = f"{json.dumps(pairs)}.map(([x, y]) => window.page.C.{name}(x, y)).map({told})"
+        found = [float(word).hex() for word in chromium.run(of)]
+        assert found == [exact(x, y).hex() for x, y in pairs]
+    for name, exact in (("fmin", [1, 1, 1, 1]), ("fmax", [2, 2, 1, 1])):
+        of = f"[[1, 2], [2, 1], [NaN, 1], [1, NaN]].map(([x, y]) => window.page.C.{name}(x, y))"
+        assert chromium.run(of) == exact
+
+
+def test_the_command_says_from_the_start_what_is_under_way(tmp_path, capsys):
+    out = tmp_path / "crank.html"
+    arguments = ["--want", "effort", "--t", "0:0.08:5", "--out", str(out)]
+    assert main(["report", "slider_crank", "--live", *arguments]) == 0
+    steps = capsys.readouterr().err.splitlines()
+    assert [step.partition(":")[0] for step in steps] == [f"step {k} of 4" for k in (1, 2, 3, 4)]
+    assert steps[0].endswith(": loading the program")
+    assert "for this machine and for the browser" in steps[2]
 
 
 def test_what_cannot_come_alive_is_told_in_one_line(tmp_path, capsys, monkeypatch):

@@ -46,4 +46,4 @@ def test_what_lies_along_the_spindle_is_determined():
     weight = 9.81 * 860.0 + 60.0 * solution.motion("guide").acceleration
     assert solution.reaction("motor").fz == pytest.approx(weight + 9.81 * 5.0, rel=1e-12)
     assert np.isnan(solution.reaction("motor").fx).all()
-    assert {output.part for output in solution.left_open} == {"motor", "guide", "thread"}
+    assert {output.part for output in solution.indeterminate} == {"motor", "guide", "thread"}

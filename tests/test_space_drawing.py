@@ -193,16 +193,20 @@ def test_ways_to_assemble_in_space_are_drawn_in_space(tmp_path, monkeypatch, cap
     """The rocker's end is where each way puts it, not where its x and y alone would."""
     scene = replace(load_case("rssr").scene, posture={})
     file = io.BytesIO()
-    assert draw_postures(scene, file) == 2
+    postures = ["posture={'Q': '-4.60823 deg'}", "posture={'Q': '171.728 deg'}"]
+    assert draw_postures(scene, file) == (postures, True)
     assert file.getvalue().startswith(b"\x89PNG")
     figures = []
     monkeypatch.setattr(
         "matplotlib.figure.Figure.savefig", lambda figure, *_, **__: figures.append(figure)
     )
     draw_postures(scene, io.BytesIO())
-    for axes, angle in zip(figures[0].axes, (-4.6082, 171.728), strict=True):
-        assert axes.get_title() == f"posture={{'Q': '{angle:g} deg'}}"
-        assert axes.get_xlabel() == "azimuth -60°, elevation 25°, y up"
+    texts = [text.get_text() for text in figures[0].texts]
+    assert [text for text in texts if text.startswith("posture")] == postures
+    for number, (axes, angle) in enumerate(
+        zip(figures[0].axes, (-4.60823, 171.728), strict=True), 1
+    ):
+        assert axes.get_title(loc="left") == str(number)
         (x0, y0), (x1, y1) = lines(axes, "coupler")[0].get_xydata()
         assert not np.allclose((x1 - x0, y1 - y0), 0.0)
         (base, tip) = lines(axes, "rocker")[0].get_xydata()

@@ -308,10 +308,10 @@ def test_bricards_loop_moves_and_one_force_is_open():
         assert np.max(np.abs(np.cos(angles[k]) - (first, second)[k % 2])) < 1e-13
     assert np.max(np.abs(first + second + first * second)) < 1e-13
     open_of = {
-        str(output).split(":")[1] for output in found.left_open if output.group == "reaction"
+        str(output).split(":")[1] for output in found.indeterminate if output.group == "reaction"
     }
     assert open_of == {f"J{k}" for k in range(6)}
-    assert all(np.isnan(found.outputs[output]).all() for output in found.left_open)
+    assert all(np.isnan(found.outputs[output]).all() for output in found.indeterminate)
     assert np.isnan(found.section("link3").axial).all()
     power, energy = 0.0, 0.0
     for k in range(1, 6):
@@ -362,5 +362,5 @@ def test_figures_can_be_drawn(name, tmp_path):
     assert {"mechanism", f"section_{link}"} <= {spec.name for spec, _ in drawn}
 
 
-def test_there_are_eleven():
-    assert len(SPATIAL) == 11
+def test_there_are_twelve():
+    assert len(SPATIAL) == 12

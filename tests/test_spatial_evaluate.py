@@ -79,8 +79,8 @@ def test_all_is_as_the_oracle_has_it_and_certified(case):
                     )
         for rod in rods:
             compare_sections(drawn, solution, k, one, rod, force, moment)
-    assert bool(solution.left_open) == any(bool(one.open) for one in true.values())
-    assert solution.left_open or case[0] not in OVER_CONSTRAINED
+    assert bool(solution.indeterminate) == any(bool(one.open) for one in true.values())
+    assert solution.indeterminate or case[0] not in OVER_CONSTRAINED
 
 
 def compare_motion(drawn, solution, k, one):
@@ -253,7 +253,7 @@ def test_a_table_of_the_cycle_gives_the_same(made, values):
     )
     assert found.certified
     assert found.undetermined == exact.undetermined
-    assert set(residuals(found.certificate)) == ({"closure"} if found.left_open else WHOLE)
+    assert set(residuals(found.certificate)) == ({"closure"} if found.indeterminate else WHOLE)
     for name in exact.names():
         if exact.determined(name):
             like = [

@@ -93,7 +93,7 @@ def compare_reaction(flat, told, joint, R, size):
             if known or not np.isnan(value):
                 assert value == pytest.approx(vector @ direction, abs=ROUNDING * size), output
             else:
-                assert output in told.left_open
+                assert output in told.indeterminate
 
 
 @pytest.mark.sampled(3)

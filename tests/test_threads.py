@@ -118,7 +118,7 @@ from lagrange_casadi.declare.kinks import Smooth
 from threaded import press
 
 scenes, moving = [press(0), press(1)], ca.SX.sym("t")
-demands = [scene.demands() for scene in scenes]
+demands = [scene.parameter_constraints() for scene in scenes]
 smooth = [Smooth.of(ca.fabs(k * moving), moving, ca.SX(0, 1)) for k in (1, 2)]
 pairs = dict.fromkeys(("laws", "guided", "prescribed", "span"), scenes) | {"function": demands, "_bends": smooth}
 for name, (first, second) in pairs.items():

@@ -40,7 +40,7 @@ def measured():
 
 
 def test_every_rung_is_measured(measured):
-    assert {one.rung for one in measured.measurements} == set(SOME)
+    assert {one.method for one in measured.measurements} == set(SOME)
     assert not measured.refused
     assert all(
         0.0 < one.median <= one.largest < 1e-2 and 1e-10 < one.seconds < 1e-1
@@ -50,7 +50,7 @@ def test_every_rung_is_measured(measured):
 
 
 def test_errors_are_what_each_rung_may_have(measured):
-    error = {one.rung: one.largest for one in measured.measurements}
+    error = {one.method: one.largest for one in measured.measurements}
     assert error[EvaluationMethod("c")] == error[EvaluationMethod("vm")] < 1e-14
     assert 1e-8 < error[EvaluationMethod("c", "single")] < 2e-6
     assert (
@@ -66,7 +66,7 @@ def test_an_error_is_the_difference_that_there_is(measured):
     scene = iterated(WANTED)
     exact, rough = evaluate(scene, backend="vm"), evaluate(scene, backend="lanes", newton=1)
     found = next(
-        one for one in measured.measurements if one.rung == EvaluationMethod("lanes", newton=1)
+        one for one in measured.measurements if one.method == EvaluationMethod("lanes", newton=1)
     )
     kept = np.unique(np.linspace(0, exact.t.size - 1, COMPARED).astype(int))
     gap = np.max(np.abs(exact.series[found.worst] - rough.series[found.worst])[kept]) / np.max(
@@ -116,7 +116,7 @@ def test_what_a_scene_has_not_is_refused_with_the_reason():
             EvaluationMethod("c", newton=1),
         ),
     )
-    assert [one.rung for one in found.measurements] == [EvaluationMethod("c")]
+    assert [one.method for one in found.measurements] == [EvaluationMethod("c")]
     assert list(found.refused) == ["--backend c --table 64"]
     assert "one driven joint" in found.refused["--backend c --table 64"]
 
@@ -149,9 +149,9 @@ def test_what_exported_c_can_be_is_recommended_apart():
         for k, (method, error) in enumerate(zip(methods, errors, strict=True))
     )
     found = Trade("x", 1, 1, measured, {})
-    assert found.fastest(1e-6).rung == EvaluationMethod("lanes", "single")
-    assert found.exported.fastest(1e-6).rung == EvaluationMethod("c", "single")
-    assert found.exported.fastest(1e-9).rung == EvaluationMethod("c", newton=2)
+    assert found.fastest(1e-6).method == EvaluationMethod("lanes", "single")
+    assert found.exported.fastest(1e-6).method == EvaluationMethod("c", "single")
+    assert found.exported.fastest(1e-9).method == EvaluationMethod("c", newton=2)
 
 
 def test_graphs_that_call_functions_have_no_reference():

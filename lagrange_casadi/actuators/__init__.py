@@ -1,7 +1,12 @@
-"""Motors of drives: what a cycle asks of one, and the smallest of a catalogue that serves."""
+"""Motors of drives: the requirements of a cycle, and the smallest motor of a catalogue that meets
+them.
+"""
 
+import functools
+
+from ..renamed import former
 from .catalogue import Motor, read_motors
-from .choice import Choice, judge, select
+from .choice import Choice, assess, select
 from .duty import Duty, InertiaRatio, duty_of
 from .inertia import inertia_at
 from .plot import plot_duty
@@ -13,8 +18,10 @@ __all__ = [
     "Motor",
     "duty_of",
     "inertia_at",
-    "judge",
+    "assess",
     "plot_duty",
     "read_motors",
     "select",
 ]
+
+__getattr__ = functools.partial(former, __name__, globals())

@@ -13,6 +13,7 @@ from ..arguments import NotNegative, Numeric, Positive, public
 from ..base.arrays import Array
 from ..base.csv_rows import Row, read_rows
 from ..errors import DeclarationError
+from ..renamed import renamed
 
 _RPM = math.tau / 60.0
 _ROTARY = ("stall_torque", "rated_torque", "rated_speed", "peak_torque", "max_speed", "inertia")
@@ -35,6 +36,7 @@ said.
 _HEAD = re.compile(r"(\w+)\s*(?:\[\s*(.+?)\s*\])?")
 
 
+@renamed
 @public
 @dataclass(frozen=True)
 class Motor:
@@ -60,13 +62,13 @@ class Motor:
     time_constant: float = math.inf
     linear: bool = False
 
-    def lasting(self, speed: Numeric) -> Array:
-        """The torque that it bears continuously at a speed [N m], zero where there is none."""
+    def continuous_torque(self, speed: Numeric) -> Array:
+        """Continuous torque at a speed [N m], zero where there is none."""
         fall = (self.stall_torque - self.rated_torque) / self.rated_speed
         return np.asarray(np.maximum(self.stall_torque - fall * np.abs(speed), 0.0))
 
-    def at_most(self, speed: Numeric) -> Array:
-        """The torque that it gives for a short time at a speed [N m], at speeds that it reaches."""
+    def short_time_torque(self, speed: Numeric) -> Array:
+        """Largest torque for a short time at a speed [N m], at speeds that it reaches."""
         if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
             return np.full(np.shape(speed), self.peak_torque)
         return np.asarray(

@@ -54,7 +54,7 @@ class Choice:
 
 
 @public
-def judge(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
+def assess(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
     """Compare a motor with the requirements of a duty.
 
     Heat is the root mean square of its torque over what it bears continuously at the mean speed; of
@@ -69,12 +69,12 @@ def judge(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
             f"motor '{motor.name}' is {kinds[motor.linear]} one, and the duty of '{duty.joint}' is"
             f" that of {kinds[duty.linear]} one"
         )
-    lasting = float(motor.lasting(duty.mean_speed))
+    lasting = float(motor.continuous_torque(duty.mean_speed))
     heat = (
         warmest(duty.t, duty.torque, motor.time_constant) / lasting if lasting > 0.0 else math.inf
     )
     with np.errstate(divide="ignore", invalid="ignore"):
-        torque = float(np.nanmax(np.abs(duty.torque) / motor.at_most(duty.speed)))
+        torque = float(np.nanmax(np.abs(duty.torque) / motor.short_time_torque(duty.speed)))
     return Choice(motor, duty, heat, torque, duty.peak_speed / motor.max_speed, refused)
 
 
@@ -89,7 +89,7 @@ def select(
 
     ``duty(ratio, inertia)`` is what a ratio asks of a motor whose rotor has an inertia, as ``lambda
     ratio, inertia: duty_of(solution, "J", ratio=ratio, inertia=inertia)``. A motor serves where no
-    share of its limits is above 1, as :func:`judge` has them.
+    share of its limits is above 1, as :func:`assess` has them.
 
     Raises :class:`.NoDesignError` where none serves, with the motor that comes nearest, and
     :class:`.DeclarationError` for none.
@@ -101,7 +101,7 @@ def select(
     nearest: Choice | None = None
     for motor in given:
         tried = [
-            judge(motor, duty(float(ratio), motor.inertia), tuple(refused)) for ratio in ratios
+            assess(motor, duty(float(ratio), motor.inertia), tuple(refused)) for ratio in ratios
         ]
         serving = [choice for choice in tried if choice.serves]
         if serving:

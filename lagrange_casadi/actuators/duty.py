@@ -15,6 +15,7 @@ from ..base.arrays import Array
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.held import Holding
 from ..instants.solution import Solution
+from ..renamed import renamed
 
 _COARSE = 0.01
 """Largest relative change, if only every second instant is used, for which instants are enough."""
@@ -140,6 +141,7 @@ class Duty:
         return any(abs(whole - part) > _COARSE * whole for whole, part in pairs)
 
 
+@renamed
 @public
 def duty_of(
     solution: Solution,
@@ -150,7 +152,7 @@ def duty_of(
     inertia: Finite = 0.0,
     linear: bool = False,
     carried: Array | None = None,
-    held: Holding | None = None,
+    holding: Holding | None = None,
 ) -> Duty:
     """The duty of a drive's motor, from a solution that has the drive's effort and its motion.
 
@@ -158,13 +160,13 @@ def duty_of(
     rad/m; a negative one turns it the other way. ``efficiency`` is that of the gearbox, ``inertia``
     [kg m^2] that of the motor's rotor and what turns with it. A ``linear`` motor pushes a drive
     that slides; its inertia is the mass of its moving part [kg], and its ratio usually 1.
-    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias. ``held``
-    is the range of its efforts, by default the solution's: where joints that rub are at rest the
-    effort is the larger in size of it.
+    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias.
+    ``holding`` is the range of its efforts, by default the solution's: where joints with friction
+    rest, the effort is the end of the range that is larger in size.
 
     Raises :class:`.UnknownNameError` for what is no drive of the solution,
     :class:`.DeclarationError` for numbers that cannot be, for fewer than two instants, and where
-    the effort is open, as where a joint that rubs is at rest.
+    the effort is indeterminate, as where a joint with friction rests.
     """
     drives = [
         str(name).partition(":")[2] for name in solution.names() if str(name).startswith("effort:")
@@ -191,19 +193,19 @@ def duty_of(
         )
     effort, motion = solution.effort(joint), solution.motion(joint)
     rests = np.isnan(effort)
-    held = solution.held.get(joint) if held is None else held
-    if held is not None:
-        effort = np.where(rests, held.worst, effort)
+    holding = solution.holding.get(joint) if holding is None else holding
+    if holding is not None:
+        effort = np.where(rests, holding.worst, effort)
     missing = int(np.count_nonzero(~np.isfinite(effort)))
     if missing:
         why = (
             "; joints with friction are at rest there: use the range of holding(), or give their"
             " friction smooth="
         )
-        if held is not None:
+        if holding is not None:
             why = (
-                f"; joints with friction are at rest there, and {held.untold}: give their friction"
-                " smooth="
+                f"; joints with friction are at rest there, and {holding.reason}: give their"
+                " friction smooth="
             )
         why = why if solution.resting.any() else ""
         raise DeclarationError(

@@ -176,7 +176,7 @@ def _moving(motion: Motion) -> Motion:
     if not solution.resting.any():
         return motion
     shown = {
-        o: values if o in solution.left_open else np.nan_to_num(values)
+        o: values if o in solution.indeterminate else np.nan_to_num(values)
         for o, values in solution.outputs.items()
     }
     return replace(motion, solution=replace(solution, outputs=shown))

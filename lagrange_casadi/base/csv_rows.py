@@ -67,11 +67,12 @@ class Row:
         return found if math.isfinite(found) else math.nan
 
 
-def read_rows(path: str | os.PathLike[str], expected: str) -> Iterator[Row]:
+def read_rows(path: str | os.PathLike[str], expected: str, skip: int = 0) -> Iterator[Row]:
     """The rows of a table in UTF-8, the head first where it has one; lines that are empty or begin
-    with ``#`` are passed over.
+    with ``#``, and the first ``skip`` lines, are passed over.
 
-    Cells are parted by semicolons, tabs or commas: the first of these that the first row has. Where
+    Cells are parted by semicolons, tabs or commas: the first of these that the first row has; below
+    lines that were skipped, which other programs wrote, by spaces if it has none of them. Where
     they are not parted by commas, the decimal mark may be one, in all numbers or in none. Cells may
     be quoted; a row is one line, and all rows have as many cells.
 
@@ -86,11 +87,12 @@ def read_rows(path: str | os.PathLike[str], expected: str) -> Iterator[Row]:
     try:
         with open(path, encoding="utf-8-sig") as file:
             for number, line in enumerate(file, 1):
-                if line.lstrip().startswith("#") or not line.strip():
+                if number <= skip or line.lstrip().startswith("#") or not line.strip():
                     continue
                 if not first:
                     unquoted = _QUOTED.sub("", line)
-                    delimiter = next((mark for mark in _DELIMITERS if mark in unquoted), ",")
+                    usual = " " if skip else ","
+                    delimiter = next((mark for mark in _DELIMITERS if mark in unquoted), usual)
                     marks = None if delimiter == "," else {}
                 where = f"{path}, line {number}"
                 cells = _cells(where, line, delimiter)
@@ -116,6 +118,7 @@ def read_rows(path: str | os.PathLike[str], expected: str) -> Iterator[Row]:
 
 def _cells(where: str, line: str, delimiter: str) -> tuple[str, ...]:
     try:
+        line = " ".join(line.split()) if delimiter == " " else line
         (cells,) = csv.reader([line], delimiter=delimiter, strict=True)
     except csv.Error as error:
         why = (

@@ -16,6 +16,7 @@ from ..arguments import Symbolic, public
 from ..base.arrays import Expression, Operand
 from ..base.units import number
 from ..errors import DeclarationError, NumberError, check_kind
+from ..renamed import renamed
 from . import solid, walls
 from .properties import Fibre, Properties
 
@@ -23,6 +24,7 @@ Demand = tuple[Any, str]
 """Expression that must be positive, and its description."""
 
 
+@renamed
 @public
 @dataclass(frozen=True, eq=False)
 class Shape:
@@ -55,7 +57,7 @@ class Shape:
         """Area [m^2]."""
         return _AREAS[self.kind](dict(self.dimensions))
 
-    def demands(self) -> Iterator[Demand]:
+    def parameter_constraints(self) -> Iterator[Demand]:
         """Conditions on the dimensions."""
         return _demands(self.kind, dict(self.dimensions))
 

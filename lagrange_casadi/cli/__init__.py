@@ -110,7 +110,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except PostureError as error:
             from .drawing import drawn_ways
 
-            return _fail(f"{error}{drawn_ways(error)}", error.exit_status)
+            words, postures = drawn_ways(error)
+            status = _fail(f"{error}{words}", error.exit_status)
+            for line in postures:
+                _say(line)
+            return status
         except LagrangeCasadiError as error:
             return _fail(str(error), error.exit_status)
         except click.exceptions.NoArgsIsHelpError as error:

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from ..base.packages import check_installed
 from ..base.space import MOST_THREADS
 from ..base.vocabulary import (
     RATE,
@@ -17,6 +18,7 @@ from ..base.vocabulary import (
     WIDTH,
 )
 from .design_commands import best, drive, optimise, size, sweep, table, tolerances, trade
+from .echo import say_step
 from .help import command
 from .options import (
     CASE,
@@ -70,6 +72,12 @@ from .options import (
     type=PATH,
     metavar="FILE.csv",
     help="Also write the results as CSV, one row per instant.",
+)
+@click.option(
+    "--grids/--no-grids",
+    default=None,
+    help="Store section forces at all ratios xi/l beside their laws, of all links or of none;"
+    " default: of all but pieces of bent bars.",
 )
 @click.option(
     "--refine-peaks", is_flag=True, help="Search for the listed peaks between the instants too."
@@ -212,6 +220,10 @@ def report(**given: Any) -> None:
     on it, next to charts and tables. For a sweep there are maps, fronts and a table of designs;
     click a design to see its mechanism move.
     """
+    if given["live"]:
+        # What is imported takes a second or more.
+        check_installed("ziglang", "a live report", "live")
+        say_step(1, "loading the program")
     from .report_page import report
 
     report(**given)

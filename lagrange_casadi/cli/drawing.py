@@ -44,21 +44,29 @@ def draw_with_progress(
         echo(f"note: not drawn, for their outputs were not wanted: {', '.join(skipped)}", err=True)
 
 
-def drawn_ways(error: PostureError) -> str:
-    """Draw the ways in which a loop that is open can be assembled into a file here, and say so;
-    nothing where it cannot be.
+def drawn_ways(error: PostureError) -> tuple[str, list[str]]:
+    """Draw the ways in which a loop that is open can be assembled into a file here.
+
+    Returns what goes behind the error, nothing where nothing can be drawn, and lines beneath it:
+    the posture to paste for each picture, where the error itself does not have them.
     """
     scene = error.scene
     if not isinstance(scene, Scene) or error.lacking:
-        return ""
+        return "", []
     picture = io.BytesIO()
     path = Path(f"{scene.name}_postures.png")
     with suppress(LagrangeCasadiError):
-        if many := method("PostureError.drawn")(scene, picture):
+        postures, complete = method("PostureError.drawn")(scene, picture)
+        if postures:
             with writing(path) as (file,):
                 file.write(picture.getvalue())
-            return (
-                f"; {path} draws the {many} of these that close{'' if many > 1 else 's'} all"
+            many = f"the {len(postures)}" if complete else str(len(postures))
+            words = (
+                f"; {path} draws {many} of these that close{'' if len(postures) > 1 else 's'} all"
                 " loops, each with its posture"
             )
-    return ""
+            if not complete:
+                words += ", and says how to get the others"
+            numbered = [f"  {number:>2}  {line}" for number, line in enumerate(postures, 1)]
+            return words, numbered if len(error.assembly_modes) > 1 else []
+    return "", []

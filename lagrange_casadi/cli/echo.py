@@ -15,3 +15,8 @@ def echo(line: str, err: bool = False) -> None:
     in it are escaped.
     """
     click.echo(escaped(line), err=err)
+
+
+def say_step(number: int, what: str) -> None:
+    """Say which step of a live report begins."""
+    echo(f"step {number} of 4: {what}", err=True)

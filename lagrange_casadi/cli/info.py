@@ -78,7 +78,7 @@ def _describe_file(solution: Solution) -> None:
         f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler}"
         f" {provenance.flags}".rstrip()
     )
-    echo(f"method: {provenance.rung}")
+    echo(f"method: {provenance.method}")
     echo(
         "versions:"
         f" {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}"

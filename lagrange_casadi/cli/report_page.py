@@ -9,6 +9,7 @@ import click
 
 from ..base.publish import check_writable
 from ..case import load_case
+from ..codegen.compiler import statements
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, one_line
@@ -22,8 +23,9 @@ from ..store.runs import load
 from ..store.untrusted import reported_as
 from ..studies.evaluate import evaluate
 from ..studies.sweep import Sweep, is_sweep
+from ..studies.sweep.axes import grouped
 from ..verification.certificate import failure
-from .echo import echo
+from .echo import echo, say_step
 from .options import parameters
 from .strength_lines import untold_lines
 
@@ -67,12 +69,19 @@ def report(
         check_writable(out)
         wanted = with_motion(want or scene.wanted)
         given, timing = parameters(settings), scene.timing(t, over)
-        engine = Live.of(scene, timing, wanted, run_of(loaded.name), given) if live else None
+        engine = None
+        if live:
+            say_step(2, f"deriving the equations of {loaded.name}")
+            engine = Live.of(scene, timing, wanted, run_of(loaded.name), given)
+            size = grouped(statements(engine.source.code))
+            say_step(3, f"compiling {size} statements for this machine and for the browser at once")
         # What a page computes anew is what equilibrium tells.
         live_only = False if live else None
         solution = evaluate(
             scene, parameters=given, t=t, over=over, wanted=wanted, elastic=live_only
         )
+        if live:
+            say_step(4, f"writing {out}")
         write_report(solution, out, engine)
     _announce(solution, out)
 

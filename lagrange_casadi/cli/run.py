@@ -16,7 +16,7 @@ from ..base.streams import is_standard_output
 from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare import revolutions
-from ..declare.description import beams_of, fitted_of, kinds_of_described, values_of
+from ..declare.description import beams_of, fitted_of, kinds_of_described, pieces_of, values_of
 from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
 from ..declare.times import Over, Timing
@@ -63,6 +63,7 @@ def run(
     figures: Path | None,
     no_figures: bool,
     csv: Path | None,
+    grids: bool | None,
     refine_peaks: bool,
     elastic: bool,
     no_certificate: bool,
@@ -107,7 +108,7 @@ def run(
         if folder and draft:
             draw_with_progress(solution, loaded.figures, draft)
             drawn = figures_in(draft)
-        save(solution, out, dump_specs(loaded.figures))
+        save(solution, out, dump_specs(loaded.figures), grids=_grids(solution, grids, want))
     say = partial(echo, err=csv is not None and is_standard_output(csv))
     asked = want or scene.wanted
     names = [*forces(solution), *resultants(solution)] if refine_peaks else ()
@@ -138,6 +139,16 @@ def run(
         say(line)
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")
+
+
+def _grids(solution: Solution, grids: bool | None, want: Sequence[str]) -> bool | list[str] | None:
+    """Links whose grids are stored: pieces of bent bars where they were asked for by name."""
+    pieces = pieces_of(solution.description)
+    links = solution.links_with_sections
+    asked = {link for link in links if link in pieces and f"section:{link}" in want}
+    if grids is not None or not asked:
+        return grids
+    return [link for link in links if link not in pieces or link in asked]
 
 
 def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:

@@ -46,7 +46,7 @@ def size_command(
         t=t,
         over=over,
         criterion=criterion,
-        yielding=yielding,
+        yield_criterion=yielding,
         deflection=deflection,
     )
     stiff = (
@@ -64,7 +64,9 @@ def size_command(
         for line in evaluated(
             name,
             lambda link: list(
-                safety_lines(found.solution.safety(link, criterion=criterion, yielding=yielding))
+                safety_lines(
+                    found.solution.safety(link, criterion=criterion, yield_criterion=yielding)
+                )
             ),
         ):
             echo(line)

@@ -89,7 +89,7 @@ def safety_lines(found: Safety) -> Iterator[str]:
     yield f"  {found.link:<20} {share:>8.4g} |{bar:<{_BAR}}| {found.governs.against} governs{fails}"
     for verdict in found.verdicts:
         yield f"    {verdict.against:<18} {verdict.factor:>8.4g} {verdict.where}"
-    for word in found.is_open:
+    for word in found.not_evaluated:
         yield f"    not evaluated: {word}"
 
 

@@ -72,13 +72,13 @@ def trade(
             if among.measurements:
                 best = among.fastest(accuracy)
                 cost = f"{1e9 * best.seconds:.3g} ns an instant, error {best.largest:.1e}"
-                echo(f"fastest within {accuracy:g}{place}: {best.rung.options} ({cost})")
+                echo(f"fastest within {accuracy:g}{place}: {best.method.options} ({cost})")
 
 
 def _print(found: Trade) -> None:
-    width = max(len(one.rung.options) for one in found.measurements)
+    width = max(len(one.method.options) for one in found.measurements)
     default = next(
-        (one.seconds for one in found.measurements if one.rung == EvaluationMethod("lanes")),
+        (one.seconds for one in found.measurements if one.method == EvaluationMethod("lanes")),
         found.measurements[0].seconds,
     )
     echo(
@@ -94,7 +94,7 @@ def _print(found: Trade) -> None:
         mark = "*" if one in found.front else " "
         note = f"; {one.note}" if one.note else ""
         echo(
-            f"{mark} {one.rung.options:<{width}} {1e9 * one.seconds:>11.4g}"
+            f"{mark} {one.method.options:<{width}} {1e9 * one.seconds:>11.4g}"
             f" {one.seconds / default:>8.2f} {one.largest:>9.1e} {one.median:>9.1e}  "
             f" {one.worst}{note}"
         )

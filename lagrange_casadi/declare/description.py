@@ -231,6 +231,12 @@ def bends_of(description: Description) -> list[str]:
     return found
 
 
+def pieces_of(description: Description) -> set[str]:
+    """Return the links that bent bars were cut into."""
+    joints = (description["joints"][name] for name in bends_of(description))
+    return {joint[end]["body"] for joint in joints for end in ("parent", "child")}
+
+
 def parts_of(description: Description) -> list[str]:
     """The names of all parts that outputs are of."""
     tables = ("bodies", "joints", "constraints", "rows", "loads")
@@ -434,7 +440,9 @@ def _described(
 
     def fitted(joint: Joint) -> Description:
         parts = mechanism.fitted.get(joint.name)
-        return {"fitted": parts_to_numbers(parts, number)} if parts else {}
+        turning = mechanism.turning.get(joint.name)
+        found: Description = {"fitted": parts_to_numbers(parts, number)} if parts else {}
+        return found | {"turning": turning} if parts and turning else found
 
     def freedoms(joint: Joint) -> Description:
         if joint.turned is None:

@@ -81,22 +81,29 @@ _MAY_BE_ZERO = ("gap", "axial", "radial")
 
 @public
 def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
-    """Say what a pin joint of a mechanism is made of: of each kind one part at most, for
+    """Say what a joint of a mechanism is made of: of each kind one part at most, for
     ``safety:JOINT``.
 
-    Raises :class:`.DeclarationError` for a joint of another mechanism or one that is no pin, for
-    what is no such part, and for numbers that are not positive.
+    A joint that turns takes all kinds, a bearing of :func:`.two_bearings` a plain or a rolling one,
+    and a joint that slides, as a bush of :func:`.two_bushes`, a plain one.
+
+    Raises :class:`.DeclarationError` for a joint of another mechanism or one that takes no such
+    part, for what is none, and for numbers that are not positive.
     """
     if isinstance(mechanism, type) or not hasattr(mechanism, "own"):
         raise DeclarationError(f"fit: expected a Mechanism first, got {shown(mechanism)}")
     mechanism.own.joint(joint)
     what = f"joint '{joint.name}'"
     mechanism.own.open(f"fit {what}")
-    if joint.kind not in ("revolute", "cylindrical"):
+    turning = mechanism.turning.get(joint.name)
+    if turning == "":
         raise DeclarationError(
-            f"{what}: expected a revolute or cylindrical joint for a pin or a bearing, got a"
-            f" {joint.kind} one"
+            f"{what}: a shaft seen from the side does not turn; use a SpatialMechanism for its"
+            " bearings"
         )
+    pinned = joint.kind in ("revolute", "cylindrical")
+    slides = joint.kind in ("prismatic", "slot")
+    takes = ("plain", "rolling") if turning else ("plain",) if slides else ()
     found: dict[str, Fitted] = dict(mechanism.fitted.get(joint.name, {}))
     for part in parts:
         kind = next((name for name, known in KINDS.items() if isinstance(part, known)), None)
@@ -104,6 +111,12 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
             raise DeclarationError(
                 f"{what}: expected a Pin, Plain or Rolling of lagrange_casadi.bearings, got"
                 f" {shown(part)}"
+            )
+        if not pinned and kind not in takes:
+            also = f"; it takes a {' or a '.join(takes)} bearing" if takes else ""
+            raise DeclarationError(
+                f"{what}: expected a revolute or cylindrical joint for a pin or a bearing, got a"
+                f" {joint.kind} one{also}"
             )
         if kind in found:
             raise DeclarationError(f"{what}: the joint already has a {kind} part")

@@ -82,6 +82,8 @@ class Mechanism(Graphs):
     outputs: dict[str, UserOutput] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
     fitted: dict[str, dict[str, Fitted]] = field(default_factory=dict, init=False)
+    turning: dict[str, str] = field(default_factory=dict, init=False)
+    rough: dict[str, float] = field(default_factory=dict, init=False)
     snapped: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
     rounded: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
     gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)

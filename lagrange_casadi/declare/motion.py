@@ -17,6 +17,7 @@ import casadi as ca
 from ..arguments import fitting, public
 from ..base.symbolic import symbolic
 from ..errors import DeclarationError, shown
+from ..renamed import renamed
 from .curves import curve, rows
 from .ends import beyond_ends
 from .expressions import coordinates, error_text, scalar, symbols_of
@@ -27,15 +28,16 @@ from .stretches import Stretch
 from .validity import Demand
 
 
+@renamed
 @dataclass(frozen=True, eq=False)
 class Motion:
     """A law of motion as a function from the symbol t [s] to the coordinate [rad or m].
 
     ``span`` is the time the law covers, and ``knots`` are the times between which the second
     derivative of a spline is linear. Of a motion made of moves ``stretches`` are these, ``period``
-    is their time where they go on over and over, and ``demands`` are what parameters must hold to.
-    ``told`` says in words what a motion from a file is; ``unit`` is rad or m if texts tell its
-    numbers in that.
+    is their time where they go on over and over, and ``parameter_constraints`` are conditions on
+    the parameters. ``description`` describes a motion from a file; ``unit`` is rad or m if its
+    numbers were given as texts with units.
     """
 
     graph: Callable[[Any], Any]
@@ -43,8 +45,8 @@ class Motion:
     knots: tuple[float, ...] = ()
     stretches: tuple[Stretch, ...] = ()
     period: Expression | None = None
-    demands: tuple[Demand, ...] = ()
-    told: str = ""
+    parameter_constraints: tuple[Demand, ...] = ()
+    description: str = ""
     unit: str = ""
 
     @fitting

@@ -153,7 +153,9 @@ def moves(
         )
     graph = _graph(stretches, place, length, far, each_demand)
     unit = next(iter(demands.units), "")
-    return Motion(graph, stretches=stretches, period=length, demands=each_demand, unit=unit)
+    return Motion(
+        graph, stretches=stretches, period=length, parameter_constraints=each_demand, unit=unit
+    )
 
 
 def _graph(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from ..base.numerals import readable
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import number
 from ..errors import DeclarationError, NumberError, UnknownNameError
@@ -24,6 +25,13 @@ def rough_posture(mechanism: Mechanism, posture: Mapping[str, object]) -> dict[s
             raise UnknownNameError("link or joint in posture", name, places)
     slides = {name for name, (_, axis) in coordinates.items() if axis.kind == "slide"}
     return {name: _rough(name, value, name not in slides) for name, value in posture.items()}
+
+
+def posture_entry(name: str, slides: bool, value: float, *others: float) -> str:
+    """Write an entry of a posture to paste, so that a ``value`` [rad or m] differs from others."""
+    if slides:
+        return f"'{name}': {readable(value, *others)}"
+    return f"'{name}': '{readable(*map(math.degrees, (value, *others)))} deg'"
 
 
 def _rough(name: str, value: object, turns: bool) -> float:

@@ -5,18 +5,20 @@ smoothed, as one smooth curve.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.csv_rows import read_rows
+from ..base.csv_rows import Row, read_rows
 from ..base.units import UNITS, count, number
-from ..errors import DeclarationError, NumberError, UnknownNameError, one_line
+from ..errors import DeclarationError, NumberError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
 from .expressions import coordinates, scalar, symbols_of
 from .motion import Motion
@@ -33,6 +35,14 @@ _CLOSES = 6.0
 _SAME = 1e-9
 """Largest relative difference of the ends if nothing is smoothed."""
 
+_HEAD = re.compile(r"(.*\S)\s*[\[(]\s*(\w+)\s*[\])]")
+_COUNTS = ("count", "counts")
+_LONGEST = 200
+"""Lines of a header of OpenSim's, at most."""
+
+_SLIDES = ("_tx", "_ty", "_tz")
+"""Ends of the names of OpenSim's coordinates that are lengths; all others are angles."""
+
 _FOURTH = 70.0
 """The variance of the fourth difference of noise, over that of the noise: 1 + 16 + 36 + 16 + 1."""
 
@@ -40,13 +50,28 @@ _FOURTH = 70.0
 @dataclass(frozen=True, eq=False)
 class Recording:
     """Values over time as a file has them, times in s, values in their ``unit``, and how they are
-    called.
+    called. ``size`` is the unit in rad or m.
     """
 
     name: str
     unit: str
     t: Array
     values: Array
+    size: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """Options that make a law of a recording; see :func:`read_samples`."""
+
+    smoothing: float | str
+    points: int | None
+    periodic: bool
+    period: float | None
+    advance: float
+    ratio: Expression
+    offset: Expression
+    stretch: Expression
 
 
 @public
@@ -101,25 +126,167 @@ def read_samples(
     ends of a cycle that differ, and :class:`.UnknownNameError` for columns and units that are not.
     """
     path = Path(path)
-    units = ((unit, _UNITS, "unit"), (time_unit, _TIMES, "time unit"))
-    for name, valid, what in units:
-        if name not in valid:
-            raise UnknownNameError(what, str(name), valid, place=path.name)
-    for what, setting in (("period", period), ("advance", advance)):
-        _finite(f"{path.name}: {what}", 0.0 if setting is None else setting)
-    words = ("ratio", "offset", "stretch")
-    (ahead,), unit_in = coordinates(f"{path.name}: offset", [(offset, "")])
-    each = zip(words, (ratio, ahead, stretch), strict=True)
-    scales = [scalar(f"{path.name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
-    recording = _read(path, time, value, unit, _TIMES[time_unit])
-    if periodic or period is not None:
-        recording = _closed(
-            recording, None if period is None else period * _TIMES[time_unit], advance
+    for name, valid, what in ((unit, _UNITS, "unit"), (time_unit, _TIMES, "time unit")):
+        _known(path, name, valid, what)
+    second = _TIMES[time_unit]
+    recording = _read(path, time, value, unit, second)
+    law = _Fit(smoothing, points, periodic, period, advance, ratio, offset, stretch)
+    return _motion(recording, law, second)
+
+
+Given = TypeVar("Given")
+
+
+@public
+def read_motion(
+    path: str | Path,
+    columns: Mapping[str, str | int] | Sequence[str] | None = None,
+    *,
+    time: str | int = 1,
+    unit: str | Mapping[str, str] | None = None,
+    time_unit: str | None = None,
+    counts_per_turn: float | Mapping[str, float] | None = None,
+    smoothing: float | str | Mapping[str, float | str] = 0.0,
+    points: int | None = None,
+    periodic: bool = False,
+    period: float | None = None,
+    advance: float | Mapping[str, float] = 0.0,
+    ratio: Expression | Mapping[str, Expression] = 1.0,
+    offset: Expression | Mapping[str, Expression] = 0.0,
+    stretch: Expression = 1.0,
+) -> dict[str, Motion]:
+    """Motions of several joints from one table of recorded values: what ``Scene(m, motion)`` takes.
+
+    Parameters
+    ----------
+    path
+        A CSV file as :func:`read_samples` reads it, whose heads may have units: ``knee [deg]`` or
+        ``knee (deg)``, or a row of units below the heads; or a motion of OpenSim (``.mot``,
+        ``.sto``), whose header says if angles are in degrees.
+    columns
+        For each coordinate its column, by head without unit, or by number from 1. A sequence names
+        coordinates that are called as their columns; None takes all columns but the time.
+    unit
+        Units of values, for all or by coordinate, in place of those of the file: those of
+        :func:`read_samples`, and ``counts``. Without either, rad.
+    time_unit
+        ``s``, ``ms`` or ``us``, in place of that of the file; without either, s.
+    counts_per_turn
+        Counts of an encoder for a turn, for columns in ``counts``.
+    smoothing, advance, ratio, offset
+        As of :func:`read_samples`, for all coordinates or by coordinate; noise and advance in the
+        unit of the column. The counts of an encoder are rounded: their noise is 0.29 counts.
+    time, points, periodic, period, stretch
+        As of :func:`read_samples`, the same for all coordinates; the period in the unit of time.
+
+    Returns
+    -------
+    dict
+        A :class:`Motion` for each coordinate, in the order of ``columns``.
+
+    Raises
+    ------
+    PathError
+        For a file that cannot be read.
+    UnknownNameError
+        For columns, units and coordinates that are not there, with those that are.
+    DeclarationError
+        As :func:`read_samples`; and for counts without a number for a turn.
+    """
+    path = Path(path)
+    table = _Table.read(path)
+    at = table.column(time)
+    if columns is None:
+        columns = [name for k, name in enumerate(table.heads) if k != at]
+        if not columns:
+            raise DeclarationError(f"{path.name}: it has no heads; expected columns=")
+    named = dict(columns) if isinstance(columns, Mapping) else {name: name for name in columns}
+    if not named:
+        raise DeclarationError(f"{path.name}: columns= expected at least one coordinate")
+    places = [at, *(table.column(column) for column in named.values())]
+    second_unit = time_unit or table.units[at] or "s"
+    second = _known(path, second_unit, _TIMES, "time unit")
+    t, *series = _numbers(path, table.rows, places)
+
+    units: dict[str, str | None] = _each(path, named, "unit", unit, None)
+    turns: dict[str, float | None] = _each(path, named, "counts_per_turn", counts_per_turn, None)
+    noises: dict[str, float | str] = _each(path, named, "smoothing", smoothing, 0.0)
+    advances: dict[str, float] = _each(path, named, "advance", advance, 0.0)
+    ratios: dict[str, Expression] = _each(path, named, "ratio", ratio, 1.0)
+    offsets: dict[str, Expression] = _each(path, named, "offset", offset, 0.0)
+    found = {}
+    for place, name, values in zip(places[1:], named, series, strict=True):
+        word = units[name] or table.units[place] or "rad"
+        size = _size(path, f"{name}: " if len(named) > 1 else "", word, turns[name])
+        law = _Fit(
+            noises[name],
+            points,
+            periodic,
+            period,
+            advances[name],
+            ratios[name],
+            offsets[name],
+            stretch,
         )
-    elif advance:
-        raise DeclarationError(f"{path.name}: advance= needs periodic=True")
-    noise = _noise(recording, smoothing)
-    return _law(recording, noise, points, periodic or period is not None, advance, scales, unit_in)
+        called = f"{path.name}, column {name}"
+        found[name] = _motion(Recording(called, word, t * second, values, size), law, second)
+    return found
+
+
+def _each(
+    path: Path,
+    named: Mapping[str, str | int],
+    what: str,
+    given: Mapping[str, Given] | Given,
+    usual: Given,
+) -> dict[str, Given]:
+    """An option for each coordinate, of one for all or of a mapping."""
+    if not isinstance(given, Mapping):
+        return dict.fromkeys(named, given)
+    for key in given:
+        if key not in named:
+            raise UnknownNameError(f"coordinate of {what}=", key, named, place=path.name)
+    return {name: given.get(name, usual) for name in named}
+
+
+def _size(path: Path, name: str, unit: str, turn: float | None) -> float:
+    """The size of a unit in rad or m; of the counts of an encoder by how many are a turn."""
+    if unit not in _COUNTS:
+        return _known(path, unit, {**_UNITS, "counts": 0.0}, "unit")
+    try:
+        per_turn = number(turn)
+    except NumberError:
+        per_turn = 0.0
+    if not per_turn > 0.0:
+        raise DeclarationError(
+            f"{path.name}: {name}its column is in counts; expected counts_per_turn=, a number above"
+            f" 0, got {turn!r}"
+        )
+    return math.tau / per_turn
+
+
+def _known(path: Path, word: str, valid: Mapping[str, float], what: str) -> float:
+    """The size of a unit."""
+    if word not in valid:
+        raise UnknownNameError(what, str(word), valid, place=path.name)
+    return valid[word]
+
+
+def _motion(recording: Recording, law: _Fit, second: float) -> Motion:
+    """The motion through a recording; ``second`` is the unit of the file's time in s."""
+    name, cyclic = recording.name, law.periodic or law.period is not None
+    for what, setting in (("period", law.period), ("advance", law.advance)):
+        _finite(f"{name}: {what}", 0.0 if setting is None else setting)
+    (ahead,), unit_in = coordinates(f"{name}: offset", [(law.offset, "")])
+    each = zip(("ratio", "offset", "stretch"), (law.ratio, ahead, law.stretch), strict=True)
+    scales = [scalar(f"{name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
+    if cyclic:
+        period = None if law.period is None else law.period * second
+        recording = _closed(recording, period, law.advance)
+    elif law.advance:
+        raise DeclarationError(f"{name}: advance= needs periodic=True")
+    noise = _noise(recording, law.smoothing)
+    return _law(recording, noise, law.points, cyclic, law.advance, scales, unit_in)
 
 
 def _finite(what: str, value: object) -> None:
@@ -138,21 +305,82 @@ def _is_meant(cell: str) -> bool:
     return endless or (any(map(str.isdigit, cell)) and not any(map(str.isalpha, cell)))
 
 
-def _read(path: Path, time: str | int, value: str | int, unit: str, second: float) -> Recording:
-    """The two columns of a file."""
-    rows = read_rows(path, "columns of times and values")
+@dataclass(frozen=True, eq=False)
+class _Table:
+    """A table of numbers: heads, if it has any, with the units that it tells of its columns, and
+    its rows.
+    """
+
+    path: Path
+    heads: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: Iterator[Row]
+
+    @classmethod
+    def read(cls, path: Path) -> _Table:
+        """A table with its units: in the heads, in a row below them, or as OpenSim tells them."""
+        skip, told = _header(path)
+        heads, rows, many = _opened(path, skip)
+        split = [_HEAD.fullmatch(head) for head in heads]
+        units = [match[2] if match else "" for match in split]
+        heads = tuple(match[1] if match else head for match, head in zip(split, heads, strict=True))
+        if skip:
+            angle = "deg" if told.get("indegrees", "no").lower() == "yes" else "rad"
+            units = [
+                "s" if head == "time" else "m" if head.endswith(_SLIDES) else angle
+                for head in heads
+            ]
+        elif heads and (first := next(rows, None)) is not None:
+            below = [cell.strip("[]()") for cell in first.cells]
+            if all(not cell or cell in (*_UNITS, *_TIMES, *_COUNTS) for cell in below):
+                units = [inside or cell for inside, cell in zip(units, below, strict=True)]
+            else:
+                rows = chain([first], rows)
+        return cls(path, heads, tuple(units) or ("",) * many, rows)
+
+    def column(self, column: str | int) -> int:
+        """The place of a column, from 0."""
+        return _column(self.path.name, column, self.heads, len(self.units))
+
+
+def _header(path: Path) -> tuple[int, dict[str, str]]:
+    """The number of lines of a header as OpenSim writes it, and what it tells by words in small
+    letters; no lines for another file.
+    """
+    if path.suffix.lower() not in (".mot", ".sto"):
+        return 0, {}
+    told: dict[str, str] = {}
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            for count_read, line in zip(range(1, _LONGEST), file, strict=False):
+                word, _, value = line.strip().partition("=")
+                told[word.strip().lower()] = value.strip()
+                if word.lower() == "endheader":
+                    return count_read, told
+    except (OSError, UnicodeDecodeError) as error:
+        raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
+    raise DeclarationError(f"{path.name}: expected a header that ends in the line 'endheader'")
+
+
+def _opened(path: Path, skip: int = 0) -> tuple[tuple[str, ...], Iterator[Row], int]:
+    """The heads of a table, none where its first row is of numbers; its rows; and how many columns
+    it has.
+    """
+    rows = read_rows(path, "columns of times and values", skip)
     first = next(rows)
     unread = [cell for cell in first.cells if math.isnan(first.number(cell))]
     if meant := [cell for cell in unread if _is_meant(cell)]:
         raise DeclarationError(f"{first.where}: expected a finite number, got {meant[0]!r}")
-    headed = bool(unread)
-    wanted = [
-        _column(path.name, column, first.cells if headed else (), len(first.cells))
-        for column in (time, value)
-    ]
+    if unread:
+        return first.cells, rows, len(first.cells)
+    return (), chain([first], rows), len(first.cells)
+
+
+def _numbers(path: Path, rows: Iterator[Row], places: Sequence[int]) -> Array:
+    """Columns of a table by their places, the times first: (columns, rows)."""
     found: list[list[float]] = []
-    for row in rows if headed else chain([first], rows):
-        cells = [row.cells[column] for column in wanted]
+    for row in rows:
+        cells = [row.cells[column] for column in places]
         numbers = [row.number(cell) for cell in cells]
         for cell, found_number in zip(cells, numbers, strict=True):
             if math.isnan(found_number):
@@ -166,8 +394,16 @@ def _read(path: Path, time: str | int, value: str | int, unit: str, second: floa
         raise DeclarationError(
             f"{path.name}: expected at least {_LEAST} rows of numbers, got {len(found)}"
         )
-    t, values = np.array(found).T
-    return Recording(path.name, unit, t * second, values)
+    columns: Array = np.array(found).T
+    return columns
+
+
+def _read(path: Path, time: str | int, value: str | int, unit: str, second: float) -> Recording:
+    """The two columns of a file."""
+    heads, rows, many = _opened(path)
+    places = [_column(path.name, column, heads, many) for column in (time, value)]
+    t, values = _numbers(path, rows, places)
+    return Recording(path.name, unit, t * second, values, _UNITS[unit])
 
 
 def _column(place: str, column: str | int, heads: Sequence[str], many: int) -> int:
@@ -193,9 +429,7 @@ def _closed(recording: Recording, period: float | None, advance: float) -> Recor
     if not t[-1] < end:
         lasts = f"its rows last {t[-1] - t[0]:.6g} s, but the period is {period:.6g} s"
         raise DeclarationError(f"{recording.name}: {lasts}; expected rows of exactly one period")
-    return Recording(
-        recording.name, recording.unit, np.append(t, end), np.append(values, values[0] + advance)
-    )
+    return replace(recording, t=np.append(t, end), values=np.append(values, values[0] + advance))
 
 
 def _noise(recording: Recording, smoothing: float | str) -> float:
@@ -223,7 +457,7 @@ def _law(
     scales: Sequence[Expression],
     unit_in: str,
 ) -> Motion:
-    t, values, size = recording.t, recording.values, _UNITS[recording.unit]
+    t, values, size = recording.t, recording.values, recording.size
     whole = float(t[-1] - t[0])
     climb = advance / whole
     level = values - climb * (t - t[0])
@@ -261,7 +495,9 @@ def _law(
         f" s{', repeated' if periodic else ''}"
     )
     return Motion(
-        graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off", unit=unit_in
+        graph,
+        description=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off",
+        unit=unit_in,
     )
 
 

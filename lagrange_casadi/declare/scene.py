@@ -15,6 +15,7 @@ from ..base.units import within
 from ..base.vocabulary import Precision
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
 from ..methods import method
+from ..renamed import renamed
 from .compliant import Elastic, compliant_links
 from .density import Density
 from .drives import weighed
@@ -194,6 +195,7 @@ def _refuse_output(mechanism: Mechanism, name: str) -> None:
         raise DeclarationError(f"output '{name}': {why}")
 
 
+@renamed
 @symbolic
 @fitting
 @dataclass(frozen=True, eq=False)
@@ -413,7 +415,7 @@ class Scene(Graphs):
         return self.mechanism.values(parameters)
 
     @fitting
-    def giving(self, elastic: Elastic | None) -> Scene:
+    def with_elastic(self, elastic: Elastic | None) -> Scene:
         """Return the scene with what is said of elasticity; None is what it says itself."""
         gives = self.elastic if elastic is None else compliant_links(self.mechanism, elastic)
         return self if gives == self.elastic else _compliant(self, gives)
@@ -441,13 +443,13 @@ class Scene(Graphs):
         """First and last instant [s], with the parameters with which the scene is assembled."""
         return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
 
-    def demands(self, precision: Precision = "double") -> ParameterConstraints:
+    def parameter_constraints(self, precision: Precision = "double") -> ParameterConstraints:
         """Conditions on the parameters, of the mechanism's parts and of the moves of its motion,
         with the tolerance of a precision.
         """
         parts, moved = (
             demands(self.mechanism, precision),
-            [demand for law in self.laws.values() for demand in law.demands],
+            [demand for law in self.laws.values() for demand in law.parameter_constraints],
         )
         return ParameterConstraints(parts.symbols, (*parts.each, *moved)) if moved else parts
 
@@ -456,8 +458,8 @@ class Scene(Graphs):
         """Raise :class:`.ParameterError` for values of all parameters with which a part or a move
         of the motion cannot be.
         """
-        if any(law.demands for law in self.laws.values()):
-            self.demands().check(
+        if any(law.parameter_constraints for law in self.laws.values()):
+            self.parameter_constraints().check(
                 list(values.values()), lambda expression: self.mechanism.number(expression, values)
             )
 

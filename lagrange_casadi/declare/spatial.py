@@ -498,7 +498,9 @@ class SpatialMechanism(Mechanism):
 
 def reference_posture(mechanism: Mechanism) -> dict[str, float]:
     """Coordinates where all parts are turned as they were declared to be: zero, of joints that take
-    it from that posture.
+    it from that posture, and ``rough`` values that elements know.
     """
     hard = mechanism.hard if isinstance(mechanism, SpatialMechanism) else ()
-    return {name: 0.0 for name, (joint, _) in mechanism.coordinates.items() if joint.name in hard}
+    return mechanism.rough | {
+        name: 0.0 for name, (joint, _) in mechanism.coordinates.items() if joint.name in hard
+    }

@@ -321,7 +321,9 @@ def _of_beam(what: str, link: Link) -> list[Demand]:
 
     shapes = () if link.beam is None else link.beam.course.shapes()
     return [
-        demand(shape.kind, value, words) for shape in shapes for value, words in shape.demands()
+        demand(shape.kind, value, words)
+        for shape in shapes
+        for value, words in shape.parameter_constraints()
     ]
 
 

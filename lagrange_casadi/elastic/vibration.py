@@ -22,6 +22,7 @@ from ..declare.description import Description, density_of
 from ..declare.end_conditions import ENDS, Ends, ends_of
 from ..errors import DeclarationError
 from ..instants.solution import Solution
+from ..renamed import renamed
 from ..strength.member import Member
 from .bending_modes import Mode, first_mode
 from .compliance import Compliance
@@ -35,6 +36,7 @@ _SLIGHT = 1e-12
 _FEWEST = 4
 
 
+@renamed
 @dataclass(frozen=True)
 class Vibration:
     """The first bending frequency of a link [Hz], and what it means for forces that were computed
@@ -45,7 +47,7 @@ class Vibration:
     Both are infinite for a link without mass. ``cycle`` is how often a second the span of time is
     repeated. ``excess`` is the largest difference that swinging makes to bending, over the largest
     bending; ``harmonic`` the multiple of the cycle that makes most of it. These are None where the
-    span is no cycle, and ``untold`` says why. ``harmonics`` are the amplitudes of bending in the
+    span is no cycle, and ``reason`` says why. ``harmonics`` are the amplitudes of bending in the
     first mode, the mean first, over the largest bending: in space in the plane that swings most.
     """
 
@@ -56,14 +58,14 @@ class Vibration:
     cycle: float | None = None
     harmonic: int | None = None
     excess: float | None = None
-    untold: str = ""
+    reason: str = ""
     harmonics: tuple[float, ...] = ()
 
     @property
     def enough(self) -> bool | None:
         """True if rigid links are enough: bending is off by a tenth at most.
 
-        None where it cannot be told.
+        None where it cannot be decided.
         """
         return None if self.excess is None else self.excess <= ENOUGH
 
@@ -74,7 +76,7 @@ class Vibration:
             return "no bending frequency of its own, for it has no mass"
         text = f"first bending frequency {self.frequency:.5g} Hz, {' and '.join(self.ends)}"
         if self.cycle is None or self.harmonic is None or self.excess is None:
-            return f"{text}; {self.untold}"
+            return f"{text}; {self.reason}"
         text += f", {self.frequency / self.cycle:.4g} times that of the cycle"
         off = f"{100 * self.excess:.3g} %" if self.excess < 10 else "many times"
         if self.enough:
@@ -114,8 +116,8 @@ def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibrat
     found = Vibration(link, held, softest.mode.upper / math.tau, lower)
     forces, t = [plane.force() for plane in planes], solution.t
     whole = float(np.max(np.abs(forces)))
-    if untold := _no_cycle(t, forces, whole):
-        return replace(found, untold=untold)
+    if reason := _no_cycle(t, forces, whole):
+        return replace(found, reason=reason)
     cycle = 1.0 / float(t[-1] - t[0])
     pairs = zip(forces, planes, strict=True)
     swung = [

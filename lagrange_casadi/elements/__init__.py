@@ -10,11 +10,14 @@ from .gears import Gears, gears
 from .planetary import Planetary, planetary
 from .plate import Plate, plate
 from .profile_lift import ProfileLift, profile_lift, read_profile
+from .supports import Bearings, Bushes, two_bearings, two_bushes
 from .wheel import wheel
 
 __all__ = [
+    "Bearings",
     "Belt",
     "Bent",
+    "Bushes",
     "Cam",
     "CamProfile",
     "Cylinder",
@@ -33,5 +36,7 @@ __all__ = [
     "plate",
     "profile_lift",
     "read_profile",
+    "two_bearings",
+    "two_bushes",
     "wheel",
 ]

@@ -163,8 +163,8 @@ def disc_cam(
         )
     if profile.undercut.any():
         raise DeclarationError(
-            f"{what}: {profile.told_undercut}; expected a larger base radius, a smaller roller or a"
-            " slower lift"
+            f"{what}: {profile.undercut_summary}; expected a larger base radius, a smaller roller"
+            " or a slower lift"
         )
     return made
 

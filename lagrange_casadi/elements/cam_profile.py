@@ -18,6 +18,7 @@ from ..arguments import public
 from ..base.arrays import Array
 from ..base.publish import check_writable, writing
 from ..errors import DeclarationError, LagrangeCasadiError, shown
+from ..renamed import renamed
 
 if TYPE_CHECKING:
     import casadi as ca
@@ -29,6 +30,7 @@ _SAME = 1e-9
 _MILLIMETRES = 1e3
 
 
+@renamed
 @public
 @dataclass(frozen=True, eq=False)
 class CamProfile:
@@ -52,7 +54,7 @@ class CamProfile:
     closes: bool
 
     @property
-    def told_undercut(self) -> str:
+    def undercut_summary(self) -> str:
         """Places of undercut, in words; empty if there are none."""
         found = np.degrees(self.angle[self.undercut])
         return (
@@ -100,7 +102,7 @@ class CamProfile:
     def _refuse_undercut(self) -> None:
         if self.undercut.any():
             raise LagrangeCasadiError(
-                f"cam '{self.name}': {self.told_undercut}; no profile has this motion"
+                f"cam '{self.name}': {self.undercut_summary}; no profile has this motion"
             )
 
     def _write(self, path: str | Path, text: str) -> None:

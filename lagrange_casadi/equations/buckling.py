@@ -21,6 +21,7 @@ from ..arguments import Numeric, Positive, public
 from ..base.arrays import Array, Expression, Operand
 from ..beams.beam import SLIGHT
 from ..beams.properties import chosen, larger, smaller, symbolic
+from ..renamed import renamed
 from .stress import CrossSections
 
 _ROUNDS, _TINY = 8, 1e-12
@@ -36,6 +37,7 @@ def critical_stress(slenderness: Numeric, elasticity: Positive, strength: Positi
         return _critical(np.pi**2 * elasticity / np.asarray(slenderness, float) ** 2, strength)
 
 
+@renamed
 @dataclass(frozen=True)
 class Column:
     """A link as a column, where it bends along y and where it bends along z: effective lengths over
@@ -47,7 +49,7 @@ class Column:
     slenderness: tuple[Any, Any]
     euler: tuple[Any, Any]
     critical: tuple[Any, Any]
-    yielding: tuple[Any, Any]
+    yield_moment: tuple[Any, Any]
 
     @classmethod
     def of(cls, cross: CrossSections, length: Operand, effective: tuple[float, float]) -> Column:
@@ -62,11 +64,11 @@ class Column:
             own, second = effective[k] * length, thinnest.second[k]
             euler = math.pi**2 * elasticity * second / own**2
             slenderness = own * (thinnest.area / second) ** 0.5
-            critical, yielding = (
+            critical, yield_moment = (
                 _critical(euler, strength * thinnest.area),
                 thinnest.modulus[k] * strength,
             )
-            numbers = (effective[k], slenderness, euler, critical, yielding)
+            numbers = (effective[k], slenderness, euler, critical, yield_moment)
             return tuple(number if symbolic(number) else float(number) for number in numbers)
 
         return cls(*zip(column(0), column(1), strict=True))
@@ -82,7 +84,7 @@ def used(column: Column, compression: Array, moments: Sequence[Array]) -> Array:
     compressed = larger(compression, 0.0)
     share = compressed / smaller(*column.critical)
     shares = [compressed / euler for euler in column.euler]
-    bent = [moment / limit for moment, limit in zip(moments, column.yielding, strict=False)]
+    bent = [moment / limit for moment, limit in zip(moments, column.yield_moment, strict=False)]
     found = larger(*shares)
     for euler, moment in zip(shares, bent, strict=False):
         found = larger(found, _alone(share, euler, moment))

@@ -264,7 +264,13 @@ class _Solver:
             number = len(self.undecided.ways)
             first = self.ways[number] if number < len(self.ways) else 0
             near = near[first:] + near[:first]
-            ways = [_numbers(form.unknown, values[signs]) for signs in near]
+            ways = [
+                {
+                    c: x if round(x, _READ[c.kind]) else 0.0
+                    for c, x in _numbers(form.unknown, values[signs]).items()
+                }
+                for signs in near
+            ]
             words = [
                 " with ".join(describe_coordinate(c.posture_key, c.kind, x) for c, x in way.items())
                 for way in ways

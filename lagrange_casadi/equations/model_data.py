@@ -140,7 +140,10 @@ class ModelData(Graphs):
                 ["extent"],
                 {"cse": True},
             ),
-            margins={precision: scene.demands(precision).margins() for precision in PRECISIONS},
+            margins={
+                precision: scene.parameter_constraints(precision).margins()
+                for precision in PRECISIONS
+            },
             corners=Corners.of(scene),
             masses=ca.Function(
                 "masses", [symbols], [masses_of(mechanism)], ["p"], ["masses"], {"cse": True}

@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..base.numerals import readable
+from ..declare.posture import posture_entry
 from ..errors import PostureError
 from .blocks import Block
 from .multibody import Coordinate, Multibody, own_coordinate, place_along
@@ -138,26 +138,21 @@ class Undecided:
 
     def refusal(self, multibody: Multibody) -> PostureError:
         """All of it as an error, with lines to paste."""
-        kinds = {name for _, ways in self.ways for name in ways[0] if turns(multibody, name)}
         lines = []
         for k in range(len(self.ways[0][1])) if len(self.ways) == 1 and not self.lacking else (0,):
-            entries = {}
-            for _, ways in self.ways:
-                for name, value in ways[k].items():
-                    values = [value, *(way[name] for way in ways)]
-                    entries[name] = (
-                        f"'{readable(*map(math.degrees, values))} deg'"
-                        if name in kinds
-                        else readable(*values)
-                    )
-            entries |= {
-                name: "'... deg'" if angular else "..."
+            entries = [
+                posture_entry(
+                    name, not turns(multibody, name), ways[k][name], *(way[name] for way in ways)
+                )
+                for _, ways in self.ways
+                for name in ways[k]
+            ]
+            entries += [
+                f"'{name}': '... deg'" if angular else f"'{name}': ..."
                 for _, names in self.lacking
                 for name, angular in names
-            }
-            lines.append(
-                "posture={" + ", ".join(f"'{name}': {text}" for name, text in entries.items()) + "}"
-            )
+            ]
+            lines.append("posture={" + ", ".join(entries) + "}")
         say = f"choose one by {' or '.join(lines)}" if self.ways else lines[0]
         after = (
             ", for example; each loop is listed for the first assembly of the loops before it"

@@ -84,8 +84,8 @@ def _law(law: Motion, symbol: ca.SX) -> str:
         return (
             f"a spline through {len(law.knots)} samples from {law.span[0]:g} to {law.span[1]:g} s"
         )
-    if law.told:
-        return law.told
+    if law.description:
+        return law.description
     if law.stretches:
         return (
             f"{len(law.stretches)} moves and dwells{', repeated' if law.period is not None else ''}"

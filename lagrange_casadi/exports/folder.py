@@ -137,7 +137,7 @@ def _told(source: Source) -> dict[str, Any]:
         "mechanism": agreed.name,
         "prefix": agreed.prefix,
         "precision": agreed.precision,
-        "options": source.rung,
+        "options": source.method,
         "error": {
             "largest": float(f"{source.golden.worst[0]:.0e}"),
             "output": source.golden.worst[1],

@@ -114,7 +114,10 @@ def draw_into(axes: Any, solution: Solution) -> None:
     _frame(axes, box, False)
     axes.set(xlabel=f"x [{scale_for('m', size).unit}]", ylabel=f"y [{scale_for('m', size).unit}]")
     label_bodies(axes.figure, *axes.get_legend_handles_labels())
-    axes.figure.draw_without_rendering()
+    if axes.figure.get_layout_engine():
+        axes.figure.draw_without_rendering()
+    else:
+        axes.apply_aspect()
     _name(axes, solution, 0, size)
 
 

@@ -20,6 +20,9 @@ _OVERLAP, _HIDDEN, _OUTSIDE, _FAR = 1e4, 6.0, 1e4, 1.0
 point [pt] of distance.
 """
 
+NAMES_IN_ROW = 6
+"""Bodies in a row of the legend."""
+
 
 def placed(anchors: Array, sizes: Array, things: Array, box: Sequence[float]) -> Array:
     """Lower left corners (n, 2) of names of ``sizes`` (n, 2) beside their ``anchors`` (n, 2), all
@@ -88,10 +91,15 @@ def _cost(
 
 
 def label_bodies(figure: Any, handles: Sequence[Any], names: Sequence[str]) -> None:
-    """Draw the legend of bodies and colours, once below all drawings of a figure whose layout is
-    constrained.
+    """Draw the legend of bodies and colours, once below all drawings of a figure; where its layout
+    is not constrained, in its corner.
     """
     if not figure.legends:
         figure.legend(
-            handles, names, loc="outside lower center", ncols=6, frameon=False, fontsize=8
+            handles,
+            names,
+            loc="outside lower center" if figure.get_layout_engine() else "lower left",
+            ncols=NAMES_IN_ROW,
+            frameon=False,
+            fontsize=8,
         )

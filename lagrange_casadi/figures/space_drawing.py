@@ -129,9 +129,12 @@ def draw_into(axes: Any, solution: Solution) -> None:
     axes.set_aspect("equal")
     axes.set_xlabel(one.title, fontsize=8)
     _draw_instant(axes, one, now, solution, size, strong=True)
-    # How large the axes will be is not known yet: as if they were as large as they are drawn in a
-    # column of two.
-    scale = 72.0 * min(4.6 / (box[1] - box[0]), 3.4 / (box[3] - box[2]))
+    # Where a layout decides how large the axes will be, as if they were as large as they are drawn
+    # in a column of two.
+    wide, high = 4.6, 3.4
+    if not axes.figure.get_layout_engine():
+        wide, high = axes.get_position().size * axes.figure.get_size_inches()
+    scale = 72.0 * min(wide / (box[1] - box[0]), high / (box[3] - box[2]))
     _label(axes, one, now, solution, size, box, scale)
     named = [
         (name, handle)

@@ -1,4 +1,4 @@
-"""A picture of a :class:`.Trade`: error over time, each rung a numbered point, those that nothing
+"""A picture of a :class:`.Trade`: error over time, each method a numbered point, those that nothing
 beats joined.
 """
 
@@ -39,7 +39,7 @@ def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
             fontsize=8,
             color=colour,
         )
-        words.append((f"{number:>2}  {one.rung.options}", colour))
+        words.append((f"{number:>2}  {one.method.options}", colour))
     axes.set(
         xscale="log",
         yscale="log",

@@ -48,7 +48,8 @@ KINDS: dict[str, str] = {
 _LOOPS = ("constraint", "loop", "loop_joint")
 _ONE = ("parent", "predecessor", "link1")
 _OTHER = ("child", "successor", "link2")
-_IGNORED = ("visual", "collision", "material", "gazebo", "sensor", "safety_controller")
+_KNOWN = ("link", "joint", "material", "gazebo", "transmission", "ros2_control", "coupling",
+          "drake:ball_constraint", "sensor", "safety_controller")  # fmt: skip
 
 
 def read(path: Path, text: str) -> Model:
@@ -130,16 +131,10 @@ class _Robot:
         """Declare a joint between frames of two links."""
         told = attribute(self.model, line, "name")
         name = self.names[told] = self.model.name_of("joint", told, line.where, self.model.joints)
-        (parent, near), (child, far) = ((self.on[link], frame) for link, frame in (one, other))
-        self.model.joints[name] = Joint(
-            name,
-            kind,
-            parent[0],
-            child[0],
-            parent[1].then(near),
-            child[1].then(far),
-            where=line.where,
+        (parent, near), (child, far) = (
+            (self.on[link][0], self.on[link][1].then(frame)) for link, frame in (one, other)
         )
+        self.model.joints[name] = Joint(name, kind, parent, child, near, far, where=line.where)
 
     def loop(self, line: Element, placed: dict[str, Frame]) -> None:
         """Read a loop that an element of its own closes."""
@@ -185,36 +180,26 @@ class _Robot:
 
     def coupling(self, line: Element, joints: list[Element]) -> None:
         """Read a coupling of two links' joints."""
-        found = []
-        for side in (_ONE, _OTHER):
-            link = self.side(line, side)[0]
-            above = next((one for one in joints if self.side(one, _OTHER)[0] == link), None)
-            if above is None:
-                raise self.model.refuse(line.where, f"link {shown(link)} has no joint")
-            found.append(above)
-        if self.side(found[0], _ONE)[0] != self.side(found[1], _ONE)[0]:
-            words = "is not read where its links do not hang on the same link"
-            raise self.model.refuse(line.where, words)
-        first, second = (self.names[attribute(self.model, one, "name")] for one in found)
-        value = attribute(self.model, needed(self.model, line, "ratio"), "value")
-        ratio = number(self.model, line.where, value, "ratio")
-        name = self.model.name_of(
-            "coupling", attribute(self.model, line, "name"), line.where, self.model.couplings
-        )
-        self.model.couplings[name] = Coupling(name, first, second, ratio, where=line.where)
+        model, above = self.model, {self.side(one, _OTHER)[0]: one for one in reversed(joints)}
+        links = [self.side(line, side)[0] for side in (_ONE, _OTHER)]
+        for link in links:
+            if link not in above:
+                raise model.refuse(line.where, f"link {shown(link)} has no joint")
+        if len({self.side(above[link], _ONE)[0] for link in links}) > 1:
+            raise model.refuse(line.where, "is not read if its links hang on two different links")
+        first, second = (self.joint(above[link], "name") for link in links)
+        value = attribute(model, needed(model, line, "ratio"), "value")
+        ratio = number(model, line.where, value, "ratio")
+        told = attribute(model, line, "name")
+        name = model.name_of("coupling", told, line.where, model.couplings)
+        model.couplings[name] = Coupling(name, first, second, ratio, where=line.where)
 
     def actuators(self) -> None:
         """Read which joints have a drive."""
-        lines = [
-            joint for group in self.root.all("transmission") for joint in group.all("joint")
-        ] + [
-            joint
-            for group in self.root.all("ros2_control")
-            for joint in group.all("joint")
-            if joint.first("command_interface") is not None
-        ]
-        for joint in lines:
-            self.model.preferred.append(self.joint(joint, "name"))
+        for group in self.root.all("transmission", "ros2_control"):
+            for joint in group.all("joint"):
+                if group.name == "transmission" or joint.first("command_interface") is not None:
+                    self.model.preferred.append(self.joint(joint, "name"))
         if any(group.first("actuator") for group in self.root.all("transmission")):
             self.model.notes.append(
                 "Reductions of transmissions are not read: efforts are at joints."
@@ -222,24 +207,21 @@ class _Robot:
 
     def left_out(self, joints: list[Element]) -> None:
         """Note what was not read."""
-        losses = [
-            joint.given["name"]
+        losses = {
+            joint.given["name"]: None
             for joint in joints
-            if (one := joint.first("dynamics"))
-            and any(
-                number(self.model, one.where, one.given.get(key) or "0", key)
-                for key in ("damping", "friction")
-            )
-        ]
+            for one in joint.all("dynamics")
+            for key in ("damping", "friction")
+            if number(self.model, one.where, one.given.get(key) or "0", key)
+        }
         if losses:
             self.model.notes.append(f"Damping and friction are not read: {', '.join(losses)}.")
         frames = [name for name, (body, _) in self.on.items() if name != body and body != GROUND]
         frames = [name for name in frames if self.model.called.get(self.on[name][0]) != name]
         if frames:
             self.model.notes.append(f"Frames without mass are left out: {', '.join(frames)}.")
-        known = {"link", "joint", "material", "gazebo", "transmission", "ros2_control", "coupling"}
         for one in self.root.inside:
-            if one.name not in (*known, *_LOOPS, *_IGNORED, "drake:ball_constraint"):
+            if one.name not in (*_KNOWN, *_LOOPS):
                 self.model.notes.append(f"<{one.name}> of line {one.line} is not read.")
 
     def body(self, told: str, frame: Frame) -> str:
@@ -248,8 +230,8 @@ class _Robot:
         name = model.name_of("body", told, link.where, model.bodies)
         inertial = link.first("inertial")
         if inertial is None:
-            body = Body(name, 0.0, np.zeros(3), np.zeros((3, 3)), frame, where=link.where)
-            model.bodies[name] = body
+            none = np.zeros(3)
+            model.bodies[name] = Body(name, 0.0, none, np.diag(none), frame, where=link.where)
             return name
         line = needed(model, inertial, "mass")
         mass = number(model, line.where, attribute(model, line, "value"), "mass")

@@ -83,9 +83,10 @@ def run(
     *,
     into: Evaluated | None = None,
 ) -> tuple[Evaluated, Provenance]:
-    """The columns of a graph at instants ``t`` and parameters ``p``, on a rung; nothing is checked.
+    """The columns of a graph at instants ``t`` and parameters ``p``, by a method; nothing is
+    checked.
 
-    ``into`` is what an earlier run gave on the same rung and as many instants, to be filled anew.
+    ``into`` is what an earlier run gave on the same method and as many instants, to be filled anew.
     Raises :class:`CompilerError` where the backend needs a compiler and there is none, or it fails.
     """
     method = method or EvaluationMethod()
@@ -159,7 +160,7 @@ def _compiled(
 def compiled(
     method: EvaluationMethod, build: Callable[[codegen.Compiler], Built]
 ) -> tuple[codegen.Compiler, Built] | None:
-    """Result of ``build`` with the compiler of a rung's backend, and that compiler; None for the
+    """Result of ``build`` with the compiler of a method's backend, and that compiler; None for the
     virtual machine.
     """
     backend = method.backend

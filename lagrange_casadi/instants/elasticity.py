@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..base.quantities import Output
+from ..renamed import renamed
 
 
+@renamed
 @dataclass(frozen=True)
 class Elasticity:
-    """The outputs that equilibrium leaves open and least strain energy ``told``, and ``reasons``
-    why others stay open.
+    """The indeterminate outputs that least strain energy determined, ``completed``, and the
+    ``reasons`` why others stay indeterminate.
     """
 
-    told: tuple[Output, ...] = ()
+    completed: tuple[Output, ...] = ()
     reasons: tuple[str, ...] = ()
 
     @property
@@ -22,11 +24,11 @@ class Elasticity:
         lines = (
             [
                 (
-                    f"{len(self.told)} statically indeterminate series are determined by least"
+                    f"{len(self.completed)} statically indeterminate series are determined by least"
                     " strain energy"
                 )
             ]
-            if self.told
+            if self.completed
             else []
         )
         return (

@@ -1,4 +1,4 @@
-"""Methods of evaluation, the rungs of the trade between speed and accuracy: by what, in which
+"""Methods of evaluation, of the trade between speed and accuracy: by what, in which
 precision, how exactly; how long.
 """
 
@@ -94,7 +94,7 @@ class EvaluationMethod:
             )
 
     def check(self, program: Program) -> None:
-        """Raise :class:`DeclarationError` where a graph has nothing that the rung chooses."""
+        """Raise :class:`DeclarationError` where a graph has nothing that the method chooses."""
         if self.newton is not None and program.newton is None:
             raise DeclarationError(
                 f"newton: no loop of '{program.data.name}' is iterated; leave newton out: closed"
@@ -103,7 +103,7 @@ class EvaluationMethod:
 
     @property
     def options(self) -> str:
-        """The rung as options of the command line, as a shell takes them: only what differs from
+        """The method as options of the command line, as a shell takes them: only what differs from
         the default.
         """
         words = [

@@ -1,5 +1,5 @@
-"""A scene read from a table: its drive is evaluated, as on any rung, and everything else is read at
-the drive's angle.
+"""A scene read from a table: its drive is evaluated, as by any method, and everything else is read
+at the drive's angle.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ def columns(
     into: Evaluated | None = None,
 ) -> tuple[Evaluated, Provenance]:
     """The columns of a graph at instants ``t`` and parameters ``p``: evaluated, or read from a
-    table, as the rung says.
+    table, as the method says.
 
-    ``into`` is what an earlier call with the same rung and as many instants gave, to be filled
+    ``into`` is what an earlier call with the same method and as many instants gave, to be filled
     anew. Raises :class:`DeclarationError`, with the reason, where the scene cannot be tabulated,
     and what :func:`.run` raises.
     """
@@ -74,7 +74,7 @@ def columns(
     found.status[~np.isfinite(found.out.sum(axis=0)) & (found.status == Status.OK)] = (
         Status.NOT_FINITE
     )
-    return found, replace(provenance, rung=method.options)
+    return found, replace(provenance, method=method.options)
 
 
 def table_of(program: Program, t: Array, p: Array, method: EvaluationMethod) -> CycleTable:

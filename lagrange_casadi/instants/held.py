@@ -10,24 +10,26 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..renamed import renamed
 
 ENDS = ("least", "largest")
 
 
+@renamed
 @dataclass(frozen=True, eq=False)
 class Holding:
     """The ``least`` and the ``largest`` effort, in ``unit``, that a drive may need at each instant,
     by sign, (t,).
 
-    Both are the effort where that is told. Where joints at rest leave it open, frictions that are
-    there may make it anything between. Where that range is not told either both are NaN, and
-    ``untold`` says why, else it is empty.
+    Both are the effort where equilibrium determines it. Where joints rest, their frictions may make
+    it anything between. Where that range is not evaluated both are NaN, and ``reason`` says why;
+    else it is empty.
     """
 
     least: Array
     largest: Array
     unit: str
-    untold: str = ""
+    reason: str = ""
 
     @property
     def worst(self) -> Array:
@@ -49,11 +51,11 @@ def held_outputs(held: Mapping[str, Holding]) -> dict[Output, Array]:
 
 
 def held_notes(held: Mapping[str, Holding]) -> Iterator[str]:
-    """The range of each effort that friction at rest leaves open, or why it is not told."""
+    """The range of each effort that friction at rest makes indeterminate, or why there is none."""
     for name, found in held.items():
         there = found.least < found.largest
-        if found.untold:
-            yield f"held at rest: effort:{name} is not evaluated: {found.untold}"
+        if found.reason:
+            yield f"held at rest: effort:{name} is not evaluated: {found.reason}"
         elif there.any():
             least, largest = found.least[there].min(), found.largest[there].max()
             yield (

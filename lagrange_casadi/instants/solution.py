@@ -23,6 +23,7 @@ from ..declare.notes import notes
 from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError, shown
 from ..methods import method
+from ..renamed import renamed
 from .derivatives import Derivatives
 from .elasticity import Elasticity
 from .frames import dataset, frame
@@ -43,18 +44,20 @@ if TYPE_CHECKING:
     from ..strength import Life, Safety, Stress
 
 
+@renamed
 @dataclass(frozen=True)
 class Provenance:
     """Origin of the numbers.
 
-    Holds no clock, no user and no path; ``rung`` are the options of the :class:`.EvaluationMethod`.
+    Holds no clock, no user and no path; ``method`` are the options of the
+    :class:`.EvaluationMethod`.
     """
 
     backend: str
     precision: str
     compiler: str
     flags: str
-    rung: str
+    method: str
     versions: Mapping[str, str]
 
 
@@ -77,6 +80,7 @@ class Peak:
     over: float | None = None
 
 
+@renamed
 @public
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution:
@@ -84,15 +88,15 @@ class Solution:
 
     ``outputs`` holds every array over time, each of shape (t,); :mod:`.base.tables` says what each
     means, its unit and its sign. ``t`` are the instants [s], ``xi`` the ratios xi/l of the section
-    grids. ``left_open`` are outputs that equilibrium does not determine, because the mechanism is
-    over-constrained: their values are NaN. :attr:`series` and :attr:`undetermined` are the same by
-    full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near
-    the loops are to a dead centre; a residual above ``tolerance`` means that the solution is wrong,
-    not that it is rounded. ``errors`` estimates by :mod:`.accuracy` how far each quantity may be
-    off, over all instants, in its unit. ``over`` is the coordinate of the drive by which the
-    instants were asked for, or None. ``elasticity`` says which outputs least strain energy told;
-    ``sensitivities`` are derivatives by parameters, where these were wanted; ``held`` are ranges of
-    efforts that joints at rest leave open.
+    grids. ``indeterminate`` are outputs that equilibrium does not determine, because the mechanism
+    is over-constrained: their values are NaN. :attr:`series` and :attr:`undetermined` are the same
+    by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how
+    near the loops are to a dead centre; a residual above ``tolerance`` means that the solution is
+    wrong, not that it is rounded. ``errors`` estimates by :mod:`.accuracy` how far each quantity
+    may be off, over all instants, in its unit. ``over`` is the coordinate of the drive by which the
+    instants were asked for, or None. ``elasticity`` says which outputs least strain energy
+    determined; ``sensitivities`` are derivatives by parameters, where these were wanted;
+    ``holding`` are ranges of efforts that hold joints at rest.
 
     Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not
     have, and list those it has.
@@ -104,14 +108,14 @@ class Solution:
     outputs: Mapping[Output, Array]
     description: Description
     provenance: Provenance
-    left_open: tuple[Output, ...] = ()
+    indeterminate: tuple[Output, ...] = ()
     certificate: Mapping[str, Array] = field(default_factory=dict)
     errors: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 0.0
     over: DriveAxis | None = None
     elasticity: Elasticity = field(default_factory=Elasticity)
     sensitivities: Derivatives = field(default_factory=Derivatives)
-    held: Mapping[str, Holding] = field(default_factory=dict)
+    holding: Mapping[str, Holding] = field(default_factory=dict)
 
     @cached_property
     def table(self) -> Table:
@@ -128,7 +132,7 @@ class Solution:
     @property
     def undetermined(self) -> tuple[str, ...]:
         """The full names of what equilibrium does not determine."""
-        return tuple(map(str, self.left_open))
+        return tuple(map(str, self.indeterminate))
 
     @property
     def failed(self) -> dict[str, float]:
@@ -228,13 +232,13 @@ class Solution:
         return found
 
     def safety(
-        self, link: str, *, criterion: str = "goodman", yielding: str = "von_mises"
+        self, link: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"
     ) -> Safety:
         """The factors of safety of a link that has a beam, or of what is fitted to a joint: see
         :func:`.strength.safety`.
         """
         found: Safety = method("Solution.safety")(
-            self, link, criterion=criterion, yielding=yielding
+            self, link, criterion=criterion, yield_criterion=yield_criterion
         )
         return found
 
@@ -261,7 +265,7 @@ class Solution:
         known = {
             output: values
             for output, values in self.outputs.items()
-            if output not in self.left_open
+            if output not in self.indeterminate
         }
         found = notes(self.t, known, self.description, self.resting)
         slopes = (
@@ -269,7 +273,7 @@ class Solution:
         )  # at rest all that rubs is open
         if any(output.group == "deflection" for output in self.outputs):
             slopes = (*slopes, *method("Solution.notes")(self))
-        return (*found, *held_notes(self.held), *self.elasticity.notes, *slopes)
+        return (*found, *held_notes(self.holding), *self.elasticity.notes, *slopes)
 
     @cached_property
     def resting(self) -> npt.NDArray[np.bool_]:
@@ -281,7 +285,7 @@ class Solution:
             "friction" in load for load in self.description["loads"].values()
         ):
             for output, values in self.outputs.items():
-                if output not in self.left_open:
+                if output not in self.indeterminate:
                     found |= np.isnan(values)
         return found
 
@@ -301,7 +305,7 @@ class Solution:
         left = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])
         slopes = self.sensitivities.during(instants)
-        held = {name: found.during(instants) for name, found in self.held.items()}
+        holding = {name: found.during(instants) for name, found in self.holding.items()}
         return replace(
             self,
             t=self.t[instants],
@@ -309,18 +313,18 @@ class Solution:
             certificate=left,
             over=over,
             sensitivities=slopes,
-            held=held,
+            holding=holding,
         )
 
     @property
     def by_equilibrium(self) -> Solution:
         """Solution without the results from elasticity: these are indeterminate, and NaN."""
-        completed = self.elasticity.told
+        completed = self.elasticity.completed
         nothing = {output: np.full_like(self.t, np.nan) for output in completed}
         return replace(
             self,
             outputs={**self.outputs, **nothing},
-            left_open=(*self.left_open, *completed),
+            indeterminate=(*self.indeterminate, *completed),
             elasticity=Elasticity(),
         )
 
@@ -328,8 +332,10 @@ class Solution:
         """Return whether equilibrium determines a quantity, at all instants."""
         output = self._output(name)
         if output.group == "section":
-            return not made_of(self.left_open, output.part, output.member, self.table)
-        return not any(component in self.left_open for component in output.components(self.table))
+            return not made_of(self.indeterminate, output.part, output.member, self.table)
+        return not any(
+            component in self.indeterminate for component in output.components(self.table)
+        )
 
     def made_of(self, output: Output) -> tuple[Output, ...]:
         """The series whose size a resultant is, of those that there are; any other output is made

@@ -61,7 +61,7 @@ def golden(
     """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which
     saves nothing of the graph.
 
-    ``solution`` is what the program's rung makes of it: what that misses is allowed, twice.
+    ``solution`` is what the program's method makes of it: what that misses is allowed, twice.
     """
     precision = contract.precision
     least, errors = ALLOWED * ROUNDING[precision], _errors(program, precision, exact, p)
@@ -130,7 +130,7 @@ def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, s
 
 
 def _saved(member: Member, solution: Solution, exact: Solution) -> float:
-    """Error of a quantity by a rung's steps or table."""
+    """Error of a quantity by a method's steps or table."""
     gaps = solution.series[member.source] - exact.series[member.source]
     gaps -= math.tau * np.round(gaps / math.tau) if member.wrapped else 0.0
     return float(np.abs(gaps).max())

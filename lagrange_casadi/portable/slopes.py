@@ -67,7 +67,7 @@ def exported_slopes(
 
 
 def check_method(method: EvaluationMethod) -> None:
-    """Raise :class:`.DeclarationError` for a rung by which exported C computes no derivatives."""
+    """Raise :class:`.DeclarationError` for a method by which exported C computes no derivatives."""
     if method.precision == "single" or method.newton is not None or method.table is not None:
         raise DeclarationError(
             f"export: output '{SENSITIVITY}' needs double precision, no Newton steps and no table;"

@@ -30,7 +30,7 @@ from .text import comment, indented, printed, template
 class Source:
     """Data from which header and source are written.
 
-    ``identity`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the
+    ``identity`` is the hash of the scene, ``guess`` where iterated loops begin, ``method`` the
     options by which it is evaluated, ``values`` are the parameters, of which a table leaves none
     open, and ``golden`` what it must compute, ``slopes`` the derivatives of its outputs, where they
     are wanted.
@@ -40,7 +40,7 @@ class Source:
     exported: ExportedProgram
     identity: str
     guess: Sequence[float]
-    rung: str
+    method: str
     values: Mapping[str, float]
     golden: Golden
     slopes: ExportedSlopes | None = None
@@ -102,7 +102,7 @@ class Source:
     def story(self) -> str:
         """Description of the evaluation, its accuracy, and its fixed numbers."""
         error, output = self.golden.worst
-        text = f"In {self.contract.precision} precision; options of the export: {self.rung}. "
+        text = f"In {self.contract.precision} precision; options of the export: {self.method}. "
         text += (
             f"Its outputs are off by about {error:.0e} of their largest values over the scene's"
             f" motion at most ({output})."

@@ -4,17 +4,18 @@ types, and what to read first.
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import math
+import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from typing import Any
 
 from ..base.cache import working_folder
+from ..base.packages import check_installed
 from ..codegen.compiler import Compiler, compiled, complaint
-from ..errors import CompilerError, LagrangeCasadiError
+from ..errors import CompilerError
 from .contract import Contract, Member
 from .header import header
 from .sections import about
@@ -22,15 +23,11 @@ from .source import Source
 from .stack import deepest
 from .text import comment, markdown, template
 
-_FLAGS = (
-    "-target",
-    "wasm32-wasi",
-    "-std=c99",
-    "-Oz",
-    "-ffp-contract=off",
-    "-fno-math-errno",
-    "-mexec-model=reactor",
-)
+_FLAGS = ("-std=c99", "-Oz", "-ffp-contract=off", "-fno-math-errno")
+_ALONE = ("-target", "wasm32-wasi", "-mexec-model=reactor")
+_WITH_BROWSER = ("-target", "wasm32-freestanding", "-nostdlib", "-mcpu=generic+bulk_memory", "-I.")
+_ERF = re.compile(r"\berf\(")
+"""The one function that a browser lacks."""
 _STACK = 1 << 16
 """Bytes beside those that the program states: for the C library's mathematics."""
 
@@ -41,47 +38,67 @@ def check_zig(what: str) -> None:
     """Raise :class:`LagrangeCasadiError` where the package that compiles is missing, which ``what``
     needs.
     """
-    if importlib.util.find_spec("ziglang") is None:
-        raise LagrangeCasadiError(
-            f"{what} needs ziglang; install it with: pip install 'lagrange_casadi[live]'"
-        )
+    check_installed("ziglang", what, "live")
 
 
-def module(
-    source: Source, more: Mapping[str, str] | None = None, calls: Sequence[str] = ()
-) -> bytes:
-    """The module of a program, which imports nothing; ``more`` are other files of C with functions
-    ``calls`` that are seen too.
+def module(source: Source) -> bytes:
+    """The module of a program, which imports nothing.
 
     The same program gives the same bytes, as far as the compiler does. Raises
     :class:`LagrangeCasadiError` where ziglang is missing, :class:`CompilerError` for what it
     refuses.
     """
+    return _build(source, {}, _ALONE)()
+
+
+def page_build(
+    source: Source, more: Mapping[str, str], calls: Sequence[str]
+) -> Callable[[], bytes]:
+    """Prepare the module of a page, which imports the browser's ``Math``; returns what compiles it.
+
+    ziglang then need not build a C library, which takes it a minute where its cache is empty.
+    ``more`` are other files of C with functions ``calls`` that are seen too. Raises as
+    :func:`module` does.
+    """
+    if any(map(_ERF.search, (source.code, *more.values()))):
+        return _build(source, more, _ALONE, calls)
+    files = {**more, "math.h": template("browser_math.h")}
+    return _build(source, files, _WITH_BROWSER, calls)
+
+
+def _build(
+    source: Source, more: Mapping[str, str], target: Sequence[str], calls: Sequence[str] = ()
+) -> Callable[[], bytes]:
+    """Prepare a module; what is returned compiles it, in any thread."""
     check_zig("WebAssembly")
     c = source.contract
     seen = [f"{c.prefix}_{call}" for call in (*_CALLS, *(["section"] if c.links else []))]
+    stack = -(-(deepest(source.code) + _STACK) // 16) * 16
     linked = [f"-Wl,--export={name}" for name in (*seen, *calls, "__heap_base")]
-    linked += [
-        "-Wl,--strip-all",
-        "-Wl,-z,stack-size=" + str(-(-(deepest(source.code) + _STACK) // 16) * 16),
-    ]
+    linked += ["-Wl,--no-entry", "-Wl,--strip-all", f"-Wl,-z,stack-size={stack}"]
     files = {
         f"{c.prefix}.h": header(source),
         f"{c.prefix}.c": source.code,
         "layout.c": _told(source),
-    } | dict(more or {})
+        **more,
+    }
+    code = [file for file in files if file.endswith(".c")]
     compiler = Compiler("c", (sys.executable, "-m", "ziglang", "cc"), "")
-    with working_folder() as work:
-        try:
-            for file, text in files.items():
-                (work / file).write_text(text, encoding="utf-8")
-            code = [file for file in files if file.endswith(".c")]
-            run = compiled([*compiler.command, *_FLAGS, *linked, *code, "-o", "module.wasm"], work)
-            if run.returncode == 0:
-                return (work / "module.wasm").read_bytes()
-        except OSError as error:
-            raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
-    raise CompilerError(complaint(compiler, run))
+    command = [*compiler.command, *_FLAGS, *target, *linked, *code, "-o", "module.wasm"]
+
+    def build() -> bytes:
+        with working_folder() as work:
+            try:
+                for file, text in files.items():
+                    (work / file).write_text(text, encoding="utf-8")
+                run = compiled(command, work)
+                if run.returncode == 0:
+                    return (work / "module.wasm").read_bytes()
+            except OSError as error:
+                raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
+        raise CompilerError(complaint(compiler, run))
+
+    return build
 
 
 def _told(source: Source) -> str:

@@ -203,7 +203,7 @@ def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) ->
                 slope.unit,
                 arrays.add(slope.values[chosen]),
             )
-    for output, values in held_outputs(solution.held).items():
+    for output, values in held_outputs(solution.holding).items():
         words, unit = what(output, solution.table), solution.unit(output)
         yield Series(str(output), "holding", output.part, words, unit, arrays.add(values[chosen]))
     for output, values in _residuals(solution):
@@ -260,7 +260,7 @@ def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
                 "used": used,
                 "governs": verdict is found.governs,
             }
-        for why in found.is_open:
+        for why in found.not_evaluated:
             values = {"part": found.link, "against": "", "where": why, "open": True}
             yield values | {"factor": None, "used": None, "governs": False}
 

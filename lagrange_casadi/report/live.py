@@ -11,6 +11,7 @@ from __future__ import annotations
 import base64
 import shlex
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,13 +25,14 @@ from ..declare.description import Description
 from ..declare.scene import Scene
 from ..declare.times import Timing
 from ..equations.derive import compile_scene
+from ..equations.model_data import ModelData
 from ..errors import DeclarationError
 from ..instants.evaluation_method import EvaluationMethod
 from ..instants.solution import Solution
 from ..portable.data import LARGEST
 from ..portable.source import Source
 from ..portable.sourced import sourced
-from ..portable.wasm import check_zig, layout, module, places
+from ..portable.wasm import check_zig, layout, page_build, places
 from .arrays import Arrays
 
 _CORNERS = (
@@ -67,6 +69,9 @@ class Live:
     source: Source
     timing: Timing
     command: str
+    numbers: int
+    module: Future[bytes]
+    """WebAssembly, which is compiled while the solution is evaluated."""
 
     @classmethod
     def of(
@@ -77,8 +82,8 @@ class Live:
         command: str,
         parameters: Mapping[str, float] | None = None,
     ) -> Live:
-        """Compile a scene, for outputs that are ``wanted``; ``parameters`` are those of the
-        solution.
+        """Derive a scene, for outputs that are ``wanted``, and begin to compile it; ``parameters``
+        are those of the solution.
 
         Raises :class:`.DeclarationError` where a scene has no parameter,
         :class:`.LagrangeCasadiError` where ziglang is missing, and what :func:`.export` does.
@@ -90,13 +95,18 @@ class Live:
                 " live out"
             )
         check_zig("a live report")
-        return cls(
-            sourced(
-                scene, "", parameters, wanted, EvaluationMethod("auto", "double"), LARGEST["double"]
-            ),
-            timing,
-            command,
+        source = sourced(
+            scene, "", parameters, wanted, EvaluationMethod("auto", "double"), LARGEST["double"]
         )
+        function = _numbers(data, timing)
+        text = _NUMBERS.format(
+            functions=print_functions({"numbers_of": function}, "double", prefix="live")
+        )
+        build = page_build(source, {"live.c": text}, ["live_numbers"])
+        compilers = ThreadPoolExecutor(1)
+        module = compilers.submit(build)
+        compilers.shutdown(wait=False)
+        return cls(source, timing, command, function.numel_out(), module)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -114,28 +124,26 @@ class Live:
         return _entry(self, solution, chosen, arrays)
 
 
+def _numbers(data: ModelData, timing: Timing) -> ca.Function:
+    """The ends of the instants, the numbers of the picture, and the masses, by the parameters."""
+    start, stop = timing.ends(data.symbols)
+    masses = (data.mass(body, data.symbols) for body in data.template.content["bodies"])
+    numbers = ca.vertcat(start, stop, data.template.numbers(data.symbols), *masses)
+    return ca.Function("numbers_of", [data.symbols], [ca.densify(numbers)], {"cse": True})
+
+
 def _entry(
     live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
 ) -> dict[str, Any]:
     source, timing = live.source, live.timing
     data = source.exported.program.data
     described, asked = data.template.content, data.template.numbers(data.symbols)
-    start, stop = timing.ends(data.symbols)
     bodies = described["bodies"]
-    numbers = ca.densify(
-        ca.vertcat(start, stop, asked, *(data.mass(body, data.symbols) for body in bodies))
-    )
-    function = ca.Function("numbers_of", [data.symbols], [numbers], {"cse": True})
-    text = _NUMBERS.format(
-        functions=print_functions({"numbers_of": function}, "double", prefix="live")
-    )
     contract = source.contract
     known = {member.source: k for k, member in enumerate((*contract.inputs, *contract.outputs))}
     return {
-        "module": (
-            base64.b64encode(module(source, {"live.c": text}, ["live_numbers"])).decode("ascii")
-        ),
-        "layout": layout(source) | {"more": numbers.numel()},
+        "module": base64.b64encode(live.module.result()).decode("ascii"),
+        "layout": layout(source) | {"more": live.numbers},
         "defaults": data.defaults.tolist(),
         "loops": (
             [places(source)["loops"], source.exported.sizes["loops"]] if source.iterated else None
@@ -157,7 +165,7 @@ def _entry(
             "coordinate": known.get(f"motion:{timing.joint}", -1),
         },
         "shown": None if chosen.size == timing.count else chosen.tolist(),
-        "numbers": numbers.numel(),
+        "numbers": live.numbers,
         "picture": _picture(
             described, 2, {body: 2 + asked.numel() + k for k, body in enumerate(bodies)}
         ),

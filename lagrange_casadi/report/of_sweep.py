@@ -189,8 +189,8 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
     )
     if any(isinstance(bound, str) for bound in asked[:2]):
         words = {}
-    solution = evaluate(scene, parameters=design, wanted=wanted, elastic=False, **words)
-    return page(solution, Live.of(scene, timing, wanted, command, design))
+    live = Live.of(scene, timing, wanted, command, design)
+    return page(evaluate(scene, parameters=design, wanted=wanted, elastic=False, **words), live)
 
 
 def _bounds(asked: list[float]) -> tuple[float, ...]:

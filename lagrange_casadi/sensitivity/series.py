@@ -32,8 +32,8 @@ def series_slopes(
     of a graph, by output.
 
     Series have (t,), section forces (t, xi); instants and ratios stand still. They are always made
-    in doubles, by the compiler of a rung, at loops that are closed. Where a quantity is NaN, so are
-    they. Raises :class:`.SizeError` where they do not fit into memory.
+    in doubles, by the compiler of a method, at loops that are closed. Where a quantity is NaN, so
+    are they. Raises :class:`.SizeError` where they do not fit into memory.
     """
     series = [o for o in solution.quantities() if o.group != "section" and solution.determined(o)]
     rows = [o for o in solution.outputs if (o in series or o.along) and o in program.outputs]
@@ -94,7 +94,7 @@ def _along(
     method: EvaluationMethod,
 ) -> Iterator[tuple[Output, Array]]:
     """Derivatives of the section forces of a link that are determined, each (t, xi, parameters)."""
-    table, left_open = solution.table, solution.left_open
+    table, left_open = solution.table, solution.indeterminate
     columns = [output for output in solution.outputs if output.along and output.part == link]
     function = section_slopes(program.data, link, columns, by)
     batch, xi, forces = Batch.of(function, method), solution.xi, table.forces

@@ -38,7 +38,7 @@ class Batch:
 
     @classmethod
     def of(cls, function: Any, method: EvaluationMethod) -> Batch:
-        """Compile it by the compiler of a rung; always in doubles."""
+        """Compile it by the compiler of a method; always in doubles."""
         found = compiled(
             method, lambda compiler: codegen.load_batch(function, compiler, _flags(method))
         )
@@ -74,7 +74,7 @@ class Loops:
 
     @classmethod
     def of(cls, program: Program, method: EvaluationMethod) -> Loops:
-        """Compile what follows them by the compiler of a rung."""
+        """Compile what follows them by the compiler of a method."""
         if program.newton is None:
             return cls(program, None)
         found = compiled(
@@ -147,7 +147,7 @@ class Slopes:
         sharpness: Sharpness,
         method: EvaluationMethod,
     ) -> Slopes:
-        """Derive and compile those of some quantities, by the compiler of a rung; always in
+        """Derive and compile those of some quantities, by the compiler of a method; always in
         doubles.
         """
         points = PointFunction.of(program, quantities, sharpness)

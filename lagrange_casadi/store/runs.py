@@ -11,7 +11,7 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -26,11 +26,17 @@ from ..base.publish import PatientFile, check_writable, is_hdf5, replacing, sett
 from ..base.quantities import Output
 from ..base.seal import kind_of, seal
 from ..base.tables import SPACE
-from ..declare.description import check_places, shape_of, values_of
+from ..declare.description import check_places, pieces_of, shape_of, values_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..declare.wanted_names import SENSITIVITY
-from ..errors import DeclarationError, PathError, StoreError, one_line
+from ..errors import (
+    DeclarationError,
+    PathError,
+    StoreError,
+    UnknownNameError,
+    one_line,
+)
 from ..instants.elasticity import Elasticity
 from ..instants.held import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
@@ -62,7 +68,11 @@ _AXES = {
 _OVER = "over"
 _BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
 """Attributes that a dataset may have beside those of what it holds."""
-_PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
+_PROVENANCE = {key: key for key in ("backend", "precision", "compiler", "flags")} | {
+    "rung": "method"
+}
+"""Field of the provenance that each attribute of a file holds."""
+
 _GRID_TOLERANCE = 1e-12
 _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
 """Largest distance of a coordinate from that by which the instants were defined, relative to the
@@ -79,19 +89,36 @@ _OTHERS = {
 
 
 @public
-def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") -> None:
+def save(
+    solution: Solution,
+    path: str | os.PathLike[str],
+    figures: str = "",
+    *,
+    grids: bool | Sequence[str] | None = None,
+) -> None:
     """Write a solution, replacing the file at ``path`` whole or not at all.
 
-    ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn.
-    Raises :class:`StoreError` where the file cannot be written.
+    Parameters
+    ----------
+    figures : str
+        Kept for :mod:`.figures`, which reads from it how the case wants to be drawn.
+    grids : bool or sequence of str, optional
+        Links whose section forces are stored at every ratio xi/l too, beside their laws: all or
+        none, or those that are named; by default all but the pieces of bent bars. Nothing is lost
+        without: :func:`load` fills grids from the laws.
+
+    Raises
+    ------
+    StoreError
+        If the file cannot be written.
     """
     if "\0" in figures or not figures.isascii():
         raise DeclarationError(
             f"save: figures: expected JSON of letters that every file can hold, got {figures!r:.60}"
         )
-    target = Path(path)
+    target, links = Path(path), _with_grids(solution, grids)
     check_target(target)
-    _require_space(solution, target)
+    _require_space(solution, target, len(links))
     with replacing(target, hdf5=True) as draft:
         with (
             uninterrupted() as breathe,
@@ -99,7 +126,7 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
             h5py.File(bytes_, "w", track_order=True) as file,
         ):
             try:
-                _write(file, solution, figures, breathe)
+                _write(file, solution, figures, links, breathe)
             except RuntimeError as error:  # of HDF5
                 raise StoreError(f"cannot write {target}: {one_line(error)}") from error
             file.flush()
@@ -136,15 +163,25 @@ def check_target(target: Path, own: str = SCHEMA) -> None:
         raise PathError(f"cannot write {target}: it is {kind}; choose another name")
 
 
-def _require_space(solution: Solution, target: Path) -> None:
+def _with_grids(solution: Solution, asked: bool | Sequence[str] | None) -> list[str]:
+    """Return the links whose grids are stored. Raises :class:`.UnknownNameError` for others."""
+    links = solution.links_with_sections
+    if asked is None:
+        pieces = pieces_of(solution.description)
+        return [link for link in links if link not in pieces]
+    if isinstance(asked, bool):
+        return list(links) if asked else []
+    if unknown := [name for name in asked if name not in links]:
+        raise UnknownNameError("link with sections", unknown, links)
+    return [link for link in links if link in asked]
+
+
+def _require_space(solution: Solution, target: Path, grids: int) -> None:
     """Raise :class:`StoreError` where the disk has less room than the grids take."""
     size = (
         8
         * solution.t.size
-        * (
-            len(solution.series)
-            + len(solution.table.forces) * solution.xi.size * len(solution.links_with_sections)
-        )
+        * (len(solution.series) + len(solution.table.forces) * solution.xi.size * grids)
     ) + sum(
         values.nbytes for found in solution.sensitivities.by.values() for values in found.values()
     )
@@ -185,13 +222,19 @@ def check(path: str | os.PathLike[str]) -> list[str]:
 
     Every dataset is read, so its checksum is verified; every value must be finite, every axis have
     its scale, every unit and sign be the schema's; and the section grids must be what the laws
-    give, to 1e-12 of their peak. Raises what :func:`load` does.
+    give, to 1e-12 of their peak, of links that have grids. Raises what :func:`load` does.
     """
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         solution = _read(file)
         certificate = (Output("certificate", "", name) for name in solution.certificate)
+        grids = parsed(file.attrs["grids"], [str], "grids") if "grids" in file.attrs else None
+        quantities = (
+            output
+            for output in solution.quantities()
+            if output.group != "section" or grids is None or output.part in grids
+        )
         outputs = dict.fromkeys(
-            [*solution.quantities(), *solution.outputs, *held_outputs(solution.held), *certificate]
+            [*quantities, *solution.outputs, *held_outputs(solution.holding), *certificate]
         )
         listed = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in listed if output not in outputs]
@@ -307,7 +350,13 @@ def _place(output: Output) -> str:
     return str(output).replace(":", "/")
 
 
-def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[[], None]) -> None:
+def _write(
+    file: h5py.File,
+    solution: Solution,
+    figures: str,
+    grids: Sequence[str],
+    breathe: Callable[[], None],
+) -> None:
     for axis, values in (("t", solution.t), ("xi", solution.xi)):
         scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
         say(scale, *_AXES[axis])
@@ -318,11 +367,11 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     for output, values in solution.outputs.items():
         breathe()
         _add(file, scales, solution, output, values)
-    for output, values in held_outputs(solution.held).items():
+    for output, values in held_outputs(solution.holding).items():
         _add(file, scales, solution, output, values)
     for name, values in solution.certificate.items():
         _add(file, scales, solution, Output("certificate", "", name), values)
-    for link in solution.links_with_sections:
+    for link in grids:
         for force in solution.table.forces:
             _add_grid(file, scales, solution, Output("section", link, force), breathe)
     breathe()
@@ -338,25 +387,27 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     file.attrs["certified"] = solution.certified
     file.attrs["certificate_tolerance"] = solution.tolerance
     file.attrs["outputs"] = json.dumps(list(solution.series))
+    if len(grids) < len(solution.links_with_sections):
+        file.attrs["grids"] = json.dumps(list(grids))
     file.attrs["undetermined"] = json.dumps(solution.undetermined)
     if solution.elasticity != Elasticity():
         file.attrs["by_elasticity"] = json.dumps(
-            [str(output) for output in solution.elasticity.told]
+            [str(output) for output in solution.elasticity.completed]
         )
         file.attrs["open_because"] = json.dumps(solution.elasticity.reasons)
-    if solution.held:
+    if solution.holding:
         file.attrs["holding"] = json.dumps(
-            {name: held.untold for name, held in solution.held.items()}
+            {name: held.reason for name, held in solution.holding.items()}
         )
     file.attrs["versions"] = json.dumps(dict(provenance.versions))
-    for key in _PROVENANCE:
-        file.attrs[key] = getattr(provenance, key)
+    for key, name in _PROVENANCE.items():
+        file.attrs[key] = getattr(provenance, name)
     file.attrs["figures"] = figures
 
 
 def _version(solution: Solution) -> int:
     """The first version of the schema that has all of a solution."""
-    latest = solution.sensitivities.by or solution.elasticity != Elasticity() or solution.held
+    latest = solution.sensitivities.by or solution.elasticity != Elasticity() or solution.holding
     if latest or any(output.group in _LATEST for output in solution.outputs):
         return SCHEMA_VERSION
     along = {output.member for output in solution.outputs if output.group == "spread"}
@@ -448,7 +499,7 @@ def _read(file: h5py.File) -> Solution:
                 outputs[output] = numbers(item, t.shape)
 
     file.visititems(visit)
-    words = {key: shown(file.attrs[key]) for key in _PROVENANCE}
+    words = {name: shown(file.attrs[key]) for key, name in _PROVENANCE.items()}
     provenance = Provenance(
         **words, versions=parsed(file.attrs["versions"], {str: str}, "versions")
     )
@@ -485,7 +536,7 @@ def _read(file: h5py.File) -> Solution:
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
     return replace(
-        solution, sensitivities=slopes_of(file, solution, numbers), held=_held(file, solution)
+        solution, sensitivities=slopes_of(file, solution, numbers), holding=_held(file, solution)
     )
 
 

@@ -2,13 +2,16 @@
 and fatigue, and lives.
 """
 
+import functools
+
 from ..declare.end_conditions import effective_lengths
 from ..equations.buckling import Column, critical_stress
+from ..renamed import former
 from .bearings import joint_safety
 from .critical_plane import Plane, critical_plane, plane_factor
 from .fatigue import CRITERIA, cycles, factor, reversed_amplitude
 from .parts import safeties
-from .rainflow import Swing, rainflow
+from .rainflow import StressCycle, rainflow
 from .safety import Life, Safety, Verdict, life, safety, stress
 from .stress import Stress, StressPeak
 
@@ -20,7 +23,7 @@ __all__ = [
     "Safety",
     "Stress",
     "StressPeak",
-    "Swing",
+    "StressCycle",
     "Verdict",
     "critical_plane",
     "critical_stress",
@@ -36,3 +39,5 @@ __all__ = [
     "safety",
     "stress",
 ]
+
+__getattr__ = functools.partial(former, __name__, globals())

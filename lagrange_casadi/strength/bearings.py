@@ -76,8 +76,8 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
     """The factors of safety of what is fitted to a joint, over all instants: by how much its
     reaction may grow.
 
-    Of speed and heating it is by how much these may. ``is_open`` says what could not be looked at.
-    Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted,
+    Of speed and heating it is by how much these may. ``not_evaluated`` names what is missing, and
+    why. Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted,
     equilibrium leaves it open, or a number that depends on parameters is not positive.
     """
     fitted = solution.description["joints"].get(joint, {}).get("fitted", {})
@@ -105,7 +105,7 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
         )
     # What does not count is no load: it is below every peak, and loads a bearing over no way.
     across, along = (np.where(counts, force, 0.0) for force in (across, along))
-    rate = solution.outputs.get(Output("motion", _coordinate(solution, joint), "rate"))
+    rate, slide = (_rate(solution, joint, kind) for kind in ("angle", "slide"))
     verdicts: list[Verdict] = []
     left: list[str] = []
     for kind, part in parts_from_numbers(fitted).items():
@@ -113,7 +113,7 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
         if isinstance(part, Pin):
             verdicts += _pin(part, across, solution.t)
         elif isinstance(part, Plain):
-            found, missing = _plain(part, across, rate, solution.t)
+            found, missing = _plain(part, across, rate, slide, solution.t)
             verdicts += found
             left += missing
         elif rate is None:
@@ -134,11 +134,14 @@ def _check(joint: str, kind: str, part: Fitted) -> None:
             )
 
 
-def _coordinate(solution: Solution, joint: str) -> str:
-    """The coordinate by which a joint turns."""
-    joint_entry = solution.description["joints"][joint]
-    kinds = joint_entry.get("coordinates") or {joint_entry["coordinate"] and joint: "angle"}
-    return next((name for name, kind in kinds.items() if kind == "angle" and name), joint)
+def _rate(solution: Solution, joint: str, kind: str) -> Array | None:
+    """The rate at which a joint turns or slides; None if it is not told, or there is none."""
+    entry = solution.description["joints"][joint]
+    kinds = entry.get("coordinates") or {joint: entry.get("coordinate")}
+    name = next((name for name, own in kinds.items() if own == kind), None)
+    if kind == "angle":
+        name = entry.get("turning", name)
+    return None if name is None else solution.outputs.get(Output("motion", name, "rate"))
 
 
 def _forces(solution: Solution, joint: str) -> tuple[Array, Array]:
@@ -182,7 +185,7 @@ def _pin(pin: Pin, force: Array, t: Array) -> Iterator[Verdict]:
 
 
 def _plain(
-    bearing: Plain, force: Array, rate: Array | None, t: Array
+    bearing: Plain, force: Array, rate: Array | None, slide: Array | None, t: Array
 ) -> tuple[list[Verdict], list[str]]:
     d = float(bearing.bore)
     pressure = force / (d * float(bearing.width))
@@ -191,9 +194,9 @@ def _plain(
         found.append(_verdict("pressure", bearing.pressure, pressure, t, "pressure", "MPa", 1e6))
     if bearing.speed is None and bearing.heating is None:
         return found, []
-    if rate is None:
+    if rate is None and slide is None:
         return found, ["plain bearing: its joint's motion was not wanted, or is not evaluated"]
-    speed = np.abs(rate) * d / 2
+    speed = np.hypot(0.0 if rate is None else rate * d / 2, 0.0 if slide is None else slide)
     if bearing.speed is not None:
         found.append(_verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s"))
     if bearing.heating is not None:

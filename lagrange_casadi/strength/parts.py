@@ -60,14 +60,14 @@ def _parts(solution: Solution) -> tuple[list[str], list[str]]:
 
 
 def part_safety(
-    solution: Solution, part: str, *, criterion: str = "goodman", yielding: str = "von_mises"
+    solution: Solution, part: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"
 ) -> Safety:
     """The factors of safety of a link, or of what is fitted to a joint: see :func:`.safety` and
     :func:`.joint_safety`.
     """
     if part in solution.description["joints"]:
         return joint_safety(solution, part)
-    return safety(solution, part, criterion=criterion, yielding=yielding)
+    return safety(solution, part, criterion=criterion, yield_criterion=yield_criterion)
 
 
 def fitted_in(solution: Solution) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Rainflow counting by ASTM E1049-85: which swings a history of loads is made of."""
+"""Rainflow counting by ASTM E1049-85: the stress cycles of a history of loads."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from ..base.arrays import Array
 from ..errors import DeclarationError
 
 
-class Swing(NamedTuple):
-    """A swing between two values of a history, at the indices ``first`` and ``last``; it comes 1 or
-    1/2 ``times``.
+class StressCycle(NamedTuple):
+    """A cycle between two values of a history, at the indices ``first`` and ``last``: its range
+    ``size``, its ``mean``, and its count ``times``, 1 or 1/2.
     """
 
     size: float
@@ -37,9 +37,9 @@ def reversals(history: Array) -> Array:
 
 
 @public
-def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> list[Swing]:
-    """The swings of a history (section 5.4.4), or of one that repeats for ever (5.4.5), of which
-    each counts whole.
+def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> list[StressCycle]:
+    """Count the cycles of a history (section 5.4.4), or of one that repeats for ever (5.4.5), in
+    which every cycle counts 1.
 
     One that repeats begins at its largest value. Raises :class:`.DeclarationError` for what are no
     finite numbers.
@@ -52,12 +52,12 @@ def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> li
         start = int(np.argmax(values))
         order = np.append(np.roll(order, -start), start)
     turns = order[reversals(values[order])]
-    found: list[Swing] = []
+    found: list[StressCycle] = []
     stack: list[int] = []
 
     def cycle(first: int, last: int, times: float) -> None:
         a, b = float(values[first]), float(values[last])
-        found.append(Swing(abs(b - a), (a + b) / 2, times, first, last))
+        found.append(StressCycle(abs(b - a), (a + b) / 2, times, first, last))
 
     level = values.tolist()
     for index in turns.tolist():

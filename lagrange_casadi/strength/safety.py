@@ -16,6 +16,7 @@ from ..equations import buckling as columns
 from ..equations.buckling import Column
 from ..errors import UnknownNameError
 from ..instants.solution import Solution
+from ..renamed import renamed
 from .critical_plane import FINDLEY, critical_plane, plane_factor, plane_score
 from .fatigue import CRITERIA, damage_score, lacking, loaded, use_score, used
 from .member import Member
@@ -34,16 +35,17 @@ class Verdict:
     where: str
 
 
+@renamed
 @public
 @dataclass(frozen=True)
 class Safety:
-    """The factors of safety of a link; what ``is_open`` could not be looked at, each with its
+    """The factors of safety of a link; ``not_evaluated`` are those that are missing, each with its
     reason.
     """
 
     link: str
     verdicts: tuple[Verdict, ...]
-    is_open: tuple[str, ...] = ()
+    not_evaluated: tuple[str, ...] = ()
 
     @property
     def governs(self) -> Verdict:
@@ -95,9 +97,10 @@ def stress(solution: Solution, link: str) -> Stress:
     return Stress(Member.of(solution, link))
 
 
+@renamed
 @public
 def safety(
-    solution: Solution, link: str, *, criterion: str = "goodman", yielding: str = "von_mises"
+    solution: Solution, link: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"
 ) -> Safety:
     """The factors of safety of a link against yielding, buckling and fatigue, over all instants.
 
@@ -111,7 +114,10 @@ def safety(
     """
     member = Member.of(solution, link)
     return rated(
-        member, as_column(solution.description, member), criterion=criterion, yielding=yielding
+        member,
+        as_column(solution.description, member),
+        criterion=criterion,
+        yield_criterion=yield_criterion,
     )
 
 
@@ -120,7 +126,7 @@ def rated(
     of: Column,
     *,
     criterion: str = "goodman",
-    yielding: str = "von_mises",
+    yield_criterion: str = "von_mises",
     enough: float = 0.0,
 ) -> Safety:
     """Safety of a link in numbers; results after a factor that is not ``enough`` are left out."""
@@ -129,14 +135,14 @@ def rated(
     member, link = member.counted, member.link
     found = Stress(member)
     material = member.beam.material
-    verdicts = [yielded(member, found.peak(yielding))]
+    verdicts = [yielded(member, found.peak(yield_criterion))]
     if verdicts[0].factor < enough:
         return Safety(link, tuple(verdicts))
     verdicts.append(buckling(member, of))
     if verdicts[1].factor < enough:
         return Safety(link, tuple(verdicts))
-    if is_open := lacking(material, criterion):
-        return Safety(link, tuple(verdicts), (is_open,))
+    if not_evaluated := lacking(material, criterion):
+        return Safety(link, tuple(verdicts), (not_evaluated,))
     verdicts.append(tired(member, criterion))
     return Safety(link, tuple(verdicts))
 

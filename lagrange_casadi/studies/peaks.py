@@ -251,7 +251,7 @@ class ContinuousSolution:
         jump rounding decides.
         """
         solution = self.solution
-        outputs = [output for output in solution.outputs if output not in solution.left_open]
+        outputs = [output for output in solution.outputs if output not in solution.indeterminate]
         if not all(output in self.rows for output in outputs):
             return False
         outputs = [output for output in outputs if output not in self.program.loop_angles]

@@ -25,6 +25,7 @@ from ..equations.model_data import beam_at, template
 from ..equations.two_force_links import unaimed
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..instants.solution import Solution
+from ..renamed import renamed
 from ..strength.member import Member
 from ..strength.safety import Safety, Verdict, as_column, rated
 from .request import Request
@@ -94,6 +95,7 @@ class Sizing:
         return sum(sized.mass for sized in self.links)
 
 
+@renamed
 @public
 def size(
     scene: Scene,
@@ -105,7 +107,7 @@ def size(
     t: Times | None = None,
     over: Over | None = None,
     criterion: str = "goodman",
-    yielding: str = "von_mises",
+    yield_criterion: str = "von_mises",
     deflection: Positive | None = None,
 ) -> Sizing:
     """Choose for each link the lightest of some profiles with a factor of safety, against yielding,
@@ -124,7 +126,7 @@ def size(
     :class:`NoDesignError` where no profile is safe; and what :func:`.evaluate` and
     :func:`.strength.safety` do.
     """
-    enough = _Enough(float(safety), criterion, yielding, deflection)
+    enough = _Enough(float(safety), criterion, yield_criterion, deflection)
     search = _Search.of(scene, profiles, links, Request(parameters, t, over), enough)
     choice = search.lightened(search.safe())
     return search.result(choice)
@@ -152,7 +154,7 @@ class _Enough:
 
     factor: float
     criterion: str
-    yielding: str
+    yield_criterion: str
     deflection: float | None
 
 
@@ -238,13 +240,13 @@ class _Search:
         slot, values = self.slots[name], values_of(solution.description)
         values |= slot.values(slot.profiles[k])
         other = replace(member, beam=beam_at(self.template, name, list(values.values())))
-        criterion, yielding = self.enough.criterion, self.enough.yielding
+        criterion, yield_criterion = self.enough.criterion, self.enough.yield_criterion
         enough = 0.0 if whole else self.enough.factor
         found = rated(
             other,
             as_column(solution.description, other),
             criterion=criterion,
-            yielding=yielding,
+            yield_criterion=yield_criterion,
             enough=enough,
         )
         if self.enough.deflection is None or found.factor < enough:
@@ -258,7 +260,7 @@ class _Search:
         )
         verdict = Verdict(_BENT, allowed / abs(peak.value) if peak.value else math.inf, where)
         return StiffSafety(
-            found.link, (*found.verdicts, verdict), found.is_open, self.enough.factor
+            found.link, (*found.verdicts, verdict), found.not_evaluated, self.enough.factor
         )
 
     def suffices(self, found: Safety) -> bool:

@@ -60,7 +60,7 @@ def solve(
     timing = scene.timing(request.t, request.over)
     scene.checked(values)
     ratios = checked_ratios(scene.xi if request.xi is None else request.xi)
-    scene = scene.giving(elastic)
+    scene = scene.with_elastic(elastic)
     gives = scene.elastic
     if gives and method.table is not None:
         raise DeclarationError(
@@ -115,7 +115,7 @@ def solve(
             for name, held in holding(scene, solution).items()
             if np.isnan(solution.effort(name)).any()
         }
-        solution = replace(solution, held=open_)
+        solution = replace(solution, holding=open_)
     if certificate:
         residuals = (
             _closed(program, out, p) | residuals_of(solution, program, out, p, within) | unbalanced
@@ -214,7 +214,7 @@ def residuals_of(
     the solution was made of it.
     """
     return certify(
-        solution, program.data.declared(p), _hidden(program, out, solution.left_open), within
+        solution, program.data.declared(p), _hidden(program, out, solution.indeterminate), within
     )
 
 

@@ -22,6 +22,7 @@ from ..declare.scene import Scene
 from ..equations.buckling import Column
 from ..instants.backends import searching
 from ..instants.solution import Solution
+from ..renamed import renamed
 from ..strength.member import Member
 from ..strength.safety import Safety, Verdict, as_column, buckling, safety, yielded
 from ..strength.stress import Stress, StressPeak
@@ -48,6 +49,7 @@ def refine_stress(
     return peak if found is None else found.stress(kind, peak)
 
 
+@renamed
 @public
 def refine_safety(
     scene: Scene,
@@ -55,7 +57,7 @@ def refine_safety(
     link: str,
     *,
     criterion: str = "goodman",
-    yielding: str = "von_mises",
+    yield_criterion: str = "von_mises",
 ) -> Safety:
     """The factors of safety of a link, as :func:`.strength.safety`, against yielding and buckling
     over all times of its span.
@@ -63,15 +65,15 @@ def refine_safety(
     Against fatigue it is that of the instants. What could not be searched is open. Raises what
     :func:`refine_stress` does.
     """
-    unrefined = safety(solution, link, criterion=criterion, yielding=yielding)
+    unrefined = safety(solution, link, criterion=criterion, yield_criterion=yield_criterion)
     found = _Searched.of(scene, solution, link)
     if found is None:
         return unrefined
-    verdicts, left = [], list(unrefined.is_open)
+    verdicts, left = [], list(unrefined.not_evaluated)
     for verdict in unrefined.verdicts:
         refined: Verdict | None = verdict
         if verdict.against == "yield":
-            peak = found.stress(yielding, Stress(found.member).peak(yielding))
+            peak = found.stress(yield_criterion, Stress(found.member).peak(yield_criterion))
             refined = None if math.isnan(peak.value) else yielded(found.member, peak)
         elif verdict.against == "buckling":
             refined = found.buckled(verdict, as_column(solution.description, found.member))

@@ -1,4 +1,4 @@
-"""The trade between speed and accuracy, measured: every method of evaluation (rung) on one scene,
+"""The trade between speed and accuracy, measured: every method of evaluation on one scene,
 side by side on this machine.
 
 Errors are against the scene's own graphs in many digits (:mod:`.reference`), at instants of the
@@ -30,6 +30,7 @@ from ..instants.backends import Evaluated, run
 from ..instants.evaluation_method import EvaluationMethod
 from ..instants.from_table import columns
 from ..instants.refusal import resting, unfinished
+from ..renamed import renamed
 from ..verification.reference import reference
 from .peaks import Shortfall, shortfall
 
@@ -67,16 +68,18 @@ COMPILED = (
 METHODS = (*COMPILED, EvaluationMethod("vm"))
 
 
+@renamed
 @dataclass(frozen=True)
 class Measurement:
-    """Cost and accuracy of a rung: seconds an instant, and errors relative to each quantity's peak.
+    """Cost and accuracy of a method: seconds an instant, and errors relative to each quantity's
+    peak.
 
     ``largest`` is over all quantities and instants, ``median`` over the quantities' largest;
     ``worst`` names the quantity that errs most. ``note`` says what else there is to know, such as
     how many nodes a table has.
     """
 
-    rung: EvaluationMethod
+    method: EvaluationMethod
     seconds: float
     largest: float
     median: float
@@ -86,7 +89,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Trade:
-    """The rungs of one scene, fastest first, and those that it has not, with the reason.
+    """The methods of one scene, fastest first, and those that it has not, with the reason.
 
     ``peaks`` says how far peaks fall short, by how many instants a cycle is sampled at; empty where
     that cannot be said.
@@ -101,7 +104,7 @@ class Trade:
 
     @property
     def front(self) -> tuple[Measurement, ...]:
-        """The rungs that no other one beats in both speed and accuracy, fastest first."""
+        """The methods that no other one beats in both speed and accuracy, fastest first."""
         found: list[Measurement] = []
         for one in self.measurements:
             if not found or one.largest < found[-1].largest:
@@ -116,12 +119,14 @@ class Trade:
         return replace(
             self,
             measurements=tuple(
-                one for one in self.measurements if one.rung.backend == "c" and not one.rung.flags
+                one
+                for one in self.measurements
+                if one.method.backend == "c" and not one.method.flags
             ),
         )
 
     def fastest(self, accuracy: float) -> Measurement:
-        """The fastest rung whose largest error is at most ``accuracy``, relative to the peak.
+        """The fastest method whose largest error is at most ``accuracy``, relative to the peak.
 
         Raises :class:`AccuracyError` where none is; it names the most accurate one.
         """
@@ -133,13 +138,14 @@ class Trade:
         best = min(self.measurements, key=lambda one: one.largest)
         raise AccuracyError(
             f"no method of evaluating '{self.case}' keeps {accuracy:g} of the peak; the best, "
-            f"{best.rung.options}, keeps {best.largest:.2g} ({best.worst} is worst)"
+            f"{best.method.options}, keeps {best.largest:.2g} ({best.worst} is worst)"
         )
 
     def as_dict(self) -> dict[str, Any]:
         """All of it as plain numbers and words, for JSON."""
         methods = [
-            asdict(one) | {"options": one.rung.options, "front": one in self.front}
+            {"rung" if key == "method" else key: value for key, value in asdict(one).items()}
+            | {"options": one.method.options, "front": one in self.front}
             for one in self.measurements
         ]
         found = {
@@ -161,7 +167,7 @@ def trade(
     methods: Sequence[EvaluationMethod] = METHODS,
     progress: Callable[[EvaluationMethod], None] = lambda method: None,
 ) -> Trade:
-    """Measure every rung on a scene, ``t`` or ``over`` as in :func:`.evaluate`; ``progress`` is
+    """Measure every method on a scene, ``t`` or ``over`` as in :func:`.evaluate`; ``progress`` is
     told of each before it is taken.
 
     Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for
@@ -284,8 +290,8 @@ def _work(
 def _in_turns(
     works: Mapping[EvaluationMethod, tuple[Callable[[], Any], int]],
 ) -> dict[EvaluationMethod, float]:
-    """Seconds an instant: the median over rounds in which each rung has its turn, long enough to be
-    read off a clock.
+    """Seconds an instant: the median over rounds in which each method has its turn, long enough to
+    be read off a clock.
     """
     taken: dict[EvaluationMethod, list[float]] = {method: [] for method in works}
     for _ in range(ROUNDS):

@@ -159,7 +159,7 @@ def _of_cycle(program: Program, cycle: CycleTable, solution: Solution) -> dict[O
         output: float(missed[k]) + rounding * sizes[solution.unit(output)]
         for output, k in program.outputs.items()
     }
-    nothing = {output: np.zeros(1) for output in solution.left_open}
+    nothing = {output: np.zeros(1) for output in solution.indeterminate}
     bounds = replace(
         solution, outputs=nothing | {output: np.array([error]) for output, error in errors.items()}
     )

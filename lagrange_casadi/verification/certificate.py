@@ -68,7 +68,7 @@ def certify(
             for name, distances in certify(solution.during(some), declared, *pick).items():
                 merged.setdefault(name, np.zeros_like(solution.t))[some] = distances
         return merged
-    whole = replace(solution, outputs={**solution.outputs, **(hidden or {})}, left_open=())
+    whole = replace(solution, outputs={**solution.outputs, **(hidden or {})}, indeterminate=())
     reported = _reported(whole, phases or {})
     digits = Digits.of(solution)
     found: dict[tuple[str, int], list[Array]] = {}
@@ -91,7 +91,7 @@ def certify(
 def tolerance(solution: Solution) -> float:
     """Limit of residuals."""
     exact = solution.provenance.precision == "double" and not any(
-        word in solution.provenance.rung for word in ("--newton", "--table")
+        word in solution.provenance.method for word in ("--newton", "--table")
     )
     return min(COARSE, max(TOLERANCE, _TURNED * blur(solution))) if exact else COARSE
 

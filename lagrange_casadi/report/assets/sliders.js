@@ -2,11 +2,26 @@
 
 const STRETCH = 2; // Where a range has no end, a slider goes to so many times the value of the file, or to the file's value over it.
 
+/** Functions of C's library that Math lacks; none of them rounds. */
+const C = {
+  fmod: (x, y) => x % y,
+  remainder: (x, y) => {
+    const size = Math.abs(y);
+    let part = Math.abs(x % (2 * y));
+    const above = 2 * part > size;
+    if (above) part -= size;
+    if (above && 2 * part >= size) part -= size;
+    return x < 0 || Object.is(x, -0) ? -part : part;
+  },
+  fmin: (x, y) => (x < y || Number.isNaN(y) ? x : y),
+  fmax: (x, y) => (x > y || Number.isNaN(y) ? x : y),
+};
+
 /** Start the engine of a live page, and put its sliders under the picture; says so where a browser has none. */
 async function comeAlive(panel) {
   try {
     const text = atob(contents.live.module);
-    const { instance } = await WebAssembly.instantiate(Uint8Array.from(text, (letter) => letter.charCodeAt(0)), {});
+    const { instance } = await WebAssembly.instantiate(Uint8Array.from(text, (letter) => letter.charCodeAt(0)), { Math, C });
     live.engine = new Alive(instance);
     panel.append(...slidersOf(live.engine));
     if (window.parent !== window) listenToPage();

@@ -80,7 +80,7 @@ class DesignEngine:
         *,
         timing: Timing | None = None,
     ) -> DesignEngine:
-        """Derive and compile: ``wanted`` outputs, ``t`` and ``rung`` as in :func:`.evaluate`; a
+        """Derive and compile: ``wanted`` outputs, ``t`` and ``method`` as in :func:`.evaluate`; a
         ``timing`` in place of ``t``.
         """
         method = method or EvaluationMethod()

@@ -67,7 +67,7 @@ class KeptOutputs:
 
     @classmethod
     def of(cls, program: Program, method: EvaluationMethod) -> KeptOutputs:
-        """Make the reduction of a scene's designs on a rung."""
+        """Make the reduction of a scene's designs on a method."""
         data, at = program.data, program.outputs
         table = table_of(data.space)
         chosen: dict[Output, tuple[int, ...]] = {}

@@ -229,7 +229,7 @@ class Question:
             "case": program.data.name,
             "versions": made.versions,
             "sources": sources(),
-            "compiler": f"{made.backend} {made.compiler} {made.flags} {made.rung}",
+            "compiler": f"{made.backend} {made.compiler} {made.flags} {made.method}",
             "scene": program.identity or "cannot be told",
             "mechanism": program.data.at(program.data.defaults),
             "t": self.timing.words(program.data.symbols),

@@ -30,6 +30,7 @@ from ...errors import (
     shown,
 )
 from ...methods import method
+from ...renamed import renamed
 from ...store.opening import opened_file
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
@@ -48,6 +49,7 @@ _BLOCK = 1 << 15
 Values = npt.NDArray[Any]
 
 
+@renamed
 @public
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep:
@@ -68,7 +70,7 @@ class Sweep:
     statuses: Mapping[int, tuple[str, str]]
     chosen: Mapping[str, npt.NDArray[np.int64]] = field(default_factory=dict)
     keeper: Any = None
-    seen: VerifiedFile | None = None
+    verified: VerifiedFile | None = None
 
     @classmethod
     def open(cls, path: str | Path) -> Sweep:
@@ -437,7 +439,7 @@ class Sweep:
 
     def opened(self) -> AbstractContextManager[h5py.File]:
         """Open its file to read. Raises what :meth:`open` does."""
-        return _opened(self.path, self.seen)
+        return _opened(self.path, self.verified)
 
 
 @public
@@ -476,7 +478,7 @@ def opened_sweep(path: str | Path, seen: VerifiedFile | None = None, keeper: Any
     """
     seen = seen if seen and seen.is_at(path) else verify(path)
     with _opened(path, seen) as file:
-        return Sweep(Path(path), **contents(file), keeper=keeper, seen=seen)
+        return Sweep(Path(path), **contents(file), keeper=keeper, verified=seen)
 
 
 def names_in(given: str | Sequence[str]) -> list[str]:
