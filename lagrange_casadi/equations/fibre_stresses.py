@@ -137,7 +137,7 @@ class FibrePart(Graphs):
         x: Array,
         *,
         still: bool = True,
-        chosen: Array | None = None,
+        chosen: npt.NDArray[np.intp] | None = None,
     ) -> Array:
         """The stresses (n, places, stresses, t) of n designs, whose members are (n, members, t) and
         numbers (n, numbers), at places ``x`` (n, places): all, or those ``chosen`` (n, some).

@@ -1,10 +1,10 @@
 """Worst places along a link, and fibres, for fatigue: of one solution, and of many designs at once.
 
 Each part between load points is looked at at places that are near each other for the polynomials
-that stresses are there, and then at ever nearer ones beside local maxima. A swing is smooth along
-such a part, and the worst of several has no kink upward, so what is found is nearer to the largest
-than 1e-6 of it. Where a load travels along the link, stresses jump where it is at an instant: such
-places are looked at from both sides.
+that stresses are there. From local maxima the widest swing is followed, between its two instants,
+to where it is worst; there all are counted. What is found is nearer to the largest than 1e-5 of it.
+Where a load travels along the link, stresses jump where it is at an instant: such places are looked
+at from both sides.
 """
 
 from __future__ import annotations
