@@ -302,6 +302,6 @@ def _places(
     for notch, side in itertools.product(body.link.beam.notches, sides):
         u = ca.SX(notch.at)
         inside = [part for part in body.cells if float(part.low) <= notch.at]
-        reaching = [part for part in inside if notch.at <= float(part.low) + float(part.width)]
-        cell = reaching[-1 if side == "tip" else 0].cell
+        touching = [part for part in inside if notch.at <= float(part.low) + float(part.width)]
+        cell = touching[-1 if side == "tip" else 0].cell
         yield Part(u, ca.SX(0.0), cell), u, edge(u, _SLACK, side), notch_factor(notch)

@@ -158,7 +158,7 @@ class LinkHistories:
         ):
             fibres = part.sheared if sheared else part.plain
             size = values[:, :, fibres, -1]
-            higher = _summits(size) & (_promised(size) >= least[:, None, None])
+            higher = _local_maxima(size) & (_promised(size) >= least[:, None, None])
             designs, places, index = np.nonzero(higher)
             if designs.size:
                 some = self.of_designs(designs)
@@ -227,7 +227,7 @@ def _beside(sizes: Array) -> tuple[Array, Array]:
     )
 
 
-def _summits(sizes: Array) -> npt.NDArray[np.bool_]:
+def _local_maxima(sizes: Array) -> npt.NDArray[np.bool_]:
     """Find sizes (n, places, fibres) that are not below their neighbours; of equals the first."""
     before, after = _beside(sizes)
     return np.asarray((sizes > before) & (sizes >= after))
@@ -262,10 +262,10 @@ class _Followed:
         """The maxima, from ``values`` (n, numbers) at ``places`` on."""
         found, part = places.copy(), self.part
         if part.notch is None:
-            swings, most = self._swings(places), np.full(len(places), -np.inf)
+            cycles, most = self._cycles(places), np.full(len(places), -np.inf)
 
             def guide(x: Array) -> Array:
-                sizes = self._guide(swings, x)
+                sizes = self._guide(cycles, x)
                 better = sizes > most
                 found[better], most[better] = x[better], sizes[better]
                 return sizes
@@ -285,16 +285,16 @@ class _Followed:
             )
         ]
 
-    def _swings(self, places: Array) -> LinkHistories:
+    def _cycles(self, places: Array) -> LinkHistories:
         """The histories at the two instants of the widest swing at each place alone."""
         members, chosen = self.histories.members, self._at(self.histories, places)
         ends = [list(widest(chosen.at(k, 0))) for k in range(len(members))]
         pairs = [one[:, pair] for one, pair in zip(members, ends, strict=True)]
         return replace(self.histories, members=np.array(pairs))
 
-    def _guide(self, swings: LinkHistories, x: Array) -> Array:
-        """How bad swings are at places."""
-        chosen = self._at(swings, x)
+    def _guide(self, cycles: LinkHistories, x: Array) -> Array:
+        """How bad cycles are at places."""
+        chosen = self._at(cycles, x)
         values = np.zeros((3, len(x), 2))
         values[0] = chosen.normal[:, 0]
         if chosen.sheared.size:
