@@ -242,25 +242,25 @@ from lagrange_casadi.store.scales import LARGE, Scales
 from lagrange_casadi.store.untrusted import check_shape, reported_as
 from lagrange_casadi.store.untrusted import parsed as untrusted_parsed
 from lagrange_casadi.strength import critical_plane, plane_factor
-from lagrange_casadi.strength.critical_plane import DUCTILE, FINDLEY, _bounds, worst_plane
+from lagrange_casadi.strength.critical_plane import DUCTILE, FINDLEY, plane_score
 from lagrange_casadi.strength.fatigue import (
     CRITERIA,
     Histories,
     _farthest,
     cycles,
+    damage_score,
     factor,
-    factor_score,
     lacking,
     loaded,
     reversed_amplitude,
+    use_score,
 )
 from lagrange_casadi.strength.fatigue import used as fatigue_used
-from lagrange_casadi.strength.fibres import FibreStresses
 from lagrange_casadi.strength.member import Member
 from lagrange_casadi.strength.rainflow import rainflow, reversals
 from lagrange_casadi.strength.safety import as_column
 from lagrange_casadi.strength.stress import maxima
-from lagrange_casadi.strength.worst import worst
+from lagrange_casadi.strength.worst import LinkHistories
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
 from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of

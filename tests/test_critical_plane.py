@@ -9,7 +9,16 @@ import pytest
 import strong
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from internals import DUCTILE, FINDLEY, _bounds, critical_plane, plane_factor, worst_plane
+from internals import (
+    DUCTILE,
+    FINDLEY,
+    Histories,
+    LinkHistories,
+    Member,
+    critical_plane,
+    plane_factor,
+    plane_score,
+)
 
 from lagrange_casadi import beams, evaluate
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
@@ -92,7 +101,8 @@ def test_no_plane_is_above_its_bound():
     for _ in range(20):
         values = draw.normal(size=(3, 2, 12)) * 10.0 ** draw.uniform(0, 2, size=(3, 1, 1))
         values[2, 1] = 0.0
-        bounds = _bounds(values, DUCTILE)
+        every = np.concatenate([values[0], values[1], values[2]])[None]
+        bounds = plane_score().bound(Histories.of(every, np.arange(2), (0, 1)))[0, :, 0]
         assert all(
             critical_plane(values[:, k]).value() <= bounds[k] * (1 + 1e-12) for k in range(2)
         )
@@ -105,12 +115,14 @@ def test_a_link_is_judged_by_its_worst_plane():
         strong.slider(200e6), t=(0, 0.2094395, 25), wanted=["section:rod"], certificate=False
     )
     stress = solution.stress("rod")
-    _, place, fibre = worst_plane(stress)
+    histories = LinkHistories.of(Member.of(solution, "rod"))
+    worst = histories.worst(plane_score())
+    xi = histories.ratio(worst)
     factor = solution.safety("rod", criterion=FINDLEY).against("fatigue")
-    there = stress.at(place.xi)[:, stress.fibres(place.xi).index(fibre)]
+    there = stress.at(xi)[:, stress.fibres(xi).index(worst.name)]
     assert plane_factor(critical_plane(there), steel) == pytest.approx(factor, rel=1e-12)
-    for xi in (0.0, 0.2, 0.45, place.xi, 0.7):
-        values = stress.at(xi)
+    for place in (0.0, 0.2, 0.45, xi, 0.7):
+        values = stress.at(place)
         assert all(
             plane_factor(critical_plane(values[:, k]), steel) >= factor * (1 - 1e-9)
             for k in range(values.shape[1])

@@ -20,17 +20,17 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Expression
+from ..base.arrays import Expression, Operand
 from ..base.quantities import Output
 from ..base.tables import table_of
-from ..beams.properties import Properties
+from ..beams.properties import Properties, larger, smaller
 from ..declare.density import Density
 from ..declare.limits import END
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
 from . import buckling
 from .checks import Column
-from .section_function import Place, Section, Side, edge
+from .section_function import Section, edge
 from .stress import KINDS, CrossSections, squared
 
 _SAMPLES, _MAXIMA, _NEARER = 9, 2, 8.0
@@ -95,6 +95,14 @@ class Loaded:
         return [replace(part, forces=self._polynomials(part)) for part in self.spans]
 
     @property
+    def cells(self) -> list[Part]:
+        """Parts between breaks of the cross-section."""
+        return [
+            Part(ca.SX(low), ca.SX(high - low), cell)
+            for cell, (low, high) in enumerate(itertools.pairwise(self.course.breaks))
+        ]
+
+    @property
     def spans(self) -> list[Part]:
         """Parts between stations, ends of loads along the link, and breaks of its density and its
         cross-section.
@@ -107,11 +115,7 @@ class Loaded:
                     found.append(Part(a, b - a, cell))
         return found
 
-    def force_at(self, name: str, u: Expression, side: Side) -> Expression:
-        """A section force at a ratio; at a station on a ``side`` of it."""
-        return self.section.at(name, Place(u, side=side), _SLACK)
-
-    def force_within(self, name: str, part: Part, x: Expression) -> Expression:
+    def force_within(self, name: str, part: Part, x: Operand) -> Operand:
         """A section force at a place of a part from 0 to 1, by the link's law."""
         return self.section.force(name, part.low + part.width * x, edge(part.low, _SLACK))
 
@@ -127,7 +131,12 @@ class Loaded:
             ]
         return found
 
-    def at(self, part: Part, x: Expression) -> Properties:
+    def degree_along(self, part: Part) -> int:
+        """The degree of polynomials that stresses along a part are about as smooth as."""
+        first, last = self.course.cells[part.cell]
+        return self.degree + (0 if first is last else _MORE)
+
+    def at(self, part: Part, x: Operand) -> Properties:
         """The cross-section at a place of a part."""
         return self.cross.properties(part.cell, part.low + part.width * x)
 
@@ -194,20 +203,26 @@ def _largest(link: Loaded, value: Callable[[Part, Expression], Expression]) -> c
     """The largest value along a link, of those at all places that are looked at."""
     found: list[Any] = []
     for part in link.parts:
-        first, last = link.course.cells[part.cell]
-        found += sampled(partial(value, part), link.degree + (0 if first is last else _MORE))
+        found += sampled(partial(value, part), link.degree_along(part))
     return most(found)
 
 
-def sampled(value: Callable[[Expression], Expression], degree: int) -> list[ca.SX]:
+def places_along(degree: int, finer: int = 1) -> list[float]:
+    """Return places from 0 to 1 at which a function of a degree is looked at, both ends among them;
+    so many times ``finer``.
+    """
+    count = finer * (max(_SAMPLES, degree + 4) - 1)
+    return [(1.0 - math.cos(math.pi * k / count)) / 2 for k in range(count + 1)]
+
+
+def sampled(value: Callable[[Operand], Operand], degree: int) -> list[Operand]:
     """The values of a function of a degree at both ends of a part, between them, and beside its
     summits.
     """
-    count = max(_SAMPLES, degree + 4)
-    places = [(1.0 - math.cos(math.pi * k / (count - 1))) / 2 for k in range(count)]
+    places = places_along(degree)
     found = [ca.SX(value(x)) for x in places]
     best: list[tuple[Any, Any]] = []
-    for k in range(1, count - 1):
+    for k in range(1, len(places) - 1):
         before, here, after = found[k - 1 : k + 2]
         bend = 2.0 * here - before - after
         gain = (after - before) ** 2 / (8.0 * ca.if_else(bend > 0.0, bend, 1.0))
@@ -215,22 +230,37 @@ def sampled(value: Callable[[Expression], Expression], degree: int) -> list[ca.S
         # Beside what is higher there is more than a summit that is lower than both.
         best = _ranked(best, ca.if_else(maximum, here + gain, ca.fmin(before, after)), places[k])
     for _, place in best:
-        reach = 1.0 / (2 * (count - 1))
-        for _ in range(2):
-            place = ca.fmin(ca.fmax(place, reach), 1.0 - reach)
-            before, here, after = (ca.SX(value(x)) for x in (place - reach, place, place + reach))
-            found.append(here)
-            bend = 2.0 * here - before - after
-            away = (after - before) / (2.0 * ca.if_else(bend > 0.0, bend, 1.0))
-            place = place + reach * ca.if_else(bend > 0.0, ca.fmin(ca.fmax(away, -2.0), 2.0), 0.0)
-            reach /= _NEARER
-        found.append(ca.SX(value(ca.fmin(ca.fmax(place, 0.0), 1.0))))
+        found += followed(lambda x: ca.SX(value(x)), place, 1.0 / (2 * (len(places) - 1)))
     return found
 
 
+def followed(value: Callable[[Operand], Operand], place: Operand, reach: float) -> list[Operand]:
+    """The values of a function from 0 to 1 ever nearer to its summit, from a place and others at a
+    ``reach`` on, by parabolas: expressions or arrays.
+    """
+    found = []
+    for _ in range(2):
+        place = smaller(larger(place, reach), 1.0 - reach)
+        before, here, after = (value(x) for x in (place - reach, place, place + reach))
+        found.append(here)
+        bend = 2.0 * here - before - after
+        away = (after - before) / (2.0 * _where(bend > 0.0, bend, 1.0))
+        place = place + reach * _where(bend > 0.0, smaller(larger(away, -2.0), 2.0), 0.0)
+        reach /= _NEARER
+    found.append(value(smaller(larger(place, 0.0), 1.0)))
+    return found
+
+
+def _where(truth: Operand, one: Operand, other: Operand) -> Operand:
+    """Choose between expressions, or arrays."""
+    if isinstance(truth, ca.SX):
+        return ca.if_else(truth, one, other)
+    return np.where(truth, one, other)
+
+
 def _ranked(
-    best: list[tuple[ca.SX, Expression]], top: ca.SX, place: Expression
-) -> list[tuple[ca.SX, Expression]]:
+    best: list[tuple[Operand, Operand]], top: Operand, place: Operand
+) -> list[tuple[Operand, Operand]]:
     """The highest summits and their places, with one more."""
     found = []
     for kept, at in best:

@@ -208,6 +208,14 @@ def concentration(notch: Notch | None, force: str) -> float:
     )
 
 
+def notch_factor(notch: Notch) -> Notch:
+    """Fatigue stress concentration factor of a notch: K_f = 1 + q (K_t - 1) (Shigley, eq. 6-32)."""
+    q = notch.sensitivity
+    return Notch(
+        notch.at, *(1.0 + q * (k - 1.0) for k in (notch.axial, notch.bending, notch.shear))
+    )
+
+
 def _least(values: Sequence[float]) -> float:
     found = values[0]
     for value in values[1:]:

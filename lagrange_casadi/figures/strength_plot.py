@@ -4,6 +4,7 @@ far all parts are used.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -12,9 +13,9 @@ import numpy as np
 from ..base.arrays import Array
 from ..instants.solution import Solution
 from ..shapes.readable import Scale
-from ..strength.fatigue import Loaded, factor, factor_score, loaded
+from ..strength.fatigue import Loaded, loaded, use_score, used
 from ..strength.stress import Stress
-from ..strength.worst import places, worst
+from ..strength.worst import LinkHistories
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -107,12 +108,14 @@ def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
         for strength in material.needs("Goodman's diagram", "endurance", "ultimate")
     )
     cycles: dict[str, list[Loaded]] = {"swings, every fibre": [], "in notches": []}
-    for place in places(stress):
-        values = stress.at(place.xi, place.side, place.notch)
-        cycles["in notches" if place.notch else "swings, every fibre"] += [
-            loaded(values[:, k]) for k in range(values.shape[1])
+    histories = LinkHistories.of(stress.member)
+    for part in histories.parts:
+        along = histories.at(part, histories.places(part)[None])
+        cycles["in notches" if part.notch else "swings, every fibre"] += [
+            loaded(along.at(*index)) for index in np.ndindex(along.normal.shape[:2])
         ]
-    (least,), place, fibre, most = worst(stress, factor_score(material, "goodman"))
+    worst = histories.worst(use_score(material))
+    most = loaded(histories.history(worst))
     axes.plot([0.0, ultimate], [endurance, 0.0], color="#b2182b", label="Goodman")
     if material.yield_strength is not None:
         strength = material.yield_strength / _MEGA
@@ -126,7 +129,7 @@ def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
             )
             axes.plot(means, amplitudes, ".", markersize=3, color=color, label=label)
             top = max(top, float(amplitudes.max()))
-    k = int(np.argmin(factor(most.amplitude, most.mean, material)))
+    k = int(np.argmax(used(most.amplitude, most.mean, material)))
     axes.plot(
         most.mean[k] / _MEGA, most.amplitude[k] / _MEGA, "k+", markersize=13, markeredgewidth=1.8
     )
@@ -136,9 +139,11 @@ def _goodman(axes: Axes, stress: Stress, unit: Scale) -> None:
     axes.set_ylabel(f"amplitude [{unit.unit}]")
     unit.put(axes.xaxis)
     unit.put(axes.yaxis)
-    where = "in the notch at " if place.notch else "at "
+    least = 1.0 / worst.value[0] if worst.value[0] else math.inf
+    where = "in the notch at " if worst.part.notch else "at "
     axes.set_title(
-        f"fatigue: least factor {least:.4g} {where}" + rf"$\xi/l$ = {place.xi:.3f}, {fibre}",
+        f"fatigue: least factor {least:.4g} {where}"
+        rf"$\xi/l$ = {histories.ratio(worst):.3f}, {worst.name}",
         fontsize=10,
     )
     axes.legend(frameon=False, fontsize=9)

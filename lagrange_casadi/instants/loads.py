@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,9 +16,31 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from ..base.quantities import Output
 
+_AnyLoad = TypeVar("_AnyLoad", bound="_Load")
+
 
 @dataclass(frozen=True, eq=False)
-class DistributedLoad:
+class _Load:
+    """Load on a link, by its name."""
+
+    name: str
+
+    def during(self: _AnyLoad, instants: slice | npt.NDArray[np.generic]) -> _AnyLoad:
+        """Load at some of the instants."""
+        arrays = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        del arrays["name"]
+        return replace(self, **{name: _cut(values, instants) for name, values in arrays.items()})
+
+
+def _cut(values: Any, instants: slice | npt.NDArray[np.generic]) -> Any:
+    """Values at some of the instants, each (t,)."""
+    if isinstance(values, Mapping):
+        return {key: tuple(row[instants] for row in rows) for key, rows in values.items()}
+    return values[instants]
+
+
+@dataclass(frozen=True, eq=False)
+class DistributedLoad(_Load):
     """A load along a link up to ``end``, a ratio xi/l, on ``width`` of the link, both (t,) and the
     same at all instants.
 
@@ -27,7 +49,6 @@ class DistributedLoad:
     slices does is one too, of couples ``cx``, ``cy``, ``cz`` [N].
     """
 
-    name: str
     width: Array
     end: Array
     terms: Mapping[str, tuple[Array, ...]]
@@ -51,13 +72,14 @@ class DistributedLoad:
             if ((place > 0.0) & (place < 1.0)).any()
         ]
 
-    def during(self, instants: slice | npt.NDArray[np.generic]) -> DistributedLoad:
-        """Load at some of the instants."""
-        terms = {
-            member: tuple(values[instants] for values in rows)
-            for member, rows in self.terms.items()
-        }
-        return replace(self, width=self.width[instants], end=self.end[instants], terms=terms)
+    def outputs(self, link: str) -> dict[Output, Array]:
+        """The numbers in it, as outputs of a link."""
+        ends = {"width": self.width, "end": self.end}
+        found = {Output("spread", link, name, self.name): ends[name] for name in ends}
+        for member, rows in self.terms.items():
+            for power, values in enumerate(rows):
+                found[Output("spread", link, member, self.name, power)] = values
+        return found
 
     def of(self, link: str, outputs: Mapping[Output, Array]) -> DistributedLoad:
         """Load of a link with other numbers, (..., t)."""
@@ -148,22 +170,13 @@ def distributed_load(
     return DistributedLoad(name, members["width"], members["end"], powers)
 
 
-_Load = TypeVar("_Load", bound="_AtStation")
-
-
 @dataclass(frozen=True, eq=False)
-class _AtStation:
+class _AtStation(_Load):
     """Action on a link at a load point, whose ``station`` is the ratio xi/l, (t,): it moves where
     something slides along the link.
     """
 
-    name: str
     station: Array
-
-    def during(self: _Load, instants: slice | npt.NDArray[np.generic]) -> _Load:
-        """Load at some of the instants."""
-        arrays = (entry.name for entry in fields(self) if entry.name != "name")
-        return replace(self, **{name: getattr(self, name)[instants] for name in arrays})
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ largest normal stress in compression counts as none.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,8 +22,7 @@ from ..arguments import NotNegative, public
 from ..base.arrays import Array
 from ..beams.material import Material
 from ..errors import DeclarationError, shown
-from .stress import Stress
-from .worst import Place, sought, stresses_at
+from .fatigue import ROUNDED, Histories, Score
 
 FINDLEY = "findley"
 """The criterion's name."""
@@ -89,38 +88,26 @@ def plane_factor(plane: Plane, material: Material, share: NotNegative = DUCTILE)
     return endurance * (share + math.sqrt(1.0 + share**2)) / 2 / value if value else math.inf
 
 
-def worst_plane(stress: Stress, share: float = DUCTILE) -> tuple[Plane, Place, str]:
-    """The worst critical plane along a link and over its fibres, the
-    place, and the fibre's name.
+def plane_score(share: float = DUCTILE) -> Score:
+    """What is largest on the worst critical plane: shear amplitude and ``share`` of the normal
+    stress.
+
+    No plane is above a bound from the largest shear and principal stresses.
     """
-    found = [(Plane(-1.0, 0.0, 0.0), Place(0.0, "tip", None), "")]
 
-    def assess(places: Iterable[Place]) -> Place:
-        for values, fibres in stresses_at(stress, places):
-            bounds = _bounds(values, share)
-            for k in np.argsort(-bounds, kind="stable").tolist():
-                if bounds[k] <= found[0][0].value(share):
-                    break
-                plane = critical_plane(values[:, k], share)
-                if plane.value(share) > found[0][0].value(share):
-                    found[0] = plane, *fibres[k]
-        return found[0][1]
+    def bound(histories: Histories) -> Array:
+        normal, shears = histories.normal, histories.shears
+        wide, shear = np.ptp(normal, axis=2) ** 2, np.zeros_like(normal)
+        wide[:, histories.sheared] += 4.0 * np.sum(np.ptp(shears, axis=3) ** 2, axis=1)
+        shear[:, histories.sheared] = np.sum(shears**2, axis=1)
+        principal = normal / 2 + np.sqrt((normal / 2) ** 2 + shear)
+        most = np.sqrt(wide) / 4 + share * np.maximum(principal.max(axis=2), 0.0)
+        return np.asarray(most * ROUNDED)[..., None]
 
-    sought(stress, assess)
-    return found[0]
+    def of(values: Array) -> tuple[float]:
+        return (critical_plane(values, share).value(share),)
 
-
-def _bounds(values: Array, share: float) -> Array:
-    """Upper bounds on any plane, for fibres with histories (3, fibres, t): from the largest shear
-    and principal stresses.
-    """
-    wide = np.ptp(values, axis=2)
-    shear = np.sum(values[1:] ** 2, axis=0)
-    principal = values[0] / 2 + np.sqrt((values[0] / 2) ** 2 + shear)
-    return np.asarray(
-        np.sqrt(wide[0] ** 2 + 4.0 * (wide[1] ** 2 + wide[2] ** 2)) / 4
-        + share * principal.max(axis=1)
-    )
+    return Score(of, bound, lambda amplitude, mean: amplitude + share * mean)
 
 
 def _best(

@@ -21,7 +21,6 @@ import numpy.typing as npt
 
 from ..arguments import Numeric, public
 from ..base.arrays import Array, Operand
-from ..beams.beam import Notch
 from ..beams.material import Material
 from ..beams.properties import larger
 from ..errors import UnknownNameError
@@ -30,7 +29,7 @@ from .rainflow import rainflow
 _LEAST = 1e3
 """Cycles from which on S-N lines hold."""
 
-_ROUNDED = 1.0 + 1e-12
+ROUNDED = 1.0 + 1e-12
 """Factor of rounding by which a value may exceed a bound."""
 
 
@@ -171,8 +170,7 @@ def loaded(values: Array) -> Loaded:
     """The swings of a history of stresses (3, t), normal and shear along y and z, which repeats for
     ever.
     """
-    vector = values * np.array([1.0, math.sqrt(3.0), math.sqrt(3.0)])[:, None]
-    first, last = _farthest(vector)
+    vector, (first, last) = values * _VON_MISES, widest(values)
     along = vector[:, last] - vector[:, first]
     size = float(np.linalg.norm(along))
     stress_cycles = rainflow(along @ vector / size, repeating=True) if size else []
@@ -183,6 +181,14 @@ def loaded(values: Array) -> Loaded:
     a, b = (values[:, list(side)] for side in zip(*pairs, strict=True))
     amplitude, mean = (np.sqrt(square) for square in cycle_squares(a, b))
     return Loaded(amplitude, mean, np.array(counts), pairs)
+
+
+def widest(values: Array) -> tuple[int, int]:
+    """The two instants between which stresses (3, t) differ most, by von Mises."""
+    return _farthest(values * _VON_MISES)
+
+
+_VON_MISES = np.array([[1.0], [math.sqrt(3.0)], [math.sqrt(3.0)]])
 
 
 def cycle_squares(first: Operand, last: Operand) -> tuple[Operand, Operand]:
@@ -253,12 +259,12 @@ class Histories:
     axes: tuple[int, ...]
 
     @classmethod
-    def of(cls, values: Array) -> Histories:
-        """Make them for one design: stresses (3, places, t), normal, and shear along y and along
-        z.
-        """
-        sheared = np.flatnonzero(values[1:].any(axis=(0, 2)))
-        return cls(values[None, 0], values[None, 1:][:, :, sheared], sheared, (0, 1))
+    def of(cls, values: Array, sheared: npt.NDArray[np.intp], axes: tuple[int, ...]) -> Histories:
+        """Make them of stresses (n, stresses, t), those of one direction after another."""
+        n, count, t = values.shape
+        many = count - len(axes) * sheared.size
+        shears = values[:, many:].reshape(n, len(axes), sheared.size, t)
+        return cls(values[:, :many], shears, sheared, axes)
 
     def at(self, design: int, place: int) -> Array:
         """The stresses of a design at a place: (3, t)."""
@@ -277,19 +283,17 @@ class Histories:
         mean[:, self.sheared] += size
         return np.sqrt(amplitude) / 2, np.sqrt(mean)
 
-    def bounds(self, material: Material) -> tuple[Array, Array]:
-        """Bounds on utilisation by Goodman's rule, and what is known of it at least, each (n,
-        places).
+    def bounds(self, material: Material) -> Array:
+        """Bounds on utilisation by Goodman's rule, (n, places).
 
         Of a history of normal stress alone the swing from its smallest to its largest value is the
-        worst.
+        worst, and the bound its utilisation.
         """
         endurance, strength = strengths(material, "goodman")
         high, low = self.normal.max(axis=2), self.normal.min(axis=2)
         bound = (high - low) / (2 * endurance) + np.maximum((high + low) / 2, 0.0) / strength
-        known, sheared = bound.copy(), self.sheared
-        known[:, sheared] = 0.0
-        if sheared.size:
+        if self.sheared.size:
+            sheared = self.sheared
             square, size = self._sheared()
             high, low = high[:, sheared], low[:, sheared]
             stress_cycle, middle = (high - low) ** 2, np.maximum((high + low) / 2, 0.0)
@@ -304,49 +308,8 @@ class Histories:
                 np.sqrt(wide) / (2 * endurance)
                 + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
             )
-            bound[:, sheared] = np.maximum(whole, other)
-        return bound, known
-
-    def utilisation(self, material: Material) -> Array:
-        """Utilisation of designs (n,) by Goodman's rule, one over their least factor."""
-        bound, known = self.bounds(material)
-        best = known.max(axis=1)
-        for i in np.flatnonzero(bound.max(axis=1) > best).tolist():
-            for k in np.argsort(-bound[i], kind="stable").tolist():
-                if bound[i, k] <= best[i]:
-                    break
-                if k in self.sheared:
-                    stress_cycles = loaded(self.at(i, k))
-                    best[i] = max(
-                        best[i],
-                        float(np.max(used(stress_cycles.amplitude, stress_cycles.mean, material))),
-                    )
-        return np.asarray(best)
-
-    def worst(
-        self, score: Score, least: tuple[float, ...] | None = None
-    ) -> tuple[tuple[float, ...], int, Loaded] | None:
-        """Place at which a score of the first design is smallest: its value, the place, and the
-        stress cycles there; of equals the first place.
-
-        None where it is nowhere below ``least``. What cannot be below what was found is not
-        counted.
-        """
-        bound = score.bound(self)
-        found: tuple[tuple[float, ...], int, Loaded] | None = None
-        for k in np.lexsort(bound.T[::-1]).tolist():
-            best = least if found is None else found[0]
-            if best is not None and tuple(bound[k].tolist()) > best:
-                break
-            stress_cycles = loaded(self.at(0, k))
-            value = score.of(stress_cycles)
-            if (
-                best is None
-                or value < best
-                or (found is not None and value == best and k < found[1])
-            ):
-                found = value, k, stress_cycles
-        return found
+            bound[:, sheared] = np.maximum(whole, other) * ROUNDED
+        return np.asarray(bound)
 
     def _sheared(self) -> tuple[Array, Array]:
         """Three times the squares of the ranges of shear stress, and of its sizes, at places with
@@ -359,65 +322,62 @@ class Histories:
 
 @dataclass(frozen=True, eq=False)
 class Score:
-    """Measure that is smallest where a link is worst, ``of`` stress cycles; between equals the
-    second number decides.
+    """Measure that is largest where a link is worst, ``of`` stresses (3, t) at a fibre; between
+    equals the next of its numbers decides.
 
-    ``bound`` has for every place of a design numbers that it is not below, (places, numbers).
+    ``bound`` has for every place of designs numbers that it is not above, (n, places, numbers).
+    Where it is ``exact`` it is the score of fibres that have normal stress alone. ``swing`` tells
+    how bad a swing is by its amplitude and its mean.
     """
 
-    of: Callable[[Loaded], tuple[float, ...]]
+    of: Callable[[Array], tuple[float, ...]]
     bound: Callable[[Histories], Array]
+    swing: Callable[[Array, Array], Operand]
+    exact: bool = False
 
 
-def factor_score(material: Material, criterion: str) -> Score:
-    """The factor of safety against fatigue. Raises what :func:`strengths` does."""
+def use_score(material: Material, criterion: str = "goodman") -> Score:
+    """The utilisation against fatigue. Raises what :func:`strengths` does."""
     strengths(material, criterion)
+    goodman = criterion == "goodman"
+
+    def of(values: Array) -> tuple[float]:
+        found = loaded(values)
+        return (float(np.max(used(found.amplitude, found.mean, material, criterion))),)
 
     def bound(histories: Histories) -> Array:
-        goodman = criterion == "goodman"
-        (most, *_) = (
-            histories.bounds(material)[0]
-            if goodman
-            else used(*histories.widest(), material, criterion)
-        )
-        with np.errstate(divide="ignore"):
-            return np.asarray(1.0 / (most * _ROUNDED))[:, None]
+        if goodman:
+            return histories.bounds(material)[..., None]
+        most = used(*histories.widest(), material, criterion)
+        return np.asarray(most * ROUNDED)[..., None]
 
-    return Score(
-        lambda stress_cycles: (
-            float(np.min(factor(stress_cycles.amplitude, stress_cycles.mean, material, criterion))),
-        ),
-        bound,
-    )
+    def swing(amplitude: Array, mean: Array) -> Operand:
+        return used(amplitude, mean, material, criterion)
+
+    return Score(of, bound, swing, exact=goodman)
 
 
-def damage_score(material: Material, criterion: str) -> Score:
-    """The damage by Miner's sum, and where there is none the largest amplitude; times -1.
+def damage_score(material: Material, criterion: str = "goodman") -> Score:
+    """The damage by Miner's sum, and where there is none the largest amplitude.
 
     Raises what :func:`strengths` does.
     """
     strengths(material, criterion)
 
-    def of(stress_cycles: Loaded) -> tuple[float, float]:
-        sizes = reversed_amplitude(stress_cycles.amplitude, stress_cycles.mean, material, criterion)
+    def of(values: Array) -> tuple[float, float]:
+        found = loaded(values)
+        sizes = reversed_amplitude(found.amplitude, found.mean, material, criterion)
         with np.errstate(divide="ignore"):
-            return -float(np.sum(stress_cycles.times / cycles(sizes, material))), -float(
-                np.max(sizes)
-            )
+            return float(np.sum(found.times / cycles(sizes, material))), float(np.max(sizes))
 
     def bound(histories: Histories) -> Array:
-        amplitude, mean = (size[0] * _ROUNDED for size in histories.widest())
+        amplitude, mean = (size * ROUNDED for size in histories.widest())
         sizes = reversed_amplitude(amplitude, mean, material, criterion)
         many = histories.normal.shape[2] / 2 + 1
         with np.errstate(divide="ignore"):
-            return -np.stack([many / cycles(sizes, material), sizes], axis=1)
+            return np.stack([many / cycles(sizes, material), sizes], axis=-1)
 
-    return Score(of, bound)
+    def swing(amplitude: Array, mean: Array) -> Operand:
+        return used(amplitude, mean, material, criterion)
 
-
-def notch_factor(notch: Notch) -> Notch:
-    """Fatigue stress concentration factor of a notch: K_f = 1 + q (K_t - 1) (Shigley, eq. 6-32)."""
-    q = notch.sensitivity
-    return Notch(
-        notch.at, *(1.0 + q * (k - 1.0) for k in (notch.axial, notch.bending, notch.shear))
-    )
+    return Score(of, bound, swing)

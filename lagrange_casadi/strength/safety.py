@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arguments import public
-from ..beams.material import Material
 from ..declare.description import Description
 from ..declare.end_conditions import effective_lengths
 from ..equations import buckling as columns
@@ -18,11 +17,11 @@ from ..equations.buckling import Column
 from ..errors import UnknownNameError
 from ..instants.solution import Solution
 from ..renamed import renamed
-from .critical_plane import FINDLEY, plane_factor, worst_plane
-from .fatigue import CRITERIA, damage_score, factor, factor_score, lacking
+from .critical_plane import FINDLEY, critical_plane, plane_factor, plane_score
+from .fatigue import CRITERIA, damage_score, lacking, loaded, use_score, used
 from .member import Member
 from .stress import Stress, StressPeak
-from .worst import worst
+from .worst import LinkHistories
 
 
 @dataclass(frozen=True)
@@ -144,31 +143,33 @@ def rated(
         return Safety(link, tuple(verdicts))
     if not_evaluated := lacking(material, criterion):
         return Safety(link, tuple(verdicts), (not_evaluated,))
-    verdicts.append(tired(found, material, criterion))
+    verdicts.append(tired(member, criterion))
     return Safety(link, tuple(verdicts))
 
 
-def tired(stress: Stress, material: Material, criterion: str) -> Verdict:
+def tired(member: Member, criterion: str) -> Verdict:
     """The factor of safety of a link against fatigue."""
+    histories, material = LinkHistories.of(member), member.beam.material
     if criterion == FINDLEY:
-        plane, place, fibre = worst_plane(stress)
+        worst = histories.worst(plane_score())
+        plane = critical_plane(histories.history(worst))
         value = plane_factor(plane, material)
         text = (
             f"{plane.amplitude / 1e6:.4g} MPa in shear and {plane.normal / 1e6:.4g} MPa across, on"
             f" a plane at {math.degrees(plane.angle):.0f} deg to the cross-section, by {criterion}"
         )
     else:
-        (value, *_), place, fibre, cycles = worst(stress, factor_score(material, criterion))
-        k = int(np.argmin(factor(cycles.amplitude, cycles.mean, material, criterion)))
+        worst = histories.worst(use_score(material, criterion))
+        value = 1.0 / worst.value[0] if worst.value[0] else math.inf
+        cycles = loaded(histories.history(worst))
+        k = int(np.argmax(used(cycles.amplitude, cycles.mean, material, criterion)))
         text = (
             f"mean {cycles.mean[k] / 1e6:.4g} MPa, amplitude {cycles.amplitude[k] / 1e6:.4g} MPa by"
             f" {criterion}"
         )
-    return Verdict(
-        "fatigue",
-        value,
-        f"{text} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}",
-    )
+    notch = ", notch" if worst.part.notch else ""
+    at = f"at xi/l = {histories.ratio(worst):.4f}, {worst.name}{notch}"
+    return Verdict("fatigue", value, f"{text} {at}")
 
 
 def as_column(description: Description, member: Member) -> Column:
@@ -224,7 +225,9 @@ def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
     member = Member.of(solution, link).counted
     material = member.beam.material
     material.needs("a life", "endurance", "ultimate")
-    (most, *_), place, fibre, _ = worst(Stress(member), damage_score(material, criterion))
-    many = math.inf if most == 0.0 else -1.0 / most
+    histories = LinkHistories.of(member)
+    worst = histories.worst(damage_score(material, criterion))
+    damage, _ = worst.value
+    many = 1.0 / damage if damage else math.inf
     span = float(solution.t[-1] - solution.t[0])
-    return Life(link, 0.0 - most, many, many * span / 3600.0, place.xi, fibre)
+    return Life(link, damage, many, many * span / 3600.0, histories.ratio(worst), worst.name)

@@ -1,103 +1,313 @@
-"""Worst place along a link of a solution, and its fibre, for fatigue."""
+"""Worst places along a link, and fibres, for fatigue: of one solution, and of many designs at once.
+
+Each part between load points is looked at at places that are near each other for the polynomials
+that stresses are there. From local maxima the widest swing is followed, between its two instants,
+to where it is worst; there all are counted. What is found is nearer to the largest than 1e-5 of it.
+Where a load travels along the link, stresses jump where it is at an instant: such places are looked
+at from both sides.
+"""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator
-from typing import NamedTuple
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..base.arrays import Array
-from ..beams.beam import Notch
-from ..instants.section_law import Side
-from .fatigue import Histories, Loaded, Score, notch_factor
-from .stress import Stress
+from ..equations.fibre_stresses import FibrePart, FibreStresses, numbers_of
+from ..equations.strength import followed, places_along
+from .fatigue import Histories, Score, cycle_squares, widest
+from .member import Member
 
-FEW = 65
-"""Ratios that are looked at first."""
+_MISSED = 0.02
+"""Fraction of a score by which its local maximum is above it at the places that are looked at, at
+most where these do not tell.
+"""
 
-_ROUNDS, _ZOOM = 3, 9
-"""Number of refinements of the worst place, and their fineness."""
+_LEAST, _TRAVELLING = 8, 8
+"""Degree for which parts have places at least, and the factor of their number where a load travels.
+"""
 
-_NUMBERS = 1 << 20
-"""Stresses that are at hand at once."""
+_HUGE = 1e300
 
-_SIDES: tuple[Side, Side] = ("base", "tip")
+_PASSED, _ASIDE = 200, 2e-6
+"""Number of places that a load passes, of which each is looked at at least, and how far to their
+sides.
+"""
+
+_MANY = 16
+"""Number of designs that are looked at together."""
+
+_NUMBERS = 1 << 19
+"""Stresses that are at hand at once: so many stay in the memory next to a processor."""
 
 
-class Place(NamedTuple):
-    """Place on a link: a ratio xi/l, its side, and the notch whose factors count."""
+@dataclass(frozen=True, eq=False)
+class Maximum:
+    """Local maximum of a score along a fibre, at a place ``x`` from 0 to 1 of a part of a link."""
 
-    xi: float
-    side: Side
-    notch: Notch | None
+    value: tuple[float, ...]
+    x: float
+    part: FibrePart
+    fibre: int
+
+    @property
+    def name(self) -> str:
+        """Name of the fibre."""
+        return self.part.fibres[self.fibre]
 
 
-def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, Loaded]:
-    """Place along a link, and fibre, at which a score is smallest: its value, the place, the fibre,
-    and the stress cycles there.
+@dataclass(frozen=True, eq=False)
+class LinkHistories:
+    """A link of n designs over time: the ``members`` of its section law (n, members, t), and its
+    ``numbers`` (n, numbers).
 
-    Ratios are looked at evenly, at both sides of stations and steps, and at notches; where it is
-    worst, finer and finer.
+    Loads along it stand ``still`` in all of the designs; else one may travel.
     """
-    found: list[tuple[tuple[float, ...], Place, str, Loaded]] = []
 
-    def assess(places: Iterable[Place]) -> Place:
-        for values, fibres in stresses_at(stress, places):
-            best = Histories.of(values).worst(score, found[0][0] if found else None)
-            if best is not None:
-                value, k, cycles = best
-                found[:] = [(value, *fibres[k], cycles)]
-        return found[0][1]
+    stresses: FibreStresses
+    members: Array
+    numbers: Array
+    still: bool = True
 
-    sought(stress, assess)
-    return found[0]
+    @classmethod
+    def of(cls, member: Member) -> LinkHistories:
+        """Make them for a link of a solution, all of whose instants count."""
+        outputs, law = member.law.outputs(member.link), member.law
+        stresses = FibreStresses.of(outputs, member.link, law.density, member.beam)
+        members = np.array([[outputs[output] for output in stresses.members]])
+        numbers = np.array([numbers_of(law.length, law.density, member.beam)], float)
+        return cls(stresses, members, numbers, bool(stresses.stands(members)[0]))
+
+    @cached_property
+    def parts(self) -> tuple[FibrePart, ...]:
+        """Parts of the link, and sides of its notches."""
+        return self.stresses.parts(still=self.still)
+
+    def places(self, part: FibrePart) -> Array:
+        """Places from 0 to 1 at which a part is looked at; where a load travels, those of the first
+        design.
+        """
+        if part.notch:
+            return np.zeros(1)
+        if self.still:
+            return np.array(places_along(max(_LEAST, part.degree)))
+        (low,), (width,) = part.ends(self.members[:1], self.numbers[:1])
+        passed = np.unique(self.members[0, self.stresses.places])
+        passed = passed[:: 1 + passed.size // _PASSED, None] + np.array([-_ASIDE, _ASIDE])
+        inside = (passed.ravel() - low) / width
+        even = np.array(places_along(part.degree, _TRAVELLING))
+        return np.union1d(even, inside[(inside > 0.0) & (inside < 1.0)])
+
+    def ratio(self, maximum: Maximum) -> float:
+        """The ratio xi/l of a place in the first design."""
+        low, width = maximum.part.ends(self.members[:1], self.numbers[:1])
+        return float(low[0] + width[0] * maximum.x)
+
+    def at(
+        self, part: FibrePart, x: Array, fibres: npt.NDArray[np.intp] | None = None
+    ) -> Histories:
+        """The stresses at places (n, places) of a part, one design after another; of all fibres, or
+        of one in each design, which are all sheared or all not.
+        """
+        chosen = None if fibres is None else part.stresses_of(fibres)
+        values = part.at(self.members, self.numbers, x, still=self.still, chosen=chosen)
+        values, sheared = values.reshape(-1, *values.shape[2:]), part.sheared
+        if chosen is not None:
+            sheared = np.arange(min(1, chosen.shape[1] - 1))
+        return Histories.of(values, sheared, part.axes)
+
+    def history(self, maximum: Maximum) -> Array:
+        """The stresses (3, t) of the first design at a place."""
+        first = replace(self, members=self.members[:1], numbers=self.numbers[:1])
+        return first.at(maximum.part, np.array([[maximum.x]])).at(0, maximum.fibre)
+
+    def maxima(self, score: Score, beside: float = 1.0) -> Iterator[list[Maximum]]:
+        """The local maxima of each design that may be the largest, which comes first; also those
+        down to a fraction ``beside`` of it.
+        """
+        many = _MANY if self.still else 1
+        for start in range(0, len(self.members), many):
+            few = slice(start, start + many)
+            some = replace(self, members=self.members[few], numbers=self.numbers[few])
+            yield from some._maxima(score, beside)
+
+    def worst(self, score: Score) -> Maximum:
+        """The largest of the first design."""
+        return next(self.maxima(score))[0]
+
+    def _maxima(self, score: Score, beside: float) -> list[list[Maximum]]:
+        best: list[tuple[float, ...]] = [()] * len(self.members)
+        sampled = [self._bounds(part, score) for part in self.parts]
+        if score.exact:
+            for part, values in zip(self.parts, sampled, strict=True):
+                most = values[:, :, part.plain, 0].max(axis=(1, 2), initial=-np.inf).tolist()
+                best[:] = [max(one, (value,)) for one, value in zip(best, most, strict=True)]
+        self._count(sampled, score, best)
+        found: list[list[Maximum]] = [[] for _ in best]
+        least = np.array([beside * value[-1] for value in best])
+        # Those with normal stress alone cost less to follow, and leave out others.
+        for sheared, (part, values) in itertools.product(
+            (False, True), zip(self.parts, sampled, strict=True)
+        ):
+            fibres = part.sheared if sheared else part.plain
+            size = values[:, :, fibres, -1]
+            higher = _local_maxima(size) & (_promised(size) >= least[:, None, None])
+            designs, places, index = np.nonzero(higher)
+            if designs.size:
+                some = self.of_designs(designs)
+                maxima = _Followed(some, part, fibres[index], score).maxima(
+                    values[designs, places, fibres[index]], self.places(part)[places]
+                )
+                for i, maximum in zip(designs.tolist(), maxima, strict=True):
+                    found[i].append(maximum)
+                    best[i] = max(best[i], maximum.value)
+        return [sorted(one, key=lambda maximum: maximum.value, reverse=True) for one in found]
+
+    def _wide(self, part: FibrePart) -> npt.NDArray[np.bool_]:
+        """Designs in which a part is some of the link, not nothing between two load points at one
+        place.
+        """
+        wide = part.ends(self.members, self.numbers)[1] > 0.0
+        return np.asarray(wide | (part.notch is not None))
+
+    def of_designs(self, designs: npt.NDArray[Any]) -> LinkHistories:
+        """The same of some of the designs."""
+        return replace(self, members=self.members[designs], numbers=self.numbers[designs])
+
+    def _bounds(self, part: FibrePart, score: Score) -> Array:
+        """Bounds on scores (n, places, fibres, numbers) of a part."""
+        (n, _, t), places = self.members.shape, self.places(part)
+        there = np.flatnonzero(self._wide(part))
+        some, found = self.of_designs(there), list[Array]()
+        step = max(1, _NUMBERS // (n * part.count * t))
+        for start in range(0, places.size, step):
+            x = np.tile(places[start : start + step], (there.size, 1))
+            values = score.bound(some.at(part, x))
+            found.append(values.reshape(*x.shape, *values.shape[1:]))
+        values = np.concatenate(found, axis=1)
+        every = np.full((n, *values.shape[1:]), -np.inf)
+        every[there] = values
+        return every
+
+    def _count(self, sampled: list[Array], score: Score, best: list[tuple[float, ...]]) -> None:
+        """Put scores in the place of bounds that are above the ``best`` of a design, which they
+        raise, from the largest on; and in that of others less than any.
+        """
+        found: list[tuple[tuple[float, ...], int, int, int, int]] = []
+        for number, (part, values) in enumerate(zip(self.parts, sampled, strict=True)):
+            least = np.array([value[0] if value else -np.inf for value in best])
+            for fibre in part.sheared if score.exact else range(len(part.fibres)):
+                own = values[:, :, fibre]
+                for i, j in np.argwhere(own[..., 0] >= least[:, None]).tolist():
+                    found.append((tuple(own[i, j].tolist()), number, i, j, int(fibre)))
+                own[own[..., 0] < least[:, None]] = -np.inf
+        for bound, number, i, j, fibre in sorted(found, reverse=True):
+            part, value = self.parts[number], (-math.inf,) * len(bound)
+            if bound > best[i]:
+                place = self.places(part)[j : j + 1, None]
+                one = self.of_designs(np.array([i])).at(part, place, np.array([fibre]))
+                value = score.of(one.at(0, 0))
+                best[i] = max(best[i], value)
+            sampled[number][i, j, fibre] = value
 
 
-def sought(stress: Stress, assess: Callable[[Iterable[Place]], Place]) -> None:
-    """Look at the places of a link, and then around the one that ``look`` says is the worst so far,
-    finer and finer.
-    """
-    place, step = assess(places(stress)), 1.0 / (FEW - 1)
-    for _ in range(_ROUNDS):
-        if place.notch is not None:
-            return
-        around = np.linspace(place.xi - step, place.xi + step, _ZOOM).tolist()
-        place, step = (
-            assess(Place(x, "tip", None) for x in around if 0.0 <= x <= 1.0),
-            step * 2 / (_ZOOM - 1),
-        )
-
-
-def places(stress: Stress) -> Iterator[Place]:
-    """Places along a link at which fatigue is evaluated first: evenly, at both sides of load points
-    and steps, and at notches.
-    """
-    member = stress.member
-    still = [float(mark[0]) for mark in member.marks if np.ptp(mark) == 0.0]
-    steps = {*still, *(cell.low for cell in member.cells), *(cell.high for cell in member.cells)}
-    yield from (Place(x, "tip", None) for x in np.linspace(0.0, 1.0, FEW).tolist())
-    yield from (Place(x, side, None) for x, side in itertools.product(sorted(steps), _SIDES))
-    yield from (
-        Place(float(notch.at), side, notch_factor(notch))
-        for notch, side in itertools.product(member.beam.notches, _SIDES)
+def _beside(sizes: Array) -> tuple[Array, Array]:
+    """Neighbours of sizes (n, places, fibres), lower than any beyond the ends."""
+    edge = np.full_like(sizes[:, :1], -np.inf)
+    return (
+        np.concatenate([edge, sizes[:, :-1]], axis=1),
+        np.concatenate([sizes[:, 1:], edge], axis=1),
     )
 
 
-def stresses_at(
-    stress: Stress, places: Iterable[Place]
-) -> Iterator[tuple[Array, list[tuple[Place, str]]]]:
-    """The stresses at places, (3, fibres of all of them, t), and the place and the name of each
-    fibre; some places after others.
+def _local_maxima(sizes: Array) -> npt.NDArray[np.bool_]:
+    """Find sizes (n, places, fibres) that are not below their neighbours; of equals the first."""
+    before, after = _beside(sizes)
+    return np.asarray((sizes > before) & (sizes >= after))
+
+
+def _promised(sizes: Array) -> Array:
+    """How high local maxima are at most, by twice what a parabola through neighbours is above them,
+    or as told by :data:`_MISSED`.
     """
-    values, fibres, size = list[Array](), list[tuple[Place, str]](), 0
-    for place in places:
-        values.append(stress.at(place.xi, place.side, place.notch))
-        fibres += [(place, name) for name in stress.fibres(place.xi, place.side)]
-        size += values[-1].size
-        if size > _NUMBERS:
-            yield np.concatenate(values, axis=1), fibres
-            values, fibres, size = [], [], 0
-    if values:
-        yield np.concatenate(values, axis=1), fibres
+    before, after = _beside(sizes)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        gain = (after - before) ** 2 / (8.0 * (2.0 * sizes - before - after))
+    sizes = np.maximum(sizes, -_HUGE)
+    most = _MISSED * np.abs(sizes)
+    return sizes + np.where(np.isfinite(gain), np.minimum(2.0 * gain, most), most)
+
+
+@dataclass(frozen=True, eq=False)
+class _Followed:
+    """Local maxima of a part, one of a fibre in each of ``histories``, that are followed.
+
+    The widest swing goes between two instants. These are kept while the place moves; all are
+    counted where the swing is largest.
+    """
+
+    histories: LinkHistories
+    part: FibrePart
+    fibres: npt.NDArray[np.intp]
+    score: Score
+
+    def maxima(self, values: Array, places: Array) -> list[Maximum]:
+        """The maxima, from ``values`` (n, numbers) at ``places`` on."""
+        found, part = places.copy(), self.part
+        if part.notch is None:
+            cycles, most = self._cycles(places), np.full(len(places), -np.inf)
+
+            def guide(x: Array) -> Array:
+                sizes = self._guide(cycles, x)
+                better = sizes > most
+                found[better], most[better] = x[better], sizes[better]
+                return sizes
+
+            with np.errstate(invalid="ignore"):
+                followed(guide, places, 1.0 / (2 * (self.histories.places(part).size - 1)))
+        there = self._values(self.histories, found)
+        return [
+            Maximum(*max((tuple(old), x), (tuple(new), y)), part, fibre)
+            for old, x, new, y, fibre in zip(
+                values.tolist(),
+                places.tolist(),
+                there.tolist(),
+                found.tolist(),
+                self.fibres.tolist(),
+                strict=True,
+            )
+        ]
+
+    def _cycles(self, places: Array) -> LinkHistories:
+        """The histories at the two instants of the widest swing at each place alone."""
+        members, chosen = self.histories.members, self._at(self.histories, places)
+        ends = [list(widest(chosen.at(k, 0))) for k in range(len(members))]
+        pairs = [one[:, pair] for one, pair in zip(members, ends, strict=True)]
+        return replace(self.histories, members=np.array(pairs))
+
+    def _guide(self, cycles: LinkHistories, x: Array) -> Array:
+        """How bad cycles are at places."""
+        chosen = self._at(cycles, x)
+        values = np.zeros((3, len(x), 2))
+        values[0] = chosen.normal[:, 0]
+        if chosen.sheared.size:
+            values[[1 + axis for axis in chosen.axes]] = np.moveaxis(chosen.shears[:, :, 0], 1, 0)
+        amplitude, mean = cycle_squares(values[..., 0], values[..., 1])
+        return np.asarray(self.score.swing(np.sqrt(amplitude), np.sqrt(mean)))
+
+    def _at(self, histories: LinkHistories, x: Array) -> Histories:
+        return histories.at(self.part, x[:, None], self.fibres)
+
+    def _values(self, histories: LinkHistories, x: Array) -> Array:
+        """Scores (n, numbers) at places."""
+        chosen = self._at(histories, x)
+        if self.score.exact and not chosen.sheared.size:
+            return np.asarray(self.score.bound(chosen)[:, 0])
+        return np.array([self.score.of(chosen.at(k, 0)) for k in range(len(x))])

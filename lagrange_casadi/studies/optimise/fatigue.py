@@ -3,13 +3,14 @@ the parameters.
 
 By Goodman's rule a place of a link is used by a/S_e + m/S_u of its worst swing, which goes from one
 instant to another. These are found by counting, as sweeps do it, at the same places. As parameters
-change the two instants stay; where another swing or another place becomes the worst, the search
-adds it, as it adds peaks. So the derivatives are those of the swing that is the worst: where two
-are as bad, there is a kink.
+change the two instants and the place stay; where another swing or another place becomes the worst,
+the search adds it, as it adds peaks. So the derivatives are those of the swing that is the worst:
+where two are as bad, there is a kink.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,19 +18,18 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from ...base.arrays import Expression
 from ...base.quantities import Output
 from ...beams.material import Material
+from ...equations.fibre_stresses import FibreStresses
 from ...equations.program import Program
 from ...errors import DeclarationError
 from ...instants.statistics import counted
-from ...strength.fatigue import cycle_squares, loaded, strengths, used
-from ...strength.fibres import FibreStresses
-from .sampled_design import Point, SampledDesign
-
-_FEW = 8
-"""Places of a link whose worst swings are told at least."""
+from ...strength.fatigue import cycle_squares, loaded, strengths, use_score, used
+from ...strength.worst import LinkHistories, Maximum
+from .sampled_design import KEEP, Point, SampledDesign
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,81 +51,101 @@ class Tired:
         return self.program.data.materials[self.link]
 
     @cached_property
-    def fatigue(self) -> FibreStresses:
-        """Stresses of the link by the members of its law."""
-        members = [
-            output for output in self.program.outputs if output.along and output.part == self.link
-        ]
-        return FibreStresses.of(self.program.data, self.link, members)
+    def stress(self) -> tuple[FibreStresses, Any]:
+        """Stresses at the fibres of the link, and its numbers as a function of parameters."""
+        return self.program.data.stress(self.link, self.program.outputs)
+
+    @cached_property
+    def rows(self) -> list[int]:
+        """The columns that are members of the link's law."""
+        return [self.program.outputs[member] for member in self.stress[0].members]
+
+    @cached_property
+    def first(self) -> dict[int, int]:
+        """The number of the first fibre of each part of the link, by the part's identity."""
+        parts = self.stress[0].parts()
+        counts = itertools.accumulate((len(part.fibres) for part in parts), initial=0)
+        return {id(part): count for part, count in zip(parts, counts, strict=False)}
+
+    @property
+    def fibres(self) -> int:
+        """Number of fibres of all parts."""
+        return sum(len(part.fibres) for part in self.stress[0].parts())
 
     def points(self, sampled: SampledDesign) -> list[Point]:
-        """The worst swings of a design, one a place, the worst first: a point's ``xi`` is the share
-        of the swing's other instant.
+        """The worst swings of a design, one a local maximum along a fibre, the worst first: a
+        point's ``xi`` is the share of the swing's other instant.
 
         Raises :class:`.DeclarationError` where a load travels along the link.
         """
-        fatigue = self.fatigue
-        members = sampled.history.columns[
-            [self.program.outputs[member] for member in fatigue.members]
-        ]
+        stresses, numbers = self.stress
+        members = sampled.history.columns[self.rows]
         instants = np.flatnonzero(counted(members))
-        members = members[:, instants]
+        members = members[None][:, :, instants]
         if not instants.size:
             return []
-        if not fatigue.stands(members[None])[0]:
+        if not stresses.stands(members)[0]:
             raise DeclarationError(
                 f"a load moves along link '{self.link}'; its fatigue is available in sweeps only"
             )
-        histories = fatigue.histories(members[None], sampled.p[None])
-        bound, _ = histories.bounds(self.material)
-        found: list[Point] = []
-        best = 0.0
-        for k in np.argsort(-bound[0], kind="stable").tolist():
-            if bound[0, k] <= best and len(found) >= _FEW:
-                break
-            cycles = loaded(histories.at(0, k))
-            shares = used(cycles.amplitude, cycles.mean, self.material)
-            worst = int(np.argmax(shares))
-            first, last = (sampled.instant(int(instants[i])) for i in cycles.instants[worst])
-            found.append(
-                Point(
-                    first.share, last.share, k, float(shares[worst]), first.guess, second=last.guess
-                )
-            )
-            best = max(best, float(shares[worst]))
-        return sorted(found, key=lambda point: -point.value)
+        histories = LinkHistories(stresses, members, numbers(sampled.p).full().T)
+        (maxima,) = histories.maxima(use_score(self.material), KEEP)
+        return [self._point(sampled, histories, maximum, instants) for maximum in maxima]
 
-    def stresses(self, out: ca.SX, p: ca.SX) -> ca.SX:
-        """Normal stresses of all places, then their shear stresses along y and along z, of columns
-        at an instant: expressions.
-        """
-        fatigue, count = self.fatigue, self.fatigue.places
-        members = ca.vertcat(*(out[self.program.outputs[member]] for member in fatigue.members))
-        found: ca.SX = ca.mtimes(
-            ca.reshape(fatigue.rows(members, p), members.numel(), -1).T, members
+    def _point(
+        self,
+        sampled: SampledDesign,
+        histories: LinkHistories,
+        maximum: Maximum,
+        instants: npt.NDArray[np.intp],
+    ) -> Point:
+        cycles = loaded(histories.history(maximum))
+        shares = used(cycles.amplitude, cycles.mean, self.material)
+        worst = int(np.argmax(shares))
+        first, last = (sampled.instant(int(instants[i])) for i in cycles.instants[worst])
+        return Point(
+            first.share,
+            last.share,
+            self.first[id(maximum.part)] + maximum.fibre,
+            maximum.value[0],
+            first.guess,
+            second=(maximum.x, *last.guess),
         )
-        shears = ca.SX(2 * count, 1)
-        for number, axis in enumerate(fatigue.axes):
-            first = count + number * fatigue.sheared.size
-            shears[[axis * count + k for k in fatigue.sheared.tolist()]] = found[
-                first : first + fatigue.sheared.size
-            ]
-        return ca.densify(ca.vertcat(found[:count], shears))
+
+    def stresses(self, out: Expression, p: Expression, x: Expression) -> Expression:
+        """Normal stresses of all fibres, then their shear stresses along y and along z, of columns
+        at an instant and at a place of each part: expressions.
+        """
+        stresses, numbers = self.stress
+        members = ca.vertcat(*(out[row] for row in self.rows))
+        found: list[list[Expression]] = [[], [], []]
+        for part in stresses.parts():
+            values = part.stresses(members, numbers(p), x)
+            many = len(part.fibres)
+            shears = ca.SX(2, many)
+            for number, axis in enumerate(part.axes):
+                for k, fibre in enumerate(part.sheared.tolist()):
+                    shears[axis, fibre] = values[many + number * part.sheared.size + k]
+            for rows, own in zip(
+                found, (values[:many], shears[0, :].T, shears[1, :].T), strict=True
+            ):
+                rows.append(own)
+        return ca.densify(ca.vertcat(*itertools.chain.from_iterable(found)))
 
     def cycle(self, at_time: ca.Function) -> ca.Function:
         """``value(share, guess, p, xi, place)``: a swing's utilisation, by stresses at a time;
-        ``place`` names the place by a 1.
+        ``place`` names the fibre by a 1, and then the place in its part.
         """
         kind = ca.SX if at_time.is_a("SXFunction") else ca.MX
-        nz, count = at_time.numel_in(1), self.fatigue.places
-        sizes: Sequence[int] = (1, nz, at_time.numel_in(2), 1, count + nz)
+        nz, count = at_time.numel_in(1), self.fibres
+        sizes: Sequence[int] = (1, nz, at_time.numel_in(2), 1, count + 1 + nz)
         given: list[Any] = [
             kind.sym(name, n)
             for name, n in zip(("share", "guess", "p", "xi", "place"), sizes, strict=True)
         ]
         share, guess, p, xi, place = given
-        chosen, other = place[:count], place[count:]
-        ends = [at_time(*when, p, 0.0, 0.0) for when in ((share, guess), (xi, other))]
+        chosen, x, other = place[:count], place[count], place[count + 1 :]
+        ends = [at_time(*when, p, x, 0.0) for when in ((share, guess), (xi, other))]
         a, b = (
             [ca.dot(chosen, end[k * count : (k + 1) * count]) for k in range(3)] for end in ends
         )

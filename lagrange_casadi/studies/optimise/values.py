@@ -151,7 +151,7 @@ class PointValues:
         if name := tired_link(quantity):
             tired = self.tired(name)
             value = tired.cycle(
-                self._at_time([*inputs, xi, ca.SX.sym("place")], tired.stresses(out, p))
+                self._at_time([*inputs, xi, ca.SX.sym("place")], tired.stresses(out, p, xi))
             )
             return Followed.of(value, value.numel_in(4))
         table = table_of(self.program.data.space)

@@ -235,8 +235,7 @@ class Harvest:
             assert outcome.times is not None
             found.append(np.where((outcome.status == Status.OK)[:, None], outcome.times, np.nan))
         if self.strength.columns:
-            times = outcome.times if outcome.times is not None else self.axis.values[None]
-            found_there = (outcome.status, outcome.value, outcome.series, times, p)
+            found_there = (outcome.status, outcome.value, outcome.series, p)
             return found + whole + self.strength.evaluate(*found_there)
         return found + whole
 
@@ -254,7 +253,7 @@ class Harvest:
             for output in map(Output.of, engine.indeterminate)
             if output.group == "section"
         }
-        made = (engine.quantities, engine.columns, engine.provenance.precision)
+        made = (engine.quantities, engine.columns)
         return Kept(self.data, self.safety, self.life, *made, indeterminate)
 
     @property

@@ -1,8 +1,7 @@
 """Strength results of a sweep: least factors of safety, lives, and masses.
 
 Utilisation against yielding and buckling comes from the engine. Fatigue follows from whole
-histories: where stations stand still, of all designs at once (:mod:`...strength.fibres`), else of
-one design after another, as of a solution.
+histories, as of a solution (:mod:`...strength.worst`).
 """
 
 from __future__ import annotations
@@ -18,37 +17,29 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...beams.beam import beam_from_numbers
 from ...declare.masses import ALL
+from ...equations.fibre_stresses import FibreStresses
 from ...equations.model_data import ModelData
 from ...instants.statistics import counted
-from ...strength.fatigue import damage_score, factor_score, lacking
-from ...strength.fibres import FibreStresses
-from ...strength.member import Member
-from ...strength.stress import Stress
-from ...strength.worst import FEW, worst
-from .link_properties import LinkProperties
+from ...strength.fatigue import Score, damage_score, lacking, use_score
+from ...strength.worst import LinkHistories
 from .meanings import LEAST, LIFE, MASS, WAYS
 
-_NUMBERS = 1 << 19
-"""Stresses that are at hand at once, of as many designs as have no more: so many stay in the memory
-next to a processor.
-"""
+_ENDLESS = 0.999
+"""Utilisation up to which nothing wears: what is found of it is nearer to the largest."""
 
-_CRITERION = "goodman"
 
-_ENDLESS = 0.9
-"""Utilisation at places up to which nothing wears between them: of a polynomial of degree 5 they
-miss less than the rest.
-"""
+def _largest(histories: LinkHistories, score: Score) -> Array:
+    """The largest score of designs, each (n,)."""
+    return np.array([maxima[0].value[0] for maxima in histories.maxima(score)])
 
 
 @dataclass(frozen=True, eq=False)
 class Kept:
     """Links with strength results: those whose ``safety`` is wanted, and those whose ``life`` is.
 
-    ``series`` names what is evaluated over time, in a ``precision``; ``indeterminate`` the links
-    that lack it for some designs.
+    ``series`` names what is evaluated over time; ``indeterminate`` the links that lack it for some
+    designs.
     """
 
     data: ModelData
@@ -56,7 +47,6 @@ class Kept:
     life: tuple[str, ...]
     quantities: tuple[str, ...]
     series: tuple[str, ...]
-    precision: str
     indeterminate: Collection[str] = ()
 
     @property
@@ -91,7 +81,6 @@ class Kept:
         status: npt.NDArray[np.int8],
         value: Array,
         series: Array | None,
-        times: Array,
         p: Array,
     ) -> list[Array]:
         """The columns of designs ``p``: ``value`` (n, quantities) are peaks, ``series`` (n,
@@ -99,9 +88,7 @@ class Kept:
         """
         there = np.flatnonzero(status == 0)
         tired = {
-            link: self._tired(link, there, series, times, p)
-            for link in self.links
-            if self._tires(link)
+            link: self._tired(link, there, series, p) for link in self.links if self._tires(link)
         }
         found: list[Array] = []
         for link in self._rated:
@@ -132,95 +119,39 @@ class Kept:
         return link in self.data.materials and not lacking(self.data.materials[link])
 
     def _tired(
-        self, link: str, there: npt.NDArray[np.int64], series: Array | None, times: Array, p: Array
+        self, link: str, there: npt.NDArray[np.int64], series: Array | None, p: Array
     ) -> tuple[Array, Array]:
         """Utilisation against fatigue, and the life in cycles, of every design."""
         share, lives = np.full(len(p), np.nan), np.full(len(p), np.nan)
         assert series is not None
         if not there.size:
             return share, lives
-        fatigue = self._fatigue[link]
-        names = {name: k for k, name in enumerate(self.series)}
-        chosen = [names[str(member)] for member in fatigue.members]
-        members = series[there][:, chosen]
+        (stresses, numbers), material = self._stresses[link], self.data.materials[link]
+        chosen = [self.series.index(str(member)) for member in stresses.members]
+        members, matter = series[there][:, chosen], numbers(p[there].T).full().T
         counts = np.array([counted(own) for own in members])
-        for moving in np.unique(counts, axis=0):
-            if moving.any():
-                alike = (counts == moving).all(axis=1)
-                self._count(
-                    link,
-                    there[alike],
-                    members[alike][..., moving],
-                    (series, times, moving, p),
-                    names,
-                    share,
-                    lives,
+        kinds = np.column_stack([stresses.stands(members), counts])
+        for still, *moving in np.unique(kinds, axis=0).tolist():
+            alike = (kinds == [still, *moving]).all(axis=1)
+            some, values = there[alike], members[alike][..., moving]
+            if not any(moving):
+                continue
+            histories = LinkHistories(stresses, values, matter[alike], still)
+            share[some] = _largest(histories, use_score(material))
+            if link not in self.life:
+                continue
+            lives[some] = math.inf
+            worn = (share[some] > _ENDLESS) | (not material.endless)
+            with np.errstate(divide="ignore"):
+                lives[some[worn]] = 1.0 / _largest(
+                    histories.of_designs(worn), damage_score(material)
                 )
         return share, lives
 
-    def _count(
-        self,
-        link: str,
-        there: npt.NDArray[np.int64],
-        members: Array,
-        whole: tuple[Array, Array, npt.NDArray[np.bool_], Array],
-        names: Mapping[str, int],
-        share: Array,
-        lives: Array,
-    ) -> None:
-        """Fill in utilisations and lives of designs that are ``there``, of which the same instants
-        count.
-        """
-        (series, times, moving, p), fatigue, material = (
-            whole,
-            self._fatigue[link],
-            self.data.materials[link],
-        )
-        stands = fatigue.stands(members)
-        some, standing = there[stands], members[stands]
-        many = max(
-            1, _NUMBERS // (fatigue.rows.nnz_out(0) // len(fatigue.members) * members.shape[2])
-        )
-        for start in range(0, some.size, many):
-            few = slice(start, start + many)
-            share[some[few]] = fatigue.histories(standing[few], p[some[few]]).utilisation(material)
-        for i in there.tolist():
-            endless = share[i] <= _ENDLESS and material.endless
-            if np.isnan(share[i]) or (link in self.life and not endless):
-                found, cycles = self._slowly(
-                    link, series[i][:, moving], times[min(i, len(times) - 1)][moving], p[i], names
-                )
-                share[i] = found if np.isnan(share[i]) else share[i]
-                lives[i] = cycles
-            else:
-                lives[i] = math.inf
-
-    def _slowly(
-        self, link: str, series: Array, t: Array, p: Array, names: Mapping[str, int]
-    ) -> tuple[float, float]:
-        """Strength results of one design, as of a solution."""
-        members = {member: series[names[str(member)]] for member in self._fatigue[link].members}
-        beam = beam_from_numbers(self.data.at(p)["bodies"][link]["beam"])
-        law = LinkProperties.of(self.data, link, self.precision).law(members, p)
-        member = Member(link, beam, law, t, np.linspace(0.0, 1.0, FEW), self.data.space)
-        stress, material = Stress(member), beam.material
-        (least, *_), *_ = worst(stress, factor_score(material, _CRITERION))
-        if link not in self.life or (least >= 1.0 and material.endless):
-            return 1.0 / least if least else math.inf, math.inf
-        (damage, *_), *_ = worst(stress, damage_score(material, _CRITERION))
-        return 1.0 / least if least else math.inf, -1.0 / damage if damage else math.inf
-
     @cached_property
-    def _fatigue(self) -> dict[str, FibreStresses]:
-        found = {}
-        for name in self.links:
-            members = [
-                output
-                for output in map(Output.of, self.series)
-                if output.along and output.part == name
-            ]
-            found[name] = FibreStresses.of(self.data, name, members)
-        return found
+    def _stresses(self) -> dict[str, tuple[FibreStresses, ca.Function]]:
+        outputs = [*map(Output.of, self.series)]
+        return {name: self.data.stress(name, outputs) for name in self.links}
 
     @cached_property
     def _masses(self) -> ca.Function:
