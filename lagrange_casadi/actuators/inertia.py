@@ -40,16 +40,16 @@ def inertia_at(
     and motions are not as many, and as :func:`.evaluate` does.
     """
     values = scene.values(parameters)
-    seen = reflected_inertia(scene, values)
-    if joint not in seen.drives:
-        raise UnknownNameError("drive", joint, seen.drives)
-    several = len(seen.motions) > 1
-    rows = seen.program.data.template.content["rows"]
-    if rows or (several and len(seen.drives) != len(seen.motions)):
+    reflected = reflected_inertia(scene, values)
+    if joint not in reflected.drives:
+        raise UnknownNameError("drive", joint, reflected.drives)
+    several = len(reflected.motions) > 1
+    rows = reflected.program.data.template.content["rows"]
+    if rows or (several and len(reflected.drives) != len(reflected.motions)):
         why = (
             "non-holonomic constraints"
             if rows
-            else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
+            else f"{len(reflected.drives)} drives for {len(reflected.motions)} motions"
         )
         raise DeclarationError(
             f"inertia at '{joint}': with {why} no drive can move alone while the others are at rest"
@@ -58,9 +58,9 @@ def inertia_at(
         instants_of(scene.prescribed, scene.timing(t, over), values).t,
         np.array(list(values.values())),
     )
-    found, _ = run(seen.program, times, p, _VM)
-    refuse(seen.program, found, times, p, _VM)
-    return _alone(seen, np.asarray(found.out, float), seen.drives.index(joint))
+    found, _ = run(reflected.program, times, p, _VM)
+    refuse(reflected.program, found, times, p, _VM)
+    return _alone(reflected, np.asarray(found.out, float), reflected.drives.index(joint))
 
 
 def _alone(seen: ReflectedInertia, out: Array, drive: int) -> Array:

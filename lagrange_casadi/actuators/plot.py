@@ -37,11 +37,11 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     target = Path(path)
     from matplotlib.figure import Figure
 
-    turns = 1.0 if duty.linear else 60.0 / math.tau
+    per_minute = 1.0 if duty.linear else 60.0 / math.tau
     figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     axes = figure.subplots()
     axes.plot(
-        turns * np.abs(duty.speed),
+        per_minute * np.abs(duty.speed),
         np.abs(duty.torque),
         ".-",
         color="#1f4e79",
@@ -50,7 +50,7 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
         label=f"motor of {duty.joint}",
     )
     axes.plot(
-        turns * duty.mean_speed,
+        per_minute * duty.mean_speed,
         duty.rms_torque,
         "D",
         color="#c0392b",
@@ -59,7 +59,7 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     if motor is not None:
         speeds = np.linspace(0.0, motor.max_speed, 200)
         axes.plot(
-            turns * speeds,
+            per_minute * speeds,
             motor.continuous_torque(speeds),
             color="#2e7d4f",
             label=f"{motor.name}, continuous",
@@ -68,7 +68,7 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
             np.append(motor.short_time_torque(speeds), 0.0),
             np.append(speeds, motor.max_speed),
         )
-        axes.plot(turns * ends, limit, color="#b3541e", label=f"{motor.name}, peak")
+        axes.plot(per_minute * ends, limit, color="#b3541e", label=f"{motor.name}, peak")
     speed, pull = ("speed [m/s]", "force [N]") if duty.linear else ("speed [1/min]", "torque [N m]")
     axes.set(xlabel=speed, ylabel=pull, xlim=(0, None), ylim=(0, None))
     axes.grid(True, color="0.92")

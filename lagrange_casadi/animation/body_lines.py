@@ -134,23 +134,23 @@ def rim(motion: Motion, shape: Shape) -> Array | None:
     if not shape.disc or (turning is None and any(one.kind in _SLIDES for one in joints)):
         return None
     axis = np.array([0.0, 0.0, 1.0])
-    own = np.stack(
+    body_axes = np.stack(
         [
-            motion.way(shape.name, way)
-            for way in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+            motion.way(shape.name, direction)
+            for direction in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
         ],
         axis=1,
     )
-    if not np.isfinite(own).all():
+    if not np.isfinite(body_axes).all():
         return None
     if turning is not None and in_space(motion.solution.description):
-        axis = own[0] @ motion.way(turning.parent.body, turning.axes[0])[0]
+        axis = body_axes[0] @ motion.way(turning.parent.body, turning.axes[0])[0]
     least = np.eye(3)[np.argmin(np.abs(axis))]
     first = np.cross(axis, least) / np.linalg.norm(np.cross(axis, least))
     second = np.cross(axis, first) / np.linalg.norm(axis)
     around = shape.disc * (_ROUND.real[:, None] * first + _ROUND.imag[:, None] * second)
     middle = motion.place(Spot(shape.name, shape.centre or (0.0, 0.0, 0.0)))[:, None]
-    found: Array = middle + np.einsum("nk,fkc->fnc", around, own)
+    found: Array = middle + np.einsum("nk,fkc->fnc", around, body_axes)
     return found
 
 
@@ -161,13 +161,13 @@ def _slide(motion: Motion, stage: Stage, joint: JointShape) -> Array:
 
 def _guide(motion: Motion, stage: Stage, joint: JointShape) -> Line:
     """A line along which a joint slides, as far as it ever does."""
-    start, way = (
+    start, direction = (
         motion.place(joint.parent),
         motion.way(joint.parent.body, joint.axes[0], joint.parent.at),
     )
-    reach = np.einsum("fc,fc->f", motion.place(joint.child) - start, way)
+    reach = np.einsum("fc,fc->f", motion.place(joint.child) - start, direction)
     pad = 26.0 * stage.unit / stage.scale
-    ends = [start + way * (reach.min() - pad), start + way * (reach.max() + pad)]
+    ends = [start + direction * (reach.min() - pad), start + direction * (reach.max() + pad)]
     return Line(
         np.stack([stage.on_sheet(end) for end in ends], axis=1),
         "#888888",
@@ -183,9 +183,9 @@ def _block(
     body = joint.parent.body if joint.child.body == "ground" else joint.child.body
     mass = body in masses
     length, height = np.array(_POINT if mass else _BLOCK) * stage.unit / 2
-    way = _slide(motion, stage, joint)[:, None]
+    direction = _slide(motion, stage, joint)[:, None]
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    offsets = corners[:, :1] * length * way + corners[:, 1:] * height * across(way)
+    offsets = corners[:, :1] * length * direction + corners[:, 1:] * height * across(direction)
     fill = colours[body] if mass or joint.kind != "slot" else "#ffffff"
     spot = Spot(body, (0.0, 0.0, 0.0)) if mass else joint.child
     points = stage.on_sheet(motion.place(spot))[:, None] + offsets
@@ -207,8 +207,8 @@ def _stand(motion: Motion, stage: Stage, joint: JointShape) -> Iterator[Line]:
 
 def _coil(start: Array, stop: Array, unit: float) -> Line:
     """A spring between places on the sheet (frames, 2): straight at its ends, a zigzag between."""
-    way = stop - start
-    side = 6.0 * unit * across(along(way))
+    direction = stop - start
+    side = 6.0 * unit * across(along(direction))
     shares = [
         0.0,
         0.15,
@@ -218,7 +218,7 @@ def _coil(start: Array, stop: Array, unit: float) -> Line:
     ]
     sides = [0.0, 0.0, *((-1.0) ** k for k in range(2 * _COILS)), 0.0, 0.0]
     points = np.stack(
-        [start + u * way + s * side for u, s in zip(shares, sides, strict=True)], axis=1
+        [start + u * direction + s * side for u, s in zip(shares, sides, strict=True)], axis=1
     )
     return Line(points, "#666666", 1.5 * unit)
 

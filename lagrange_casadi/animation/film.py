@@ -187,8 +187,8 @@ def picture_of(solution: Solution, film: Film) -> Picture:
         film.width,
         foot=bool(forces.scale),
     )
-    own = mechanism(motion, stage, names=film.names)
-    things = (*ribbon_things(forces, stage), *own, *arrow_things(forces, stage))
+    lines = mechanism(motion, stage, names=film.names)
+    things = (*ribbon_things(forces, stage), *lines, *arrow_things(forces, stage))
     return Picture(
         solution.case,
         stage.width,

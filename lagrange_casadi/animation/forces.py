@@ -116,7 +116,7 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
     arcs: list[Arc] = []
     words: list[str] = []
     if arrows:
-        pushes, turns = actions_of(motion)
+        pushes, moments = actions_of(motion)
         largest = largest_of(pushes)
         for one in pushes:
             length = one.vector * (LONGEST * size / (largest or 1.0))
@@ -125,8 +125,8 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
             )
             found.append(Arrow(tail, tip, one.colour))
         words += [f"arrows: up to {_said(largest, 'N')}"] if pushes else []
-        largest = largest_of(turns)
-        for one in turns:
+        largest = largest_of(moments)
+        for one in moments:
             if in_space(motion.solution.description):
                 found.append(
                     Arrow(
@@ -137,7 +137,7 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
                 )
             else:
                 arcs.append(Arc(one.place, one.vector[:, 2] / (largest or 1.0), one.colour))
-        words += [f"drives' moments: up to {_said(largest, 'N m')}"] if turns else []
+        words += [f"drives' moments: up to {_said(largest, 'N m')}"] if moments else []
     ribbons: list[Ribbon] = []
     if section:
         motion = _moving(motion)
@@ -156,13 +156,13 @@ def actions_of(motion: Motion) -> tuple[list[Action], list[Action]]:
     Raises :class:`.DeclarationError` where the solution has none of them.
     """
     motion = _moving(motion)
-    pushes, turns = list(_pushes(motion)), list(_turns(motion))
-    if not pushes and not turns:
+    pushes, moments = list(_pushes(motion)), list(_turns(motion))
+    if not pushes and not moments:
         raise DeclarationError(
             f"{motion.solution.case}: there is no reaction, effort or load to be shown; want"
             " reaction too"
         )
-    return pushes, turns
+    return pushes, moments
 
 
 def largest_of(actions: Sequence[Action]) -> float:
@@ -230,11 +230,11 @@ def _headed(points: Array, length: Array, ahead: Array, colour: str, unit: float
     ``length`` (frames,) is short.
     """
     head = np.minimum(13.0 * unit, length)[:, None]
-    way, tip = along(ahead), points[:, -1]
-    back, side = tip - head * way, 0.36 * head * across(way)
+    direction, tip = along(ahead), points[:, -1]
+    back, side = tip - head * direction, 0.36 * head * across(direction)
     shaft = points.copy()
     if points.shape[1] == 2:
-        shaft[:, -1] = tip - 0.8 * head * way
+        shaft[:, -1] = tip - 0.8 * head * direction
     yield Line(shaft, colour, 2.6 * unit)
     yield Line(
         np.stack([tip, back + side, back - side], axis=1),
@@ -249,15 +249,15 @@ def _pushes(motion: Motion) -> Iterator[Action]:
     """Forces: reactions, efforts along axes, and loads."""
     solution = motion.solution
     for joint in joint_shapes(solution.description):
-        if (way := _vector(motion, "reaction", joint.name)) is not None:
-            yield Action("reaction", joint.name, motion.place(joint.child), way)
+        if (direction := _vector(motion, "reaction", joint.name)) is not None:
+            yield Action("reaction", joint.name, motion.place(joint.child), direction)
         for (name, kind), axis in zip(joint.coordinates, joint.axes, strict=False):
             if kind == "slide" and (effort := _effort(motion, name)) is not None:
                 along_axis = motion.way(joint.parent.body, axis, joint.parent.at)
                 yield Action("effort", name, motion.place(joint.child), effort * along_axis)
     for load in load_shapes(solution.description):
-        if (way := _vector(motion, "load", load.name)) is not None:
-            yield Action("load", load.name, motion.place(load.spots[0]), way)
+        if (direction := _vector(motion, "load", load.name)) is not None:
+            yield Action("load", load.name, motion.place(load.spots[0]), direction)
 
 
 def _turns(motion: Motion) -> Iterator[Action]:
@@ -265,12 +265,14 @@ def _turns(motion: Motion) -> Iterator[Action]:
     for joint in joint_shapes(motion.solution.description):
         for (name, kind), axis in zip(joint.coordinates, joint.axes, strict=False):
             if kind != "slide" and (effort := _effort(motion, name)) is not None:
-                way = (
+                direction = (
                     np.array([axis])
                     if not in_space(motion.solution.description)
                     else motion.way(joint.parent.body, axis)
                 )
-                yield Action("effort", name, motion.place(joint.child), effort * way, moment=True)
+                yield Action(
+                    "effort", name, motion.place(joint.child), effort * direction, moment=True
+                )
 
 
 def _vector(motion: Motion, group: str, name: str) -> Array | None:

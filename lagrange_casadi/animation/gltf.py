@@ -122,9 +122,11 @@ class _Scene:
         description = self.solution.description
         joints = list(joint_shapes(description))
         for k, shape in enumerate(shapes(description)):
-            own = [joint for joint in joints if joint.child.body == shape.name]
+            child_joints = [joint for joint in joints if joint.child.body == shape.name]
             solids = list(_solids(shape, self.girth))
-            pins = [(joint.name, _pin(joint, self._axis(joint), self.girth)) for joint in own]
+            pins = [
+                (joint.name, _pin(joint, self._axis(joint), self.girth)) for joint in child_joints
+            ]
             children = [
                 self._node({"name": name, "mesh": self._mesh(name, mesh, _METAL)})
                 for name, mesh in pins
@@ -152,7 +154,10 @@ class _Scene:
             start, stop = (placed(self.solution, spot)[self.chosen] for spot in load.spots)
             lengths = np.linalg.norm(stop - start, axis=1)
             axes = np.stack(
-                [frame_along(way if way.any() else np.eye(3)[0]) for way in stop - start]
+                [
+                    frame_along(direction if direction.any() else np.eye(3)[0])
+                    for direction in stop - start
+                ]
             )
             rod = cylinder(np.zeros(3), np.eye(3)[0], 0.4 * self.girth)
             number = self._node({"name": load.name, "mesh": self._mesh(load.name, rod, _SPRING)})
@@ -170,10 +175,10 @@ class _Scene:
         long as they are large.
         """
         before = np.minimum(self.chosen, self.solution.t.size - 2)
-        pushes, turns = actions_of(
+        pushes, moments = actions_of(
             Motion(self.solution, before, (self.chosen - before).astype(float), closed=False)
         )
-        for actions, unit, heads in ((pushes, "N", 1), (turns, "N m", 2)):
+        for actions, unit, heads in ((pushes, "N", 1), (moments, "N m", 2)):
             largest = largest_of(actions)
             if not largest:
                 continue
@@ -188,8 +193,8 @@ class _Scene:
                 known = np.maximum.accumulate(
                     np.where(sizes > _NOTHING * largest, np.arange(sizes.size), 0)
                 )
-                ways = np.where(sizes[known, None] > 0.0, one.vector[known], np.eye(3)[0])
-                axes = np.stack([frame_along(way) for way in ways])
+                directions = np.where(sizes[known, None] > 0.0, one.vector[known], np.eye(3)[0])
+                axes = np.stack([frame_along(direction) for direction in directions])
                 extras: Json = {
                     "unit": unit,
                     "metres_per_unit": scale,
@@ -225,9 +230,9 @@ class _Scene:
                 {"name": f"{joint.name}, ground", "mesh": self._mesh(joint.name, foot, _STILL)}
             )
         for name, spot in path_spots(self.solution.description).items():
-            way = placed(self.solution, spot)[self.chosen]
+            direction = placed(self.solution, spot)[self.chosen]
             line = {
-                "attributes": {"POSITION": self._array(way, ends=True, target=_POINTS)},
+                "attributes": {"POSITION": self._array(direction, ends=True, target=_POINTS)},
                 "mode": _LINE,
                 "material": self._material(PATH),
             }
@@ -236,8 +241,12 @@ class _Scene:
 
     def _axis(self, joint: JointShape) -> Array:
         """The first axis of a joint, on its child's axes, at the first instant."""
-        way = np.array(joint.axes[0] if joint.axes else (0.0, 0.0, 1.0))
-        ground = way if joint.parent.body == "ground" else self._axes(joint.parent.body)[0] @ way
+        direction = np.array(joint.axes[0] if joint.axes else (0.0, 0.0, 1.0))
+        ground = (
+            direction
+            if joint.parent.body == "ground"
+            else self._axes(joint.parent.body)[0] @ direction
+        )
         return np.asarray(
             ground if joint.child.body == "ground" else self._axes(joint.child.body)[0].T @ ground
         )
@@ -253,7 +262,7 @@ class _Scene:
             return np.tile(np.eye(3), (count, 1, 1))
         axes = pose.axes[self.chosen]
         if np.isnan(axes).any():
-            axes = np.stack([frame_along(way) for way in axes[:, 0]])
+            axes = np.stack([frame_along(direction) for direction in axes[:, 0]])
         return np.asarray(axes.transpose(0, 2, 1))
 
     def _node(self, node: dict[str, Json]) -> int:
@@ -346,8 +355,8 @@ def _pin(joint: JointShape, axis: Array, girth: float) -> Mesh:
     if joint.kind in ("prismatic", "planar"):
         return block(at, frame_along(axis), [4.4 * girth, 2.6 * girth, 2.6 * girth])
     # The pin of a planar slot is across the plane, and not along the slot.
-    way = np.eye(3)[2] if joint.kind == "slot" else axis / np.linalg.norm(axis)
-    return cylinder(at - 1.6 * girth * way, at + 1.6 * girth * way, 1.1 * girth)
+    direction = np.eye(3)[2] if joint.kind == "slot" else axis / np.linalg.norm(axis)
+    return cylinder(at - 1.6 * girth * direction, at + 1.6 * girth * direction, 1.1 * girth)
 
 
 def _quaternions(axes: Array) -> Array:

@@ -38,9 +38,9 @@ def together(meshes: Sequence[Mesh]) -> Mesh:
     )
 
 
-def frame_along(way: Array) -> Array:
+def frame_along(inward: Array) -> Array:
     """Three axes at right angles (3, 3), rows, of which the first has a direction."""
-    x = way / np.linalg.norm(way)
+    x = inward / np.linalg.norm(inward)
     y = np.cross(np.eye(3)[np.argmin(np.abs(x))], x)
     y /= np.linalg.norm(y)
     return np.stack([x, y, np.cross(x, y)])
@@ -140,9 +140,11 @@ def prism(corners: Array, thickness: float) -> Mesh:
     sides = []
     for k in range(len(corners)):
         on = (k + 1) % len(corners)
-        way = np.cross(corners[on] - corners[k], normal)
+        inward = np.cross(corners[on] - corners[k], normal)
         sides.append(
-            plate(np.array([bottom[k], bottom[on], top[on], top[k]]), way / np.linalg.norm(way))
+            plate(
+                np.array([bottom[k], bottom[on], top[on], top[k]]), inward / np.linalg.norm(inward)
+            )
         )
     return together([plate(top, normal), plate(bottom[::-1], -normal), *sides])
 

@@ -49,9 +49,9 @@ class Stage:
         found: Array = self.centre + (self.ways(places) - self.scale * self.middle * [1.0, -1.0])
         return found
 
-    def ways(self, ways: Array) -> Array:
+    def ways(self, directions: Array) -> Array:
         """Directions (..., 3) on the sheet (..., 2), whose y is downward."""
-        found: Array = self.scale * (ways @ np.column_stack([self.right, -self.up]))
+        found: Array = self.scale * (directions @ np.column_stack([self.right, -self.up]))
         return found
 
     def depth(self, places: Array) -> float:

@@ -158,10 +158,10 @@ class _Boxes:
 
     def _wave(self, x: Box, shift: float, wave: Callable[[Operand], Operand]) -> Box:
         """The wave is largest a part of a turn after whole turns."""
-        turns = [end / _TURN for end in x]
+        revolutions = [end / _TURN for end in x]
         low, high = (ends(wave(x[0]), wave(x[1])) for ends in (ca.fmin, ca.fmax))
         most, least = (
-            ca.floor(turns[1] - of + 1e-9) >= ca.ceil(turns[0] - of - 1e-9)
+            ca.floor(revolutions[1] - of + 1e-9) >= ca.ceil(revolutions[0] - of - 1e-9)
             for of in (shift, shift + 0.5)
         )
         low, high = ca.if_else(least, -1.0, low), ca.if_else(most, 1.0, high)

@@ -166,22 +166,23 @@ class Pairs:
     def divide(self, x: Pair, y: Pair) -> Pair:
         """Return x / y by what a first quotient leaves."""
         first = self._over(x.high, y.high)
-        left = self.subtract(x, self.multiply(Pair(first), y))
-        return self._normal(first, self._over(self._value(left), y.high))
+        remainder = self.subtract(x, self.multiply(Pair(first), y))
+        return self._normal(first, self._over(self._value(remainder), y.high))
 
     def root(self, x: Pair) -> Pair:
         """The square root, by what a first root leaves; of zero, zero."""
         first = self._rounded(ca.sqrt(x.high))
-        left = self.subtract(x, self.multiply(Pair(first), Pair(first)))
+        remainder = self.subtract(x, self.multiply(Pair(first), Pair(first)))
         return self._normal(
-            first, self._over(self._value(left), self._plus(self._times(2.0, first), first == 0.0))
+            first,
+            self._over(self._value(remainder), self._plus(self._times(2.0, first), first == 0.0)),
         )
 
     def reduced(self, x: Pair) -> Pair:
         """Return x less whole turns, between -pi and pi."""
-        turns = ca.floor(self._plus(self._times(x.high, self._rounded(1.0 / _TURN[0])), 0.5))
+        revolutions = ca.floor(self._plus(self._times(x.high, self._rounded(1.0 / _TURN[0])), 0.5))
         for part in self._turn():
-            product, error = self._product(turns, ca.SX(part))
+            product, error = self._product(revolutions, ca.SX(part))
             x = self.add(x, Pair(self._negative(product), self._negative(error)))
         return x
 
@@ -196,8 +197,10 @@ class Pairs:
     def remainder(self, x: Pair, y: Pair) -> Pair:
         """C's fmod: x less y as often as it goes into x, towards zero."""
         size, period = self._size(x), self._size(y)
-        left = self.subtract(size, self.multiply(self._floor(self.divide(size, period)), period))
-        return self._signed(left, x.high)
+        remainder = self.subtract(
+            size, self.multiply(self._floor(self.divide(size, period)), period)
+        )
+        return self._signed(remainder, x.high)
 
     def nearest_remainder(self, x: Pair, y: Pair) -> Pair:
         """C's remainder: x less the multiple of y that is nearest."""

@@ -241,11 +241,11 @@ def _truth(function: Callable[..., Operand]) -> Callable[..., Array]:
 
 def _remainder(x: Array, y: float) -> Operand:
     """C's remainder, which is exact: every difference is of numbers within a factor of two."""
-    left, y = np.abs(np.fmod(x, 2 * y)), np.abs(y)
-    above = 2 * left > y
-    left = left - y * above
-    left = left - y * (above & (2 * left >= y))
-    return np.where(np.signbit(x), -left, left)
+    remainder, y = np.abs(np.fmod(x, 2 * y)), np.abs(y)
+    above = 2 * remainder > y
+    remainder = remainder - y * above
+    remainder = remainder - y * (above & (2 * remainder >= y))
+    return np.where(np.signbit(x), -remainder, remainder)
 
 
 _EXACT: dict[int, Callable[..., Any]] = {

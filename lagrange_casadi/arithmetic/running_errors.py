@@ -64,8 +64,8 @@ def _rule(code: int) -> Callable[..., _Pair]:
             # Less than a unit in the last place would change nothing.
             move: Any = np.where(error > 0.0, np.maximum(error, np.spacing(np.abs(value))), error)
             beside = [
-                np.abs(known(*values[:k], value + way * move, *values[k + 1 :]) - result)
-                for way in (-1, 1)
+                np.abs(known(*values[:k], value + step * move, *values[k + 1 :]) - result)
+                for step in (-1, 1)
             ]
             # Beyond the end of where a function is defined there is nothing to hand on.
             off = off + np.fmax(*beside)

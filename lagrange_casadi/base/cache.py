@@ -172,10 +172,10 @@ def _is_own_group(number: int) -> bool:
         import grp
         import pwd
 
-        own, group = pwd.getpwuid(os.geteuid()).pw_name, grp.getgrgid(number)
+        user, group = pwd.getpwuid(os.geteuid()).pw_name, grp.getgrgid(number)
     except (ImportError, KeyError):
         return False
-    return group.gr_name == own and set(group.gr_mem) <= {own}
+    return group.gr_name == user and set(group.gr_mem) <= {user}
 
 
 def read(name: str) -> str | None:

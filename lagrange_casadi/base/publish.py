@@ -152,17 +152,17 @@ def uninterrupted() -> Iterator[Callable[[], None]]:
     What is yielded lets one through where it is called; one that nobody let through comes at the
     end.
     """
-    seen = threading.Event()
+    noticed = threading.Event()
 
     def breathe() -> None:
-        if seen.is_set():
+        if noticed.is_set():
             raise KeyboardInterrupt
 
     repeated = [signal.SIGALRM] if hasattr(signal, "SIGALRM") else []
     able = threading.current_thread() is threading.main_thread()
     before = (
         [
-            (number, signal.signal(number, lambda *_: seen.set()))
+            (number, signal.signal(number, lambda *_: noticed.set()))
             for number in (*interrupts(), *repeated)
         ]
         if able

@@ -167,15 +167,15 @@ def _insistent() -> Iterator[None]:
     moment is lost, or comes back as another error. So it waits a little for CasADi to come back, is
     repeated every second until it arrives, and what fails after it is taken for it.
     """
-    seen = threading.Event()
-    waits, own = itertools.count(1), os.getpid()
+    noticed = threading.Event()
+    waits, process = itertools.count(1), os.getpid()
 
     def interrupt(number: int, frame: FrameType | None) -> None:
-        if os.getpid() != own:  # a case may have others work for it: they end as they would
+        if os.getpid() != process:  # a case may have others work for it: they end as they would
             signal.signal(number, signal.SIG_DFL)
             os.kill(os.getpid(), number)
             return
-        seen.set()
+        noticed.set()
         if _in_casadi(frame) and next(waits) % _WAITS:
             signal.setitimer(signal.ITIMER_REAL, _MOMENT)
             return
@@ -196,7 +196,7 @@ def _insistent() -> Iterator[None]:
     except KeyboardInterrupt:
         raise _Interrupted from None
     except Exception:
-        if seen.is_set():
+        if noticed.is_set():
             raise _Interrupted from None
         raise
     finally:

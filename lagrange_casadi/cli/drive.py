@@ -129,14 +129,14 @@ def _choose(
             f"drive '{name}' slides: expected --lead, the travel per turn of the motor, or linear"
             " motors"
         )
-    turns = 1.0 if lead is None else math.tau / lead
+    per_unit = 1.0 if lead is None else math.tau / lead
 
     def asked(ratio: float, rotor: float) -> Duty:
-        own = rotor + inertia
+        total_inertia = rotor + inertia
         beside = partial(duty_of, solution, name, linear=linear, carried=carried)
-        return beside(ratio=ratio, efficiency=efficiency, inertia=own)
+        return beside(ratio=ratio, efficiency=efficiency, inertia=total_inertia)
 
-    return select(catalogue, asked, ratios=[turns * ratio for ratio in ratios or (1.0,)])
+    return select(catalogue, asked, ratios=[per_unit * ratio for ratio in ratios or (1.0,)])
 
 
 def _load_lines(load: Duty) -> Iterator[str]:

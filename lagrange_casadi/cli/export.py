@@ -55,8 +55,8 @@ def export(
         fmu=fmu,
         wasm=wasm,
     )
-    for own, called in made.mapped.items():
-        echo(f"{own} is called {called} in C")
+    for original, called in made.mapped.items():
+        echo(f"{original} is called {called} in C")
     p = made.prefix
     echo(
         f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs,"

@@ -174,13 +174,13 @@ def _in_space(joint: Description, description: Description) -> str:
     text, unmeasured = "", set(description["unmeasured"])
     for (name, kind), axis in zip(joint["coordinates"].items(), joint["axes"], strict=True):
         if name not in unmeasured:
-            own = name.partition(":")[2]
+            part = name.partition(":")[2]
             lead = f" ({joint['pitch'] * math.tau:g} m a turn)" if joint["pitch"] else ""
             word = (
                 f"{'along' if kind == 'slide' else 'about'}"
                 f" {_vector(axis)}{'' if text else ' of ' + joint['parent']['body']}"
             )
-            text += f", {own + ' ' if own else ''}{word}{lead}{_driven(name, joint, description)}"
+            text += f", {part + ' ' if part else ''}{word}{lead}{_driven(name, joint, description)}"
     barred = {joint["parent"]["body"], joint["child"]["body"]} & set(description["bars"])
     return (
         text

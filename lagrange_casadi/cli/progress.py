@@ -58,10 +58,10 @@ class Lines(Silent):
         elif now - self._last >= _SECONDS:
             self._last = now
             rate = (done - self._first) / (now - self._began)
-            left = tqdm.format_interval((total - done) / rate) if rate else "?"
+            remaining = tqdm.format_interval((total - done) / rate) if rate else "?"
             echo(
                 f"{grouped(int(done))} of {counted(int(total))}, {100 * done / total:.3g} %,"
-                f" {rate:.4g} a second, {left} left",
+                f" {rate:.4g} a second, {remaining} left",
                 err=True,
             )
 

@@ -253,9 +253,11 @@ def _row(solution: Solution, output: Output, peaks: Mapping[str, Peak]) -> Row:
     if not solution.determined(output):
         return Row(output, solution.unit(output))
     found = solution.statistics(output)
-    own, over = found.peak, solution.over
-    coordinate = None if over is None else float(over.values[int(np.argmax(solution.t == own.t))])
-    peak = Peak(found.name, own.value, found.unit, own.t, own.xi, over=coordinate)
+    largest, over = found.peak, solution.over
+    coordinate = (
+        None if over is None else float(over.values[int(np.argmax(solution.t == largest.t))])
+    )
+    peak = Peak(found.name, largest.value, found.unit, largest.t, largest.xi, over=coordinate)
     return Row(
         output, found.unit, found, peaks.get(found.name, peak), error_of(solution, found.name)
     )

@@ -188,7 +188,7 @@ def _head(solution: Solution, refined: bool | None) -> str:
 
 def _notes(scene: Scene, solution: Solution, timing: Timing) -> Iterator[str]:
     values = np.array([list(values_of(solution.description).values())])
-    turns = revolutions.note(
+    turning = revolutions.note(
         scene.prescribed, kinds_of_described(solution.description), timing, values
     )
-    yield from (f"note: {note}" for note in (*solution.notes, turns) if note)
+    yield from (f"note: {note}" for note in (*solution.notes, turning) if note)

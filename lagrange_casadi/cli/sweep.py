@@ -82,10 +82,10 @@ def sweep(
             progress=progress,
         )
     _report(found)
-    turns = turning_note(scene, scene.timing(t, over), swept, parameters(settings))
+    turning = turning_note(scene, scene.timing(t, over), swept, parameters(settings))
     rests = resting_note(scene, found, parameters(settings), t=t, over=over, wanted=want or None)
     for note in filter(
-        None, (*drawing_notes(found.description), rests, turns, *fatigue_notes(found))
+        None, (*drawing_notes(found.description), rests, turning, *fatigue_notes(found))
     ):
         echo(f"note: {note}")
     echo(

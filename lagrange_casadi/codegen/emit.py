@@ -120,7 +120,7 @@ def _closing(turning: Sequence[bool], precision: Precision, steps: int | None) -
     number = literal(precision)
     rules = ", ".join(_rule(precision, count) for count in (steps, None))
     return {
-        "TURNING": f"{{{', '.join(str(int(turns)) for turns in turning)}}}",
+        "TURNING": f"{{{', '.join(str(int(turning_flags)) for turning_flags in turning)}}}",
         "TURN": number(math.tau),
         "INVERSE": number(1.0 / math.tau),
         "HALF": number(0.5),

@@ -75,16 +75,16 @@ class Along:
         See ``sections.c``.
         """
         parts, load_points = self.parted + 1, self.parted
-        turns = self._turns
+        iterations = self._turns
         ends: tuple[int | str, ...] = (
             "BASE",
             "TIP",
-            *(sum(turns) * parts + k for k in range(load_points) for _ in range(2)),
+            *(sum(iterations) * parts + k for k in range(load_points) for _ in range(2)),
         )
-        firsts = itertools.accumulate(turns, initial=0)
+        firsts = itertools.accumulate(iterations, initial=0)
         return tuple(
             (*ends, *range(first * parts, (first + many) * parts))
-            for first, many in zip(firsts, turns, strict=False)
+            for first, many in zip(firsts, iterations, strict=False)
         )
 
     @property
@@ -170,9 +170,9 @@ def _capacity(link: Along) -> int:
     loads, values and places.
     """
     load_points, parts = link.parted, link.parted + 1
-    turns = 2 * parts if link.distributed_loads else parts
+    iterations = 2 * parts if link.distributed_loads else parts
     return (3 if link.thick else 2) * (
-        7 + 4 * load_points + 3 * (2 + 2 * load_points) + 4 * turns + 4 * parts + load_points
+        7 + 4 * load_points + 3 * (2 + 2 * load_points) + 4 * iterations + 4 * parts + load_points
     )
 
 
@@ -195,7 +195,7 @@ def mass_properties_of(
         turned += [0.0] * (link.terms - len(turned))
         found.append([*beyond, *turned])
         x = b - a
-        own = [
+        rows_of_link = [
             sum(
                 c
                 * x ** (j + k + 1)
@@ -205,9 +205,9 @@ def mass_properties_of(
             for k in range(3)
         ]
         beyond = (
-            beyond[0] + own[0],
-            beyond[1] + x * beyond[0] + own[1],
-            beyond[2] + 2 * x * beyond[1] + x * x * beyond[0] + own[2],
+            beyond[0] + rows_of_link[0],
+            beyond[1] + x * beyond[0] + rows_of_link[1],
+            beyond[2] + 2 * x * beyond[1] + x * x * beyond[0] + rows_of_link[2],
         )
     return [length, *(value for cell in reversed(found) for value in cell)]
 

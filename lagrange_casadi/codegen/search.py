@@ -298,8 +298,8 @@ class Search:
         # What is before the first value and beyond the last is the search's to write; packs go on
         # beyond the last.
         rows = np.zeros((count + along.size + len(watched), n + 4 * _LINE))
-        own = rows[:, _LINE : -2 * _LINE]
-        own[:] = np.pad(
+        lines = rows[:, _LINE : -2 * _LINE]
+        lines[:] = np.pad(
             np.concatenate([values, places[along], watched]), ((0, 0), (0, _LINE)), mode="edge"
         )
         scales = np.zeros(max(curves.units) + 1)
@@ -307,7 +307,7 @@ class Search:
         hidden = np.zeros((2, rows.shape[1]), np.int8)
         hidden[0, : n - 1] = hiding
         asked = _Asked(source, along)
-        found, told, begin = (
+        found, located, begin = (
             np.empty((3, quantities)),
             np.zeros(quantities, np.int8),
             rows.ctypes.data + _LINE * rows.itemsize,
@@ -333,13 +333,13 @@ class Search:
             value=found[0].ctypes.data,
             peak_t=found[1].ctypes.data,
             xi=found[2].ctypes.data,
-            told=told.ctypes.data,
+            told=located.ctypes.data,
         )
         self.entry(call)
         del room  # until here the call has used it
         if asked.error is not None:
             raise asked.error
-        return Peaks(found[0], found[1], found[2], told.astype(bool), tops)
+        return Peaks(found[0], found[1], found[2], located.astype(bool), tops)
 
 
 _FUNCTION_OF_TIMES = ctypes.CFUNCTYPE(

@@ -86,7 +86,9 @@ def vector(what: str, value: object, checked: Checked, unit: str = "1") -> Vecto
     return x, y, z
 
 
-def triad_of(what: str, axis: object, second: Expression, own: Ownership, part: str = "") -> Triad:
+def triad_of(
+    what: str, axis: object, second: Expression, ownership: Ownership, part: str = ""
+) -> Triad:
     """Directions u, v, w at right angles: along an axis, along a second one or any across it, and
     at right angles to both.
 
@@ -101,20 +103,22 @@ def triad_of(what: str, axis: object, second: Expression, own: Ownership, part: 
         if second is not None:
             raise DeclarationError(f"{said}: second needs axis, and is at right angles to it")
         return AXES
-    u = _unit(f"{said}: axis", vector(f"{said}: axis", axis, own.expression))
+    u = _unit(f"{said}: axis", vector(f"{said}: axis", axis, ownership.expression))
     if second is None:
         v = across(u)
     else:
-        v = _unit(f"{said}: second axis", vector(f"{said}: second axis", second, own.expression))
+        v = _unit(
+            f"{said}: second axis", vector(f"{said}: second axis", second, ownership.expression)
+        )
         cosine = dot(u, v)
         if isinstance(cosine, float) and abs(cosine) > ROUNDED:
             raise DeclarationError(not_right(said, cosine))
-        if SAME < abs(off := own.at_defaults(cosine)) <= ROUNDED:
+        if SAME < abs(off := ownership.at_defaults(cosine)) <= ROUNDED:
             along = (
                 cosine if isinstance(cosine, float) else ca.fmax(-ROUNDED, ca.fmin(ROUNDED, cosine))
             )
             v = _unit(f"{said}: second axis", minus(v, times(along, u)))
-            own.snapped(what, angle=abs(off))
+            ownership.snapped(what, angle=abs(off))
     return u, v, cross(u, v)
 
 

@@ -80,10 +80,10 @@ def laws_of(
             )
         found |= {f"{name}{end}": law for end, law in zip(_NAMES[expected], given, strict=True)}
     for name, law in found.items():
-        turns = (
+        rotates = (
             coordinates[name][1].kind == "angle" if name in coordinates else name.endswith(".angle")
         )
-        unit = ANGLE if turns else LENGTH
+        unit = ANGLE if rotates else LENGTH
         if law.unit not in ("", unit):
             raise DeclarationError(
                 f"motion of '{name}': it is in {law.unit}, but its coordinate is in {unit}"
@@ -129,11 +129,11 @@ def guided(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]
             mechanism.paths[name].point.body if name in mechanism.paths else mechanism.bodies[name]
         )
         point = mechanism.paths[name].point if name in mechanism.paths else Point(body, 0.0, 0.0)
-        turns = name not in mechanism.paths and body.oriented
+        rotates = name not in mechanism.paths and body.oriented
         beside = Link(f"{name}.x", 0.0, RigidMass(0.0, (0.0, 0.0), 0.0))
         guide: Body = (
             Link(f"{name}.y", 0.0, RigidMass(0.0, (0.0, 0.0), 0.0))
-            if turns
+            if rotates
             else PointMass(f"{name}.y", 0.0)
         )
         along = Joint(
@@ -146,7 +146,7 @@ def guided(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]
         across = Joint(
             f"{name}.y", "prismatic", Point(beside, 0.0, 0.0), Point(guide, 0.0, 0.0), (0.0, 1.0)
         )
-        if turns:
+        if rotates:
             held = Joint(f"{name}.angle", "revolute", Point(guide, 0.0, 0.0), point)
         else:
             held = Joint(name, "revolute", point, Point(guide, 0.0, 0.0))

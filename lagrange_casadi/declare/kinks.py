@@ -83,14 +83,14 @@ class Smooth:
         a kink.
         """
         expression = ca.SX(expression)
-        own = (
+        symbols = (
             [symbol for symbol in ca.vertsplit(moving) if ca.depends_on(expression, symbol)]
             if moving.numel()
             else []
         )
-        if not own:
+        if not symbols:
             return None
-        x, way = ca.vertcat(*own), ca.SX.sym("way", len(own))
+        x, direction = ca.vertcat(*symbols), ca.SX.sym("way", len(symbols))
         function = ca.Function("sought", [x, fixed], [ca.densify(expression)], {"cse": True})
         if not followable(function):
             return None
@@ -104,10 +104,13 @@ class Smooth:
         rows, (_, whole, open_) = ca.vertcat(*found.values()), zip(*found, strict=True)
         slopes = ca.vertcat(expression, ca.gradient(expression, x))
         return cls(
-            tuple(own),
+            tuple(symbols),
             ca.Function("marks", [x, fixed], [ca.densify(rows)], {"cse": True}),
             ca.Function(
-                "turns", [x, fixed, way], [ca.densify(ca.jtimes(rows, x, way))], {"cse": True}
+                "turns",
+                [x, fixed, direction],
+                [ca.densify(ca.jtimes(rows, x, direction))],
+                {"cse": True},
             ),
             ca.Function("slopes", [x, fixed], [ca.densify(slopes)], {"cse": True}),
             np.array(whole),
@@ -123,19 +126,19 @@ class Smooth:
     def words(self) -> list[Json]:
         """Write it for JSON; functions as the text in which CasADi writes them."""
         functions = [f.serialize() for f in (self.marks, self.turns, self.slopes)]
-        flags = [own.tolist() for own in (self.whole, self.open, self.uses)]
+        flags = [symbols.tolist() for symbols in (self.whole, self.open, self.uses)]
         return [[symbol.name() for symbol in self.symbols], *functions, *flags]
 
     @classmethod
     def loads(cls, words: Sequence[Any]) -> Smooth:
         """Read what :meth:`words` wrote."""
         names, *functions, whole, open_, uses = words
-        marks, turns, slopes = map(ca.Function.deserialize, functions)
+        marks, reversals, slopes = map(ca.Function.deserialize, functions)
         symbols = tuple(map(ca.SX.sym, names))
         return cls(
             symbols,
             marks,
-            turns,
+            reversals,
             slopes,
             np.array(whole, bool),
             np.array(open_, bool),
@@ -172,11 +175,11 @@ class Smooth:
         """The function ``(x, p, way)`` of the value, its derivatives by the symbols, and the second
         one along a way.
         """
-        x, p, way = self.turns.sx_in()
+        x, p, direction = self.turns.sx_in()
         slopes = self.slopes(x, p)
-        along = ca.jtimes(ca.dot(slopes[1:], way), x, way)
+        along = ca.jtimes(ca.dot(slopes[1:], direction), x, direction)
         return ca.Function(
-            "bends", [x, p, way], [ca.densify(ca.vertcat(slopes, along))], {"cse": True}
+            "bends", [x, p, direction], [ca.densify(ca.vertcat(slopes, along))], {"cse": True}
         )
 
     @symbolic_property
@@ -287,7 +290,10 @@ class Smooth:
         """
         found = np.where(alone, _STRETCHES[0], np.inf)
         for far, beyond in itertools.pairwise(_STRETCHES):
-            ends = [self._exact(self._marks(steps, steps.low + way * far)) for way in (-1.0, 1.0)]
+            ends = [
+                self._exact(self._marks(steps, steps.low + direction * far))
+                for direction in (-1.0, 1.0)
+            ]
             found[alone & np.any(ends, axis=0)] = beyond
         return np.asarray(found.min(axis=0))
 

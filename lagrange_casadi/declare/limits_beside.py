@@ -110,8 +110,8 @@ def vanishes(rows: Side, sizes: Array, least: Array) -> tuple[Flags, Array]:
         share[~clear] = np.inf
         found |= (share <= 1.0).any(axis=1) | ~clear.any(axis=1)
         here = share.argmin(axis=1)[:, None]
-        nearest, left = (np.take_along_axis(of, here, 1)[:, 0] for of in (share, gaps / sizes))
-        lowest, rest = np.minimum(lowest, nearest), np.where(nearest < lowest, left, rest)
+        nearest, remaining = (np.take_along_axis(of, here, 1)[:, 0] for of in (share, gaps / sizes))
+        lowest, rest = np.minimum(lowest, nearest), np.where(nearest < lowest, remaining, rest)
     return found, rest
 
 

@@ -50,13 +50,13 @@ def mass_properties_of(
                 f"{what}: second moments of slices are for links in space; leave them out in a"
                 " plane"
             )
-        own = _checked(density, f"{what}: density", checked)
+        checked_density = _checked(density, f"{what}: density", checked)
         if density.slices is None:
-            return own
+            return checked_density
         moments = (
             _checked(moment, f"{what}: second moments", checked) for moment in density.slices.each
         )
-        return replace(own, slices=Slices(*moments))
+        return replace(checked_density, slices=Slices(*moments))
     if centre is not None:
         if rigid is not None:
             place, moments = rigid(centre, inertia)

@@ -238,7 +238,7 @@ class MotionInverse:
         step = np.where(np.isfinite(step), step, _FIRST)
         missed = np.where(np.isfinite(d), Missed.REACHED, Missed.NEVER).astype(np.int8)
         there = d == target
-        before, after, seen, at = here.copy(), here.copy(), here.copy(), d.copy()
+        before, after, visited, at = here.copy(), here.copy(), here.copy(), d.copy()
         for _ in range(_STEPS):
             going = np.flatnonzero(~there & (missed == Missed.REACHED))
             if not going.size:
@@ -264,12 +264,14 @@ class MotionInverse:
             if turned.any():
                 some = turned & ~lost
                 which = going[some]
-                seen[which], at[which] = self._turning(was[some], now[some], sense[which], p[which])
+                visited[which], at[which] = self._turning(
+                    was[some], now[some], sense[which], p[which]
+                )
             near = np.abs(at[going] - target[going]) <= rounding[going]
             stays = np.abs(d[going] - target[going]) <= rounding[going]
             # A target at which the motion rests is met where it comes to rest.
             reached = (turned & near) | ((ended | lost) & stays)
-            place = np.where(turned, seen[going], was)
+            place = np.where(turned, visited[going], was)
             before[going], after[going] = (
                 np.where(reached, place, before[going]),
                 np.where(reached, place, after[going]),
@@ -281,7 +283,7 @@ class MotionInverse:
                 np.where(ended, Missed.ENDS, np.where(turned, Missed.TURNS_BACK, Missed.REACHED)),
             )
             missed[going] = np.where(there[going], Missed.REACHED, why)
-            seen[going] = np.where(turned, seen[going], now)
+            visited[going] = np.where(turned, visited[going], now)
             at[going] = np.where(turned, at[going], found)
             here[going], d[going] = now, found
             with np.errstate(over="ignore"):
@@ -291,9 +293,9 @@ class MotionInverse:
         time = self._solved(
             target[:, None], begin[:, None], end[:, None], begin[:, None], sense[:, None], p
         )[:, 0]
-        first_way = (missed == Missed.TURNS_BACK) & (seen == np.clip(around, low, high))
+        first_way = (missed == Missed.TURNS_BACK) & (visited == np.clip(around, low, high))
         missed[first_way] = Missed.OTHER_WAY
-        return np.where(missed == Missed.REACHED, time, np.nan), missed, seen, at
+        return np.where(missed == Missed.REACHED, time, np.nan), missed, visited, at
 
     def _turning(self, was: Array, now: Array, sense: Array, p: Array) -> tuple[Array, Array]:
         """Time of reversal between two times, and the coordinate there."""

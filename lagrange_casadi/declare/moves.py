@@ -119,13 +119,13 @@ def moves(
     common = Limits(speed, acceleration, jerk)
     demands = _Demanded([], set())
     origin = demands.coordinate("moves: start", start)
-    place, way, found = origin, _Sum(origin), []
+    place, displacement, found = origin, _Sum(origin), []
     for number, part in enumerate(each):
         what = _what(part, number)
         if isinstance(part, Dwell):
             law, time, by, after = None, part.time, 0.0, place
         else:
-            by, after = _way(what, part, place, way, demands)
+            by, after = _way(what, part, place, displacement, demands)
             law, time = _timed(what, part, by, common, demands)
         found.append([part.name or f"part {number + 1}", law, time, place, by, after])
         place = after
@@ -336,10 +336,10 @@ def _timed(
         )
     given = frozenset(limits.given)
     named = part.law if part.law is not None else "polynomial_345"
-    own = part.law is None or part.law in ("trapezoid", "s_curve")
-    if own and given == {"speed", "acceleration"} and part.law != "s_curve":
+    standard_law = part.law is None or part.law in ("trapezoid", "s_curve")
+    if standard_law and given == {"speed", "acceleration"} and part.law != "s_curve":
         law = trapezoid_within(by, limits)
-    elif own and given == {"speed", "acceleration", "jerk"} and part.law != "trapezoid":
+    elif standard_law and given == {"speed", "acceleration", "jerk"} and part.law != "trapezoid":
         law = s_curve_within(by, limits)
     else:
         law = rest_law(what, named)
@@ -414,10 +414,12 @@ def _filled(
             )
         )
         return given
-    left = _Sum(whole).then(*(-time if isinstance(time, ca.SX) else float(-time) for time in given))
+    remaining = _Sum(whole).then(
+        *(-time if isinstance(time, ca.SX) else float(-time) for time in given)
+    )
     demands.add(
         Demand(
-            left,
+            remaining,
             True,
             lambda n: (
                 f"moves: the other parts take {readable(n(total))} s, which is not less than the"
@@ -425,7 +427,7 @@ def _filled(
             ),
         )
     )
-    return [left if time is None else time for time in known]
+    return [remaining if time is None else time for time in known]
 
 
 def _demand_time(what: str, time: Expression, demands: _Demanded) -> None:

@@ -50,13 +50,17 @@ def notes(
                 " all their rates are not evaluated; choose other instants, or another axis and"
                 " second"
             )
-        body, ways = description["bodies"].get(joint["parent"]["body"], {}), _along(name, joint)
-        if not ways or "density" not in body:
+        body, directions = (
+            description["bodies"].get(joint["parent"]["body"], {}),
+            _along(name, joint),
+        )
+        if not directions or "density" not in body:
             continue
         ratio = outputs.get(Output("station", joint["parent"]["body"], "station", name))
-        if ratio is None and ways.keys() <= outputs.keys():
+        if ratio is None and directions.keys() <= outputs.keys():
             ratio = (
-                joint["parent"]["x"] + sum(way * outputs[motion] for motion, way in ways.items())
+                joint["parent"]["x"]
+                + sum(direction * outputs[motion] for motion, direction in directions.items())
             ) / body["length"]
         if ratio is None:
             continue
@@ -109,16 +113,16 @@ def _across(description: Description) -> Iterator[str]:
         if off <= ROUNDED or _is_carrier(description, joint["child"]["body"]):
             continue
         if space:
-            ways = "turned= says how it lies"
+            directions = "turned= says how it lies"
         else:
-            ways = (
+            directions = (
                 f'angle="{math.degrees(math.atan2(along[1], along[0])):.6g} deg" lays it along,'
                 " angle=0 says that it is meant"
             )
         yield (
             f"link '{joint['child']['body']}' slides along joint '{name}' at"
             f" {math.degrees(off):.3g} deg to its axis, for the joint's axis does not turn it:"
-            f" {ways}"
+            f" {directions}"
         )
 
 
@@ -153,10 +157,10 @@ def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np
         f"at {int(np.count_nonzero(resting))} of {t.size} instants, first at t = {first:.6g} s,"
         f" last at t = {last:.6g} s"
     )
-    left = "indeterminate there and NaN; peaks, means and strength leave these instants out"
+    consequence = "indeterminate there and NaN; peaks, means and strength leave these instants out"
     return (
         f"a joint with friction is at rest {when}: what depends on its friction{frictions} is"
-        f" {left}"
+        f" {consequence}"
     )
 
 
@@ -175,15 +179,15 @@ def _along(name: str, joint: Description) -> dict[Output, float]:
         Output("motion", own): axis[0] * (1.0 if kind == "slide" else joint["pitch"])
         for (own, kind), axis in each
     }
-    return {motion: way for motion, way in found.items() if way}
+    return {motion: direction for motion, direction in found.items() if direction}
 
 
 def _locked(joint: Description, outputs: Mapping[Output, Array]) -> Array | None:
     """The second of a joint's three turns, where the first is not told because of gimbal lock."""
-    turns = [name for name, kind in joint.get("coordinates", {}).items() if kind == "angle"]
+    rotations = [name for name, kind in joint.get("coordinates", {}).items() if kind == "angle"]
     first, second = (
-        (outputs.get(Output("motion", name)) for name in turns[:2])
-        if len(turns) == 3
+        (outputs.get(Output("motion", name)) for name in rotations[:2])
+        if len(rotations) == 3
         else (None, None)
     )
     return second if first is None else None

@@ -111,16 +111,16 @@ class Ownership:
         A number in a ``unit`` may be a text, as ``"100 mm"``.
         """
         mechanism = self.mechanism
-        own = [parameter.symbol for parameter in mechanism.parameters.values()]
-        own += [mechanism.time, *mechanism.measures.symbols] if moving else []
-        own += (
+        symbols = [parameter.symbol for parameter in mechanism.parameters.values()]
+        symbols += [mechanism.time, *mechanism.measures.symbols] if moving else []
+        symbols += (
             [*mechanism.measures.accelerations, *(asked.symbol for asked in mechanism.asked)]
             if found
             else []
         )
         allowed = "parameter, time, coordinate or rate" if moving else "parameter"
         allowed = f"{allowed.replace(' or rate', ', rate')} or result" if found else allowed
-        return scalar(what, value, own, f"{allowed} of mechanism '{mechanism.name}'", unit)
+        return scalar(what, value, symbols, f"{allowed} of mechanism '{mechanism.name}'", unit)
 
     def at_defaults(self, expression: Expression) -> float:
         """The value of an expression in the parameters, with their defaults."""

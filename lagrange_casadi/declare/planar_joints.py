@@ -10,7 +10,7 @@ from .parts import Body, Expression, Point
 
 
 def in_plane(
-    own: Ownership,
+    ownership: Ownership,
     name: str,
     kind: JointKind,
     parent: Body | Point,
@@ -23,7 +23,7 @@ def in_plane(
     Raises :class:`DeclarationError` for one that cannot be.
     """
     what = f"joint '{name}'"
-    start, end = own.point(what, parent), own.point(what, child)
+    start, end = ownership.point(what, parent), ownership.point(what, child)
     if start.body is end.body:
         raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
     if kind != "revolute" and not start.body.oriented:
@@ -34,7 +34,7 @@ def in_plane(
     unit = (
         (1.0, 0.0)
         if axis is None
-        else unit_vector(what, axis, lambda a: own.expression(f"{what}: axis", a))
+        else unit_vector(what, axis, lambda a: ownership.expression(f"{what}: axis", a))
     )
-    turn = 0.0 if angle is None else own.expression(f"{what}: angle", angle, "rad")
+    turn = 0.0 if angle is None else ownership.expression(f"{what}: angle", angle, "rad")
     return Joint(name, kind, start, end, unit, turn, turn_given=angle is not None)

@@ -220,7 +220,7 @@ def read_motion(
     t, *series = _numbers(path, table.rows, places)
 
     units: dict[str, str | None] = _each(path, named, "unit", unit, None)
-    turns: dict[str, float | None] = _each(path, named, "counts_per_turn", counts_per_turn, None)
+    counts: dict[str, float | None] = _each(path, named, "counts_per_turn", counts_per_turn, None)
     noises: dict[str, float | str] = _each(path, named, "smoothing", smoothing, 0.0)
     advances: dict[str, float] = _each(path, named, "advance", advance, 0.0)
     ratios: dict[str, Expression] = _each(path, named, "ratio", ratio, 1.0)
@@ -228,7 +228,7 @@ def read_motion(
     found = {}
     for place, name, values in zip(places[1:], named, series, strict=True):
         word = units[name] or table.units[place] or "rad"
-        size = _size(path, f"{name}: " if len(named) > 1 else "", word, turns[name])
+        size = _size(path, f"{name}: " if len(named) > 1 else "", word, counts[name])
         law = _Fit(
             noises[name],
             points,
@@ -330,13 +330,13 @@ class _Table:
     @classmethod
     def read(cls, path: Path) -> _Table:
         """A table with its units: in the heads, in a row below them, or as OpenSim tells them."""
-        skip, told = _header(path)
+        skip, described = _header(path)
         heads, rows, many = _opened(path, skip)
         split = [_HEAD.fullmatch(head) for head in heads]
         units = [match[2] if match else "" for match in split]
         heads = tuple(match[1] if match else head for match, head in zip(split, heads, strict=True))
         if skip:
-            angle = "deg" if told.get("indegrees", "no").lower() == "yes" else "rad"
+            angle = "deg" if described.get("indegrees", "no").lower() == "yes" else "rad"
             units = [
                 "s" if head == "time" else "m" if head.endswith(_SLIDES) else angle
                 for head in heads
@@ -360,14 +360,14 @@ def _header(path: Path) -> tuple[int, dict[str, str]]:
     """
     if path.suffix.lower() not in (".mot", ".sto"):
         return 0, {}
-    told: dict[str, str] = {}
+    described: dict[str, str] = {}
     try:
         with open(path, encoding="utf-8-sig") as file:
             for count_read, line in zip(range(1, _LONGEST), file, strict=False):
                 word, _, value = line.strip().partition("=")
-                told[word.strip().lower()] = value.strip()
+                described[word.strip().lower()] = value.strip()
                 if word.lower() == "endheader":
-                    return count_read, told
+                    return count_read, described
     except (OSError, UnicodeDecodeError) as error:
         raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
     raise DeclarationError(f"{path.name}: expected a header that ends in the line 'endheader'")
@@ -501,13 +501,13 @@ def _law(
 
     every = f", resampled at {points} equally spaced times" if points else ""
     smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
-    told = (
+    described = (
         f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g}"
         f" s{', repeated' if periodic else ''}"
     )
     return Motion(
         graph,
-        description=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off",
+        description=f"{described}{smoothed}{every}, at most {off:.3g} {recording.unit} off",
         unit=unit_in,
     )
 

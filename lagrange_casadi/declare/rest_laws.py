@@ -42,9 +42,9 @@ class RestLaw:
     begins: tuple[Expression, Expression] = (0.0, 0.0)
     inner: tuple[tuple[Expression, tuple[Expression, Expression]], ...] = ()
 
-    def least_time(self, way: Expression, limits: Limits) -> Expression:
+    def least_time(self, displacement: Expression, limits: Limits) -> Expression:
         """The shortest time [s] in which a way [rad or m] is made within limits."""
-        size, times = ca.fabs(ca.SX(way)), []
+        size, times = ca.fabs(ca.SX(displacement)), []
         if limits.speed is not None:
             times.append(self.speed * size / limits.speed)
         if limits.acceleration is not None:
@@ -106,7 +106,7 @@ def s_curve(share: Symbolic = _CUBE, rounding: Symbolic = 0.5) -> RestLaw:
     return _seven(1.0 - share, share - third, third)
 
 
-def s_curve_within(way: Expression, limits: Limits) -> RestLaw:
+def s_curve_within(displacement: Expression, limits: Limits) -> RestLaw:
     """The S-curve of the shortest time within all three limits: fewer than seven segments where a
     limit is not reached.
 
@@ -116,7 +116,7 @@ def s_curve_within(way: Expression, limits: Limits) -> RestLaw:
     assert limits.speed is not None
     assert limits.acceleration is not None
     assert limits.jerk is not None
-    size, jerk = ca.fabs(ca.SX(way)), limits.jerk
+    size, jerk = ca.fabs(ca.SX(displacement)), limits.jerk
     most = ca.fmin(ca.SX(limits.acceleration), ca.sqrt(limits.speed * jerk))
     most = ca.fmin(most, (size * jerk * jerk / 2.0) ** _CUBE)
     ramp = most * most / jerk
@@ -129,13 +129,13 @@ def s_curve_within(way: Expression, limits: Limits) -> RestLaw:
     return _seven(*(plain(part / whole) for part in each))
 
 
-def trapezoid_within(way: Expression, limits: Limits) -> RestLaw:
+def trapezoid_within(displacement: Expression, limits: Limits) -> RestLaw:
     """The trapezoid of speed of the shortest time within a speed and an acceleration; a triangle
     where the speed is not reached.
     """
     assert limits.speed is not None
     assert limits.acceleration is not None
-    size = ca.fabs(ca.SX(way))
+    size = ca.fabs(ca.SX(displacement))
     top = ca.fmin(ca.SX(limits.speed), ca.sqrt(limits.acceleration * size))
     return trapezoid(plain((top / limits.acceleration) / (size / top + top / limits.acceleration)))
 
@@ -155,8 +155,10 @@ def _seven(first: Expression, second: Expression, third: Expression) -> RestLaw:
             rising = sharp * w**3 / 6.0
             x = w - third
             steady = sharp * third**3 / 6.0 + x * (sharp * third * third / 2.0 + x * steep / 2.0)
-            left = ramp - w
-            fading = end - top * left + ca.if_else(left > 0.0, sharp * left**3 / 6.0, 0.0)
+            remaining = ramp - w
+            fading = (
+                end - top * remaining + ca.if_else(remaining > 0.0, sharp * remaining**3 / 6.0, 0.0)
+            )
             return _before(w, third, rising, _before(w, second, steady, fading))
 
         return _both_halves(u, half)
@@ -176,8 +178,8 @@ def _refuse_share(what: str, share: object, most: float) -> None:
 
 def _both_halves(u: Expression, half: Callable[[Expression], Expression]) -> Expression:
     """A law of which the first half is known."""
-    way = half(_before(u, 0.5, u, 1.0 - u))
-    return _before(u, 0.5, way, 1.0 - way)
+    displacement = half(_before(u, 0.5, u, 1.0 - u))
+    return _before(u, 0.5, displacement, 1.0 - displacement)
 
 
 def _before(x: Expression, place: Expression, first: Expression, then: Expression) -> Expression:

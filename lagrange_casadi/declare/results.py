@@ -128,10 +128,10 @@ class Results:
         """The symbol of the acceleration of a joint's coordinate; or those of a point's, in ground
         axes [m/s^2].
         """
-        measures, own = self.mechanism.measures, self.mechanism.own
+        measures, ownership = self.mechanism.measures, self.mechanism.own
         if isinstance(of, Joint):
-            return measures.joint(*own.moving_joint(of)).accelerations[0]
-        return measures.point(own.point("acceleration", of)).accelerations
+            return measures.joint(*ownership.moving_joint(of)).accelerations[0]
+        return measures.point(ownership.point("acceleration", of)).accelerations
 
     def effort(self, joint: Joint) -> ca.SX:
         """The symbol of the effort of the drive at a joint, along its coordinate."""
@@ -161,11 +161,11 @@ class Results:
 
     def multiplier(self, of: Constraint | Row) -> ca.SX:
         """The symbol of the multiplier of a constraint or a non-holonomic constraint."""
-        own: tuple[_Part, ...] = (
+        ownership: tuple[_Part, ...] = (
             *self.mechanism.constraints.values(),
             *self.mechanism.rows.values(),
         )
-        return self._ask(Output("multiplier", self._own("constraint", of, own)))
+        return self._ask(Output("multiplier", self._own("constraint", of, ownership)))
 
     def section(self, link: Link, ratio: Expression) -> SectionForces | SpatialSectionForces:
         """The symbols of the forces at a section of a link, at a ratio xi/l from 0 to 1; at a

@@ -50,12 +50,12 @@ def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
     start, stop, p = start[there], stop[there], p[there]
     law = MotionInverse.of(laws, joint)
     first, last = (law.at(moment[:, None], p)[0][:, 0] for moment in (start, stop))
-    turns = (last - first) / math.tau
-    sizes = np.abs(turns)
+    revolutions = (last - first) / math.tau
+    sizes = np.abs(revolutions)
     least, most = sizes.min(), sizes.max()
-    if not _goes_round(law, start, stop, turns, p):
+    if not _goes_round(law, start, stop, revolutions, p):
         return ""
-    whole = math.copysign(360.0 * max(1, round(float(most))), turns[0])
+    whole = math.copysign(360.0 * max(1, round(float(most))), revolutions[0])
     begin = round(math.degrees(float(first[0])), _PLACES) + 0.0
     asked = (
         f"instants over {joint}={begin:.6g}deg:{begin + whole:.6g}deg:{timing.count} make it a"
@@ -73,21 +73,23 @@ def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
     )
 
 
-def _goes_round(law: MotionInverse, start: Array, stop: Array, turns: Array, p: Array) -> bool:
+def _goes_round(
+    law: MotionInverse, start: Array, stop: Array, revolutions: Array, p: Array
+) -> bool:
     """Return whether a drive goes one way all the time, does not come to rest, and if it continues
     makes a whole turn.
     """
     with np.errstate(all="ignore"):
-        longer = (stop - start) * np.maximum(1.0, _BEYOND / np.abs(turns))
+        longer = (stop - start) * np.maximum(1.0, _BEYOND / np.abs(revolutions))
         moments = np.minimum(
             start[:, None] + longer[:, None] * np.linspace(0.0, 1.0, _SAMPLES), law.span[1]
         )
         d, rate, _ = law.at(moments, p)
         last = law.at(stop[:, None], p)[1][:, 0]
-        way = np.sign(turns)
-        onward = (way[:, None] * rate > -_BACK * np.abs(rate).max(axis=1, keepdims=True)).all(
+        sign = np.sign(revolutions)
+        onward = (sign[:, None] * rate > -_BACK * np.abs(rate).max(axis=1, keepdims=True)).all(
             axis=1
         )
-        goes_on = way * last >= _GOES_ON * math.tau * np.abs(turns) / (stop - start)
+        goes_on = sign * last >= _GOES_ON * math.tau * np.abs(revolutions) / (stop - start)
         whole = np.abs(d[:, -1] - d[:, 0]) >= math.tau * (1.0 - _WHOLE)
-    return bool((onward & goes_on & whole & (turns != 0.0)).all())
+    return bool((onward & goes_on & whole & (revolutions != 0.0)).all())

@@ -89,12 +89,12 @@ class Wanted:
                 " as effort"
             )
         chosen = set(every if "all" in names else names)
-        own = (
+        user_outputs = (
             output
             for name, output in mechanism.outputs.items()
             if chosen & {"output", f"output:{name}"}
         )
-        chosen |= {asked.wanted for output in own for asked in output.made_of}
+        chosen |= {asked.wanted for output in user_outputs for asked in output.made_of}
         beams = _made_of_something(mechanism)
         chosen |= {f"section:{link}" for kind in STRENGTH for link in among(kind, beams, names)}
         if fitted := among("safety", mechanism.fitted, names):
@@ -105,8 +105,10 @@ class Wanted:
             raise DeclarationError(f"no output wanted; valid: {', '.join(choices)}")
 
         def parts(kind: str) -> tuple[str, ...]:
-            own = (name for name in every if name.startswith(f"{kind}:") and chosen & {kind, name})
-            return tuple(name.partition(":")[2] for name in own)
+            listed = (
+                name for name in every if name.startswith(f"{kind}:") and chosen & {kind, name}
+            )
+            return tuple(name.partition(":")[2] for name in listed)
 
         named = [name for name in names if name != "all"]
         strength = (tuple(among(kind, beams, named)) for kind in ("stress", "safety", "deflection"))
@@ -133,11 +135,20 @@ def outputs(mechanism: Mechanism) -> list[str]:
         for name, link in mechanism.links.items()
         if isinstance(link.mass, Density)
     ]
-    own = [f"output:{name}" for name in mechanism.outputs]
+    user_outputs = [f"output:{name}" for name in mechanism.outputs]
     strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
     strength += [f"safety:{joint}" for joint in mechanism.fitted]
     slopes = [f"{SENSITIVITY}:{name}" for name in mechanism.parameters]
-    named = [*reactions, *multipliers, *loads, *frictions, *sections, *own, *strength, *slopes]
+    named = [
+        *reactions,
+        *multipliers,
+        *loads,
+        *frictions,
+        *sections,
+        *user_outputs,
+        *strength,
+        *slopes,
+    ]
     return ["all", "effort", "motion", *named]
 
 

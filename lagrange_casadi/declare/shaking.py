@@ -105,11 +105,11 @@ def shaking(
     }
     found = []
     for member, (value, unit) in named.items():
-        own = mechanism.output(f"{name}_{member}", value, unit=unit)
-        mechanism.outputs[own.name] = Shaking(
-            own.name, own.expression, own.unit, own.made_of, bodies
+        output = mechanism.output(f"{name}_{member}", value, unit=unit)
+        mechanism.outputs[output.name] = Shaking(
+            output.name, output.expression, output.unit, output.made_of, bodies
         )
-        found.append(mechanism.outputs[own.name])
+        found.append(mechanism.outputs[output.name])
     return tuple(found)
 
 

@@ -183,7 +183,7 @@ class EquationGraph(Graphs):
             ca.SX(3 * _WRENCHES + 3, 0),
             *(_numbers(transmission, mesh) for mesh in meshes if transmission),
         )
-        turns = (
+        rotations = (
             transmission.loss.turns
             if transmission is not None and transmission.loss is not None
             else ()
@@ -199,7 +199,7 @@ class EquationGraph(Graphs):
             meshes=tuple(
                 (mesh.first.body.name, mesh.second.body.name, mesh.carrier.name) for mesh in meshes
             ),
-            turns=tuple((sign, joint.name) for sign, joint in turns),
+            turns=tuple((sign, joint.name) for sign, joint in rotations),
             wrenches=ca.Function("wrenches", [p], [ca.densify(wrenches)]),
         )
 
@@ -221,9 +221,9 @@ class EquationGraph(Graphs):
     @classmethod
     def loads(cls, words: Sequence[Any]) -> EquationGraph:
         """Return the graph that :meth:`words` made words of."""
-        name, row, entries, meshes, turns, *functions = words
+        name, row, entries, meshes, rotations, *functions = words
         values, slopes, wrenches = map(ca.Function.deserialize, functions)
-        names = (tuple(map(tuple, pairs)) for pairs in (meshes, turns))
+        names = (tuple(map(tuple, pairs)) for pairs in (meshes, rotations))
         return cls(
             name, row, Entries.loads(entries), values, slopes, next(names), next(names), wrenches
         )

@@ -48,13 +48,13 @@ class Steps:
     def of(cls, paths: Array, p: Array) -> Steps:
         """All steps of paths (d, symbols, n) for values ``p`` (d, fixed)."""
         count, symbols, n = paths.shape
-        x, way = (
+        x, direction = (
             np.moveaxis(rows, 1, 0).reshape(symbols, -1)
             for rows in (paths[..., :-1], np.diff(paths))
         )
         number = np.tile(np.arange(n - 1.0), count)
         owner, none = np.repeat(np.arange(count), n - 1), np.zeros(count * (n - 1))
-        return cls(x, way, p.T[:, owner], owner, none, none + 1.0, -number, n - 1.0 - number)
+        return cls(x, direction, p.T[:, owner], owner, none, none + 1.0, -number, n - 1.0 - number)
 
     @classmethod
     def through(cls, paths: Array, p: Array) -> Steps:
@@ -66,14 +66,16 @@ class Steps:
         count, symbols, n = paths.shape
         ahead = np.diff(paths, append=paths[..., -1:])
         came = np.diff(paths, prepend=paths[..., :1])
-        ways = (
+        directions = (
             np.where((ahead != 0.0).any(axis=1, keepdims=True), ahead, came)
             if n > 1
             else np.ones(paths.shape)
         )
-        x, way = (np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths, ways))
+        x, direction = (
+            np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths, directions)
+        )
         owner, none = np.repeat(np.arange(count), n), np.zeros(count * n)
-        return cls(x, way, p.T[:, owner], owner, none, none, none - np.inf, none + np.inf)
+        return cls(x, direction, p.T[:, owner], owner, none, none, none - np.inf, none + np.inf)
 
     @classmethod
     def joined(cls, parts: Sequence[Steps]) -> Steps:
@@ -139,8 +141,8 @@ def sides_of(function: ca.Function, steps: Steps, middle: Array) -> tuple[Side, 
         (function.size1_out(0), _LIMITS, steps.owner.size),
     )
     sides = []
-    for way in (-1, 1):
-        share = middle + way * far
+    for direction in (-1, 1):
+        share = middle + direction * far
         given, there = (
             (wide.at(share.ravel()), wide.p, wide.way),
             (share >= steps.least) & (share <= steps.most),

@@ -230,8 +230,8 @@ def span_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tuple[fl
     start, stop, _ = even_of(timing, values)
     if not timing.joint:
         return start, stop
-    way = _way(laws, timing, values)
-    return float(way.first[0]), float(way.last[0])
+    passage = _way(laws, timing, values)
+    return float(passage.first[0]), float(passage.last[0])
 
 
 def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Instants:
@@ -243,8 +243,8 @@ def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Inst
     if not timing.joint:
         return Instants(points(even))
     coordinates = points(even)
-    way = _way(laws, timing, values)
-    t = MotionInverse.of(laws, timing.joint).times(way, coordinates[None], _row(values))[0]
+    passage = _way(laws, timing, values)
+    t = MotionInverse.of(laws, timing.joint).times(passage, coordinates[None], _row(values))[0]
     if not np.isfinite(t).all():
         raise DeclarationError(
             f"over: {timing.count} coordinates of joint '{timing.joint}' from"
@@ -262,19 +262,19 @@ def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Passage:
     p = _row(values)
     start, stop, around = timing.bounds(p)
     law = MotionInverse.of(laws, timing.joint)
-    way = law.passage(start, stop, p, around, samples=min(4 * timing.count, _MOST_SAMPLES) + 1)
-    why = Missed(int(way.missed[0]))
+    passage = law.passage(start, stop, p, around, samples=min(4 * timing.count, _MOST_SAMPLES) + 1)
+    why = Missed(int(passage.missed[0]))
     if why is Missed.REACHED:
-        return way
+        return passage
     joint, shown = timing.joint, functools.partial(_shown, timing)
     asked, where = (
         f"from {shown(start[0])} to {shown(stop[0])}",
-        f"t = {way.t[0]:.6g} s, at {shown(way.d[0])}",
+        f"t = {passage.t[0]:.6g} s, at {shown(passage.d[0])}",
     )
     said = {
         Missed.STANDS_STILL: f"is at rest and does not go {asked}",
         Missed.OTHER_WAY: (
-            f"runs opposite to the range {asked} at t = {way.t[0]:.6g} s; expected START"
+            f"runs opposite to the range {asked} at t = {passage.t[0]:.6g} s; expected START"
             " and STOP in the order of time"
         ),
         Missed.TURNS_BACK: f"does not go {asked}: it reverses at {where}",

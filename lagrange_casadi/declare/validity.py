@@ -134,9 +134,9 @@ def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
     for what, expressions in _numbers(mechanism):
         found += _of_curves(what, expressions)
     for body in mechanism.moving:
-        mass, own = _of_body(body, precision)
+        mass, constraints = _of_body(body, precision)
         masses.append(mass)
-        found += own
+        found += constraints
     if not any(_surely_positive(mass) for mass in masses):
         loaded = any(not isinstance(load, Friction) for load in mechanism.loads.values())
         found.append(_some_mass(mechanism.name, masses, loaded=loaded))
@@ -392,8 +392,8 @@ def _of_density(
 
     sizes = [sum(ca.fabs(ca.SX(c)) for c in cell) for cell in density.cells]
     return [
-        Demand(own + END[precision] * size, False, refusal)
-        for (_, own), size in zip(places, sizes, strict=True)
+        Demand(least + END[precision] * size, False, refusal)
+        for (_, least), size in zip(places, sizes, strict=True)
     ]
 
 
@@ -466,9 +466,11 @@ def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
     angles where two are given.
     """
     what = f"joint '{joint.name}'"
-    own = _of_pair(what, *joint.directions[:2], precision) if joint.directions is not None else []
+    between_axes = (
+        _of_pair(what, *joint.directions[:2], precision) if joint.directions is not None else []
+    )
     return [
-        *own,
+        *between_axes,
         *(
             _of_pair(f"{what}: turned", *joint.turned, precision)
             if joint.turned is not None

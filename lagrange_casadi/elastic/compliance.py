@@ -38,8 +38,10 @@ class Compliance:
         for cell in range(len(self.member.beam.course.cells)):
             here = index == cell
             if here.any():
-                own = dict(zip(self.member.forces, forces[:, here], strict=True))
-                each = strains(self.member.cross.properties(cell, u[here]), own, self.moduli)
+                forces_here = dict(zip(self.member.forces, forces[:, here], strict=True))
+                each = strains(
+                    self.member.cross.properties(cell, u[here]), forces_here, self.moduli
+                )
                 for k, name in enumerate(self.member.forces):
                     found[k, here] = each[name]
         return found

@@ -149,10 +149,12 @@ class Deflection:
             )
 
         degree = (2 if space else 1) * (self._degree + 2)
-        turns = stationary_points(
+        stationary = stationary_points(
             slope, self._edges[:, :-1], self._edges[:, 1:], (0.0, 1.0), degree, signed=not space
         )
-        places = np.concatenate([self._edges, turns.places.reshape(len(self._edges), -1)], axis=1)
+        places = np.concatenate(
+            [self._edges, stationary.places.reshape(len(self._edges), -1)], axis=1
+        )
         values = self.size(places)
         best = np.argmax(np.abs(values), axis=1)[:, None]
         return np.take_along_axis(values, best, 1)[:, 0], np.take_along_axis(places, best, 1)[:, 0]

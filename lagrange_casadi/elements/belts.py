@@ -78,21 +78,21 @@ def belt(
     points, radii for which the pulleys touch, a preload that is negative, and an efficiency that is
     none.
     """
-    what, own = f"belt '{name}'", mechanism.own
-    own.free("constraint", name, mechanism.constraints)
-    ends = own.point(what, first), own.point(what, second)
+    what, ownership = f"belt '{name}'", mechanism.own
+    ownership.free("constraint", name, mechanism.constraints)
+    ends = ownership.point(what, first), ownership.point(what, second)
     one, two = courses_on(
         mechanism,
         what,
         *ends,
-        None if carrier is None else own.point(what, carrier).body,
+        None if carrier is None else ownership.point(what, carrier).body,
         rack=False,
     )
     if not isinstance(radii, (list, tuple)) or len(radii) != 2:
         raise DeclarationError(f"{what}: expected 2 radii, got {radii!r}")
-    r1, r2 = (own.expression(f"{what}: radii", radius, "m") for radius in radii)
+    r1, r2 = (ownership.expression(f"{what}: radii", radius, "m") for radius in radii)
     fits = [fit for radius in (r1, r2) for fit in positive(what, "radii", radius)]
-    tension = own.expression(f"{what}: preload", preload)
+    tension = ownership.expression(f"{what}: preload", preload)
     if isinstance(tension, float) and tension < 0.0:
         raise DeclarationError(f"{what}: preload must not be negative, got {tension:g} N")
     if isinstance(tension, ca.SX):
@@ -139,10 +139,10 @@ def belt(
     mesh = Mesh(*ends, one.carrier, one.place, away, Wrench(across, times(r1, u)), Wrench(both))
     sense = 1 if (numbers.of(dot(u, v)) > 0.0) != crossed else -1
     other = -sense * r2
-    ahead = own.expression(f"{what}: offset", offset, "m")
+    ahead = ownership.expression(f"{what}: offset", offset, "m")
     loss = None
     if efficiency is not None:
-        value = own.expression(f"{what}: efficiency", efficiency)
+        value = ownership.expression(f"{what}: efficiency", efficiency)
         fits += share(what, value)
         sideways = times((r1 - r2 if crossed else r1 + r2) / distance, cross(u, e))
         mesh = replace(mesh, braking=Wrench(sideways, times(r1, u)))

@@ -84,18 +84,27 @@ def bent_bar(
         if per_length is None
         else mechanism.own.expression(f"{what}: per_length", per_length, "kg/m")
     )
-    ways = [[b - a for a, b in zip(*pair, strict=True)] for pair in itertools.pairwise(places)]
-    lengths = [_length(way) for way in ways]
+    directions = [
+        [b - a for a, b in zip(*pair, strict=True)] for pair in itertools.pairwise(places)
+    ]
+    lengths = [_length(direction) for direction in directions]
     for k, length in enumerate(lengths):
         if isinstance(length, float) and not length > 0.0:
             raise DeclarationError(f"{what}: corners {k} and {k + 1} coincide")
     whole = sum(lengths[1:], lengths[0])
     pieces = []
     for k, length in enumerate(lengths):
-        own = per_length * length if mass is None else mass * (length / whole)
-        pieces.append(mechanism.link(f"{name}_{k + 1}", length=length, mass=own))
+        piece_mass = per_length * length if mass is None else mass * (length / whole)
+        pieces.append(mechanism.link(f"{name}_{k + 1}", length=length, mass=piece_mass))
     for k in range(len(pieces) - 1):
-        _weld(mechanism, f"{name}_bend_{k + 1}", pieces[k], pieces[k + 1], ways[k], ways[k + 1])
+        _weld(
+            mechanism,
+            f"{name}_bend_{k + 1}",
+            pieces[k],
+            pieces[k + 1],
+            directions[k],
+            directions[k + 1],
+        )
     return Bent(tuple(pieces), (pieces[0].base, *(piece.tip for piece in pieces)))
 
 
@@ -120,19 +129,20 @@ def _weld(
     name: str,
     first: Link,
     second: Link,
-    way: Sequence[Expression],
+    direction: Sequence[Expression],
     onward: Sequence[Expression],
 ) -> None:
     """Weld a piece to the tip of the one before, at the angle between their ways."""
     if not isinstance(mechanism, SpatialMechanism):
         # By the sine and cosine of the angle between them, so that it is half a turn at most.
         angle = _turn(
-            way[0] * onward[1] - way[1] * onward[0], way[0] * onward[0] + way[1] * onward[1]
+            direction[0] * onward[1] - direction[1] * onward[0],
+            direction[0] * onward[0] + direction[1] * onward[1],
         )
         mechanism.weld(name, first.tip, second, angle=angle)
         return
     (bearing, rise), (next_bearing, next_rise) = (
-        (_turn(y, x), _turn(z, _length([x, y]))) for x, y, z in (way, onward)
+        (_turn(y, x), _turn(z, _length([x, y]))) for x, y, z in (direction, onward)
     )
-    turns: Any = [("y", rise), ("z", next_bearing - bearing), ("y", -next_rise)]
-    mechanism.weld(name, first.tip, second, turned=turns)
+    rotations: Any = [("y", rise), ("z", next_bearing - bearing), ("y", -next_rise)]
+    mechanism.weld(name, first.tip, second, turned=rotations)

@@ -148,11 +148,11 @@ def disc_cam(
         For joints of other kinds, a lift that is no function, and a profile that is undercut with
         the default parameters.
     """
-    what, own = f"cam '{name}'", mechanism.own
-    own.free("constraint", name, mechanism.constraints)
+    what, ownership = f"cam '{name}'", mechanism.own
+    ownership.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
-    base = own.expression(f"{what}: base_radius", base_radius, "m")
+    base = ownership.expression(f"{what}: base_radius", base_radius, "m")
     base = _positive(f"{what}: base_radius", base)
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
@@ -221,10 +221,10 @@ def layout_of(
 
     Raises :class:`.DeclarationError` as that does.
     """
-    own = mechanism.own
+    ownership = mechanism.own
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
         if (
-            own.joint(joint).kind not in kinds
+            ownership.joint(joint).kind not in kinds
             or mechanism.space
             or not isinstance(joint.parent.body, Ground)
         ):
@@ -237,7 +237,7 @@ def layout_of(
         raise DeclarationError(f"{what}: a flat face has neither a roller nor a point")
     if side not in (1, -1):
         raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
-    held = follower.child if point is None else own.point(what, point)
+    held = follower.child if point is None else ownership.point(what, point)
     if held.body is not follower.child.body:
         raise DeclarationError(
             f"{what}: its point must be on '{follower.child.body.name}', which joint"
@@ -246,7 +246,7 @@ def layout_of(
     radius = (
         0.0
         if roller is None
-        else _positive(f"{what}: roller", own.expression(f"{what}: roller", roller, "m"))
+        else _positive(f"{what}: roller", ownership.expression(f"{what}: roller", roller, "m"))
     )
     return Layout(cam, follower, held, radius, side)
 
@@ -393,10 +393,12 @@ def _at(design: Design, angle: Expression) -> Design:
         return put(pair[0]), put(pair[1])
 
     turned = None if design.turned is None else both(design.turned)
-    place, normal, contact, way = map(
+    place, normal, contact, direction = map(
         both, (design.place, design.normal, design.contact, design.way)
     )
-    return Design(angle, place, normal, put(design.moment), contact, way, turned, design.roller)
+    return Design(
+        angle, place, normal, put(design.moment), contact, direction, turned, design.roller
+    )
 
 
 def curvature(design: Design) -> Expression:

@@ -174,8 +174,8 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
             whole,
         )
     # The joint's axis is in its parent's axes, and the same in its child's, turned.
-    own = joint.axes[0].direction
-    here = own if outward else zero.resolve(own)
+    direction = joint.axes[0].direction
+    here = direction if outward else zero.resolve(direction)
     sign = -1 if outward else 1
     if axis is None:
         axis = here
@@ -188,9 +188,9 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
         if Numbers(mechanism).size(off) > FITTING * max(1.0, Numbers(mechanism).size(place)):
             return None
         shifted = (*shifted, *off)
-    turns, joints = (*course.turns, (sign, joint)), (*course.joints, joint)
+    rotations, joints = (*course.turns, (sign, joint)), (*course.joints, joint)
     return Course(
-        other, seen(place), turn(axis), turns, joint.kind == "prismatic", joints, shifted, whole
+        other, seen(place), turn(axis), rotations, joint.kind == "prismatic", joints, shifted, whole
     )
 
 

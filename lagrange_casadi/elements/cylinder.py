@@ -58,13 +58,16 @@ def cylinder(
     Raises :class:`.DeclarationError` for sizes that cannot be, and as declaring links and joints
     does.
     """
-    what, own = f"cylinder '{name}'", mechanism.own
+    what, ownership = f"cylinder '{name}'", mechanism.own
     if mechanism.space:
         raise DeclarationError(
             f"{what}: cylinders lie in a plane; in space declare two links and a prismatic joint"
         )
-    bore, rod = own.expression(f"{what}: bore", bore, "m"), own.expression(f"{what}: rod", rod, "m")
-    back = own.expression(f"{what}: back_pressure", back_pressure)
+    bore, rod = (
+        ownership.expression(f"{what}: bore", bore, "m"),
+        ownership.expression(f"{what}: rod", rod, "m"),
+    )
+    back = ownership.expression(f"{what}: back_pressure", back_pressure)
     if not isinstance(bore, ca.SX) and not isinstance(rod, ca.SX) and not 0.0 <= rod < bore:
         raise DeclarationError(
             f"{what}: its rod must be thinner than its bore, got {rod:g} m in {bore:g} m"

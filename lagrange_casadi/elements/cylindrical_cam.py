@@ -147,12 +147,12 @@ def cylindrical_cam(
         For joints of other kinds, a roller on the drum's axis or too large for the groove's bends,
         and a lift that is not periodic by a turn.
     """
-    what, own = f"cam '{name}'", mechanism.own
-    own.free("constraint", name, mechanism.constraints)
+    what, ownership = f"cam '{name}'", mechanism.own
+    ownership.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
         if (
-            own.joint(joint).kind not in kinds
+            ownership.joint(joint).kind not in kinds
             or not mechanism.space
             or not isinstance(joint.parent.body, Ground)
         ):
@@ -160,7 +160,7 @@ def cylindrical_cam(
                 f"{what}: expected a {' or '.join(kinds)} joint whose parent is the ground, in"
                 f" space, got '{joint.name}'"
             )
-    held = follower.child if point is None else own.point(what, point)
+    held = follower.child if point is None else ownership.point(what, point)
     if held.body is not follower.child.body:
         raise DeclarationError(
             f"{what}: its point must be on '{follower.child.body.name}', which joint"
@@ -172,7 +172,7 @@ def cylindrical_cam(
         what,
         mechanism,
         x,
-        own.expression(f"{what}: start", start, "rad" if follower.kind == "revolute" else "m")
+        ownership.expression(f"{what}: start", start, "rad" if follower.kind == "revolute" else "m")
         + rise,
         cam,
         follower,
@@ -188,7 +188,9 @@ def cylindrical_cam(
     if width is not None:
         if roller is None:
             raise DeclarationError(f"{what}: width needs roller, the roller's radius [m]")
-        round_ = _round(what, mechanism, design, own.expression(f"{what}: roller", roller, "m"))
+        round_ = _round(
+            what, mechanism, design, ownership.expression(f"{what}: roller", roller, "m")
+        )
         force = mechanism.results.multiplier(constraint)
         # The flank is as far beside the path as the roller's radius, on the side from which it
         # pushes.
@@ -224,7 +226,7 @@ def _groove(
     arm = _carried(follower, coordinate).apply(minus(held.place, follower.child.place))
     place = plus(plus(follower.parent.place, times(coordinate, line) if slides else ZERO), arm)
     seat = minus(place, centre)
-    way = line if slides else _unit(cross(line, arm))
+    direction = line if slides else _unit(cross(line, arm))
     about = _unit(minus(seat, times(dot(seat, axis), axis))) if slides else line
     moved = tuple(ca.jacobian(ca.SX(component), x) for component in place)
     on_drum = minus((moved[0], moved[1], moved[2]), cross(axis, seat))
@@ -237,7 +239,7 @@ def _groove(
     # Along the follower's coordinate, where the drum alone moves.
     values = list(mechanism.values().values())
     ahead = ca.Function(
-        "ahead", [x, mechanism.symbols], [ca.SX(dot(cross(about, cross(axis, seat)), way))]
+        "ahead", [x, mechanism.symbols], [ca.SX(dot(cross(about, cross(axis, seat)), direction))]
     )
     side = float(ahead(0.0, values))
     if not abs(side) > 0.0:
@@ -246,7 +248,7 @@ def _groove(
             " axis, and a follower along the axis"
         )
     normal, bend = (normal, bend) if side > 0.0 else (times(-1.0, normal), -bend)
-    return Groove(x, place, normal, way, axis, centre, bend)
+    return Groove(x, place, normal, direction, axis, centre, bend)
 
 
 def _round(what: str, mechanism: Mechanism, design: Groove, roller: Expression) -> Expression:
@@ -289,16 +291,16 @@ def _check(
     )
     angles = np.linspace(0.0, math.tau, 181)
     checks = ca.Function("told", [x, p], [ca.SX(cosine), *ends, rise, radius])
-    lean, first, last, way, reach = (
+    lean, first, last, direction, reach = (
         np.broadcast_to(row.full().ravel(), angles.shape) for row in checks(angles[None], values)
     )
     slides = follower.kind == "prismatic"
     if abs(abs(lean[0]) - (1.0 if slides else 0.0)) > _SAME:
         place = "along the drum's axis" if slides else "at right angles to the drum's axis"
         raise DeclarationError(f"{what}: joint '{follower.name}' must be {place}")
-    if not np.isfinite(way).all() or not reach.min() > _SAME * reach.max():
+    if not np.isfinite(direction).all() or not reach.min() > _SAME * reach.max():
         raise DeclarationError(f"{what}: its roller comes to the drum's axis")
-    if abs(last[0] - first[0]) > _SAME * (np.ptp(way) or 1.0):
+    if abs(last[0] - first[0]) > _SAME * (np.ptp(direction) or 1.0):
         raise DeclarationError(
             f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi"
         )
@@ -322,8 +324,8 @@ def _contact(
         (cam.child, times(-1.0, near), design.centre),
         (ends, times(-1.0, far), plus(design.centre, design.axis)),
     ):
-        seen = mechanism.place(point)
-        off = minus((seen[0], seen[1], seen[2]), there)
+        position = mechanism.place(point)
+        off = minus((position[0], position[1], position[2]), there)
         gap = gap + dot(arm, off)
     phi = mechanism.own.expression(
         f"cam '{name}'", ca.substitute(gap, design.angle, turn), moving=True

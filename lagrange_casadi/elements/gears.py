@@ -122,14 +122,16 @@ def gears(
         radii, numbers of teeth that are not whole, and angles out of range. Values of parameters
         that violate these are refused as well.
     """
-    what, own = f"gears '{name}'", mechanism.own
-    own.free("constraint", name, mechanism.constraints)
+    what, ownership = f"gears '{name}'", mechanism.own
+    ownership.free("constraint", name, mechanism.constraints)
     if hand not in ("right", "left"):
         raise DeclarationError(f"{what}: hand must be 'right' or 'left', got {hand!r}")
     if carrier is not None:
-        carrier = own.point(what, carrier).body
-    centre = own.point(what, first)
-    many = [own.point(what, one) for one in (second if isinstance(second, Sequence) else [second])]
+        carrier = ownership.point(what, carrier).body
+    centre = ownership.point(what, first)
+    many = [
+        ownership.point(what, one) for one in (second if isinstance(second, Sequence) else [second])
+    ]
     if not many:
         raise DeclarationError(f"{what}: expected a second gear")
     found = [courses_on(mechanism, what, centre, one, carrier) for one in many]
@@ -153,10 +155,10 @@ def gears(
         mesh = _mesh(mechanism, centre, point, *pair, pitch)
         meshes.append(replace(mesh, braking=braking_of(pitch)) if lossy else mesh)
         fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
-    ways = [course.way(mechanism) for course in found[0]]
-    ahead = own.expression(f"{what}: offset", offset, "m")
+    directions = [course.way(mechanism) for course in found[0]]
+    ahead = ownership.expression(f"{what}: offset", offset, "m")
     constraint = mechanism.constraint(
-        name, toothing.radii[0] * ways[0] + pitches[0].other * ways[1] - ahead
+        name, toothing.radii[0] * directions[0] + pitches[0].other * directions[1] - ahead
     )
     loss = None
     if lossy:
@@ -188,20 +190,20 @@ def _teeth(
     right: bool,
 ) -> tuple[Teeth, list[Fit]]:
     """Radii, ratio and angles, and what they must be for other parameters."""
-    own, count = mechanism.own, 1 if pair[1].slides else 2
+    ownership, count = mechanism.own, 1 if pair[1].slides else 2
     fits: list[Fit] = []
 
     def each(word: str, values: Expression, unit: str = "1") -> list[Expression]:
         listed = list(values) if isinstance(values, (list, tuple)) else [values]
         if len(listed) != count:
             raise DeclarationError(f"{what}: expected {count} {word}, got {len(listed)}")
-        return [own.expression(f"{what}: {word}", value, unit) for value in listed]
+        return [ownership.expression(f"{what}: {word}", value, unit) for value in listed]
 
     if (module is None) == (radii is None):
         raise DeclarationError(f"{what}: expected module= and teeth=, or radii=")
     names = ("pressure_angle", "helix_angle")
     pressure, helix = (
-        own.expression(f"{what}: {one}", angle, "rad")
+        ownership.expression(f"{what}: {one}", angle, "rad")
         for one, angle in zip(names, angles, strict=True)
     )
     fits += within(what, "pressure_angle", pressure, 0.0, _FLATTEST)
@@ -216,7 +218,7 @@ def _teeth(
     if module is not None:
         if z is None:
             raise DeclarationError(f"{what}: expected module= and teeth=, or radii=")
-        size = own.expression(f"{what}: module", module, "m")
+        size = ownership.expression(f"{what}: module", module, "m")
         fits += positive(what, "module", size)
         cosine = ca.cos(helix) if isinstance(helix, ca.SX) else math.cos(helix)
         r = [size * value / (2 * cosine) for value in z]
@@ -233,9 +235,9 @@ def _mesh(
 ) -> Mesh:
     """Place where two gears touch; on a rack the place moves."""
     if two.slides:
-        way = two.way(mechanism)
+        direction = two.way(mechanism)
         assert two.axis is not None
-        gone = tuple(way * x for x in two.axis)
+        gone = tuple(direction * x for x in two.axis)
         back = two.seen.resolve(
             minus(minus(_sum(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2]))
         )
@@ -264,8 +266,12 @@ def braking_of(pitch: Pitch) -> Wrench:
     """Action of a unit of friction on the first gear: a couple against its turning on the second,
     or a force against sliding.
     """
-    way = along(pitch.relative, length(pitch.relative))
-    return Wrench(way, cross(pitch.arm, way)) if pitch.kind == "crossed" else Wrench(couple=way)
+    direction = along(pitch.relative, length(pitch.relative))
+    return (
+        Wrench(direction, cross(pitch.arm, direction))
+        if pitch.kind == "crossed"
+        else Wrench(couple=direction)
+    )
 
 
 def loss_of(
@@ -279,11 +285,11 @@ def loss_of(
     mu: Expression | None,
 ) -> tuple[Loss, list[Fit]]:
     """The law of a loss. Raises :class:`.DeclarationError` for numbers that cannot be."""
-    own = mechanism.own
+    ownership = mechanism.own
     if (mu is None) == (pitch.kind == "crossed") or (mu is not None and efficiency is not None):
         raise DeclarationError(f"{what}: expected mu= for crossed axes, efficiency= for others")
     if mu is not None:
-        value = own.expression(f"{what}: mu", mu)
+        value = ownership.expression(f"{what}: mu", mu)
         fits = at_least(what, "mu must not be negative", value, 0.0, value)
         # The force at right angles to the teeth, of that along the pitch circle.
         cosine = (
@@ -292,7 +298,7 @@ def loss_of(
             else math.cos(teeth.pressure)
         )
         return Loss(f"{name}:loss", value * length(pitch.force) / cosine, 0.0, first.turns), fits
-    value = own.expression(f"{what}: efficiency", efficiency)
+    value = ownership.expression(f"{what}: efficiency", efficiency)
     fits = share(what, value)
     q, radius = length(pitch.relative), teeth.radii[0]
     k = dot(pitch.axis, pitch.relative) / q

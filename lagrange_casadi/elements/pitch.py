@@ -210,17 +210,17 @@ def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: 
     e = along(away, distance)
     t = cross(u, e)
     cosine, sine = dot(u, v), dot(u, cross(v, e))
-    leans = [(way * teeth.ratio * r1 / r2 - cosine) / sine for way in (1, -1)]
+    leans = [(sign * teeth.ratio * r1 / r2 - cosine) / sine for sign in (1, -1)]
     right = [numbers.of(lean) < 0.0 for lean in leans]
     if right[0] == right[1]:
         raise DeclarationError(
             f"{what}: radii and numbers of teeth do not fit the angle between its axes"
         )
-    way = 1 if right[0] == teeth.right else -1
-    lean = leans[0] if way == 1 else leans[1]
+    sign = 1 if right[0] == teeth.right else -1
+    lean = leans[0] if sign == 1 else leans[1]
     force = plus(t, times(lean, u))
     apart = times(-(_tan(teeth.pressure) * root(1 + lean * lean)), e)
-    other = way * teeth.ratio * r1
+    other = sign * teeth.ratio * r1
     sliding = minus(times(r1, t), times(r1 * r2 / other, cross(v, e)))
     return Pitch("crossed", times(r1, e), force, apart, away, other, e, u, sliding, tuple(fits))
 

@@ -85,7 +85,7 @@ def planetary(
     DeclarationError
         For numbers of teeth that do not fit, and as :func:`.gears`.
     """
-    what, own = f"planetary set '{name}'", mechanism.own
+    what, ownership = f"planetary set '{name}'", mechanism.own
     if mechanism.space:
         raise DeclarationError(
             f"{what}: it lies in a plane; in space declare planets, pins and gears"
@@ -114,9 +114,9 @@ def planetary(
         raise DeclarationError(
             f"{what}: {planets} planets of {of_planet} teeth do not fit around a sun of {of_sun}"
         )
-    size = own.expression(f"{what}: module", module, "m")
+    size = ownership.expression(f"{what}: module", module, "m")
     positive(what, "module", size)
-    middle, centres = own.point(what, carrier), size * (of_sun + of_planet) / 2
+    middle, centres = ownership.point(what, carrier), size * (of_sun + of_planet) / 2
     found, pins = [], []
     for k in range(planets):
         angle = math.tau * k / planets

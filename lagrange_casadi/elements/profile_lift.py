@@ -179,9 +179,9 @@ def _normals(what: str, points: Array) -> tuple[Array, Array]:
     steps = np.hypot(*np.diff(closed, axis=0).T)
     if not steps.min() > 1e-9 * size:
         raise DeclarationError(f"{what}: points {int(np.argmin(steps)) + 1} and the next coincide")
-    way = np.concatenate([[0.0], np.cumsum(steps)])
+    arc_length = np.concatenate([[0.0], np.cumsum(steps)])
     slopes = [
-        [cell[1] for cell in curve(way.tolist(), row.tolist(), periodic=True).cells]
+        [cell[1] for cell in curve(arc_length.tolist(), row.tolist(), periodic=True).cells]
         for row in closed.T
     ]
     along = np.array(slopes).T

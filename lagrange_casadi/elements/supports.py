@@ -94,8 +94,8 @@ def two_bearings(
     DeclarationError
         If both places are one, and as declaring joints does.
     """
-    what, own = f"bearings '{name}'", mechanism.own
-    near, *ends = (own.point(what, place) for place in (housing, fixed, floating))
+    what, ownership = f"bearings '{name}'", mechanism.own
+    near, *ends = (ownership.point(what, place) for place in (housing, fixed, floating))
     if apart is None and ends[0].body is not ends[1].body:
         raise DeclarationError(
             f"{what}: the places are on two bodies; expected apart=, their distance"
@@ -103,7 +103,7 @@ def two_bearings(
     gap = (
         minus(ends[1].place, ends[0].place)[0]
         if apart is None
-        else own.expression(f"{what}: apart", apart, "m")
+        else ownership.expression(f"{what}: apart", apart, "m")
     )
     if not isinstance(gap, ca.SX) and gap == 0.0:
         raise DeclarationError(f"{what}: expected two places along the shaft, got one")
@@ -114,10 +114,10 @@ def two_bearings(
     if isinstance(mechanism, SpatialMechanism):
         pin = mechanism.spherical(names[0], near, ends[0], axis=u, second=v, turned=(u, v))
         slot = mechanism.slot(names[1], far, ends[1], axis=u, turned=(u, v))
-        turns = [one.coordinate for one in pin.axes]
-        mechanism.rough |= dict.fromkeys(turns, 0.0)
-        mechanism.turning |= dict.fromkeys(names, turns[0])
-        return Bearings(pin, slot, turns[0])
+        rotations = [one.coordinate for one in pin.axes]
+        mechanism.rough |= dict.fromkeys(rotations, 0.0)
+        mechanism.turning |= dict.fromkeys(names, rotations[0])
+        return Bearings(pin, slot, rotations[0])
     pin = mechanism.revolute(names[0], near, ends[0])
     slot = mechanism.slot(names[1], far, ends[1], axis=u[:2])
     mechanism.rough[names[0]] = _angle(mechanism, u)
@@ -169,8 +169,12 @@ def two_bushes(
     DeclarationError
         If the bushes are on two bodies or at one place, and as declaring joints does.
     """
-    what, own = f"bushes '{name}'", mechanism.own
-    start, near, far = own.point(what, rod), own.point(what, first), own.point(what, second)
+    what, ownership = f"bushes '{name}'", mechanism.own
+    start, near, far = (
+        ownership.point(what, rod),
+        ownership.point(what, first),
+        ownership.point(what, second),
+    )
     if near.body is not far.body:
         raise DeclarationError(
             f"{what}: expected two places of one body, got '{near.body.name}' and '{far.body.name}'"
@@ -192,7 +196,7 @@ def two_bushes(
     if isinstance(mechanism, SpatialMechanism):
         kind = mechanism.cylindrical if turns else mechanism.prismatic
         slide = kind(names[0], start, shoe, axis=u, turned=(u, v))
-        x, y, z = triad_of(what, between, None, own)
+        x, y, z = triad_of(what, between, None, ownership)
         turned = (x[0], y[0], z[0]), (x[1], y[1], z[1])
         pin = mechanism.universal(
             pivot, shoe, near, axis=(0.0, 1.0, 0.0), second=(0.0, 0.0, 1.0), turned=turned

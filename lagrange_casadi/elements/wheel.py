@@ -46,20 +46,20 @@ def wheel(
 
     Raises :class:`.DeclarationError` for sizes that cannot be.
     """
-    what, own = f"wheel '{name}'", mechanism.own
+    what, ownership = f"wheel '{name}'", mechanism.own
     if (mass is None) == (width is None):
         raise DeclarationError(f"{what}: expected mass=, or width= and density=")
     outer, inner = (
-        own.expression(f"{what}: radius", radius, "m"),
-        own.expression(f"{what}: bore", bore, "m"),
+        ownership.expression(f"{what}: radius", radius, "m"),
+        ownership.expression(f"{what}: bore", bore, "m"),
     )
     if isinstance(outer, float) and isinstance(inner, float) and not 0.0 <= inner < outer:
         raise DeclarationError(
             f"{what}: its bore must be smaller than its radius, got {inner:g} m in {outer:g} m"
         )
-    thick = 0.0 if width is None else own.expression(f"{what}: width", width, "m")
-    weight = own.expression(f"{what}: mass", mass, "kg") if mass is not None else None
-    density = own.expression(f"{what}: density", density)
+    thick = 0.0 if width is None else ownership.expression(f"{what}: width", width, "m")
+    weight = ownership.expression(f"{what}: mass", mass, "kg") if mass is not None else None
+    density = ownership.expression(f"{what}: density", density)
     turned = number(turned, "rad")
     whole = (
         density * math.pi * (outer * outer - inner * inner) * thick if weight is None else weight

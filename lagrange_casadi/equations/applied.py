@@ -61,7 +61,7 @@ def held_by(
     """Action of a multiplier on bodies, by the terms of its equation: a joint's coordinate, a
     place, a direction.
     """
-    multiplier, seen = (
+    multiplier, misaligned = (
         (of.multipliers, resting.counted)
         if isinstance(of, LoopEquations)
         else (of.multiplier, resting.at_state)
@@ -71,7 +71,8 @@ def held_by(
         if not ca.depends_on(expression, symbols):
             continue
         part = [
-            multiplier * seen(slope) for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)
+            multiplier * misaligned(slope)
+            for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)
         ]
         if isinstance(measure.of, Point):
             x, y, z = (*part, 0.0)[:3]
@@ -159,16 +160,16 @@ def _along(load: LineLoad, resting: Grown) -> Applied:
     """
     rotation, reach = resting.frames[load.link.name].rotation, load.reach
     forces = [_vector(resting, (x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)]
-    own = forces if load.turning else [rotation.resolve(one) for one in forces]
+    resolved = forces if load.turning else [rotation.resolve(one) for one in forces]
     whole, couple = ZERO, ZERO
-    for power, (there, here) in enumerate(zip(forces, own, strict=True)):
+    for power, (there, here) in enumerate(zip(forces, resolved, strict=True)):
         whole = plus(whole, times(reach / (power + 1), there))
         turning = cross(AXES[0], here) if power else ZERO
         couple = plus(
             couple, times(-(reach * reach) * (power / (2 * (power + 1) * (power + 2))), turning)
         )
     force = rotation.apply(whole) if load.turning else whole
-    return Applied(load.name, load.points[0], force, rotation.apply(couple), tuple(own))
+    return Applied(load.name, load.points[0], force, rotation.apply(couple), tuple(resolved))
 
 
 def _along_coordinate(

@@ -40,22 +40,22 @@ def assemble(
     driven: Collection[str],
     reactions: Collection[str],
     pushed: Collection[str] = (),
-    own: Collection[str] = (),
+    user_outputs: Collection[str] = (),
 ) -> Multibody:
     """The graphs of a frozen mechanism, with mobilities for the named joints' reactions, and for
     nothing else.
 
     ``driven`` are the joints whose motion is given, and ``pushed`` those along which efforts are
-    unknowns of their own; ``own`` names the user's outputs.
+    unknowns of their own; ``user_outputs`` names the user's outputs.
 
     The frames and gaps that positions are solved from are built without any mobility: they do not
     depend on what is wanted. Gravity is an acceleration of the ground, upward, in the frames that
     matter is weighed in (d'Alembert).
     """
-    seen = [
+    measured = [
         measure.axis.coordinate for measure in mechanism.measures.asked if measure.axis is not None
     ]
-    carried = coordinates_of(mechanism, tree, driven, {*seen, *pushed})
+    carried = coordinates_of(mechanism, tree, driven, {*measured, *pushed})
     upward = times(-1, mechanism.gravity)
     weighed = (
         Carried(acceleration=upward, own=Frame(acceleration=upward))
@@ -142,7 +142,7 @@ def assemble(
         joint for two_force_link in tree.two_force_links for joint in two_force_link.joints
     ]
     sphericals = [c.name for c in resting.coordinates if c.spherical is not None]
-    outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in own}
+    outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in user_outputs}
     efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
     for name, effort in efforts.items():
         _refuse_unmeasured(name, *mechanism.coordinates[name], tree, open_)

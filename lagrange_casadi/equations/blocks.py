@@ -160,7 +160,7 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
     found, mechanism = [], multibody.mechanism
     whole = mechanism.own.at_defaults(extent(mechanism)) if mechanism.space else 1.0
     for k, (loop, row) in enumerate(
-        (own, row) for own in loops for row in range(own.residual.numel())
+        (group, row) for group in loops for row in range(group.residual.numel())
     ):
         # What has no value at such points may be anything.
         least = _ABSENT * max(
@@ -247,16 +247,18 @@ def _peeled(
         loops: dict[LoopEquations, list[Equation]] = {}
         for equation in rows:
             loops.setdefault(equation.loop, []).append(equation)
-        for own in sorted(
+        for group in sorted(
             loops.values(),
-            key=lambda own: len(frozenset().union(*(e.present for e in own)).intersection(columns)),
+            key=lambda group: len(
+                frozenset().union(*(e.present for e in group)).intersection(columns)
+            ),
         ):
-            covered = [c for c in columns if any(c in equation.present for equation in own)]
-            block = slopes[np.ix_([row[e] for e in own], [of[c] for c in covered])]
-            if covered and len(own) < len(rows) and rank_of(block) == len(covered):
-                found.append((own, covered))
+            covered = [c for c in columns if any(c in equation.present for equation in group)]
+            block = slopes[np.ix_([row[e] for e in group], [of[c] for c in covered])]
+            if covered and len(group) < len(rows) and rank_of(block) == len(covered):
+                found.append((group, covered))
                 rows, columns = (
-                    [e for e in rows if e not in own],
+                    [e for e in rows if e not in group],
                     [c for c in columns if c not in covered],
                 )
                 break

@@ -61,9 +61,9 @@ class Column:
         thinnest = cross.thinnest
 
         def column(k: int) -> tuple[Operand, ...]:
-            own, second = effective[k] * length, thinnest.second[k]
-            euler = math.pi**2 * elasticity * second / own**2
-            slenderness = own * (thinnest.area / second) ** 0.5
+            effective_length, second = effective[k] * length, thinnest.second[k]
+            euler = math.pi**2 * elasticity * second / effective_length**2
+            slenderness = effective_length * (thinnest.area / second) ** 0.5
             critical, yield_moment = (
                 _critical(euler, strength * thinnest.area),
                 thinnest.modulus[k] * strength,

@@ -58,10 +58,10 @@ def solve_efforts(
     ``units`` are by joint what its coordinate is measured in, to tell whether a drive moves much of
     a motion or little.
     """
-    symbols, left = column(efforts.values()), column(needs.values())
-    rest = ca.substitute(left, symbols, ca.SX.zeros(symbols.numel()))
+    symbols, residual = column(efforts.values()), column(needs.values())
+    rest = ca.substitute(residual, symbols, ca.SX.zeros(symbols.numel()))
     lighter = column(1 / ca.sqrt(ca.SX(weights[name])) for name in efforts)
-    effect = ca.densify(ca.jacobian(left, symbols)).T
+    effect = ca.densify(ca.jacobian(residual, symbols)).T
     system = LinearSystem.of(ca.diag(lighter) @ effect)
     values = lighter * system.solve_transposed(-rest, ca.SX.zeros(system.free))
     moved = (

@@ -139,8 +139,8 @@ class _Pressed:
         """
         arm, lean = self.contact.arm, self.contact.lean
         if len(pressing) == 1:
-            way = arm * ca.sign(pressing[0])
-            return [unit * (way if lean is None else way + sigma * lean)]
+            direction = arm * ca.sign(pressing[0])
+            return [unit * (direction if lean is None else direction + sigma * lean)]
         share = unit * arm
         if self.contact.edges:
             one, other = (ca.sign(edge) for edge in both_edges(pressing))
@@ -236,19 +236,21 @@ def _way(
     slow, quiet = one.slowest
     # A size has a kink wherever a change of rate is nothing but rounding; comparisons with a limit
     # have none.
-    moves, turns = ca.fabs(v) > slow, ca.logic_or(acceleration > quiet, acceleration < -quiet)
+    moves, reverses = ca.fabs(v) > slow, ca.logic_or(acceleration > quiet, acceleration < -quiet)
     if one.beside:
         other, change = one.beside
         moves = ca.logic_or(moves, ca.fabs(other) > lever * slow)
-        turns = ca.logic_or(turns, ca.logic_or(change > lever * quiet, change < -lever * quiet))
+        reverses = ca.logic_or(
+            reverses, ca.logic_or(change > lever * quiet, change < -lever * quiet)
+        )
     if one.beside:
-        way = ca.if_else(moves, lever * v, lever * acceleration)
+        direction = ca.if_else(moves, lever * v, lever * acceleration)
         across = ca.if_else(moves, other, change)
-        sigma = way / ca.fmax(ca.sqrt(way * way + across * across), _NOTHING)
-        rest = ca.if_else(moves, 0, ca.logic_not(turns))
+        sigma = direction / ca.fmax(ca.sqrt(direction * direction + across * across), _NOTHING)
+        rest = ca.if_else(moves, 0, ca.logic_not(reverses))
     else:
-        way = ca.if_else(moves, v, ca.if_else(turns, acceleration, 0))
-        sigma, rest = ca.sign(way), ca.logic_not(way)
+        direction = ca.if_else(moves, v, ca.if_else(reverses, acceleration, 0))
+        sigma, rest = ca.sign(direction), ca.logic_not(direction)
     if sign is not None:
         return ca.if_else(rest, sign, sigma), rest, False
     # No number at rest: zero over zero, which of what never moves would be read as zero.
@@ -263,7 +265,7 @@ def _bend(law: _Law, laws: Sequence[_Law]) -> Expression:
     Its force is then no straight line in theirs, and need not be largest where they are at their
     limits.
     """
-    seen = [
+    measured = [
         other.rest * (law.mu * size)
         for k, other in enumerate(laws)
         if other is not law and other.rest is not None
@@ -271,7 +273,7 @@ def _bend(law: _Law, laws: Sequence[_Law]) -> Expression:
         if (size := part.seen(k)) is not None
     ]
     sliding = ca.fabs(law.sigma) * (1 if law.rest is None else 1 - law.rest)
-    return sliding * sum(seen, ca.SX(0)) if seen else None
+    return sliding * sum(measured, ca.SX(0)) if measured else None
 
 
 def _solve_block(
@@ -312,25 +314,25 @@ def _doubted(
     ``indeterminate_slopes``, row by row.
     """
     rows = iter(ca.vertsplit(indeterminate_slopes))
-    own = [
+    local = [
         law.mu
         * sum((part.contact.arm * next(rows) for part in law.pressed for _ in part.free), ca.SX(0))
         for law in laws
     ]
-    changes = own
+    changes = local
     for _ in laws:
         changes = [
             start
             + sum(
                 (
-                    law.mu * seen * changes[k]
+                    law.mu * measured * changes[k]
                     for part in law.pressed
                     for k in range(len(laws))
-                    if (seen := part.seen(k)) is not None
+                    if (measured := part.seen(k)) is not None
                 ),
                 ca.SX(0),
             )
-            for law, start in zip(laws, own, strict=True)
+            for law, start in zip(laws, local, strict=True)
         ]
     return [value + change for value, change in zip(values, changes, strict=True)]
 

@@ -53,14 +53,14 @@ class Grown:
         if displace:
             plane = not self.mechanism.space
             moves = AXES[:2] if plane else AXES
-            turns = (AXES[2:] if plane else AXES) if joint.bears_moment else ()
+            rotations = (AXES[2:] if plane else AXES) if joint.bears_moment else ()
             rates = self.mobilities[joint.name] = ca.SX.sym(
-                f"ed_{joint.name}", len(moves) + len(turns)
+                f"ed_{joint.name}", len(moves) + len(rotations)
             )
             translation, turning = ZERO, ZERO
             for k, axis in enumerate(moves):
                 translation = plus(translation, times(rates[k], axis))
-            for k, axis in enumerate(turns, len(moves)):
+            for k, axis in enumerate(rotations, len(moves)):
                 turning = plus(turning, times(rates[k], axis))
             if (
                 along
@@ -111,8 +111,10 @@ class Grown:
             symbols += [*measure.places, *measure.rates, *measure.accelerations]
             if isinstance(of, Joint):
                 assert measure.axis is not None
-                own = own_coordinate(measure.axis, self.coordinates)
-                known = turns or measure.axis.kind == "slide" or (own is not None and own.driven)
+                local = own_coordinate(measure.axis, self.coordinates)
+                known = (
+                    turns or measure.axis.kind == "slide" or (local is not None and local.driven)
+                )
                 place = (
                     place_along(of, measure.axis, self.frames, self.coordinates)
                     if known
@@ -136,9 +138,9 @@ class Grown:
         """The symbol of an angle."""
         name = of.name if axis is None else axis.coordinate
         if name not in self.turned:
-            own = None if axis is None else own_coordinate(axis, self.coordinates)
-            if own is not None:
-                variables: list[Any] = ca.vertsplit(own.variables)
+            local = None if axis is None else own_coordinate(axis, self.coordinates)
+            if local is not None:
+                variables: list[Any] = ca.vertsplit(local.variables)
                 c, s, angle = variables
             elif isinstance(of, Link) or not self.mechanism.space:
                 turn = self.frames[of.name].rotation if isinstance(of, Link) else self._between(of)
@@ -184,17 +186,17 @@ class Grown:
                 rotation.resolve(moved.speed),
                 rotation.resolve(moved.acceleration),
             )
-            own = Frame(
+            local = Frame(
                 speed=speed,
                 acceleration=acceleration,
                 rate=_rates(free),
                 angular=_accelerations(free),
             )
         else:
-            own = _own(branch, coordinates, base)
+            local = _own(branch, coordinates, base)
         return Carried(
             *motion,
-            replace(own, anchor=anchor),
+            replace(local, anchor=anchor),
             base.turns + sum(coordinate.kind != "slide" for coordinate in coordinates),
         )
 
@@ -205,20 +207,20 @@ class Grown:
         if not branch.far.body.oriented:
             return Rotation(), ZERO, ZERO
         joint, rate, angular = branch.joint, base.rate, base.angular
-        turns = [c for c in coordinates if c.kind == "angle"]
-        if turns and not turns[0].relative and not joint.turned:
-            (coordinate,) = turns
-            own = Rotation.flat(*ca.vertsplit(coordinate.variables))
+        rotations = [c for c in coordinates if c.kind == "angle"]
+        if rotations and not rotations[0].relative and not joint.turned:
+            (coordinate,) = rotations
+            local = Rotation.flat(*ca.vertsplit(coordinate.variables))
             if not coordinate.driven:
-                return own, (0.0, 0.0, coordinate.rate), (0.0, 0.0, coordinate.acceleration)
+                return local, (0.0, 0.0, coordinate.rate), (0.0, 0.0, coordinate.acceleration)
             spin, change = (
                 times(branch.sign, (0.0, 0.0, one))
                 for one in (coordinate.rate, coordinate.acceleration)
             )
             assert base.rotation.angle is not None
-            assert own.angle is not None
+            assert local.angle is not None
             return (
-                replace(own, angle=base.rotation.angle + branch.sign * own.angle),
+                replace(local, angle=base.rotation.angle + branch.sign * local.angle),
                 plus(rate, spin),
                 plus(angular, change),
             )
@@ -228,10 +230,10 @@ class Grown:
             return rotation, rotation.apply(_rates(free)), rotation.apply(_accelerations(free))
         zero = orientation(joint)
         rotation = base.rotation.then(zero.inverse) if branch.reverse else base.rotation
-        for coordinate in reversed(turns) if branch.reverse else turns:
+        for coordinate in reversed(rotations) if branch.reverse else rotations:
             direction = coordinate.axis.direction
             c, s, angle = ca.vertsplit(coordinate.variables)
-            own = Rotation.about(direction, c, s, angle)
+            local = Rotation.about(direction, c, s, angle)
             self.turning[coordinate.name] = rotation.apply(direction)
             axis = times(branch.sign, self.turning[coordinate.name])
             angular = plus(
@@ -241,7 +243,7 @@ class Grown:
                 ),
             )
             rate = plus(rate, times(coordinate.rate, axis))
-            rotation = rotation.then(own.inverse if branch.reverse else own)
+            rotation = rotation.then(local.inverse if branch.reverse else local)
         return rotation if branch.reverse else rotation.then(zero), rate, angular
 
     def along(self, joint: Joint, axis: Axis) -> Vector:
@@ -251,18 +253,18 @@ class Grown:
         parent, child = self.ends(joint)
         if axis.kind == "slide":
             return parent.rotation.apply(axis.direction)
-        turns = [one.coordinate for one in joint.axes if one.kind == "angle"]
-        number = turns.index(axis.coordinate)
-        if len(turns) < 3:
+        rotations = [one.coordinate for one in joint.axes if one.kind == "angle"]
+        number = rotations.index(axis.coordinate)
+        if len(rotations) < 3:
             return turning_axes(joint, parent, child)[number]
         # The first axis and the last one are not at right angles: each couple is at right angles to
         # the other two axes.
-        first, second, last = (self.turning[name] for name in turns)
+        first, second, last = (self.turning[name] for name in rotations)
         if number == 1:
             return second
-        own, other = (first, last) if number == 0 else (last, first)
+        local, other = (first, last) if number == 0 else (last, first)
         slope = dot(first, last)
-        return times(1 / (1 - slope * slope), minus(own, times(slope, other)))
+        return times(1 / (1 - slope * slope), minus(local, times(slope, other)))
 
 
 def coordinates_of(
@@ -281,10 +283,10 @@ def coordinates_of(
         joint, near, far = branch.joint, branch.near.body.name, branch.far.body
         if joint.holds_direction and near in turned:
             turned[far.name] = (turned[near][0] + branch.sign * joint.angle, turned[near][1])
-        own: list[Coordinate] = []
-        turns = [axis.coordinate for axis in joint.axes_of(far) if axis.kind == "angle"]
+        local: list[Coordinate] = []
+        rotations = [axis.coordinate for axis in joint.axes_of(far) if axis.kind == "angle"]
         spherical = None
-        if len(turns) == 3 and not {*turns} & {*driven, *given}:
+        if len(rotations) == 3 and not {*rotations} & {*driven, *given}:
             spherical = SphericalCoordinates.of(joint, near, reverse=branch.reverse)
         for axis in joint.axes_of(far):
             name, drives = axis.coordinate, axis.coordinate in driven
@@ -292,7 +294,7 @@ def coordinates_of(
                 ca.SX.sym(f"{name}{end}") for end in ("", "_rate", "_acceleration")
             )
             if axis.kind == "slide":
-                own.append(Coordinate(name, far.name, axis, drives, q, rate, rate, acceleration))
+                local.append(Coordinate(name, far.name, axis, drives, q, rate, rate, acceleration))
                 continue
             if spherical is not None:
                 continue
@@ -306,7 +308,7 @@ def coordinates_of(
             c, s = ca.SX.sym(f"cos_{name}"), ca.SX.sym(f"sin_{name}")
             variables, change = ca.vertcat(c, s, q), ca.vertcat(-s * spin, c * spin, rate)
             relative = mechanism.space or (drives and near not in turned)
-            own.append(
+            local.append(
                 Coordinate(
                     name,
                     far.name,
@@ -321,10 +323,10 @@ def coordinates_of(
                 )
             )
         if spherical is not None:
-            own += _of_spherical(
+            local += _of_spherical(
                 spherical, far.name, [axis for axis in joint.axes_of(far) if axis.kind == "angle"]
             )
-        found[joint.name] = tuple(own)
+        found[joint.name] = tuple(local)
     return found
 
 
@@ -410,13 +412,13 @@ def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Fr
             motion = _slid(motion, direction, coordinate)
         # A point has no axes of its own: the ground's.
         return replace(_seen_from(motion, base.rotation.inverse), rate=ZERO, angular=ZERO)
-    zero, turns = orientation(branch.joint), [c for c in coordinates if c.kind == "angle"]
+    zero, rotations = orientation(branch.joint), [c for c in coordinates if c.kind == "angle"]
     if branch.reverse:
         motion = _seen_from(motion, zero.inverse)
     else:
         for direction, coordinate in slides:
             motion = _slid(motion, direction, coordinate)
-    for coordinate in reversed(turns) if branch.reverse else turns:
+    for coordinate in reversed(rotations) if branch.reverse else rotations:
         turn = Rotation.about(coordinate.axis.direction, *ca.vertsplit(coordinate.variables))
         axis = times(branch.sign, coordinate.axis.direction)
         change = plus(

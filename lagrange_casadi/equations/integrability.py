@@ -97,9 +97,9 @@ def no_rates(
     across = [ca.SX(k, 0), ca.SX(k, 0)]
     for e, e_rate in zip(_split(mobilities), _split(mobility_rates), strict=False):
         by_mobility = ca.jacobian(graphs, e)
-        own = ca.SX(by_mobility.sparsity(), 1)
+        rows_here = ca.SX(by_mobility.sparsity(), 1)
         across[0] = ca.horzcat(
-            across[0], course.derivative(ca.densify(ca.jacobian(graphs, e_rate))) * own
+            across[0], course.derivative(ca.densify(ca.jacobian(graphs, e_rate))) * rows_here
         )
         across[1] = ca.horzcat(across[1], by_mobility)
     moving = ca.vertcat(course.coordinates, course.rates, course.time, course.accelerations)
@@ -164,9 +164,10 @@ def no_rates(
 
 def _others(graphs: ca.SX, known: ca.SX) -> ca.SX:
     """The symbols of graphs that are not among those that are known, one column."""
-    own = {symbol.element_hash() for symbol in _split(known)}
+    rows_here = {symbol.element_hash() for symbol in _split(known)}
     return ca.vertcat(
-        ca.SX(0, 1), *(symbol for symbol in ca.symvar(graphs) if symbol.element_hash() not in own)
+        ca.SX(0, 1),
+        *(symbol for symbol in ca.symvar(graphs) if symbol.element_hash() not in rows_here),
     )
 
 

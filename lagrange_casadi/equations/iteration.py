@@ -117,8 +117,10 @@ class Iterated:
         added, start = [], 0
         for k, part in enumerate(self.parts):
             size = 3 if k in self.sphericals else 1
-            own = correction[start : start + size]
-            added.append(turn(part, own) - part if k in self.sphericals else own)
+            block_correction = correction[start : start + size]
+            added.append(
+                turn(part, block_correction) - part if k in self.sphericals else block_correction
+            )
             start += size
         return column(added)
 
@@ -145,9 +147,9 @@ def place_roughly(
                 ),
             )
             continue
-        turns = [posture.get(c, 0.0) for c in multibody.coordinates if c.spherical is spherical]
+        angles = [posture.get(c, 0.0) for c in multibody.coordinates if c.spherical is spherical]
         axes = np.array(
-            numbers.of(spherical.turned_by(turns, multibody.frames[spherical.near].rotation))
+            numbers.of(spherical.turned_by(angles, multibody.frames[spherical.near].rotation))
         )
         numbers.note(spherical.axes, axes.tolist())
         found[spherical] = quaternion_of(axes.reshape(3, 3))

@@ -35,13 +35,13 @@ def residual_motion(joint: Joint, parent: Frame, child: Frame) -> tuple[Vector, 
     """Velocity and acceleration of a joint's point on the child, less those of the parent's point
     that it is at, in ground axes.
     """
-    own = child.motion_of(joint.child.place)
+    local = child.motion_of(joint.child.place)
     under = (
         parent.motion_at(child.place_of(joint.child.place))
         if joint.slides
         else parent.motion_of(joint.parent.place)
     )
-    return minus(own[0], under[0]), minus(own[1], under[1])
+    return minus(local[0], under[0]), minus(local[1], under[1])
 
 
 def slide(joint: Joint, parent: Frame, child: Frame, along: Vector) -> Expression:
@@ -77,12 +77,12 @@ def turned(joint: Joint, number: int, parent: Frame, child: Frame) -> Expression
     """
     if joint.turned is None:
         return child.rotation.against(parent.rotation).angle
-    seen = misalignment(joint, parent, child)
+    misaligned = misalignment(joint, parent, child)
     first, second, third = (_at_zero(joint, direction) for direction in _triad(joint))
     if number == 0:
-        there = seen.apply(second)
+        there = misaligned.apply(second)
         return ca.atan2(dot(there, third), dot(there, second))
-    there = seen.resolve(first)
+    there = misaligned.resolve(first)
     return ca.atan2(dot(there, third), dot(there, first))
 
 
@@ -120,14 +120,19 @@ def reaction(
     """
     force: Vector = (0.0, 0.0, 0.0)
     moment: Vector = (0.0, 0.0, 0.0)
-    places = [way for _, way in _across(joint, parent)]
-    for k, way in enumerate(places):
-        force = plus(force, times(multipliers[k], way))
+    places = [direction for _, direction in _across(joint, parent)]
+    for k, direction in enumerate(places):
+        force = plus(force, times(multipliers[k], direction))
     held = _held(joint)
     if held:
-        base, seen = parent.rotation.then(orientation(joint)), misalignment(joint, parent, child)
-        for k, (own, across) in enumerate(held, len(places)):
-            moment = plus(moment, times(multipliers[k], base.apply(cross(seen.apply(own), across))))
+        base, misaligned = (
+            parent.rotation.then(orientation(joint)),
+            misalignment(joint, parent, child),
+        )
+        for k, (local, across) in enumerate(held, len(places)):
+            moment = plus(
+                moment, times(multipliers[k], base.apply(cross(misaligned.apply(local), across)))
+            )
     return force, moment
 
 
@@ -162,30 +167,30 @@ def turning_axes(joint: Joint, parent: Frame, child: Frame) -> list[Vector]:
     """The axes in ground axes about which a joint that bears a moment lets its child turn, at right
     angles to each other.
     """
-    turns = [
+    rotations = [
         joint.triad[freedom.direction] for freedom in joint.freedoms if freedom.move != "slide"
     ]
-    own = [_at_zero(joint, direction) for direction in turns[1:]]
-    return [*map(parent.rotation.apply, turns[:1]), *map(child.rotation.apply, own[:1])]
+    local = [_at_zero(joint, direction) for direction in rotations[1:]]
+    return [*map(parent.rotation.apply, rotations[:1]), *map(child.rotation.apply, local[:1])]
 
 
 def off(joint: Joint, parent: Frame, child: Frame) -> Expression | None:
     """One less the cosine of what the directions that a joint holds are off; None where half a turn
     off is as good.
     """
-    turns = [f for f in joint.freedoms if f.move != "slide"]
-    seen = misalignment(joint, parent, child)
-    if not turns:
+    rotations = [f for f in joint.freedoms if f.move != "slide"]
+    misaligned = misalignment(joint, parent, child)
+    if not rotations:
         # Of a plane the trace is 1 + 2 cos.
         return (
-            1 - seen.c
-            if seen.angle is not None
-            else 1 - (seen.x[0] + seen.y[1] + seen.z[2] - 1) / 2
+            1 - misaligned.c
+            if misaligned.angle is not None
+            else 1 - (misaligned.x[0] + misaligned.y[1] + misaligned.z[2] - 1) / 2
         )
-    if len(turns) > 1 or joint.turned is None:
+    if len(rotations) > 1 or joint.turned is None:
         return None
-    axis = _at_zero(joint, joint.triad[turns[0].direction])
-    return 1 - dot(axis, seen.apply(axis))
+    axis = _at_zero(joint, joint.triad[rotations[0].direction])
+    return 1 - dot(axis, misaligned.apply(axis))
 
 
 def misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
@@ -260,13 +265,13 @@ def _residuals_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterat
     held = _held(joint)
     if not held:
         return
-    base, seen = parent.rotation.then(orientation(joint)), misalignment(joint, parent, child)
+    base, misaligned = parent.rotation.then(orientation(joint)), misalignment(joint, parent, child)
     rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
     turning = Frame(
         rate=base.resolve(rate), angular=base.resolve(minus(angular, cross(parent.rate, rate)))
     )
-    for own, across in held:
-        there = seen.apply(own)
+    for local, across in held:
+        there = misaligned.apply(local)
         speed, acceleration = turning.motion_of(there)
         yield dot(there, across), dot(speed, across), dot(acceleration, across)
 

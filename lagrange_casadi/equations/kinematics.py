@@ -104,9 +104,9 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
             # A loop whose way is open may have to be closed in the other one: the last such loop
             # first.
             open_ = solver.undecided.ways[len(solver.ways) :]
-            for k, (_, ways) in enumerate(open_):
+            for k, (_, modes) in enumerate(open_):
                 waiting += [
-                    (*solver.ways, *(0,) * k, other) for other in reversed(range(1, len(ways)))
+                    (*solver.ways, *(0,) * k, other) for other in reversed(range(1, len(modes)))
                 ]
             if not waiting or tried == _WAYS - 1:
                 raise
@@ -269,7 +269,7 @@ class _Solver:
             number = len(self.undecided.ways)
             first = self.ways[number] if number < len(self.ways) else 0
             near = near[first:] + near[:first]
-            ways = [
+            modes = [
                 {
                     c: x if round(x, _READ[c.kind]) else 0.0
                     for c, x in _numbers(form.unknown, values[signs]).items()
@@ -277,10 +277,12 @@ class _Solver:
                 for signs in near
             ]
             words = [
-                " with ".join(describe_coordinate(c.posture_key, c.kind, x) for c, x in way.items())
-                for way in ways
+                " with ".join(
+                    describe_coordinate(c.posture_key, c.kind, x) for c, x in mode.items()
+                )
+                for mode in modes
             ]
-            self.undecided.note_ways(block, ways, words, self.numbers.of(self.length)[0])
+            self.undecided.note_ways(block, modes, words, self.numbers.of(self.length)[0])
         return near[0]
 
     def _distance(self, form: ClosedForm, values: Sequence[float]) -> float:
@@ -464,15 +466,16 @@ class _Solver:
             for c in self.multibody.coordinates
             if c.spherical is spherical
         ]
-        turns = ca.vertcat(*self.multibody.turns_of(spherical).angles)
-        ways = {
-            side: self.numbers.of(ca.substitute(turns, spherical.side, side)) for side in (1, -1)
+        angles = ca.vertcat(*self.multibody.turns_of(spherical).angles)
+        modes = {
+            side: self.numbers.of(ca.substitute(angles, spherical.side, side)) for side in (1, -1)
         }
         apart = {
             side: sum(
-                abs(math.remainder(a - b, math.tau)) for a, b in zip(rough, ways[side], strict=True)
+                abs(math.remainder(a - b, math.tau))
+                for a, b in zip(rough, modes[side], strict=True)
             )
-            for side in ways
+            for side in modes
         }
         return -1 if apart[-1] < apart[1] else 1
 

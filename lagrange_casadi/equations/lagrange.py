@@ -169,16 +169,16 @@ class LagrangeSystem:
 
     def _check_roles(self) -> None:
         """Raise for a symbol that is to be two things."""
-        seen: dict[int, str] = {}
+        known: dict[int, str] = {}
         for name in (*_SYMBOLS, "time"):
             symbols = getattr(self, name)
             for symbol in ca.vertsplit(symbols) if symbols is not None and symbols.numel() else ():
-                if symbol.element_hash() in seen:
+                if symbol.element_hash() in known:
                     raise DeclarationError(
-                        f"symbol '{symbol}' stands both in {seen[symbol.element_hash()]} and in"
+                        f"symbol '{symbol}' stands both in {known[symbol.element_hash()]} and in"
                         f" {name}"
                     )
-                seen[symbol.element_hash()] = name
+                known[symbol.element_hash()] = name
 
     def _check_graphs(self) -> None:
         """Raise for a graph that depends on what it may not, and for a time that is not said to be
@@ -240,10 +240,10 @@ class LagrangeSystem:
             for k, velocity in enumerate(self.velocities.nonzeros())
             if velocity.element_hash() in symbols
         ]
-        own = no_rates(
+        rates_given = no_rates(
             ca.SX(self.velocity_graphs)[bearing], course, self.mobilities, self.mobility_rates
         )
-        wrong = [bearing[k] for k in own]
+        wrong = [bearing[k] for k in rates_given]
         if wrong:
             late = "" if self.time is not None else ", or it depends on time and 'time' is not set"
             raise DeclarationError(
@@ -287,11 +287,11 @@ class LagrangeSystem:
         # What several velocities share, they share by name, so that the reverse sweep adds up the
         # forces that meet there first.
         w, graphs = self.velocities, ca.cse(ca.SX(self.velocity_graphs))
-        seen = self._at_rest(graphs)
+        known = self._at_rest(graphs)
         # The mobilities stay at rest: neither e nor e' moves in the total time derivative of the
         # momenta.
         w_change = (
-            course.derivative(seen)
+            course.derivative(known)
             if self.velocity_rates is None
             else self._at_rest(self.velocity_rates)
         )
@@ -309,7 +309,7 @@ class LagrangeSystem:
         terms -= ca.vertcat(
             course.along_rates(by_place), by_mobility if self.mobilities.numel() else ca.SX.zeros(k)
         )
-        along, across = ca.vertsplit(ca.substitute(terms, w, seen), [0, n, n + k])
+        along, across = ca.vertsplit(ca.substitute(terms, w, known), [0, n, n + k])
         if self.forces is not None:
             along -= self.forces
         if self.mobility_forces is not None:

@@ -193,29 +193,30 @@ def least_energy(
 
     through = [ca.sumsqr(loaded[name]) > least for name in firm]
     stiff = ca.vertcat(ca.SX(0, free.numel()), *(loaded[name] for name in firm))
-    units = [(way, ca.SX(1)) for way in ca.horzsplit(ca.SX.eye(free.numel()))]
+    units = [(mode, ca.SX(1)) for mode in ca.horzsplit(ca.SX.eye(free.numel()))]
     apart = _apart(units, stiff, ca.SX.ones(stiff.shape[0]), stiff, least)
 
     strained, bent, weights = _strains(beams, free)
     bending = ca.vertcat(ca.SX(0, free.numel()), *(loaded[name] for name in soft))
-    chosen = _apart([(way.way, 1 - way.does) for way in apart], bent, weights, bending, least)
-    x, left = ca.SX.zeros(free.numel()), strained
-    for way in chosen:
-        share = ca.dot(way.weighed, left) * way.inverse
-        x, left = x - share * way.way, left - share * way.made
+    chosen = _apart([(mode.way, 1 - mode.does) for mode in apart], bent, weights, bending, least)
+    x, residual = ca.SX.zeros(free.numel()), strained
+    for mode in chosen:
+        share = ca.dot(mode.weighed, residual) * mode.inverse
+        x, residual = x - share * mode.way, residual - share * mode.made
 
     idle = sum(
-        (1 - stiffened.does) * (1 - way.does) for stiffened, way in zip(apart, chosen, strict=True)
+        (1 - stiffened.does) * (1 - mode.does)
+        for stiffened, mode in zip(apart, chosen, strict=True)
     )
     return LeastEnergy(
         x=x,
         ways=ca.horzcat(
-            *((1 - way.does) * _relaxed(way, chosen[k + 1 :]) for k, way in enumerate(chosen))
+            *((1 - mode.does) * _relaxed(mode, chosen[k + 1 :]) for k, mode in enumerate(chosen))
         ),
         firm=firm,
         through=column(through),
         idle=ca.SX(idle),
-        chosen=ca.SX(sum(way.does for way in chosen)),
+        chosen=ca.SX(sum(mode.does for mode in chosen)),
         residual=_residual(chosen, x, *_strains(beams, free, _FINER)),
     )
 
@@ -248,23 +249,23 @@ def _apart(
     ``least``, a square.
     """
     found: list[_Way] = []
-    for way, may in ways:
-        made = rows @ way
+    for mode, may in ways:
+        made = rows @ mode
         for before in found:
             share = ca.dot(before.weighed, made) * before.inverse
-            way, made = way - share * before.way, made - share * before.made
-        does = may * (ca.sumsqr(measure @ way) > least) if measure.numel() else ca.SX(0)
+            mode, made = mode - share * before.way, made - share * before.made
+        does = may * (ca.sumsqr(measure @ mode) > least) if measure.numel() else ca.SX(0)
         weighed = weights * made
         found.append(
-            _Way(way, made, weighed, does, does / ca.if_else(does, ca.dot(weighed, made), 1))
+            _Way(mode, made, weighed, does, does / ca.if_else(does, ca.dot(weighed, made), 1))
         )
     return found
 
 
-def _relaxed(way: _Way, later: Sequence[_Way]) -> Expression:
+def _relaxed(mode: _Way, later: Sequence[_Way]) -> Expression:
     """A way, with what is chosen along later ones when it changes."""
-    return way.way - sum(
-        (ca.dot(other.weighed, way.made) * other.inverse * other.way for other in later), ca.SX(0)
+    return mode.way - sum(
+        (ca.dot(other.weighed, mode.made) * other.inverse * other.way for other in later), ca.SX(0)
     )
 
 
@@ -305,12 +306,12 @@ def _residual(
     whole = strained + bent @ x
     size = ca.fmax(ca.dot(weights * whole, whole), ca.dot(weights * strained, strained))
     found = ca.SX(0)
-    for way in chosen:
-        made = bent @ way.way
+    for mode in chosen:
+        made = bent @ mode.way
         product = ca.dot(weights * made, made) * size
         found = ca.fmax(
             found,
-            way.does * ca.dot(weights * made, whole) ** 2 / ca.if_else(product > 0, product, 1),
+            mode.does * ca.dot(weights * made, whole) ** 2 / ca.if_else(product > 0, product, 1),
         )
     return ca.sqrt(found)
 

@@ -91,16 +91,17 @@ def solve_in_turn(
     forms: list[ClosedForm] = []
     rest = list(unknown)
     for equation in sorted(equations, key=lambda equation: len(held((equation,), unknown))):
-        own = held((equation,), rest)
+        held_alone = held((equation,), rest)
         form = (
-            _matching(equation, own, coordinates) or _spanned(equation, own, coordinates)
-            if len(own) == 1
+            _matching(equation, held_alone, coordinates)
+            or _spanned(equation, held_alone, coordinates)
+            if len(held_alone) == 1
             else None
         )
         if form is None:
             return ()
-        forms.append(replace(form, unknown=tuple(own)))
-        rest.remove(own[0])
+        forms.append(replace(form, unknown=tuple(held_alone)))
+        rest.remove(held_alone[0])
     return tuple(forms)
 
 
@@ -211,7 +212,7 @@ def solves(forms: Sequence[ClosedForm], phi: ca.SX, coordinates: Sequence[Coordi
     symbols = column(c.variables for form in forms for c in form.unknown)
     # The size of what is added up in an equation: its slopes times what they are slopes of.
     size = ca.mmax(ca.fabs(ca.jacobian(phi, symbols)) @ ca.fabs(symbols))
-    left = ca.vertcat(phi, size)
+    residual = ca.vertcat(phi, size)
     for form in reversed(forms):
         # Beside their squares: where links do not reach, by far where they are short, both are
         # large and imaginary.
@@ -220,16 +221,20 @@ def solves(forms: Sequence[ClosedForm], phi: ca.SX, coordinates: Sequence[Coordi
             (ca.sumsqr(pair) - 1) / (ca.sumsqr(ca.fabs(pair[0]) + ca.fabs(pair[1])) + 1)
             for pair in pairs
         ]
-        left = ca.vertcat(left[:-1], *(left[-1] * off for off in directions), left[-1])
-        left = ca.substitute(
-            left, column(c.variables for c in form.unknown), column(form.variables)
+        residual = ca.vertcat(
+            residual[:-1], *(residual[-1] * off for off in directions), residual[-1]
+        )
+        residual = ca.substitute(
+            residual, column(c.variables for c in form.unknown), column(form.variables)
         )
     branches = column(branch for form in forms for branch in form.branches)
     ways = [
-        ca.substitute(left, branches, ca.SX(ca.DM(signs)))
+        ca.substitute(residual, branches, ca.SX(ca.DM(signs)))
         for signs in product((1, -1), repeat=branches.numel())
     ]
-    return vanish(column(way[:-1] for way in ways), coordinates, column(way[-1] for way in ways))
+    return vanish(
+        column(branch[:-1] for branch in ways), coordinates, column(branch[-1] for branch in ways)
+    )
 
 
 def _affine(phi: ca.SX, symbols: ca.SX, all_unknown: ca.SX) -> tuple[ca.SX, ca.SX] | None:

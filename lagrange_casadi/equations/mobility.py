@@ -255,13 +255,13 @@ def _section_law(
     law = [*along, *beside, about[2]]
     for plane in above:
         law += [*plane, about[1], about[0]]
-    own = {
+    local = {
         Output("law", name, member): ca.SX(value)
         for member, value in zip(law_members(space), law, strict=True)
     }
     frame = multibody.accelerated[name].along_axis()
     return (
-        own
+        local
         | load_points
         | distributed_loads(multibody, link)
         | rotary(multibody, link, frame.rate, frame.angular)
@@ -350,12 +350,12 @@ def _loads_on(
             if point.body is not link or joint.name not in found:
                 continue
             # The parent's axes are as near as the joint; another way leads by the ground's.
-            own = multibody.mechanism.space and point is joint.parent
-            action = found[joint.name].own if own else found[joint.name].ground
+            local = multibody.mechanism.space and point is joint.parent
+            action = found[joint.name].own if local else found[joint.name].ground
             for axis in joint.axes:
                 if axis.coordinate in drives:
                     along = multibody.along[axis.coordinate]
-                    if own:
+                    if local:
                         along = axis.direction if len(joint.axes) == 1 else rotation.resolve(along)
                     push = times(drives[axis.coordinate], along)
                     action += Action(couple=push) if axis.kind == "angle" else Action(push)
@@ -370,18 +370,18 @@ def _loads_on(
             else:
                 x = at_end(point)
             action = action if sign > 0 else -action
-            yield joint.name, (x, y, z), action if own else action.seen(rotation)
-    seen: dict[str, int] = {}
+            yield joint.name, (x, y, z), action if local else action.seen(rotation)
+    counts: dict[str, int] = {}
     m = multibody.mechanism
     acting = {*m.joints, *m.loads, *m.constraints, *m.rows}
     for part in (*multibody.applied, *multibody.held):
         if part.point.body is link and part.distributed is None and not _at_base(part.point):
             x = None if part.point.end == "tip" else at_end(part.point)
             name = part.source
-            while seen.setdefault(part.source, 0) and name in acting:
-                seen[part.source] += 1
-                name = f"{part.source}_{seen[part.source]}"
-            seen[part.source] = max(seen[part.source], 1)
+            while counts.setdefault(part.source, 0) and name in acting:
+                counts[part.source] += 1
+                name = f"{part.source}_{counts[part.source]}"
+            counts[part.source] = max(counts[part.source], 1)
             yield name, (x, *part.point.place[1:]), Action(part.force, part.couple).seen(rotation)
 
 
@@ -396,8 +396,8 @@ def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Expressi
     """
     rotation = multibody.frames[joint.parent.body.name].rotation
     if joint.name in multibody.own_axes:
-        own = _on_parent(multibody, joint, actions)
-        return Reaction(own.seen(rotation.inverse), own)
+        local = _on_parent(multibody, joint, actions)
+        return Reaction(local.seen(rotation.inverse), local)
     ground = _in_ground_axes(multibody, joint, actions)
     return Reaction(ground, ground.seen(rotation))
 
@@ -429,11 +429,13 @@ def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, ca.SX])
     the joint's own turns.
     """
     force, moment = _on_child(multibody, joint, actions)
-    turns = [
+    rotations = [
         own_coordinate(axis, multibody.coordinates) for axis in joint.axes if axis.kind == "angle"
     ]
     turned = [
-        Rotation.about(c.axis.direction, *ca.vertsplit(c.variables)) for c in turns if c is not None
+        Rotation.about(c.axis.direction, *ca.vertsplit(c.variables))
+        for c in rotations
+        if c is not None
     ] + [orientation(joint)]
     if joint.child.body is _branch(multibody, joint).far.body:
         for rotation in reversed(turned):
@@ -459,11 +461,11 @@ def _on_child(
     return (action[0], action[1], 0.0), (0.0, 0.0, action[2]) if joint.bears_moment else ZERO
 
 
-def _on_joint_axes(joint: Joint, own: Action) -> dict[Column, Expression]:
+def _on_joint_axes(joint: Joint, local: Action) -> dict[Column, Expression]:
     """A reaction on the axes of a joint's triad, which its parent carries: what ideal joints leave
     open lies along one of these.
     """
-    values = [dot(one, vector) for vector in (own.force, own.couple) for one in joint.triad]
+    values = [dot(one, vector) for vector in (local.force, local.couple) for one in joint.triad]
     names = local_members(moment=joint.bears_moment)
     return {
         Output("reaction", joint.name, name): ca.SX(value)

@@ -119,14 +119,14 @@ class Moving:
         """Checks that loops close, and that rows and curves are kept to."""
         body, solved = self.body, self.solved
         columns = _beyond(body, _seeing(body, self.want))
-        seen = (
+        measured = (
             (loop.name, ca.vertsplit(loop.seen))
             for loop in body.loop_equations
             if loop.seen is not None
         )
         columns |= {
             Check("seen", f"{name}:{k}"): value
-            for name, values in seen
+            for name, values in measured
             for k, value in enumerate(values)
         }
         columns |= _locks(self.scene.mechanism, body, forces=self.want.forces)
@@ -167,9 +167,11 @@ class Moving:
             if output.member in ("", "angle") and output.unit(kinds) == ANGLE
         }
         loop_angles = {
-            output: turns
-            for output, turns in _turns(reported if wrapped else {}, wrapped | counted).items()
-            if not wrapped.keys().isdisjoint(turns)
+            output: revolutions
+            for output, revolutions in _turns(
+                reported if wrapped else {}, wrapped | counted
+            ).items()
+            if not wrapped.keys().isdisjoint(revolutions)
         }
         loop_angles |= {output: {output: 1} for output in _within_a_turn(mechanism, body, motions)}
         whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
@@ -181,7 +183,7 @@ class Moving:
         columns = {
             check: value
             for check, value in whole.items()
-            if any(check in turns for turns in loop_angles.values())
+            if any(check in revolutions for revolutions in loop_angles.values())
         }
         return columns | dict(motions.items()) | _untold(body, motions), loop_angles
 
@@ -234,12 +236,12 @@ def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Colum
     """
     found: dict[Column, Any] = {}
     for joint in mechanism.joints.values():
-        turns = [
+        revolutions = [
             own_coordinate(axis, body.coordinates) for axis in joint.axes if axis.kind == "angle"
         ]
-        own = [turn for turn in turns if turn is not None]
-        if len(own) == 3 and (forces or not all(turn.driven for turn in own)):
-            found[Check("gimbal", joint.name)] = ca.cos(own[1].value) ** 2
+        known = [turn for turn in revolutions if turn is not None]
+        if len(known) == 3 and (forces or not all(turn.driven for turn in known)):
+            found[Check("gimbal", joint.name)] = ca.cos(known[1].value) ** 2
     return found
 
 
@@ -269,17 +271,17 @@ def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Expres
     """
     columns: dict[Column, Any] = {}
     for spherical in body.sphericals:
-        turns = [axis.coordinate for axis in spherical.joint.axes if axis.kind == "angle"]
+        revolutions = [axis.coordinate for axis in spherical.joint.axes if axis.kind == "angle"]
         locked = body.turns_of(spherical).locked
         outputs = (
             Output("motion", name, member)
-            for name in turns
+            for name in revolutions
             for member in ("", "rate", "acceleration")
         )
         columns |= {
             Check("open", output): locked
             for output in outputs
-            if output != Output("motion", turns[1]) and output in motions
+            if output != Output("motion", revolutions[1]) and output in motions
         }
     return columns
 
@@ -328,12 +330,12 @@ def _within_a_turn(
         for _, axis in mechanism.coordinates.values()
         if mechanism.space and axis.kind == "angle"
     ]
-    seen = [
+    measured = [
         Output("motion", axis.coordinate)
         for axis in angles
         if own_coordinate(axis, body.coordinates) is None
     ]
-    return [output for output in seen if output in motions]
+    return [output for output in measured if output in motions]
 
 
 def _known_by(coordinate: Coordinate) -> Output:

@@ -300,9 +300,9 @@ def place_along(
     """A joint's coordinate along an axis; an angle counts turns, but where loops set it is known up
     to them only.
     """
-    own = own_coordinate(axis, coordinates)
-    if own is not None:
-        return own.value
+    coordinate = own_coordinate(axis, coordinates)
+    if coordinate is not None:
+        return coordinate.value
     parent, child = (frames[body.name] for body in joint.bodies)
     if axis.kind == "slide":
         return ca.SX(slide(joint, parent, child, axis.direction))
@@ -316,16 +316,19 @@ def rates_along(
     joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]
 ) -> tuple[Expression, Expression]:
     """Rate and acceleration of a joint's coordinate along an axis."""
-    own = own_coordinate(axis, coordinates)
-    if own is not None:
-        return own.rate, own.acceleration
+    coordinate = own_coordinate(axis, coordinates)
+    if coordinate is not None:
+        return coordinate.rate, coordinate.acceleration
     parent, child = (frames[body.name] for body in joint.bodies)
     if axis.kind == "slide":
         rate, acceleration = slide_motion(joint, parent, child, axis.direction)
         return ca.SX(rate), ca.SX(acceleration)
     if spherical := _spherical(axis, coordinates):
-        turns, number = ThreeRotations(joint, parent, child, spherical.side), _number(joint, axis)
-        return turns.rates[number], turns.accelerations[number]
+        rotations, number = (
+            ThreeRotations(joint, parent, child, spherical.side),
+            _number(joint, axis),
+        )
+        return rotations.rates[number], rotations.accelerations[number]
     _refuse_three(joint)
     rate, acceleration = turning(joint, _number(joint, axis), parent, child)
     return ca.SX(rate), ca.SX(acceleration)

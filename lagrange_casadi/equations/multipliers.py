@@ -27,20 +27,20 @@ def multipliers_of(
     meshed = transmissions_of(multibody.mechanism)
     every = column(loop.multipliers for loop in multibody.loop_equations if loop.name not in meshed)
     for block, system in reversed(list(zip(kinematics.blocks, kinematics.systems, strict=True))):
-        own = block.multipliers
-        left = column(rows[c] for c in block.unknown)
-        left = ca.substitute(left, symbols, values)
+        local = block.multipliers
+        residual = column(rows[c] for c in block.unknown)
+        residual = ca.substitute(residual, symbols, values)
         # What no equation of theirs moves, others may still be written in, with factors that
         # cancel.
-        left = ca.substitute(left, every, ca.SX.zeros(every.numel()))
+        residual = ca.substitute(residual, every, ca.SX.zeros(every.numel()))
         open_here = ca.SX.sym(f"free_{block.loop_equations[0].name}", system.free)
         free = ca.vertcat(free, open_here)
-        found = system.solve_transposed(left, open_here)
+        found = system.solve_transposed(residual, open_here)
         if touching := [loop for loop in block.loop_equations if loop.name in meshed]:
             found, values = _where_they_touch(
                 multibody, block.loop_equations, touching, found, values
             )
-        symbols, values = ca.vertcat(own, symbols), ca.vertcat(found, values)
+        symbols, values = ca.vertcat(local, symbols), ca.vertcat(found, values)
     if multibody.rows:
         mu = column(program.multiplier for program in multibody.rows)
         replaced = [
@@ -72,17 +72,20 @@ def _where_they_touch(
     """
     sizes = [0, *itertools.accumulate(loop.multipliers.numel() for loop in loops)]
     rows = [sizes[k] for k, loop in enumerate(loops) if loop in touching]
-    symbols, own = column(loop.multipliers for loop in touching), column(found[row] for row in rows)
+    symbols, local = (
+        column(loop.multipliers for loop in touching),
+        column(found[row] for row in rows),
+    )
     every = transmissions_of(multibody.mechanism)
     idle = column(transmission.symbol for transmission in every.values())
-    own = ca.substitute(own, idle, ca.SX.zeros(idle.numel()))
+    local = ca.substitute(local, idle, ca.SX.zeros(idle.numel()))
     if all(len(transmission.meshes) == 1 for transmission in every.values()):
         others = column(loop.multipliers for loop in multibody.loop_equations if loop.name in every)
-        solved = ca.substitute(own, others, ca.SX.zeros(others.numel()))
+        solved = ca.substitute(local, others, ca.SX.zeros(others.numel()))
     else:
         slopes, rest = (
-            ca.jacobian(own, symbols),
-            ca.substitute(own, symbols, ca.SX.zeros(symbols.numel())),
+            ca.jacobian(local, symbols),
+            ca.substitute(local, symbols, ca.SX.zeros(symbols.numel())),
         )
         solved = -ca.solve(slopes, rest)
     found, values = (ca.substitute(part, symbols, solved) for part in (found, values))

@@ -97,7 +97,7 @@ class Undecided:
     def note_ways(
         self,
         block: Block,
-        ways: Sequence[Mapping[Coordinate, float]],
+        modes: Sequence[Mapping[Coordinate, float]],
         words: Sequence[str],
         length: float,
     ) -> None:
@@ -108,7 +108,7 @@ class Undecided:
         def apart(coordinate: Coordinate) -> float:
             residuals = (
                 one[coordinate] - other[coordinate]
-                for one, other in itertools.combinations(ways, 2)
+                for one, other in itertools.combinations(modes, 2)
             )
             return min(
                 (
@@ -119,9 +119,11 @@ class Undecided:
                 for residual in residuals
             )
 
-        chosen = max(ways[0], key=apart)
-        self.ways.append((block.joints, tuple({chosen.posture_key: way[chosen]} for way in ways)))
-        many = "two" if len(ways) == 2 else "several"
+        chosen = max(modes[0], key=apart)
+        self.ways.append(
+            (block.joints, tuple({chosen.posture_key: mode[chosen]} for mode in modes))
+        )
+        many = "two" if len(modes) == 2 else "several"
         self.words.append(
             f"the loop closed by {block.joints} can be assembled in {many} ways at the start of the"
             f" motion: {' or '.join(words)}"
@@ -142,10 +144,13 @@ class Undecided:
         for k in range(len(self.ways[0][1])) if len(self.ways) == 1 and not self.lacking else (0,):
             entries = [
                 posture_entry(
-                    name, not turns(multibody, name), ways[k][name], *(way[name] for way in ways)
+                    name,
+                    not turns(multibody, name),
+                    modes[k][name],
+                    *(mode[name] for mode in modes),
                 )
-                for _, ways in self.ways
-                for name in ways[k]
+                for _, modes in self.ways
+                for name in modes[k]
             ]
             entries += [
                 f"'{name}': '... deg'" if angular else f"'{name}': ..."
@@ -161,6 +166,6 @@ class Undecided:
         )
         return PostureError(
             f"{'; '.join(self.words)}; {say}{after}",
-            tuple(ways for _, ways in self.ways),
+            tuple(modes for _, modes in self.ways),
             bool(self.lacking),
         )

@@ -92,11 +92,11 @@ class FrictionContact:
 
     def of_rows(self, rows: Sequence[Expression]) -> FrictionContact:
         """Contact with other expressions."""
-        left = iter(rows)
+        remaining = iter(rows)
         contacts = tuple(
-            replace(c, pressing=tuple(next(left) for _ in c.pressing)) for c in self.contacts
+            replace(c, pressing=tuple(next(remaining) for _ in c.pressing)) for c in self.contacts
         )
-        rate, acceleration, rests, goes_on, *beside = left
+        rate, acceleration, rests, goes_on, *beside = remaining
         return FrictionContact(
             self.friction, contacts, rate, acceleration, (rests, goes_on), tuple(beside)
         )
@@ -167,10 +167,10 @@ def slowest_of(multibody: Multibody | Grown, *, slides: bool) -> tuple[Expressio
     beside those of the drives.
     """
     unit, fastest, quickest = reach(multibody.mechanism), ca.SX(0), ca.SX(0)
-    for own in (coordinate for coordinate in multibody.coordinates if coordinate.driven):
-        size = 1 if own.kind == "angle" else unit
-        fastest += ca.fabs(own.rate) / size
-        quickest += ca.fabs(own.acceleration) / size
+    for driven in (coordinate for coordinate in multibody.coordinates if coordinate.driven):
+        size = 1 if driven.kind == "angle" else unit
+        fastest += ca.fabs(driven.rate) / size
+        quickest += ca.fabs(driven.acceleration) / size
     quickest += fastest * fastest
     least = _REST * (unit if slides else 1)
     # Where the drives themselves turn back, their rates are rounding; their accelerations tell how

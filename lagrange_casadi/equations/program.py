@@ -241,8 +241,8 @@ class Program(Graphs):
         completion = Completion.loads(kept["completion"]) if "completion" in kept else None
         data = ModelData.loads(kept["data"])
         content: dict[str, Any] = {
-            name: tuple(own) if isinstance(own, list) else own
-            for name, own in kept["wanted"].items()
+            name: tuple(names) if isinstance(names, list) else names
+            for name, names in kept["wanted"].items()
         }
         wanted = Wanted(**content)
         return cls(

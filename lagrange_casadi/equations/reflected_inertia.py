@@ -58,12 +58,12 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
     )
     still = body.mobility_rates
     energy = solved.evaluate(ca.substitute(energy, still, ca.SX.zeros(still.numel())))
-    own = {
+    user_outputs = {
         c.name: solved.driven_rate[k] for k, c in enumerate(c for c in body.coordinates if c.driven)
     }
     rates = [
-        own[name]
-        if name in own
+        user_outputs[name]
+        if name in user_outputs
         else solved.evaluate(ca.SX(body.motion_along(*mechanism.coordinates[name])[1]))
         for name in drives
     ]

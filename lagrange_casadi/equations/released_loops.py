@@ -77,13 +77,13 @@ class ReleasedLoops:
         counted = column(c.by_values for c in coordinates if c.spherical is None)
         placed = [ca.substitute(counted, symbols, free)]
         # Of balls a step is a small rotation of where they are.
-        own = {
+        local = {
             spherical: ca.vertcat(
                 *(free[k] for k, c in enumerate(coordinates) if c.spherical is spherical)
             )
             for spherical in turned
         }
-        placed += [axes_of(turn(turned[spherical], own[spherical])) for spherical in turned]
+        placed += [axes_of(turn(turned[spherical], local[spherical])) for spherical in turned]
         variables = [
             *(c.variables for c in coordinates if c.spherical is None),
             *(spherical.axes for spherical in turned),
@@ -98,7 +98,7 @@ class ReleasedLoops:
             ca.Function(
                 "turned",
                 [free, quaternion],
-                [column(turn(turned[spherical], own[spherical]) for spherical in turned)],
+                [column(turn(turned[spherical], local[spherical]) for spherical in turned)],
             ),
             Posture(
                 np.array([0.0 if c.spherical else posture.get(c, 0.0) for c in coordinates]),

@@ -91,6 +91,6 @@ def _slope(multibody: Multibody, equation: Equation, length: ca.SX) -> ca.SX:
     total = ca.SX(0)
     for coordinate in multibody.coordinates:
         unit = length if coordinate.kind == "slide" else ca.SX(1)
-        own = 0 if coordinate.kind == "ball" else ca.fabs(coordinate.value)
-        total += ca.fabs(ca.jacobian(equation.residual_rate, coordinate.rate)) * (unit + own)
+        size = 0 if coordinate.kind == "ball" else ca.fabs(coordinate.value)
+        total += ca.fabs(ca.jacobian(equation.residual_rate, coordinate.rate)) * (unit + size)
     return total

@@ -118,14 +118,14 @@ class _Rule:
         """The rule with the fewest turns that keeps an angle within reach over courses: of itself,
         and of what counts turns.
         """
-        for turns in _sums(courses[0][1].shape[0]):
+        for counts in _sums(courses[0][1].shape[0]):
             deviation = np.concatenate(
-                [angle - np.array(turns, float) @ counted for angle, counted in courses]
+                [angle - np.array(counts, float) @ counted for angle, counted in courses]
             )
             low, high = float(deviation.min()), float(deviation.max())
             if high - low <= 2.0 * (REACH - 10.0**-_DIGITS):
                 # In few digits, lest the last ones of some library's sines be told in the graph.
-                return cls(turns, round((low + high) / 2.0, _DIGITS))
+                return cls(counts, round((low + high) / 2.0, _DIGITS))
         return None
 
 
@@ -133,9 +133,9 @@ def _sums(many: int) -> Iterator[tuple[int, ...]]:
     """Sums of so many angles, as how often each is taken, the fewest first."""
     for total in range(_MOST_REVOLUTIONS + 1):
         for chosen in itertools.combinations_with_replacement(range(2 * many), total):
-            turns = tuple(chosen.count(2 * k) - chosen.count(2 * k + 1) for k in range(many))
-            if sum(map(abs, turns)) == total:
-                yield turns
+            counts = tuple(chosen.count(2 * k) - chosen.count(2 * k + 1) for k in range(many))
+            if sum(map(abs, counts)) == total:
+                yield counts
 
 
 def _rules(
@@ -241,8 +241,8 @@ class _Guide:
         for moment, drives in zip(t, d.T, strict=True):
             size = math.inf
             for _ in range(_NEWTON_STEPS):
-                correction, left = self.newton.step(z, moment, drives, self.start.parameters)
-                z, size = z + correction.full().ravel(), float(left)
+                correction, residual = self.newton.step(z, moment, drives, self.start.parameters)
+                z, size = z + correction.full().ravel(), float(residual)
                 if not size >= _NEWTON_DONE:
                     break
             if not size < _NEWTON_DONE:

@@ -166,8 +166,8 @@ def _barred(mechanism: Mechanism, limit: float) -> Mechanism:
     """
     links: set[Body] = set()
     for link in mechanism.links.values():
-        own = [joint for joint in mechanism.joints.values() if link in joint.bodies]
-        if isinstance(link.mass, Density) and [joint.kind for joint in own] == [
+        joints_of_link = [joint for joint in mechanism.joints.values() if link in joint.bodies]
+        if isinstance(link.mass, Density) and [joint.kind for joint in joints_of_link] == [
             "spherical",
             "spherical",
         ]:
@@ -193,7 +193,9 @@ def _barred(mechanism: Mechanism, limit: float) -> Mechanism:
 
 def _loaded(load: Load, put: Callable[[Point], Point]) -> Load:
     moved: dict[str, Any] = {
-        own.name: put(getattr(load, own.name)) for own in fields(load) if own.type == "Point"
+        joints_of_link.name: put(getattr(load, joints_of_link.name))
+        for joints_of_link in fields(load)
+        if joints_of_link.type == "Point"
     }
     return replace(load, **moved) if moved else load
 
@@ -325,11 +327,11 @@ def _with(mechanism: Mechanism, corrected: Mapping[str, Joint]) -> Mechanism:
     found.loads = dict(mechanism.loads)
     for name, load in mechanism.loads.items():
         if isinstance(load, Friction) and load.joint in joints:
-            way, beside = load.axis, load.beside
+            direction, beside = load.axis, load.beside
             found.loads[name] = replace(
                 load,
                 joint=joints[load.joint],
-                axis=found.coordinates[way.coordinate][1],
+                axis=found.coordinates[direction.coordinate][1],
                 beside=beside and found.coordinates[beside.coordinate][1],
             )
     return found
@@ -383,11 +385,11 @@ class _Search:
 
     def _corrections(self, cases: Sequence[Sequence[npt.ArrayLike]]) -> Array | None:
         x = np.zeros(self.released.residuals.size1_in(4))
-        seen = [(case, posture) for case in cases for posture in self._walk(case, x)]
+        samples = [(case, posture) for case in cases for posture in self._walk(case, x)]
         for _ in range(_ROUNDS):
             parts = [
                 part
-                for case, posture in seen
+                for case, posture in samples
                 if (part := self._along_null(case, posture, x)) is not None
             ]
             if not parts:
@@ -408,8 +410,8 @@ class _Search:
                 return
             yield posture
             _, slope, _ = self._scaled(posture, case, x)
-            ways = np.linalg.svd(slope)[2][self._rank(slope) :]
-            step = generator.normal(size=len(ways)) @ ways
+            null_space = np.linalg.svd(slope)[2][self._rank(slope) :]
+            step = generator.normal(size=len(null_space)) @ null_space
             step *= _STRIDE * self.columns / max(float(np.max(np.abs(step), initial=0.0)), 1e-300)
             posture = self._closed(self.released.moved(posture, step), case, x) or self._closed(
                 self.released.first, case, x
@@ -439,8 +441,8 @@ class _Search:
         if closed is None:
             return None
         residual, slope, by = self._scaled(closed, case, x)
-        left = np.linalg.svd(slope)[0][:, self._rank(slope) :].T
-        return left @ residual, left @ by
+        left_null_space = np.linalg.svd(slope)[0][:, self._rank(slope) :].T
+        return left_null_space @ residual, left_null_space @ by
 
     @property
     def _singular(self) -> float:

@@ -43,8 +43,8 @@ def scene_lines(scene: Scene) -> Iterator[str]:
             f" {row.replaces}, without an effort"
         )
     yield from (
-        f"output {name} [{own.unit}]: {_short(own.expression)}"
-        for name, own in mechanism.outputs.items()
+        f"output {name} [{output.unit}]: {_short(output.expression)}"
+        for name, output in mechanism.outputs.items()
     )
     slides = [name for name, (_, axis) in mechanism.coordinates.items() if axis.kind == "slide"]
     postures = [
@@ -121,7 +121,7 @@ def _course(scene: Scene, joint: str) -> str:
     mechanism, (start, stop) = scene.mechanism, scene.span
     motion = motion_function({joint: scene.laws[joint]}, mechanism.symbols)
     values = list(mechanism.values(scene.assembly).values())
-    way = (
+    direction = (
         motion(ca.DM(np.linspace(start, stop, _SAMPLES)).T, ca.repmat(ca.DM(values), 1, _SAMPLES))[
             0
         ]
@@ -130,11 +130,16 @@ def _course(scene: Scene, joint: str) -> str:
     )
     kind = scene.guided.coordinates[joint][1].kind
     words = (
-        f"from {describe_coordinate(joint, kind, way[0])} to"
-        f" {describe_coordinate(joint, kind, way[-1])}"
+        f"from {describe_coordinate(joint, kind, direction[0])} to"
+        f" {describe_coordinate(joint, kind, direction[-1])}"
     )
-    inside = min(way[0], way[-1]) <= way.min() and way.max() <= max(way[0], way[-1])
-    ends = (describe_coordinate(joint, kind, x).partition(" = ")[2] for x in (way.min(), way.max()))
+    inside = min(direction[0], direction[-1]) <= direction.min() and direction.max() <= max(
+        direction[0], direction[-1]
+    )
+    ends = (
+        describe_coordinate(joint, kind, x).partition(" = ")[2]
+        for x in (direction.min(), direction.max())
+    )
     return words.replace(f"{joint} = ", "") + ("" if inside else f", within {' and '.join(ends)}")
 
 

@@ -163,18 +163,20 @@ class SectionInputs:
     @classmethod
     def of(cls, outputs: Iterable[Output], link: str) -> SectionInputs:
         """Make it for a link, among others; for a distributed load with its directions."""
-        own = dict.fromkeys(output for output in outputs if output.along and output.part == link)
-        table = table_of(Output("law", link, "mx0") in own)
+        of_link = dict.fromkeys(
+            output for output in outputs if output.along and output.part == link
+        )
+        table = table_of(Output("law", link, "mx0") in of_link)
         acting = [
             Output("station", link, member, name)
-            for name in load_points_of(own, link)
+            for name in load_points_of(of_link, link)
             for member in table.place_first
         ]
-        for name, powers in distributed_loads_of(own, link).items():
+        for name, powers in distributed_loads_of(of_link, link).items():
             acting += [Output("spread", link, member, name) for member in ("width", "end")]
             members = dict.fromkeys(
                 output.member
-                for output in own
+                for output in of_link
                 if output.load_point == name and output.power is not None
             )
             acting += [

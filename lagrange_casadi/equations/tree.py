@@ -197,8 +197,8 @@ def _is_turned(joint: Joint) -> bool:
         return False
     pairs = [
         pair
-        for turned, own in zip(joint.turned, AXES[:2], strict=True)
-        for pair in zip(turned, own, strict=True)
+        for turned, axis in zip(joint.turned, AXES[:2], strict=True)
+        for pair in zip(turned, axis, strict=True)
     ]
     return any(not isinstance(one, float) or one != other for one, other in pairs)
 
@@ -230,13 +230,16 @@ def _refuse_driven(
 def _around(joint: Joint, branches: Sequence[Branch]) -> list[Joint]:
     """The joints of the loop that a joint closes, itself the last."""
     led = {branch.far.body: branch for branch in branches}
-    ways: list[list[Joint]] = []
+    paths: list[list[Joint]] = []
     for body in joint.bodies:
-        ways.append([])
+        paths.append([])
         while body in led:
-            ways[-1].append(led[body].joint)
+            paths[-1].append(led[body].joint)
             body = led[body].near.body
-    return [*(one for k, way in enumerate(ways) for one in way if one not in ways[1 - k]), joint]
+    return [
+        *(one for k, path in enumerate(paths) for one in path if one not in paths[1 - k]),
+        joint,
+    ]
 
 
 def _can_carry(joint: Joint, reverse: bool) -> bool:

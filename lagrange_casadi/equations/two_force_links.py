@@ -98,10 +98,10 @@ def find_two_force_links(mechanism: Mechanism, driven: Collection[str]) -> tuple
     for joint in mechanism.joints.values():
         for body in joint.bodies:
             ends.setdefault(body, []).append(joint)
-    seen = {
+    checked = {
         measure.of.name for measure in mechanism.measures.asked if isinstance(measure.of, Joint)
     }
-    seen |= {load.joint.name for load in mechanism.loads.values() if isinstance(load, Friction)}
+    checked |= {load.joint.name for load in mechanism.loads.values() if isinstance(load, Friction)}
     driven_joints = {
         joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven
     }
@@ -112,7 +112,8 @@ def find_two_force_links(mechanism: Mechanism, driven: Collection[str]) -> tuple
         points = [joint.on(link) for joint in joints]
         others = [body for joint in joints for body in joint.bodies if body is not link]
         sphericals = all(
-            joint.kind == "spherical" and joint.name not in seen | driven_joints for joint in joints
+            joint.kind == "spherical" and joint.name not in checked | driven_joints
+            for joint in joints
         )
         if (
             not sphericals
@@ -152,19 +153,19 @@ def idle_spins(mechanism: Mechanism, driven: Collection[str]) -> list[str]:
     )
     found = []
     for link in mechanism.links.values():
-        own = [joint for joint in joints if link in joint.bodies]
+        attached = [joint for joint in joints if link in joint.bodies]
         moved = any(
-            mechanism.coordinates[name][0] in own
+            mechanism.coordinates[name][0] in attached
             for name in driven
             if name in mechanism.coordinates
         )
         if (
             link not in two_force_links
             and not moved
-            and len(own) == 2
-            and all(joint.kind == "spherical" for joint in own)
+            and len(attached) == 2
+            and all(joint.kind == "spherical" for joint in attached)
         ):
-            first, second = (joint.name for joint in own)
+            first, second = (joint.name for joint in attached)
             found.append(
                 f"the spin of link '{link.name}' about the line from '{first}' to '{second}' is"
                 " not determined: give one of their rotations a motion, or the link its mass"

@@ -47,9 +47,9 @@ def _turns(angle: ca.SX, other: Coordinate, numbers: Numbers) -> int:
     turn = ca.SX.sym("turn")
     start = numbers.of(other.value)[0]
     placed = ca.substitute(angle, other.variables, other.placed(other.value, turn))
-    left = [symbol for symbol in ca.symvar(placed) if not ca.is_equal(symbol, turn)]
-    row = ca.Function("row", [turn, ca.vertcat(ca.SX(0, 1), *left)], [placed])
-    known = [numbers.of(symbol)[0] for symbol in left]
+    remaining = [symbol for symbol in ca.symvar(placed) if not ca.is_equal(symbol, turn)]
+    row = ca.Function("row", [turn, ca.vertcat(ca.SX(0, 1), *remaining)], [placed])
+    known = [numbers.of(symbol)[0] for symbol in remaining]
     angles = [float(row(start + math.tau * k / _STEPS, known)) for k in range(_STEPS + 1)]
     gone = np.unwrap(angles)
     return round((gone[-1] - gone[0]) / math.tau) if np.isfinite(gone).all() else 0

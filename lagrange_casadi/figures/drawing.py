@@ -205,13 +205,13 @@ def _draw_instant(
             _draw_axis(axes, solution, now, joint, size)
         if joint.kind != "prismatic":
             mark, width, fill = ("s", 4, "black") if joint.kind == "weld" else ("o", 7, "white")
-            own = {
+            box = {
                 "markersize": width,
                 "markerfacecolor": fill,
                 "markeredgecolor": "black",
                 "zorder": style["zorder"] + 1,
             }
-            axes.plot(x, y, mark, **style | own)
+            axes.plot(x, y, mark, **style | box)
         if strong and not slides and "ground" in (joint.parent.body, joint.child.body):
             axes.plot(x, y - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
     for spot in path_spots(description).values():
@@ -291,12 +291,15 @@ def _draw_axis(
     parent = placed(now, joint.parent)[0, :2]
     (x, y, z), (dx, dy, _) = joint.parent.at, joint.axes[0]
     ahead = Spot(joint.parent.body, (x + dx, y + dy, z))
-    way = placed(now, ahead)[0, :2] - parent
+    direction = placed(now, ahead)[0, :2] - parent
     along = placed(solution, joint.child) - placed(solution, joint.parent)
-    ways = placed(solution, ahead) - placed(solution, joint.parent)
-    reach = np.concatenate([np.sum(along * ways, axis=1), [0.0] if joint.kind == "slot" else []])
+    directions = placed(solution, ahead) - placed(solution, joint.parent)
+    reach = np.concatenate(
+        [np.sum(along * directions, axis=1), [0.0] if joint.kind == "slot" else []]
+    )
     ends = (
-        parent + np.array([reach.min() - _AXIS * size, reach.max() + _AXIS * size])[:, None] * way
+        parent
+        + np.array([reach.min() - _AXIS * size, reach.max() + _AXIS * size])[:, None] * direction
     )
     axes.plot(*ends.T, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1, label="_")
 
@@ -325,8 +328,8 @@ def _name(axes: Axes, solution: Solution, i: int, size: float) -> None:
     (left, bottom), (right, top) = axes.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * points
     corners = labelled(anchors, sizes, things, (left, bottom, right, top))
     for word, spot, anchor, low, wide in zip(words, named, anchors, corners, sizes, strict=True):
-        own = apart(low, wide, anchor)
-        far = own > 10.0 or sum(apart(low, wide, other) < 2.0 * own for other in anchors) > 1
+        box = apart(low, wide, anchor)
+        far = box > 10.0 or sum(apart(low, wide, other) < 2.0 * box for other in anchors) > 1
         line: dict[str, Any] = (
             {
                 "arrowprops": {

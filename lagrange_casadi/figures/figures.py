@@ -64,8 +64,8 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
             "output",
         ) or output == Output("motion", output.part)
         if drawn and solution.determined(output) and np.any(values):
-            own = "_own" if output.member.endswith(("u", "v", "w")) else ""
-            if own and all(solution.determined(other) for other in _in_ground_axes(output)):
+            suffix = "_own" if output.member.endswith(("u", "v", "w")) else ""
+            if suffix and all(solution.determined(other) for other in _in_ground_axes(output)):
                 continue
             # Force and moment of a joint are one picture, and so is all of a declared point: its
             # place, speed and acceleration.
@@ -75,7 +75,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
                 if output.group == "output" and point in solution.description.get("paths", {})
                 else output.part
             )
-            groups.setdefault((f"{output.group}{own}", part), []).append(str(output))
+            groups.setdefault((f"{output.group}{suffix}", part), []).append(str(output))
     for (group, part), names in groups.items():
         what = part if group == "output" else f"{group.replace('_', ' ')} of {part}"
         specs.append(

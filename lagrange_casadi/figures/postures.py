@@ -121,15 +121,15 @@ def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
     """
     first, possible, levels = _closed(scene, scene.posture), 1, math.inf
     if isinstance(first, PostureError):
-        counts = [len(ways) for ways in first.assembly_modes]
+        counts = [len(modes) for modes in first.assembly_modes]
         possible = math.prod(counts)
         if possible > _ALL:
             levels = sum(math.prod(counts[: k + 1]) <= _SOME for k in range(len(counts)))
-    ways = _ways(scene, scene.posture, first, levels)
-    found = list(itertools.islice(ways, 1))
+    modes = _ways(scene, scene.posture, first, levels)
+    found = list(itertools.islice(modes, 1))
     if found and len(found[0][1].description["bodies"]) > _LARGE:
         return [], 0
-    return [*found, *ways], possible
+    return [*found, *modes], possible
 
 
 def _apart(found: Sequence[Solution]) -> list[list[int]]:
@@ -191,12 +191,12 @@ def _ways(
         yield ", ".join(entries), closed
     if not isinstance(closed, PostureError) or closed.lacking or not closed.assembly_modes:
         return
-    ways = closed.assembly_modes[0]
+    modes = closed.assembly_modes[0]
     # An entry that is given and does not choose never will.
-    if any(name in posture and name not in scene.posture for way in ways for name in way):
+    if any(name in posture and name not in scene.posture for mode in modes for name in mode):
         return
     if levels <= 0:
-        ways = ({name: x for first, *_ in closed.assembly_modes for name, x in first.items()},)
-    for way in ways:
-        chosen = dict(posture) | dict(way)
+        modes = ({name: x for first, *_ in closed.assembly_modes for name, x in first.items()},)
+    for mode in modes:
+        chosen = dict(posture) | dict(mode)
         yield from _ways(scene, chosen, _closed(scene, chosen), levels - 1)

@@ -83,17 +83,17 @@ class _Case:
             self.joint(joint)
         for one in self.model.couplings.values():
             first, second = (self.variables[f"joint {name}"] for name in (one.first, one.second))
-            told = [json.dumps(one.name), first, second, f"ratio={of_pi(one.ratio)}"]
+            arguments = [json.dumps(one.name), first, second, f"ratio={of_pi(one.ratio)}"]
             offset = self.offset(one.second) - one.ratio * self.offset(one.first)
-            told += [f"offset={of_pi(one.offset - offset)}"] if one.offset - offset else []
-            self.lines += _call("m.gear", told)
+            arguments += [f"offset={of_pi(one.offset - offset)}"] if one.offset - offset else []
+            self.lines += _call("m.gear", arguments)
         for tie in self.model.ties.values():
             self.tie(tie)
         for body in self.model.bodies.values():
             for name, place in body.places.items():
                 point = self.written(self.place(body.frame.at(place)), inner=True)
-                told = [json.dumps(name), f"m.at({self.variables[body.name]}, {point})"]
-                self.lines += _call("m.path", told)
+                arguments = [json.dumps(name), f"m.at({self.variables[body.name]}, {point})"]
+                self.lines += _call("m.path", arguments)
         self.end()
         return self.imports() + "".join(f"    {line}\n" if line else "\n" for line in self.lines)
 
@@ -122,8 +122,8 @@ class _Case:
             if count > 1:
                 name = self.parameter(f"mass_{first[mass]}")
                 self.masses[mass] = name
-                told = f'"{name}", {text_of(mass)}, "kg", low=0.0'
-                self.lines.append(f"{name} = m.parameter({told})")
+                arguments = f'"{name}", {text_of(mass)}, "kg", low=0.0'
+                self.lines.append(f"{name} = m.parameter({arguments})")
         for joint, place in self.at.items():
             if place not in self.places and any(place):
                 self.places[place] = self.variable(f"at_{joint}")
@@ -176,53 +176,53 @@ class _Case:
         diagonal = np.diag(np.diag(inertia))
         moments = np.diag(inertia).tolist() if np.array_equal(inertia, diagonal) else inertia
         rows = tuple_of(moments) if isinstance(moments, list) else _rows(moments)
-        told = [
+        arguments = [
             json.dumps(body.name),
             f"between=({self.written(base)}, {self.written(tip)})",
             f"mass={mass}",
         ]
         if body.rod is None:
-            told.append(f"centre={tuple_of(self.place(body.frame.at(body.centre)))}")
-            told.append(f"inertia={rows}")
+            arguments.append(f"centre={tuple_of(self.place(body.frame.at(body.centre)))}")
+            arguments.append(f"inertia={rows}")
         if any(
             body.name in (self.model.joints[one].parent, self.model.joints[one].child)
             for one in self.open
         ):
-            told.insert(2, f"beside={_tuple(self.link_axes(body.name)[:, 1])}")
-        self.lines += _call(f"{name} = m.link", told)
+            arguments.insert(2, f"beside={_tuple(self.link_axes(body.name)[:, 1])}")
+        self.lines += _call(f"{name} = m.link", arguments)
 
     def joint(self, joint: Joint) -> None:
         """Declare a joint at its place, or between two points where these are apart."""
         name = self.variables[f"joint {joint.name}"] = self.variable(joint.name)
         parent, child = self.variables[joint.parent], self.variables[joint.child]
         near, far = self.model.frames(joint)
-        told, axes = [json.dumps(joint.name)], near.axes
+        arguments, axes = [json.dumps(joint.name)], near.axes
         if joint.name in self.open:
             gap, angle = self.open[joint.name]
             self.lines.append(
                 f"# Closes a loop elsewhere: here it is {gap:.3g} m, {angle:.3g} rad open."
             )
-            own = np.eye(3) if joint.parent == GROUND else self.link_axes(joint.parent)
-            turned = self.directions(own.T @ near.axes @ far.axes.T @ self.link_axes(joint.child))
+            local = np.eye(3) if joint.parent == GROUND else self.link_axes(joint.parent)
+            turned = self.directions(local.T @ near.axes @ far.axes.T @ self.link_axes(joint.child))
             for body, frame in ((joint.parent, near), (joint.child, far)):
                 point = self.written(self.place(frame.place), inner=True)
                 ground = body == GROUND
                 on = self.variables[body]
-                told.append(f"m.ground.at({point})" if ground else f"m.at({on}, {point})")
-            axes = own.T @ near.axes
+                arguments.append(f"m.ground.at({point})" if ground else f"m.at({on}, {point})")
+            axes = local.T @ near.axes
             closing = [f"turned=({_tuple(turned[:, 0])}, {_tuple(turned[:, 1])})"]
             if joint.kind in ("spherical", "free", "slot"):
                 closing = []
         else:
-            told += [parent, child]
+            arguments += [parent, child]
             at = self.at[joint.name]
             closing = [f"at={self.written(at)}"]
-        told += self.axes(joint, axes, far) + closing
+        arguments += self.axes(joint, axes, far) + closing
         self.called(joint.name)
         used = bool(self.model.ties) or any(
             joint.name in (one.first, one.second) for one in self.model.couplings.values()
         )
-        self.lines += _call(f"{name} = m.{joint.kind}" if used else f"m.{joint.kind}", told)
+        self.lines += _call(f"{name} = m.{joint.kind}" if used else f"m.{joint.kind}", arguments)
 
     def axes(self, joint: Joint, axes: Array, far: Frame) -> list[str]:
         """Return the arguments that say along and about what a joint moves."""
@@ -231,8 +231,8 @@ class _Case:
             case "weld":
                 return []
             case "spherical" | "free":
-                told = {*self.model.motions, *self.model.posture} & {*joint.coordinates}
-                usual = not told or np.array_equal(self.directions(axes), np.eye(3))
+                arguments = {*self.model.motions, *self.model.posture} & {*joint.coordinates}
+                usual = not arguments or np.array_equal(self.directions(axes), np.eye(3))
                 return [] if usual else [f"axis={x}", f"second={y}"]
             case "universal":
                 return [f"axis={z}", f"second={_tuple(self.directions(far.axes)[:, 2])}"]
@@ -245,12 +245,14 @@ class _Case:
     def tie(self, tie: Tie) -> None:
         """Declare rows between two frames as constraints of places that their bodies carry."""
         self.called(tie.name)
-        told = []
+        arguments = []
         for body, frame in zip((tie.parent, tie.child), self.model.frames(tie), strict=True):
             x, y = (_tuple(self.directions(frame.axes)[:, k]) for k in (0, 1))
             at = self.written(self.place(frame.place))
-            told.append([f"m, {self.variables[body]}", at, x, y])
-        self.lines += _call("p, x, y, z = frame", told[0]) + _call("q, u, v, w = frame", told[1])
+            arguments.append([f"m, {self.variables[body]}", at, x, y])
+        self.lines += _call("p, x, y, z = frame", arguments[0]) + _call(
+            "q, u, v, w = frame", arguments[1]
+        )
         for k, row in enumerate(tie.rows, 1):
             name = tie.name if len(tie.rows) == 1 else f"{tie.name}_{k}"
             if row.kind == "slide and turn":
@@ -277,9 +279,9 @@ class _Case:
             )
             or "0"
         )
-        told = [guess, f"ca.dot({x}, {along})", f"ca.dot({y}, {along})"]
+        arguments = [guess, f"ca.dot({x}, {along})", f"ca.dot({y}, {along})"]
         self.turning = True
-        self.lines += _call(f"{name} = turned", told)
+        self.lines += _call(f"{name} = turned", arguments)
 
     def turns_about(self, tie: Tie, body: str) -> str:
         """Return by how much a body of a tie has turned about z of its first frame, as the
@@ -294,10 +296,10 @@ class _Case:
             }
             cosine = float(self.model.frames(joint)[0].axes[:, 2] @ along)
             if mine and names and joint.kind != "prismatic" and abs(cosine) > 1.0 - 1e-9:
-                way = cosine if joint.child == body else -cosine
-                told = [self.variables[f"joint {joint.name}"]]
-                told += [f'"{names[0]}"'] if names[0] else []
-                return f" {'+' if way > 0 else '-'} m.coordinate({', '.join(told)})"
+                direction = cosine if joint.child == body else -cosine
+                arguments = [self.variables[f"joint {joint.name}"]]
+                arguments += [f'"{names[0]}"'] if names[0] else []
+                return f" {'+' if direction > 0 else '-'} m.coordinate({', '.join(arguments)})"
         return ""
 
     def end(self) -> None:
@@ -307,8 +309,8 @@ class _Case:
         self.lines.append("laws = {")
         for name, law in laws.items():
             head, _, inner = self.law(name, law).partition("(")
-            told = _call(f"{json.dumps(name)}: {head}", _parts(inner[:-1]), ",")
-            self.lines += [f"    {line}" for line in told]
+            arguments = _call(f"{json.dumps(name)}: {head}", _parts(inner[:-1]), ",")
+            self.lines += [f"    {line}" for line in arguments]
         self.lines.append("}")
         start, stop, count = model.span
         end = [f"t=({text_of(start)}, {text_of(stop)}, {count})"]
@@ -358,9 +360,9 @@ class _Case:
             told = f"{told}_"
         return self.variable(told)
 
-    def variable(self, told: str) -> str:
+    def variable(self, arguments: str) -> str:
         """Return a name for a variable that none has yet."""
-        name = re.sub(r"\W", "_", told, flags=re.ASCII)
+        name = re.sub(r"\W", "_", arguments, flags=re.ASCII)
         name = f"{name}_" if keyword.iskeyword(name) or name in _NAMES else name
         while name in self.used:
             name = f"{name}_"
@@ -369,8 +371,8 @@ class _Case:
 
     def called(self, name: str) -> None:
         """Write what a part is called in the file, where that is no name here."""
-        if told := self.model.called.get(name):
-            self.lines.append(f"# {_safe(told)} in the file")
+        if arguments := self.model.called.get(name):
+            self.lines.append(f"# {_safe(arguments)} in the file")
 
     def place(self, place: Array) -> Place:
         """Return a place without the rounding of sums: its components are those of places before

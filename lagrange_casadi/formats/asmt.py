@@ -100,18 +100,18 @@ class _Reader:
     def read(self) -> Model:
         """Return the model."""
         model, root = self.model, self.root
-        own = self.value(root, "Name")
-        model.name = model.name_of("mechanism", own, root.where, {})
+        local = self.value(root, "Name")
+        model.name = model.name_of("mechanism", local, root.where, {})
         if not np.allclose(self.frame(root).axes, np.eye(3)) or any(self.frame(root).place):
             model.notes.append("The place of the assembly itself is not read: it is the ground's.")
-        self.points(root, GROUND, f"/{own}")
+        self.points(root, GROUND, f"/{local}")
         for part in self.all(root, "Parts"):
             if part.text != "Part":
                 raise model.refuse(part.where, "is not read: expected a Part")
-            self.part(part, f"/{own}")
+            self.part(part, f"/{local}")
         sets = self.below(root, "ConstraintSets")
         for joint in self.all(sets, "Joints"):
-            self.joint(joint, f"/{own}")
+            self.joint(joint, f"/{local}")
         for motion in self.all(sets, "Motions"):
             self.motion(motion)
         for group, parent in (
@@ -136,14 +136,14 @@ class _Reader:
         for at, line in enumerate(lines[1:], 2):
             if line.startswith("TimeSeries"):
                 break
-            told = line.lstrip("\t")
-            depth = len(line) - len(told)
-            if not told.strip():
+            data = line.lstrip("\t")
+            depth = len(line) - len(data)
+            if not data.strip():
                 continue
             if depth > len(above) - 1 or depth > _DEEPEST:
                 raise self.model.refuse(f"line {at}", "has too many tabs for what is above it")
             del above[depth + 1 :]
-            above[-1].below.append(one := _Line(told.strip(), at))
+            above[-1].below.append(one := _Line(data.strip(), at))
             above.append(one)
         return self.below(root, "Assembly")
 
@@ -167,16 +167,16 @@ class _Reader:
 
     def vector(self, line: _Line, text: str) -> Array:
         """Return three numbers below a line of this text."""
-        told = self.value(line, text)
-        return numbers(self.model, self.below(line, text).where, told, text, 3)
+        data = self.value(line, text)
+        return numbers(self.model, self.below(line, text).where, data, text, 3)
 
     def frame(self, line: _Line) -> Frame:
         """Return a place and axes."""
         place, rows = self.vector(line, "Position3D"), self.below(line, "RotationMatrix")
-        told = [numbers(self.model, rows.where, one.text, "axes", 3) for one in rows.below]
-        if len(told) != 3:
+        data = [numbers(self.model, rows.where, one.text, "axes", 3) for one in rows.below]
+        if len(data) != 3:
             raise self.model.refuse(rows.where, "expected three rows")
-        return Frame(place, rotation(self.model, rows.where, np.array(told)))
+        return Frame(place, rotation(self.model, rows.where, np.array(data)))
 
     def points(self, line: _Line, body: str, path: str) -> None:
         """Keep the markers of a body; one on a curve has no place."""
@@ -188,31 +188,31 @@ class _Reader:
 
     def part(self, line: _Line, path: str) -> None:
         """Read a body."""
-        model, told = self.model, self.value(line, "Name")
-        where = f"line {line.at}, Part {told}"
-        name = model.name_of("body", told, where, model.bodies)
+        model, data = self.model, self.value(line, "Name")
+        where = f"line {line.at}, Part {data}"
+        name = model.name_of("body", data, where, model.bodies)
         mass = self.below(line, "PrincipalMassMarker")
         frame = self.frame(mass)
         moments = self.vector(mass, "MomentOfInertias")
         inertia = frame.axes @ np.diag(moments) @ frame.axes.T
         heavy = number(model, mass.where, self.value(mass, "Mass"), "Mass")
         model.bodies[name] = Body(name, heavy, frame.place, inertia, self.frame(line), where=where)
-        self.points(line, name, f"{path}/{told}")
+        self.points(line, name, f"{path}/{data}")
 
     def marker(self, line: _Line, text: str) -> tuple[str, Frame]:
         """Return the body and the frame of a marker that a line names."""
-        told = self.value(line, text)
-        if told not in self.markers:
-            words = f"unknown marker '{told}'; valid: {', '.join(self.markers)}"
+        data = self.value(line, text)
+        if data not in self.markers:
+            words = f"unknown marker '{data}'; valid: {', '.join(self.markers)}"
             raise self.model.refuse(f"line {line.at}, {line.text}", words)
-        return self.markers[told]
+        return self.markers[data]
 
     def joint(self, line: _Line, path: str) -> None:
         """Read a joint between two markers."""
-        model, told = self.model, self.value(line, "Name")
-        where = f"line {line.at}, {line.text} {told}"
+        model, data = self.model, self.value(line, "Name")
+        where = f"line {line.at}, {line.text} {data}"
         taken = {**model.joints, **model.ties}
-        name = self.named[f"{path}/{told}"] = model.name_of("joint", told, where, taken)
+        name = self.named[f"{path}/{data}"] = model.name_of("joint", data, where, taken)
         if line.text not in KINDS and line.text not in TIES:
             raise model.refuse(where, f"is not read; valid: {', '.join([*KINDS, *TIES])}")
         (parent, near), (child, far) = self.marker(line, "MarkerI"), self.marker(line, "MarkerJ")
@@ -239,15 +239,15 @@ class _Reader:
     def row(self, tie: Tie, row: Row, kind: str, value: float) -> Row:
         """Return a row of a joint with its number; one that turns keeps what it is in the file."""
         near, far = self.model.frames(tie)
-        seen = near.seen(far)
+        known = near.seen(far)
         if row.kind == "slide and turn":
             factor = value if kind == "RackPinionJoint" else -value / math.tau
-            angle = math.atan2(seen.axes[1, 0], seen.axes[0, 0])
-            found = float(seen.place[row.i]) + factor * angle
+            angle = math.atan2(known.axes[1, 0], known.axes[0, 0])
+            found = float(known.place[row.i]) + factor * angle
             return Row(row.kind, row.i, value=_clean(found), factor=factor, angle=_clean(angle))
         if row.kind == "wheels":
             back = far.seen(near).place
-            first = _clean(math.atan2(seen.place[1], seen.place[0]))
+            first = _clean(math.atan2(known.place[1], known.place[0]))
             second = _clean(math.atan2(back[1], back[0]))
             found = second + value * first
             return Row(row.kind, value=found, factor=value, angle=first, other=second)
@@ -259,31 +259,31 @@ class _Reader:
 
     def motion(self, line: _Line) -> None:
         """Read the motion of a joint."""
-        model, told = self.model, self.value(line, "Name")
-        where = f"line {line.at}, {line.text} {told}"
+        model, data = self.model, self.value(line, "Name")
+        where = f"line {line.at}, {line.text} {data}"
         laws: Mapping[str, tuple[str, str]] = {
             "RotationalMotion": ("RotationZ", "turn"),
             "TranslationalMotion": ("TranslationZ", "slide"),
         }
         if line.text not in laws:
             raise model.refuse(where, f"is not read; valid: {', '.join(laws)}")
-        key, way = laws[line.text]
+        key, direction = laws[line.text]
         path = self.value(line, "MotionJoint")
         joint = model.joints.get(self.named.get(path, ""))
         if joint is None:
             valid = ", ".join(path for path, name in self.named.items() if name in model.joints)
             raise model.refuse(where, f"unknown joint '{path}'; valid: {valid}")
         single = {"revolute": "turn", "prismatic": "slide"}.get(joint.kind)
-        coordinate = joint.name if single == way else f"{joint.name}:{way}"
+        coordinate = joint.name if single == direction else f"{joint.name}:{direction}"
         model.motions[coordinate] = Law(self.value(line, key), where=where)
 
     def times(self) -> None:
         """Read the instants, where the file has a simulation."""
         if not any(one.text == "SimulationParameters" for one in self.root.below):
             return
-        told = self.below(self.root, "SimulationParameters")
+        data = self.below(self.root, "SimulationParameters")
         start, stop, step = (
-            number(self.model, told.where, self.value(told, key), key)
+            number(self.model, data.where, self.value(data, key), key)
             for key in ("tstart", "tend", "hout")
         )
         count = round((stop - start) / step) + 1 if step > 0.0 else 101

@@ -38,11 +38,11 @@ def checked(model: Model) -> Model:
             raise model.refuse(joint.where, words)
     _connected(model)
     valid = [name for joint in model.joints.values() for name in joint.coordinates]
-    told = {name: law.where for name, law in model.motions.items()}
-    told |= {
+    text = {name: law.where for name, law in model.motions.items()}
+    text |= {
         name: one.where for one in model.couplings.values() for name in (one.first, one.second)
     }
-    for name, where in told.items():
+    for name, where in text.items():
         if name not in valid:
             words = f"unknown coordinate '{name}'; valid: {', '.join(valid)}"
             raise model.refuse(where, words)
@@ -66,11 +66,11 @@ def _body(model: Model, body: Body) -> Body:
     inertia = (body.inertia + body.inertia.T) / 2.0
     moments = np.linalg.eigvalsh(inertia)
     excess = float(2.0 * moments[2] - moments.sum())
-    told = ", ".join(f"{moment:.6g}" for moment in moments)
+    text = ", ".join(f"{moment:.6g}" for moment in moments)
     if moments[0] < -1e-9 * moments[2] or excess > 1e-3 * moments[2] or moments[2] <= 0.0:
         raise model.refuse(
             body.where,
-            f"{what}: no body has the principal moments of inertia {told} kg m^2: none is negative,"
+            f"{what}: no body has the principal moments of inertia {text} kg m^2: none is negative,"
             " and none is larger than the sum of the other two",
         )
     if excess > EXACT * moments[2]:

@@ -141,7 +141,7 @@ def _scale(model: Model) -> Array:
 
 def _moves(kind: str) -> list[str]:
     """Return along or about which axis each coordinate of a kind moves."""
-    slides, turns = HELD[kind]
+    slides, angles = HELD[kind]
     match kind:
         case "screw":
             return ["screw"]
@@ -150,7 +150,7 @@ def _moves(kind: str) -> list[str]:
         case "weld":
             return []
     return [f"slide {a}" for a in "xyz" if a not in slides] + [
-        f"turn {a}" for a in "xyz" if a not in turns
+        f"turn {a}" for a in "xyz" if a not in angles
     ]
 
 

@@ -58,89 +58,89 @@ def read(path: Path, text: str) -> Model:
     """Return the model of a file. Raises :class:`.ModelFileError`, which names the element."""
     model = Model(path.stem, path.name)
     try:
-        told = json.loads(text)
+        data = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise model.refuse("", f"no JSON: {error}") from None
-    _keys(model, "", told, TOP, ("schema", "version", "bodies", "joints"))
-    if told["schema"] != SCHEMA or told["version"] != VERSION:
+    _keys(model, "", data, TOP, ("schema", "version", "bodies", "joints"))
+    if data["schema"] != SCHEMA or data["version"] != VERSION:
         expected = f'"schema": "{SCHEMA}", "version": {VERSION}'
-        got = f"{shown(told['schema'])}, {shown(told['version'])}"
+        got = f"{shown(data['schema'])}, {shown(data['version'])}"
         raise model.refuse("", f"expected {expected}, got {got}")
-    if told.get("units", "SI") != "SI":
-        raise model.refuse("units", f'expected "SI", got {shown(told["units"])}')
-    model.name = _text(model, "name", told.get("name", model.name))
-    x, y, z = numbers(model, "gravity", told.get("gravity", (0.0, 0.0, -9.81)), "gravity", 3)
+    if data.get("units", "SI") != "SI":
+        raise model.refuse("units", f'expected "SI", got {shown(data["units"])}')
+    model.name = _text(model, "name", data.get("name", model.name))
+    x, y, z = numbers(model, "gravity", data.get("gravity", (0.0, 0.0, -9.81)), "gravity", 3)
     model.gravity = (float(x), float(y), float(z))
-    for k, one in enumerate(_list(model, "bodies", told["bodies"])):
+    for k, one in enumerate(_list(model, "bodies", data["bodies"])):
         body = _body(model, f"bodies[{k}]", one)
         model.bodies[body.name] = body
-    for k, one in enumerate(_list(model, "joints", told["joints"])):
+    for k, one in enumerate(_list(model, "joints", data["joints"])):
         joint = _joint(model, f"joints[{k}]", one)
         model.joints[joint.name] = joint
-    for k, one in enumerate(_list(model, "couplings", told.get("couplings", []))):
+    for k, one in enumerate(_list(model, "couplings", data.get("couplings", []))):
         coupling = _coupling(model, f"couplings[{k}]", one)
         model.couplings[coupling.name] = coupling
-    for name, one in _table(model, "motions", told.get("motions", {})).items():
+    for name, one in _table(model, "motions", data.get("motions", {})).items():
         model.motions[name] = _law(model, f"motions.{name}", one)
-    for name, one in _table(model, "posture", told.get("posture", {})).items():
+    for name, one in _table(model, "posture", data.get("posture", {})).items():
         model.posture[name] = number(model, f"posture.{name}", one, "value")
-    if "drives" in told:
-        names = _list(model, "drives", told["drives"])
+    if "drives" in data:
+        names = _list(model, "drives", data["drives"])
         model.drives = [_text(model, "drives", one) for one in names]
-    if "time" in told:
-        model.span = _span(model, told["time"])
+    if "time" in data:
+        model.span = _span(model, data["time"])
     model.notes = [
-        _text(model, "notes", one) for one in _list(model, "notes", told.get("notes", []))
+        _text(model, "notes", one) for one in _list(model, "notes", data.get("notes", []))
     ]
     return model
 
 
 def write(model: Model) -> str:
     """Return the text of the file for a model."""
-    told: dict[str, Any] = {"schema": SCHEMA, "version": VERSION, "name": model.name, "units": "SI"}
-    told["gravity"] = list(model.gravity)
-    told["time"] = dict(zip(("start", "stop", "count"), model.span, strict=True))
-    told["bodies"] = [_told_body(body) for body in model.bodies.values()]
-    told["joints"] = [
+    data: dict[str, Any] = {"schema": SCHEMA, "version": VERSION, "name": model.name, "units": "SI"}
+    data["gravity"] = list(model.gravity)
+    data["time"] = dict(zip(("start", "stop", "count"), model.span, strict=True))
+    data["bodies"] = [_told_body(body) for body in model.bodies.values()]
+    data["joints"] = [
         {"name": one.name, "kind": one.kind, "parent": one.parent, "child": one.child}
         | {"on_parent": _told_frame(one.on_parent), "on_child": _told_frame(one.on_child)}
         | ({"lead": one.lead} if one.lead else {})
         for one in model.joints.values()
     ]
-    told["couplings"] = [
+    data["couplings"] = [
         {key: getattr(one, key) for key in COUPLING} for one in model.couplings.values()
     ]
-    told["motions"] = {
+    data["motions"] = {
         name: law.text
         if law.samples is None
         else {"times": list(law.samples[0]), "values": list(law.samples[1])}
         for name, law in model.motions.items()
     }
-    told |= {"posture": model.posture} if model.posture else {}
-    told |= {"drives": model.drives} if model.drives is not None else {}
-    told |= {"notes": model.notes} if model.notes else {}
-    return json.dumps(told, indent=1, allow_nan=False) + "\n"
+    data |= {"posture": model.posture} if model.posture else {}
+    data |= {"drives": model.drives} if model.drives is not None else {}
+    data |= {"notes": model.notes} if model.notes else {}
+    return json.dumps(data, indent=1, allow_nan=False) + "\n"
 
 
 def _told_body(body: Body) -> dict[str, Json]:
-    told: dict[str, Any] = {"name": body.name, "mass": body.mass} | _told_frame(body.frame)
+    data: dict[str, Any] = {"name": body.name, "mass": body.mass} | _told_frame(body.frame)
     if body.rod is not None:
-        told["rod"] = [end.tolist() for end in body.rod]
+        data["rod"] = [end.tolist() for end in body.rod]
     elif body.point:
-        told["point"] = True
+        data["point"] = True
     else:
         assert body.inertia is not None
-        told |= {"centre": body.centre.tolist(), "inertia": body.inertia.tolist()}
+        data |= {"centre": body.centre.tolist(), "inertia": body.inertia.tolist()}
     if body.places:
-        told["places"] = {name: place.tolist() for name, place in body.places.items()}
-    return told
+        data["places"] = {name: place.tolist() for name, place in body.places.items()}
+    return data
 
 
 def _told_frame(frame: Frame) -> dict[str, Json]:
-    told: dict[str, Any] = {"place": frame.place.tolist()}
+    data: dict[str, Any] = {"place": frame.place.tolist()}
     if not np.array_equal(frame.axes, np.eye(3)):
-        told["axes"] = frame.axes.T.tolist()
-    return told
+        data["axes"] = frame.axes.T.tolist()
+    return data
 
 
 def _body(model: Model, where: str, told: Told) -> Body:
@@ -207,12 +207,12 @@ def _frame(model: Model, where: str, told: Told) -> Frame:
     return Frame(place)
 
 
-def _coupling(model: Model, where: str, told: Told) -> Coupling:
-    _keys(model, where, told, COUPLING, ("name", "first", "second", "ratio"))
-    name = model.name_of("coupling", _text(model, where, told["name"]), where, model.couplings)
-    first, second = (_text(model, f"{where}.{key}", told[key]) for key in ("first", "second"))
-    ratio = number(model, f"{where}.ratio", told["ratio"], "ratio")
-    offset = number(model, f"{where}.offset", told.get("offset", 0.0), "offset")
+def _coupling(model: Model, where: str, data: Told) -> Coupling:
+    _keys(model, where, data, COUPLING, ("name", "first", "second", "ratio"))
+    name = model.name_of("coupling", _text(model, where, data["name"]), where, model.couplings)
+    first, second = (_text(model, f"{where}.{key}", data[key]) for key in ("first", "second"))
+    ratio = number(model, f"{where}.ratio", data["ratio"], "ratio")
+    offset = number(model, f"{where}.offset", data.get("offset", 0.0), "offset")
     return Coupling(name, first, second, ratio, offset, where)
 
 
@@ -237,9 +237,9 @@ def _span(model: Model, told: object) -> tuple[float, float, int]:
 
 
 def _keys(
-    model: Model, where: str, told: object, valid: Sequence[str], needed: Sequence[str]
+    model: Model, where: str, data: object, valid: Sequence[str], needed: Sequence[str]
 ) -> None:
-    table = _table(model, where, told)
+    table = _table(model, where, data)
     for key in table:
         if key not in valid:
             raise model.refuse(where, f"unknown key {shown(key)}; valid: {', '.join(valid)}")
@@ -254,10 +254,10 @@ def _table(model: Model, where: str, told: object) -> dict[str, Any]:
     return told
 
 
-def _list(model: Model, where: str, told: object) -> list[Any]:
-    if not isinstance(told, list | tuple):
-        raise model.refuse(where, f"expected a list, got {shown(told)}")
-    return list(told)
+def _list(model: Model, where: str, data: object) -> list[Any]:
+    if not isinstance(data, list | tuple):
+        raise model.refuse(where, f"expected a list, got {shown(data)}")
+    return list(data)
 
 
 def _text(model: Model, where: str, told: object) -> str:

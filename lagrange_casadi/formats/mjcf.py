@@ -49,12 +49,12 @@ def read(path: Path, text: str) -> Model:
 
 def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -> None:
     """Raise :class:`.ModelFileError` for a file outside of the folder; included ones are read."""
-    for key, told in line.given.items():
+    for key, data in line.given.items():
         if key not in (*_FOLDERS, *_FILES):
             continue
-        there = (base / told).resolve()
-        if Path(told).is_absolute() or not there.is_relative_to(folder):
-            raise model.refuse(line.where, f"{key} {shown(told)} leads out of its folder")
+        there = (base / data).resolve()
+        if Path(data).is_absolute() or not there.is_relative_to(folder):
+            raise model.refuse(line.where, f"{key} {shown(data)} leads out of its folder")
         if line.name == "include" and there.is_file():
             if depth > _DEEPEST:
                 raise model.refuse(line.where, "includes are too deep")
@@ -98,8 +98,8 @@ class _Reader:
 
     def called(self, kind: str, k: int) -> str:
         """Return the name of an object, or its number."""
-        told = self.mujoco.mj_id2name(self.m, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind}"), k)
-        return told or f"{kind.lower()}_{k}"
+        data = self.mujoco.mj_id2name(self.m, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind}"), k)
+        return data or f"{kind.lower()}_{k}"
 
     def frame(self, k: int) -> Frame:
         """Return where a body is in the reference posture."""
@@ -108,9 +108,9 @@ class _Reader:
 
     def body(self, k: int) -> None:
         """Declare a body, and the joints that it hangs on."""
-        model, m, told = self.model, self.m, self.called("BODY", k)
-        where = f"body {shown(told)}"
-        name = self.bodies[k] = model.name_of("body", told, where, model.bodies)
+        model, m, data = self.model, self.m, self.called("BODY", k)
+        where = f"body {shown(data)}"
+        name = self.bodies[k] = model.name_of("body", data, where, model.bodies)
         axes = self.rotation(m.body_iquat[k])
         inertia = axes @ np.diag(m.body_inertia[k]) @ axes.T
         mass, frame = float(m.body_mass[k]), self.frame(k)
@@ -132,10 +132,10 @@ class _Reader:
 
     def joint(self, j: int, above: str, below: str, frame: Frame) -> None:
         """Declare a joint; in the reference posture its coordinate is ``ref``."""
-        model, m, told = self.model, self.m, self.called("JOINT", j)
+        model, m, data = self.model, self.m, self.called("JOINT", j)
         kind = ("free", "spherical", "prismatic", "revolute")[int(m.jnt_type[j])]
-        where = f"joint {shown(told)}"
-        name = self.joints[j] = model.name_of("joint", told, where, model.joints)
+        where = f"joint {shown(data)}"
+        name = self.joints[j] = model.name_of("joint", data, where, model.joints)
         at, far = frame.then(Frame(m.jnt_pos[j].copy())), Frame(m.jnt_pos[j].copy())
         if kind == "free":
             at, far = Frame(), Frame()
@@ -194,7 +194,7 @@ class _Reader:
     def left_out(self) -> None:
         """Note what was not read."""
         m, notes = self.m, self.model.notes
-        told = {
+        data = {
             "Springs of joints": np.any(m.jnt_stiffness),
             "Damping of joints": np.any(m.dof_damping),
             "Friction of joints": np.any(m.dof_frictionloss),
@@ -204,4 +204,4 @@ class _Reader:
             "Actuators, but for the joints that they drive": m.nu > 0,
             "Keyframes": m.nkey > 0,
         }
-        notes += [f"{what}: not read." for what, there in told.items() if there]
+        notes += [f"{what}: not read." for what, there in data.items() if there]

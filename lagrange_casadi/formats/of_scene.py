@@ -57,24 +57,24 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
     solution = evaluate(
         scene, t=(start, start, 1), wanted=["motion"], parameters=parameters, backend="vm"
     )
-    told = solution.description
-    model = Model(told["name"], file, span=(start, stop, 101))
+    described = solution.description
+    model = Model(described["name"], file, span=(start, stop, 101))
     what = f"mechanism '{model.name}'"
-    for name in (*told["constraints"], *told["rows"]):
+    for name in (*described["constraints"], *described["rows"]):
         raise DeclarationError(f"{what}: constraint '{name}' has no word in a model file")
-    if told["loads"]:
-        model.notes.append(f"Loads are not exported: {', '.join(told['loads'])}.")
-    x, y, z = (*told["gravity"], 0.0)[:3]
+    if described["loads"]:
+        model.notes.append(f"Loads are not exported: {', '.join(described['loads'])}.")
+    x, y, z = (*described["gravity"], 0.0)[:3]
     model.gravity = (x, y, z)
-    for name, body in told["bodies"].items():
+    for name, body in described["bodies"].items():
         model.bodies[name] = _body(name, body, _frame(solution, name))
         if "density" in body and model.bodies[name].rod is None:
             model.notes.append(
                 f"The mass of '{name}' is exported as a total, without its distribution along"
                 " the link."
             )
-    for name, joint in told["joints"].items():
-        model.joints[name] = _joint(name, joint, len(told["gravity"]) == 2)
+    for name, joint in described["joints"].items():
+        model.joints[name] = _joint(name, joint, len(described["gravity"]) == 2)
     known = [name for joint in model.joints.values() for name in joint.coordinates]
     values = ca.DM(list(scene.values(parameters).values()))
     laws = scene.prescribed

@@ -249,10 +249,10 @@ class Model:
     def at_reference(self, joint: Joint) -> list[float]:
         """Return the coordinates of a joint in the reference posture, in their order."""
         near, far = self.frames(joint)
-        seen = near.seen(far)
-        x, y, z = (float(number) for number in seen.place)
-        turn = math.atan2(seen.axes[1, 0], seen.axes[0, 0])
-        about = _three_turns(seen.axes)
+        known = near.seen(far)
+        x, y, z = (float(number) for number in known.place)
+        turn = math.atan2(known.axes[1, 0], known.axes[0, 0])
+        about = _three_turns(known.axes)
         found: dict[str, list[float]] = {
             "revolute": [turn],
             "prismatic": [z],
@@ -276,22 +276,22 @@ class Model:
     def apart(self, joint: Joint) -> tuple[float, float]:
         """Return by how much the frames of a joint miss what it holds: in m, and in rad."""
         near, far = self.frames(joint)
-        seen = near.seen(far)
-        slides, turns = HELD[joint.kind]
-        gap = math.hypot(*(float(seen.place["xyz".index(axis)]) for axis in slides))
+        known = near.seen(far)
+        slides, angles = HELD[joint.kind]
+        gap = math.hypot(*(float(known.place["xyz".index(axis)]) for axis in slides))
         if any(one != GROUND and self.bodies[one].point for one in (joint.parent, joint.child)):
             return gap, 0.0
         if joint.kind == "universal":
-            return gap, abs(float(seen.axes[2, 2]))
+            return gap, abs(float(known.axes[2, 2]))
         if joint.kind == "screw":
-            turn = math.atan2(seen.axes[1, 0], seen.axes[0, 0])
-            away = (float(seen.place[2]) - joint.lead * turn / math.tau) / (joint.lead or 1.0)
+            turn = math.atan2(known.axes[1, 0], known.axes[0, 0])
+            away = (float(known.place[2]) - joint.lead * turn / math.tau) / (joint.lead or 1.0)
             gap = math.hypot(gap, joint.lead * (away - round(away)))
-        if turns == "xyz":
-            cosine = min(1.0, max(-1.0, (float(np.trace(seen.axes)) - 1.0) / 2.0))
-            return gap, math.hypot(math.acos(cosine) if cosine < 0.9 else 0.0, _small(seen.axes))
-        tilt = math.hypot(float(seen.axes[0, 2]), float(seen.axes[1, 2]))
-        return gap, math.atan2(tilt, float(seen.axes[2, 2])) if turns else 0.0
+        if angles == "xyz":
+            cosine = min(1.0, max(-1.0, (float(np.trace(known.axes)) - 1.0) / 2.0))
+            return gap, math.hypot(math.acos(cosine) if cosine < 0.9 else 0.0, _small(known.axes))
+        tilt = math.hypot(float(known.axes[0, 2]), float(known.axes[1, 2]))
+        return gap, math.atan2(tilt, float(known.axes[2, 2])) if angles else 0.0
 
 
 def _small(axes: Array) -> float:

@@ -100,8 +100,8 @@ class _Reader:
 
     def body(self, link: Element) -> None:
         """Declare a link as a body."""
-        model, told = self.model, attribute(self.model, link, "name")
-        name = self.bodies[told] = model.name_of("body", told, link.where, model.bodies)
+        model, data = self.model, attribute(self.model, link, "name")
+        name = self.bodies[data] = model.name_of("body", data, link.where, model.bodies)
         inertial, mass = link.first("inertial"), 1.0
         if inertial is None or inertial.first("inertia") is None:
             words = "lacks <inertia>, in place of which Gazebo has 1 kg and 1 kg m^2"
@@ -112,19 +112,19 @@ class _Reader:
         moments = needed(model, inertial, "inertia")
         six = [self.value(moments, key, 1.0 if key[1] == key[2] else 0.0) for key in MOMENTS]
         inertia = inertia_of(six, centre.axes)
-        frame = self.frame(told, ())
+        frame = self.frame(data, ())
         model.bodies[name] = Body(name, mass, centre.place, inertia, frame, where=link.where)
 
     def joint(self, line: Element) -> None:
         """Declare a joint, whose frames coincide as the model stands."""
-        model, told = self.model, attribute(self.model, line, "name")
+        model, data = self.model, attribute(self.model, line, "name")
         kind = KINDS.get(attribute(model, line, "type"))
         if kind is None:
             words = f"unknown type {shown(line.given['type'])}; valid: {', '.join(KINDS)}, gearbox"
             raise model.refuse(line.where, words)
-        name = self.joints[told] = model.name_of("joint", told, line.where, model.joints)
+        name = self.joints[data] = model.name_of("joint", data, line.where, model.joints)
         parent, child = self.end(line, "parent"), self.end(line, "child")
-        frame = self.frame(told, ())
+        frame = self.frame(data, ())
         near = far = frame
         if kind in ("revolute", "prismatic", "screw", "universal"):
             first = self.axis(line, "axis", frame)
@@ -150,7 +150,7 @@ class _Reader:
 
     def couplings(self, line: Element) -> None:
         """Declare what ties a joint to another one: a mimic, a gearbox."""
-        model, told = self.model, attribute(self.model, line, "name")
+        model, data = self.model, attribute(self.model, line, "name")
         axis = line.first("axis")
         if axis is not None and (mimic := axis.first("mimic")) is not None:
             other = attribute(model, mimic, "joint")
@@ -158,7 +158,7 @@ class _Reader:
                 self.value(mimic, key, usual)
                 for key, usual in (("multiplier", 0.0), ("offset", 0.0), ("reference", 0.0))
             )
-            self.coupling(mimic, f"{told}_mimic", (other, told), ratio, offset - ratio * reference)
+            self.coupling(mimic, f"{data}_mimic", (other, data), ratio, offset - ratio * reference)
         if line.given["type"] != "gearbox":
             return
         ratio = self.value(line, "gearbox_ratio", 1.0)
@@ -168,15 +168,15 @@ class _Reader:
             body = self.end(line, side)
             found = [
                 name
-                for name, own in self.joints.items()
-                if {model.joints[own].parent, model.joints[own].child}
+                for name, local in self.joints.items()
+                if {model.joints[local].parent, model.joints[local].child}
                 == {body, self.bodies.get(carrier, GROUND)}
             ]
             if len(found) != 1:
                 words = f"its {side} has no joint on the reference body {shown(carrier)}"
                 raise model.refuse(line.where, words)
             ends.append(found[0])
-        self.coupling(line, told, (ends[0], ends[1]), -ratio, 0.0)
+        self.coupling(line, data, (ends[0], ends[1]), -ratio, 0.0)
 
     def coupling(
         self, line: Element, told: str, joints: tuple[str, str], ratio: float, offset: float
@@ -193,24 +193,24 @@ class _Reader:
 
     def axis(self, line: Element, key: str, frame: Frame) -> Array:
         """Return the direction of a joint's axis, on the ground's axes."""
-        told = needed(self.model, line, key)
-        xyz, given = told.first("xyz"), np.array([0.0, 0.0, 1.0])
+        data = needed(self.model, line, key)
+        xyz, given = data.first("xyz"), np.array([0.0, 0.0, 1.0])
         on = frame
         if xyz is not None:
             given = numbers(self.model, xyz.where, xyz.text, "xyz", 3)
             if expressed := xyz.given.get("expressed_in"):
                 on = self.known(xyz, expressed, ())
-        legacy = told.first("use_parent_model_frame")
+        legacy = data.first("use_parent_model_frame")
         if legacy is not None and legacy.text.strip() in ("1", "true"):
             on = self.own
         if not np.any(given):
-            raise self.model.refuse(told.where, "expected a direction, got zero")
+            raise self.model.refuse(data.where, "expected a direction, got zero")
         return np.asarray(on.axes @ given / np.linalg.norm(given))
 
     def end(self, line: Element, key: str) -> str:
         """Return the body of a joint's parent or child, which may be told by a frame on it."""
-        told = needed(self.model, line, key)
-        name = told.text.strip()
+        data = needed(self.model, line, key)
+        name = data.text.strip()
         for _ in range(len(self.named) + 1):
             if name == "world":
                 return GROUND
@@ -220,8 +220,8 @@ class _Reader:
             if frame is None or frame.name != "frame":
                 break
             name = frame.given.get("attached_to", "")
-        words = f"unknown link {shown(told.text.strip())}; valid: world, {', '.join(self.bodies)}"
-        raise self.model.refuse(told.where, words)
+        words = f"unknown link {shown(data.text.strip())}; valid: world, {', '.join(self.bodies)}"
+        raise self.model.refuse(data.where, words)
 
     def frame(self, name: str, above: tuple[str, ...]) -> Frame:
         """Return where a link, frame or joint is; poses may be told on each other."""
@@ -252,10 +252,10 @@ class _Reader:
         """Return the frame of a pose: a place, and roll, pitch and yaw."""
         if line is None or not line.text.strip():
             return Frame()
-        told = line.text
+        data = line.text
         if line.given.get("rotation_format", "euler_rpy") != "euler_rpy":
             raise self.model.refuse(line.where, "rotation_format: expected euler_rpy")
-        six = numbers(self.model, line.where, told, "pose", 6)
+        six = numbers(self.model, line.where, data, "pose", 6)
         angles = np.radians(six[3:]) if line.given.get("degrees") in ("true", "1") else six[3:]
         return Frame(six[:3], rotation(self.model, line.where, rpy(angles)))
 

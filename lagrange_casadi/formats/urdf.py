@@ -58,8 +58,8 @@ def read(path: Path, text: str) -> Model:
     root = parsed(model, text, "robot")
     for one in root.inside:
         if one.name.startswith("xacro:"):
-            told = f"xacro {path.name} > expanded.urdf"
-            raise model.refuse(one.where, f"is a macro of xacro; expand it first: {told}")
+            data = f"xacro {path.name} > expanded.urdf"
+            raise model.refuse(one.where, f"is a macro of xacro; expand it first: {data}")
     model.name = model.name_of("mechanism", root.given.get("name", path.stem), root.where, {})
     return _Robot(model, root).read()
 
@@ -129,8 +129,8 @@ class _Robot:
         self, line: Element, kind: str, one: tuple[str, Frame], other: tuple[str, Frame]
     ) -> None:
         """Declare a joint between frames of two links."""
-        told = attribute(self.model, line, "name")
-        name = self.names[told] = self.model.name_of("joint", told, line.where, self.model.joints)
+        data = attribute(self.model, line, "name")
+        name = self.names[data] = self.model.name_of("joint", data, line.where, self.model.joints)
         (parent, near), (child, far) = (
             (self.on[link][0], self.on[link][1].then(frame)) for link, frame in (one, other)
         )
@@ -147,8 +147,8 @@ class _Robot:
             given = line.first("parent_axis", "axis")
             if given is not None and given.given.get("frame") == "parent":
                 # The axis is told on the parent alone: the child's is where it is at zero.
-                seen = placed[child].seen(placed[parent].then(near))
-                far = Frame(far.place, rotation(self.model, line.where, seen.axes))
+                known = placed[child].seen(placed[parent].then(near))
+                far = Frame(far.place, rotation(self.model, line.where, known.axes))
             else:
                 far = far.then(self.axes(line, kind, "parent_axis", "axis"))
         self.add(line, kind, (parent, near), (child, far))
@@ -159,8 +159,8 @@ class _Robot:
         for letter, point in (("A", "p_AP"), ("B", "p_BQ")):
             body = needed(self.model, line, f"drake:ball_constraint_body_{letter}")
             place = needed(self.model, line, f"drake:ball_constraint_{point}")
-            told = attribute(self.model, place, "value")
-            at = numbers(self.model, place.where, told, point, 3)
+            data = attribute(self.model, place, "value")
+            at = numbers(self.model, place.where, data, point, 3)
             sides.append((self.known(body, attribute(self.model, body, "name")), Frame(at)))
         line.given.setdefault("name", f"ball_{len(self.model.joints)}")
         self.add(line, "spherical", sides[0], sides[1])
@@ -190,8 +190,8 @@ class _Robot:
         first, second = (self.joint(above[link], "name") for link in links)
         value = attribute(model, needed(model, line, "ratio"), "value")
         ratio = number(model, line.where, value, "ratio")
-        told = attribute(model, line, "name")
-        name = model.name_of("coupling", told, line.where, model.couplings)
+        data = attribute(model, line, "name")
+        name = model.name_of("coupling", data, line.where, model.couplings)
         model.couplings[name] = Coupling(name, first, second, ratio, where=line.where)
 
     def actuators(self) -> None:
@@ -245,11 +245,11 @@ class _Robot:
 
     def kind(self, line: Element) -> str:
         """Return the kind of a joint."""
-        told = attribute(self.model, line, "type")
-        if told not in KINDS:
-            words = f"unknown type {shown(told)}; valid: {', '.join(KINDS)}"
+        data = attribute(self.model, line, "type")
+        if data not in KINDS:
+            words = f"unknown type {shown(data)}; valid: {', '.join(KINDS)}"
             raise self.model.refuse(line.where, words)
-        return KINDS[told]
+        return KINDS[data]
 
     def axes(self, line: Element, kind: str, *names: str) -> Frame:
         """Return a frame whose z is the axis of a joint, where its kind has one."""
@@ -257,8 +257,8 @@ class _Robot:
             return Frame()
         axis: Array = np.array([1.0, 0.0, 0.0])
         if (found := line.first(*(names or ("axis",)))) is not None:
-            told = attribute(self.model, found, "xyz")
-            axis = numbers(self.model, found.where, told, "axis", 3)
+            data = attribute(self.model, found, "xyz")
+            axis = numbers(self.model, found.where, data, "axis", 3)
             if not np.any(axis):
                 raise self.model.refuse(found.where, "expected a direction, got zero")
         return Frame(axes=about_axis(axis))
@@ -288,11 +288,11 @@ class _Robot:
         """Return a joint's name in the record. Raises :class:`.ModelFileError` for one that is not
         there.
         """
-        told = attribute(self.model, line, key)
-        if told not in self.names:
-            words = f"unknown joint {shown(told)}; valid: {', '.join(self.names)}"
+        data = attribute(self.model, line, key)
+        if data not in self.names:
+            words = f"unknown joint {shown(data)}; valid: {', '.join(self.names)}"
             raise self.model.refuse(line.where, words)
-        return self.names[told]
+        return self.names[data]
 
     def known(self, line: Element, link: str) -> str:
         """Return a link's name. Raises :class:`.ModelFileError` for one that is not there."""

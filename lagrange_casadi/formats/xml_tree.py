@@ -57,8 +57,8 @@ def parsed(model: Model, text: str, root: str) -> Element:
     def end(_: str) -> None:
         stack.pop()
 
-    def characters(told: str) -> None:
-        stack[-1].text += told
+    def characters(data: str) -> None:
+        stack[-1].text += data
 
     def refuse(*_: object) -> None:
         where = f"line {parser.CurrentLineNumber}"

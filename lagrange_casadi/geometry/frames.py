@@ -149,9 +149,11 @@ class Carried(Frame):
 
     def displaced(self, translation: Vector, turning: Vector) -> Carried:
         """The frame displaced at the anchor, by the rates of a translation and of a rotation."""
-        own = self.own.displaced(self.rotation.resolve(translation), self.rotation.resolve(turning))
+        local = self.own.displaced(
+            self.rotation.resolve(translation), self.rotation.resolve(turning)
+        )
         return replace(
-            self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), own=own
+            self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), own=local
         )
 
     def displaced_along(self, translation: Vector, turning: Vector) -> Carried:

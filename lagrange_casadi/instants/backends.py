@@ -312,9 +312,11 @@ class Interpreter:
             z = z + correction
         if not size < rule["lost"]:
             return Status.NOT_CONVERGED, guess
-        turns = np.where(self.program.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
+        revolutions = np.where(
+            self.program.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0
+        )
         slow = self.newton is None and size > rule["rate"] * before and size > rule["rounding"]
-        return Status.SLOW if slow else Status.OK, z - math.tau * turns
+        return Status.SLOW if slow else Status.OK, z - math.tau * revolutions
 
 
 def _blocks(count: int) -> list[slice]:

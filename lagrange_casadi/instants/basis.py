@@ -71,7 +71,7 @@ class Basis:
         Of that each force feels its own: loads by their arms, and couples of slices without. The
         two planes of bending are of the same rows: where signs differ, columns have them.
         """
-        sign, plain, own = (terms.arm, self.bending, 4) if terms.arm else (1, self.force, 3)
+        sign, plain, width = (terms.arm, self.bending, 4) if terms.arm else (1, self.force, 3)
         columns = [*law[:1], *(-column for column in law[1:])] if sign < 0 else list(law)
         if not distributed_loads:
             return columns, plain[: len(law)]
@@ -80,7 +80,7 @@ class Basis:
             for values, there in (
                 (
                     [sign * value for value in load.terms.get(terms.distributed, ())],
-                    plain[own + first :],
+                    plain[width + first :],
                 ),
                 (
                     load.terms.get(terms.couple, ()),

@@ -213,12 +213,14 @@ class Drive:
 
         Whole turns that columns count are then in the angles, and the columns are zero.
         """
-        own = {self.program.columns[k]: turn for k, turn in zip(self.wrapped, turns, strict=True)}
+        revolutions_of = {
+            self.program.columns[k]: turn for k, turn in zip(self.wrapped, turns, strict=True)
+        }
         whole = list(self.program.checks("turns").values())
-        own |= {self.program.columns[k]: math.tau * columns[k] for k in whole}
+        revolutions_of |= {self.program.columns[k]: math.tau * columns[k] for k in whole}
         for angle, k in self.program.outputs.items():
             for part, sign in self.program.loop_angles.get(angle, {}).items():
-                columns[k] += sign * own[part]
+                columns[k] += sign * revolutions_of[part]
         columns[whole] = 0.0
 
     def follow(self, turns: int) -> tuple[Course, Array]:
@@ -308,10 +310,10 @@ def cycle_of(program: Program, p: Array, rates: tuple[float, float]) -> Cycle:
             f"table: expected columns quadratic in the rate of joint '{drive.joint}', but its sign"
             " decides friction " + ", ".join(f"'{name}'" for name in sliding)
         )
-    for turns in range(1, TURNS + 1):
-        course, values = drive.follow(2 * turns)
+    for revolutions in range(1, TURNS + 1):
+        course, values = drive.follow(2 * revolutions)
         sizes = _sizes(program, p, np.abs(values).max(axis=-1))
-        if turns == 1:
+        if revolutions == 1:
             _refuse_other_powers(drive, course, sizes, rates)
         half = course.angles.size // 2
         gained = drive.way * (values[..., half:] - values[..., :half])
@@ -325,8 +327,10 @@ def cycle_of(program: Program, p: Array, rates: tuple[float, float]) -> Cycle:
             # An angle gains whole turns, and just so.
             gain = change / math.tau
             whole = np.rint(gain)
-            drift = np.where((whole != 0.0) & (np.abs(gain - whole) < _SAME), whole, gain) / turns
-            return Cycle(drive, course, turns, drift, _ROUNDING * sizes + 2.0 * noise)
+            drift = (
+                np.where((whole != 0.0) & (np.abs(gain - whole) < _SAME), whole, gain) / revolutions
+            )
+            return Cycle(drive, course, revolutions, drift, _ROUNDING * sizes + 2.0 * noise)
     names = [name for name, does in zip(program.columns, moved, strict=True) if does]
     wound_angles = bool(program.checks("turned"))
     why = "; a load that depends on a number of revolutions may not repeat" if wound_angles else ""
@@ -345,14 +349,14 @@ def _refuse_other_powers(
     columns = drive.program.columns
     some = slice(0, _STEPS, 7)
     angles, places = course.angles[some], course.places[:, some]
-    own = drive.terms_at(angles, places)
+    revolutions_of = drive.terms_at(angles, places)
     wrong: npt.NDArray[np.bool_] = np.zeros(len(columns), dtype=bool)
     for by_rate, by_acceleration in _PROBES:
         rate, acceleration = by_rate * (rates[0] or 1.0), by_acceleration * (rates[1] or 1.0)
         factors = np.array([1.0, rate, rate**2, acceleration])
         found = drive.columns_at(angles, places, rate, acceleration)
         near = _SAME * np.abs(found).max(axis=-1) + _FAINT * np.abs(factors) @ sizes
-        wrong |= ~(np.abs(found - np.tensordot(factors, own, 1)).max(axis=-1) <= near)
+        wrong |= ~(np.abs(found - np.tensordot(factors, revolutions_of, 1)).max(axis=-1) <= near)
     if wrong.any():
         names = [name for name, is_wrong in zip(columns, wrong, strict=True) if is_wrong]
         raise DeclarationError(

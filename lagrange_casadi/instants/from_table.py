@@ -116,8 +116,8 @@ def drive_of(program: Program) -> Program:
     """
     t, d, rate, acceleration, _, p = program.instant.sx_in()
     within = [
-        d - math.tau * (turns * ca.floor(d * (1 / (turns * math.tau))))
-        for turns in range(1, TURNS + 1)
+        d - math.tau * (revolutions * ca.floor(d * (1 / (revolutions * math.tau))))
+        for revolutions in range(1, TURNS + 1)
     ]
     out = ca.densify(ca.vertcat(d, rate, acceleration, *within))
     names = [program.instant.name_in(i) for i in range(program.instant.n_in())]
@@ -128,7 +128,7 @@ def drive_of(program: Program) -> Program:
         "angle",
         "rate",
         "acceleration",
-        *(f"within_{turns}" for turns in range(1, TURNS + 1)),
+        *(f"within_{revolutions}" for revolutions in range(1, TURNS + 1)),
     )
     return replace(
         program,

@@ -236,9 +236,9 @@ def _fill_in_blocks(
         rows = out[block]
         for plane in range(planes):
             values = np.empty(rows.shape) if plane else rows
-            own = [column[block] for column in columns[plane * terms : (plane + 1) * terms]]
+            terms_here = [column[block] for column in columns[plane * terms : (plane + 1) * terms]]
             _sum_up(
-                own,
+                terms_here,
                 basis,
                 [_cut(load, block) for load in loads[plane * many : (plane + 1) * many]],
                 u,

@@ -65,9 +65,9 @@ def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLA
     members = {of.acting for of in terms} | {
         table.sections[of.shear].acting for of in terms if of.arm
     }
-    own = (output for output in outputs if output.along and output.part == link)
+    of_link = (output for output in outputs if output.along and output.part == link)
     return [
         output
-        for output in own
+        for output in of_link
         if output.member in (members if output.load_point else coefficients)
     ]

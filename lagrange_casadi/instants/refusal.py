@@ -199,8 +199,10 @@ def _left_open(program: Program, start: Array, t: float, p: Array) -> str:
     out = program.instant(t, *motion, z, p).full()[:, 0]
     gaps = {closing: abs(float(out[k])) for closing, k in program.checks("gap").items()}
     widest = max(gaps.values(), default=math.nan)
-    left = [program.data.closing(closing) for closing, gap in gaps.items() if gap > _WIDE * widest]
-    return ", ".join(left) if 0 < len(left) < len(gaps) else program.newton.joints
+    remaining = [
+        program.data.closing(closing) for closing, gap in gaps.items() if gap > _WIDE * widest
+    ]
+    return ", ".join(remaining) if 0 < len(remaining) < len(gaps) else program.newton.joints
 
 
 def _not_finite(program: Program, out: Array, at: str) -> str:

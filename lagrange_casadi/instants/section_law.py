@@ -165,7 +165,7 @@ class SectionLaw(Brief):
         u = np.stack(
             [*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *load_points], axis=-1
         )
-        seen = [
+        beyond = [
             [edge(u, self.slack, side) < load.station[:, None] for side in SIDES]
             for load in self.loads
         ]
@@ -191,7 +191,7 @@ class SectionLaw(Brief):
                 np.repeat(values[..., None], len(SIDES) if self.loads else 1, axis=-1)
                 for values in (gaps, sizes)
             )
-            for load, change, there in zip(self.loads, changes.loads, seen, strict=True):
+            for load, change, there in zip(self.loads, changes.loads, beyond, strict=True):
                 load_point, constant, slope = (
                     values[:, None] for values in self._acting(force, load)
                 )
@@ -268,8 +268,10 @@ class SectionLaw(Brief):
             )
         # Loads along the link grow where they are.
         distributed_loads = tuple(
-            replace(own, terms=change.terms)
-            for own, change in zip(self.distributed_loads, rates.distributed_loads, strict=True)
+            replace(distributed, terms=change.terms)
+            for distributed, change in zip(
+                self.distributed_loads, rates.distributed_loads, strict=True
+            )
         )
         values, passing = (
             replace(rates, loads=(), distributed_loads=distributed_loads).at(force, u, side),
@@ -332,8 +334,10 @@ class SectionLaw(Brief):
     def _blocks(self, force: str) -> list[SectionLaw]:
         """The law over few instants after another, so that what is sought at them stays at hand."""
         many = len(self._parts(force)) > 1 or self.distributed_loads
-        turns = (2 * self._highest + 4) * len(self.density.cells) if many else 1
-        height = max(1, _BLOCK // (turns * (len(self._marked) + 1))) if turns > 1 else _BLOCK
+        iterations = (2 * self._highest + 4) * len(self.density.cells) if many else 1
+        height = (
+            max(1, _BLOCK // (iterations * (len(self._marked) + 1))) if iterations > 1 else _BLOCK
+        )
         return [
             self.during(slice(i, i + height))
             for i in range(0, self.coefficients["n0"].size, height)
@@ -403,11 +407,11 @@ class SectionLaw(Brief):
         ):
             found = []
         else:
-            turns = self._turns_of_size(parts, within, low, high)
+            iterations = self._turns_of_size(parts, within, low, high)
             found = (
-                list(np.moveaxis(turns.places, -1, 0))
+                list(np.moveaxis(iterations.places, -1, 0))
                 if all_rotations
-                else turns.maxima(np.abs(within(force, turns.places)))
+                else iterations.maxima(np.abs(within(force, iterations.places)))
             )
         return np.hstack([places, *found]), np.hstack(
             [values, *(within(force, place) for place in found)]

@@ -70,9 +70,9 @@ def section_forces(
     """
     body = description["bodies"][link]
     length, density = body["length"], density_of(body)
-    own = {output: k for output, k in rows.items() if output.along and output.part == link}
+    of_link = {output: k for output, k in rows.items() if output.along and output.part == link}
     return {
-        force: SectionForce(force, link, own, length, density)
+        force: SectionForce(force, link, of_link, length, density)
         for force in table_of(in_space(description)).forces
     }
 

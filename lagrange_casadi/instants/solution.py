@@ -302,7 +302,7 @@ class Solution:
                 f" {shown(instants)}"
             )
         outputs = {output: values[instants] for output, values in self.outputs.items()}
-        left = {name: values[instants] for name, values in self.certificate.items()}
+        residuals = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])
         slopes = self.sensitivities.during(instants)
         holding = {name: found.during(instants) for name, found in self.holding.items()}
@@ -310,7 +310,7 @@ class Solution:
             self,
             t=self.t[instants],
             outputs=outputs,
-            certificate=left,
+            certificate=residuals,
             over=over,
             sensitivities=slopes,
             holding=holding,

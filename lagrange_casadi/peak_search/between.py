@@ -178,8 +178,12 @@ def _unresolved(
     if kind is Kind.SOFT:
         reach = watch.at[0]
         first, last = np.minimum(a, b), np.maximum(a, b)
-        turns = ((high > last + CHANGE) | (low < first - CHANGE)) & (low < reach) & (high > -reach)
-        return turns, ((last - first > CHANGE) & (first < reach) & (last > -reach)).astype(np.intp)
+        reverses = (
+            ((high > last + CHANGE) | (low < first - CHANGE)) & (low < reach) & (high > -reach)
+        )
+        return reverses, ((last - first > CHANGE) & (first < reach) & (last > -reach)).astype(
+            np.intp
+        )
     return (high > np.maximum(a, b) + RISE) & (
         high > np.max(row[~np.isnan(row)], initial=-np.inf) - NEGLIGIBLE
     ), none

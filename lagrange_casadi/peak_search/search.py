@@ -112,10 +112,10 @@ def peaks(
     rounding would choose their sign. A quantity that is no number at any instant, as friction at
     rest leaves it, has no peak. ``listed`` says which local peaks are told too.
     """
-    base, way = np.zeros(len(curves.units)), listed.way if listed else 0
-    if way:
-        base = base_of(np.array(curves.quantities), way * samples.values, base.size)
-        source = Counted(source, way, base[list(curves.quantities), None])
+    base, direction = np.zeros(len(curves.units)), listed.way if listed else 0
+    if direction:
+        base = base_of(np.array(curves.quantities), direction * samples.values, base.size)
+        source = Counted(source, direction, base[list(curves.quantities), None])
         samples = source.counted(samples)
     given, lacks = samples, np.isnan(samples.values)
     samples = samples._replace(values=np.where(lacks, 0.0, samples.values))
@@ -129,9 +129,9 @@ def peaks(
     if listed:
         least, rounding = search.least[search.quantity], search.rounding[search.quantity]
         tops = search.tops.listing(t, given, least, search.limit, rounding)
-    if tops is not None and way:
+    if tops is not None and direction:
         tops[tops[..., 3] < 0.0] = np.nan
-        value, tops[..., 3] = way * (value + base), way * (tops[..., 3] + base[:, None])
+        value, tops[..., 3] = direction * (value + base), direction * (tops[..., 3] + base[:, None])
     return Peaks(value, found.t + none, found.xi + none, found.resolved, tops)
 
 
@@ -509,9 +509,11 @@ class _Search:
         second, third = (
             float(np.median(np.abs(of))) for of in (np.diff(row[first : first + QUIET], 2), thirds)
         )
-        turns = np.count_nonzero(np.sign(thirds[1:]) * np.sign(thirds[:-1]) < 0.0)
+        reversals = np.count_nonzero(np.sign(thirds[1:]) * np.sign(thirds[:-1]) < 0.0)
         q = self.quantity[curve]
-        noisy = turns >= 2 and second <= third <= NOISE * (self.best[q] + BESIDE * self.scale[q])
+        noisy = reversals >= 2 and second <= third <= NOISE * (
+            self.best[q] + BESIDE * self.scale[q]
+        )
         return 3 * third if noisy else 0.0
 
     def rounded(self, curve: int) -> bool:
@@ -523,8 +525,8 @@ class _Search:
             return False
         bends, sizes = np.diff(row, 2), np.abs(row)
         ragged = np.abs(bends) > RAGGED * np.fmax(sizes[1:-1], np.fmax(sizes[:-2], sizes[2:]))
-        turns = ragged[:-1] & ragged[1:] & ((bends[:-1] > 0.0) != (bends[1:] > 0.0))
-        return bool(2 * np.count_nonzero(turns) >= row.size)
+        reversals = ragged[:-1] & ragged[1:] & ((bends[:-1] > 0.0) != (bends[1:] > 0.0))
+        return bool(2 * np.count_nonzero(reversals) >= row.size)
 
     def sample(self, places: Sequence[tuple[Candidate, float]]) -> Iterator[float]:
         """The sizes of curves where they are looked at."""

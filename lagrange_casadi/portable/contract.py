@@ -131,9 +131,9 @@ class Contract:
             ("output", self.outputs),
         ):
             for m in struct:
-                own = _short(m.source, kind)
-                if m.name != re.sub(r"\W", "_", own):
-                    found[f"{kind} {own}, a rest" if m.rest_of else f"{kind} {own}"] = m.name
+                short = _short(m.source, kind)
+                if m.name != re.sub(r"\W", "_", short):
+                    found[f"{kind} {short}, a rest" if m.rest_of else f"{kind} {short}"] = m.name
         usual = {link.name: f"{self.prefix}_link_{link.name}".upper() for link in self.links}
         return found | {
             f"link {link.name}": link.constant

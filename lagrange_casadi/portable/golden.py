@@ -106,10 +106,12 @@ def _errors(program: Program, precision: Precision, exact: Solution, p: Array) -
     }
     if precision == "single":
         evaluated, _ = run(program, exact.t, p, EvaluationMethod("vm"))
-        own = estimate(
+        estimated = estimate(
             program, replace(evaluated, stages=compensated(program, precision)), exact, p
         )
-        errors |= {str(output): max(errors[str(output)], error) for output, error in own.items()}
+        errors |= {
+            str(output): max(errors[str(output)], error) for output, error in estimated.items()
+        }
     return errors
 
 

@@ -33,7 +33,7 @@ def deepest(source: str) -> int:
     Raises ``ValueError`` where calls recur.
     """
     bodies = {found[1]: found[2] or found[3] or "" for found in _DEFINITION.finditer(source)}
-    own = {
+    sizes = {
         name: _FRAME + _SLOT * _kept(sum(_slots(x[2]) for x in _DECLARATION.finditer(body)))
         for name, body in bodies.items()
     }
@@ -45,7 +45,7 @@ def deepest(source: str) -> int:
     def depth(name: str, above: tuple[str, ...] = ()) -> int:
         if name in above:
             raise ValueError(f"{name} calls itself")
-        return own[name] + max((depth(other, (*above, name)) for other in calls[name]), default=0)
+        return sizes[name] + max((depth(other, (*above, name)) for other in calls[name]), default=0)
 
     return max(depth(name) for name in bodies)
 

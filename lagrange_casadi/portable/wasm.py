@@ -71,9 +71,9 @@ def _build(
     """Prepare a module; what is returned compiles it, in any thread."""
     check_zig("WebAssembly")
     c = source.contract
-    seen = [f"{c.prefix}_{call}" for call in (*_CALLS, *(["section"] if c.links else []))]
+    exported = [f"{c.prefix}_{call}" for call in (*_CALLS, *(["section"] if c.links else []))]
     stack = -(-(deepest(source.code) + _STACK) // 16) * 16
-    linked = [f"-Wl,--export={name}" for name in (*seen, *calls, "__heap_base")]
+    linked = [f"-Wl,--export={name}" for name in (*exported, *calls, "__heap_base")]
     linked += ["-Wl,--no-entry", "-Wl,--strip-all", f"-Wl,-z,stack-size={stack}"]
     files = {
         f"{c.prefix}.h": header(source),

@@ -233,11 +233,14 @@ def _rows(solution: Solution) -> Iterator[Row]:
         if not solution.determined(output):
             yield Row(*words, open=True)
             continue
-        own = solution.statistics(output)
+        statistics = solution.statistics(output)
         peak, smallest, largest = (
-            marked(extreme) for extreme in (own.peak, own.smallest, own.largest)
+            marked(extreme)
+            for extreme in (statistics.peak, statistics.smallest, statistics.largest)
         )
-        means = (None if mean is None else finite(mean) for mean in (own.mean, own.rms))
+        means = (
+            None if mean is None else finite(mean) for mean in (statistics.mean, statistics.rms)
+        )
         yield Row(*words, False, peak, error_of(solution, output), smallest, largest, *means)
 
 

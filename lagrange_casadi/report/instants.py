@@ -34,9 +34,9 @@ def _peaks(solution: Solution) -> list[int]:
     found: list[int] = []
     for output in ordered(solution):
         if solution.determined(output):
-            own = solution.statistics(output)
+            statistics = solution.statistics(output)
             found += [
                 int(np.searchsorted(solution.t, extreme.t))
-                for extreme in (own.smallest, own.largest, own.peak)
+                for extreme in (statistics.smallest, statistics.largest, statistics.peak)
             ]
     return found

@@ -23,7 +23,7 @@ class Mark:
 
 def mark(solution: Solution, value: float, t: float, xi: float | None) -> Mark:
     """The mark of a value at one of a solution's instants."""
-    own = solution.over
+    axis = solution.over
     return Mark(
-        value + 0.0, t, xi, float(own.values[int(np.argmax(solution.t == t))]) if own else None
+        value + 0.0, t, xi, float(axis.values[int(np.argmax(solution.t == t))]) if axis else None
     )

@@ -112,16 +112,16 @@ class PointFunction(Graphs):
         t, z, p, xi, *_ = inputs = self.function.sx_in()
         names = self.function.name_in()
         gradient = self.function(*inputs)[1:]
-        way = ca.SX.sym("way", 2 + p.numel())
-        of, along = [t, xi, p], [way[0], way[1], way[2:]]
+        direction = ca.SX.sym("way", 2 + p.numel())
+        of, along = [t, xi, p], [direction[0], direction[1], direction[2:]]
         if self.program.newton is not None:
             step = self.program.newton.step(z, t, self.program.motion(t, p)[0], p)[0]
-            along.append(ca.jtimes(step, ca.vertcat(t, p), ca.vertcat(way[0], way[2:])))
+            along.append(ca.jtimes(step, ca.vertcat(t, p), ca.vertcat(direction[0], direction[2:])))
             of.append(z)
         change = ca.jtimes(gradient, ca.vertcat(*of), ca.vertcat(*along))
         return ca.Function(
             "at_once",
-            [*inputs, way],
+            [*inputs, direction],
             [ca.densify(ca.vertcat(gradient, change))],
             [*names, "way"],
             ["found"],
@@ -170,14 +170,14 @@ def section_slopes(
         ca.SX.sym("xi"),
     )
     section = data.section(link, dict(zip(columns, ca.vertsplit(values), strict=True)), p)
-    own = {force: section.at(force, Place(xi), END["double"]) for force in table.sections}
+    values_here = {force: section.at(force, Place(xi), END["double"]) for force in table.sections}
     seeds = ca.vertcat(slopes.T, _seeds(p.numel(), by))
-    found = ca.jtimes(ca.vertcat(*own.values()), ca.vertcat(values, p), seeds)
-    changes = dict(zip(own, ca.vertsplit(found), strict=True))
+    found = ca.jtimes(ca.vertcat(*values_here.values()), ca.vertcat(values, p), seeds)
+    changes = dict(zip(values_here, ca.vertsplit(found), strict=True))
     rows = []
     for force in table.forces:
         parts = table.parts("section", force)
-        weights = _weights([own[part] for part in parts])
+        weights = _weights([values_here[part] for part in parts])
         rows.append(sum(w * changes[part] for w, part in zip(weights, parts, strict=True)))
     given, names = [values, slopes, xi, p], ["columns", "slopes", "xi", "p"]
     found = ca.densify(ca.vertcat(*rows).T)
@@ -248,7 +248,7 @@ def _rows(
 
     def add(parts: Sequence[Expression], weight: Expression) -> None:
         rows.extend(parts)
-        weights.extend(weight * own for own in _weights(parts))
+        weights.extend(weight * values_here for values_here in _weights(parts))
 
     for k, quantity in enumerate(quantities):
         if quantity.group != "section":
@@ -257,7 +257,7 @@ def _rows(
             )
             continue
         link = links.setdefault(quantity.part, data.section(quantity.part, columns, p))
-        names, left = table.parts("section", quantity.member), ca.SX(1.0)
+        names, factor = table.parts("section", quantity.member), ca.SX(1.0)
         marks = link.marks
         here = {
             id(place): [link.at(name, place, END["double"]) for name in names] for place in marks
@@ -271,10 +271,10 @@ def _rows(
             ]
             nearer = ca.SX(1.0)
             for twin in twins:
-                own, others = (ca.fabs(sizes[id(each)] - value) for each in (place, twin))
-                nearer = own < others if place.side == "base" else own <= others
-            taken = left * moving * (ca.fabs(xi - place.ratio) <= SAME_PLACE) * nearer
-            left = left - taken
+                values_here, others = (ca.fabs(sizes[id(each)] - value) for each in (place, twin))
+                nearer = values_here < others if place.side == "base" else values_here <= others
+            taken = factor * moving * (ca.fabs(xi - place.ratio) <= SAME_PLACE) * nearer
+            factor = factor - taken
             add(here[id(place)], chosen[k] * taken)
-        add([link.at(name, Place(xi), END["double"]) for name in names], chosen[k] * left)
+        add([link.at(name, Place(xi), END["double"]) for name in names], chosen[k] * factor)
     return rows, weights

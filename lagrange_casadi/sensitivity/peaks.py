@@ -258,24 +258,24 @@ class MovingPeaks:
         """
         value, t, xi = peaks
         times: Array = t.copy()
-        left = np.flatnonzero(off > _ASIDE * np.abs(value))
+        remaining = np.flatnonzero(off > _ASIDE * np.abs(value))
         for reach in _REACHES:
-            if not left.size:
+            if not remaining.size:
                 break
             beside = np.clip(
-                t[left] + reach * self.near * np.array([[-1.0], [1.0]]),
+                t[remaining] + reach * self.near * np.array([[-1.0], [1.0]]),
                 self.instants[0],
                 self.instants[-1],
             ).ravel()
-            twice = np.concatenate([left, left])
+            twice = np.concatenate([remaining, remaining])
             z = self.slopes.iterated(self.instants, self.p, beside)
             there = self.slopes.at(beside, z, self.p, chosen[twice], xi[twice], value[twice])
             gaps = np.abs(there.value - value[twice]).reshape(2, -1)
             side = np.argmin(np.where(np.isnan(gaps), np.inf, gaps), axis=0)
-            here = np.arange(left.size)
-            nearer = gaps[side, here] < _NEARER * off[left]
-            times[left[nearer]] = beside.reshape(2, -1)[side, here][nearer]
-            left = left[~nearer]
+            here = np.arange(remaining.size)
+            nearer = gaps[side, here] < _NEARER * off[remaining]
+            times[remaining[nearer]] = beside.reshape(2, -1)[side, here][nearer]
+            remaining = remaining[~nearer]
         return times
 
     def _switching(self, t: Array, z: Array) -> tuple[Array, Numbers]:
@@ -365,8 +365,8 @@ class MovingPeaks:
     def _bends(self, chosen: Numbers, t: Array, xi: Array, value: Array | None) -> Bends:
         """The second derivatives by time, xi/l and all parameters of what is ``chosen``."""
         z = self.slopes.iterated(self.instants, self.p, t)
-        ways = unit_ways(range(self.p.size), self.p.size)
-        return self.slopes.bends(t, z, self.p, chosen, xi, value, ways)
+        directions = unit_ways(range(self.p.size), self.p.size)
+        return self.slopes.bends(t, z, self.p, chosen, xi, value, directions)
 
     def _moved_bends(self, own: PeakSlopes) -> Array:
         """The second derivatives (q, parameters, parameters) of the times of peaks that go with an
@@ -405,7 +405,7 @@ class MovingPeaks:
         numbers, (_, t, xi, values) = np.nonzero(there)[0], others[there].T
         sizes = np.zeros(numbers.size, bool)
         changed = self.gradient(chosen[numbers], (values, t, xi), sizes).slopes
-        sized, told = (
+        sized, direct = (
             np.sign(values)[:, None] * changed,
             np.sign(value[numbers])[:, None] * own.slopes[numbers],
         )
@@ -413,7 +413,9 @@ class MovingPeaks:
         noise = _NOISE * np.nanmax(np.abs(own.slopes), axis=0) + _FAINT * np.abs(
             value[numbers, None]
         ) / np.where(self.p == 0.0, 1.0, np.abs(self.p))
-        other = np.abs(sized - told) > _OTHERWISE * np.maximum(np.abs(sized), np.abs(told)) + noise
+        other = (
+            np.abs(sized - direct) > _OTHERWISE * np.maximum(np.abs(sized), np.abs(direct)) + noise
+        )
         found[numbers[other.any(axis=1)]] = True
         return found
 

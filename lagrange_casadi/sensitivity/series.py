@@ -70,10 +70,12 @@ def at_instants(
     """Rows of a graph at instants, and their derivatives, (t, rows, 1 + parameters)."""
     inner = total(program, [program.outputs[output] for output in rows], by)
     time, *driven, z, values = inner.sx_in()
-    own = differentiable(program.instant)(time, *driven, z, values)[
+    local = differentiable(program.instant)(time, *driven, z, values)[
         [program.outputs[output] for output in rows]
     ]
-    inner = ca.Function("both", inner.sx_in(), [ca.vertcat(own.T, inner(time, *driven, z, values))])
+    inner = ca.Function(
+        "both", inner.sx_in(), [ca.vertcat(local.T, inner(time, *driven, z, values))]
+    )
     slopes = inner(time, *program.motion.call([time, values]), z, values)
     function = ca.Function(
         "at_once", [time, z, values], [slopes], ["t", "z", "p"], ["found"], {"cse": True}

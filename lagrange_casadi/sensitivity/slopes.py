@@ -175,11 +175,11 @@ class Slopes:
         broken = ~np.isfinite(found).all(axis=1) & (chosen < len(self.points.quantities))
         for k in np.unique(chosen[broken]):
             here = np.flatnonzero(broken & (chosen == k))
-            own = {
+            local = {
                 name: (rows[here] if each else rows, each) for name, (rows, each) in given.items()
             }
-            own[codegen.CHOSEN] = np.zeros(here.size, np.intc), 1
-            found[here] = self._alone(int(k)).at(here.size, own)
+            local[codegen.CHOSEN] = np.zeros(here.size, np.intc), 1
+            found[here] = self._alone(int(k)).at(here.size, local)
         return AtPoints(found[:, 0], found[:, 1:])
 
     def bends(
@@ -217,8 +217,8 @@ class Slopes:
     def _alone(self, number: int) -> Batch:
         """The function of one quantity alone, which nothing else has a part in."""
         if number not in self._single:
-            own = self.points.quantities[number : number + 1]
-            self._single[number] = Batch(PointFunction.of(self.program, own).function)
+            local = self.points.quantities[number : number + 1]
+            self._single[number] = Batch(PointFunction.of(self.program, local).function)
         return self._single[number]
 
     @symbolic_property

@@ -17,12 +17,12 @@ from .shapes import Spot, joint_shapes, path_spots, shapes
 def drawn_spots(description: Description) -> Iterator[Spot]:
     """All between which something is drawn."""
     for shape in shapes(description):
-        own = [
+        places_here = [
             *shape.axis,
             *(at for arm in shape.arms for at in arm),
             *(at for plate in shape.plates for at in plate),
         ]
-        yield from (Spot(shape.name, at) for at in own or [shape.centre or (0.0, 0.0, 0.0)])
+        yield from (Spot(shape.name, at) for at in places_here or [shape.centre or (0.0, 0.0, 0.0)])
     for joint in joint_shapes(description):
         yield from (joint.parent, joint.child)
     yield from path_spots(description).values()

@@ -88,7 +88,7 @@ class LoadShape:
 def shapes(description: Description) -> Iterator[Shape]:
     """The bodies, in the order in which they are declared."""
     for name, body in description["bodies"].items():
-        own = list(dict.fromkeys(spot.at for spot in _spots(description) if spot.body == name))
+        spots = list(dict.fromkeys(spot.at for spot in _spots(description) if spot.body == name))
         length, mass = body["length"], body["mass"]
         if length is None:
             yield Shape(name, "point", None, mass, (), (), (), (0.0, 0.0, 0.0), 0.0)
@@ -96,14 +96,16 @@ def shapes(description: Description) -> Iterator[Shape]:
             centre = _place(body["centre"])
             outline = description.get("outlines", {}).get(name, ())
             plates = (
-                (tuple((float(x), float(y), 0.0) for x, y in outline),) if outline else _plates(own)
+                (tuple((float(x), float(y), 0.0) for x, y in outline),)
+                if outline
+                else _plates(spots)
             )
             # Two joints hold a bar between them; arms from the centre hold any others that lie in
             # no plane.
             ends = (
-                [(own[0], own[1])]
-                if len(own) == 2
-                else [(centre, at) for at in own if at != centre]
+                [(spots[0], spots[1])]
+                if len(spots) == 2
+                else [(centre, at) for at in spots if at != centre]
             )
             arms = () if plates else tuple(ends)
             yield Shape(
@@ -121,7 +123,7 @@ def shapes(description: Description) -> Iterator[Shape]:
             axis = ((0.0, 0.0, 0.0), (length, 0.0, 0.0))
             beside = [
                 at
-                for at in own
+                for at in spots
                 if np.hypot(at[1], at[2]) > _FLAT * (abs(length) or 1.0)
                 or not 0.0 <= at[0] <= length
             ]

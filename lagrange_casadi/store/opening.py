@@ -30,26 +30,26 @@ def opened_file(
     versions: range,
     kind: str,
     of: str = "",
-    seen: VerifiedFile | None = None,
+    verified: VerifiedFile | None = None,
 ) -> Iterator[h5py.File]:
     """A whole file of one of the ``versions`` of a schema, which messages call ``kind``, its
     versions those ``of`` it.
 
-    All of it is held to its seal, unless it is still the one that was ``seen``. Raises
+    All of it is held to its seal, unless it is still the one that was ``verified``. Raises
     :class:`PathError` for none, :class:`StoreError` for another file, another version, and one that
     was not finished or is not as it was written; whatever reading it raises becomes a
     :class:`StoreError`.
     """
-    if not seen or not seen.is_at(path):
+    if not verified or not verified.is_at(path):
         _refuse_other(path, kind_of(path) or schema, schema, kind)
-        seen = verify(path)
+        verified = verify(path)
     with reported_as("damaged", path):
         try:
             file = h5py.File(path, "r")
         except BlockingIOError:
             raise StoreError(f"{path}: another program has it open to write") from None
         with file:
-            if not seen.is_at(path):
+            if not verified.is_at(path):
                 raise StoreError(f"{path}: was changed while it was read")
             _refuse_other(path, file.attrs.get("schema"), schema, kind)
             written = file.attrs.get("schema_version")

@@ -123,9 +123,9 @@ def _best(
     angles = np.stack(np.meshgrid(*grids, indexing="ij"), -1).reshape(-1, len(grids))
     best, middle = Plane(-1.0, 0.0, 0.0), angles[0]
     for _ in range(_ROUNDS + 1):
-        normal, way = planes(angles)
+        normal, direction = planes(angles)
         across = np.maximum((_told(normal, normal) @ values).max(axis=1), 0.0)
-        amplitude = np.ptp(_told(normal, way) @ values, axis=1) / 2
+        amplitude = np.ptp(_told(normal, direction) @ values, axis=1) / 2
         k = int(np.argmax(amplitude + share * across))
         found = Plane(
             float(amplitude[k]), float(across[k]), math.acos(min(1.0, abs(float(normal[k, 0]))))

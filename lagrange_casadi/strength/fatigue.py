@@ -121,8 +121,10 @@ def reversed_amplitude(
     """
     _, strength = strengths(material, criterion)
     m = np.maximum(mean, 0.0) / strength
-    left = 1.0 - (m * m if criterion_of(criterion).square else m)
-    return np.where(left > 0.0, np.asarray(amplitude) / np.where(left > 0.0, left, 1.0), np.inf)
+    remaining = 1.0 - (m * m if criterion_of(criterion).square else m)
+    return np.where(
+        remaining > 0.0, np.asarray(amplitude) / np.where(remaining > 0.0, remaining, 1.0), np.inf
+    )
 
 
 def line(material: Material) -> tuple[float, float, float]:

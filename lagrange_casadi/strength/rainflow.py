@@ -32,8 +32,8 @@ def reversals(history: Array) -> Array:
         return np.zeros(1, int)
     kept = np.append(0, moved + 1)
     rising = np.diff(history[kept]) > 0.0
-    turns = np.flatnonzero(rising[1:] != rising[:-1]) + 1
-    return np.concatenate([kept[:1], kept[turns], kept[-1:]])
+    turning_points = np.flatnonzero(rising[1:] != rising[:-1]) + 1
+    return np.concatenate([kept[:1], kept[turning_points], kept[-1:]])
 
 
 @public
@@ -51,7 +51,7 @@ def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> li
     if repeating:
         start = int(np.argmax(values))
         order = np.append(np.roll(order, -start), start)
-    turns = order[reversals(values[order])]
+    turning_points = order[reversals(values[order])]
     found: list[StressCycle] = []
     stack: list[int] = []
 
@@ -60,7 +60,7 @@ def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> li
         found.append(StressCycle(abs(b - a), (a + b) / 2, times, first, last))
 
     level = values.tolist()
-    for index in turns.tolist():
+    for index in turning_points.tolist():
         stack.append(index)
         while len(stack) > 2:
             newest, before = (

@@ -202,11 +202,11 @@ def buckling(member: Member, of: Column) -> Verdict:
     if not used[k]:
         return Verdict("buckling", math.inf, "nothing is compressed")
     axis = int(np.argmin(of.critical))
-    way = (
+    mode = (
         ("along y", "along z")[axis] if member.space else ("in the plane", "out of the plane")[axis]
     )
     kind = "Euler" if of.critical[axis] >= of.euler[axis] * (1.0 - 1e-12) else "Johnson"
-    load = f"{kind}'s {of.critical[axis]:.4g} N {way}, slenderness {of.slenderness[axis]:.3g}"
+    load = f"{kind}'s {of.critical[axis]:.4g} N {mode}, slenderness {of.slenderness[axis]:.3g}"
     return Verdict(
         "buckling",
         1.0 / float(used[k]),

@@ -349,12 +349,15 @@ def maxima(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array]
         squares >= np.hstack([squares[:, 1:], edge])
     )
     rows, k = np.nonzero(higher & (squares >= _BESIDE * squares.max(axis=1, keepdims=True)))
-    own = np.moveaxis(c[:, rows], 2, 0)
+    coefficients = np.moveaxis(c[:, rows], 2, 0)
 
     def square(x: Array) -> Array:
         return np.asarray(
             squared(
-                np.stack([chebyshev.chebval(x, own[:, n], tensor=False) for n in range(3)]), weights
+                np.stack(
+                    [chebyshev.chebval(x, coefficients[:, n], tensor=False) for n in range(3)]
+                ),
+                weights,
             )
         )
 
@@ -363,7 +366,11 @@ def maxima(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array]
     x, found = np.where(found >= sampled, x, places[k]), np.maximum(found, sampled)
     order = np.lexsort((found, rows))
     last = order[np.append(np.diff(rows[order]) != 0, True)]
-    return found[last], x[last], np.sign(chebyshev.chebval(x[last], own[:, 0, last], tensor=False))
+    return (
+        found[last],
+        x[last],
+        np.sign(chebyshev.chebval(x[last], coefficients[:, 0, last], tensor=False)),
+    )
 
 
 def _uphill(function: Callable[[Array], Array], low: Array, high: Array) -> Array:

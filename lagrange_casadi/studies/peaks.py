@@ -389,8 +389,10 @@ class ContinuousSolution:
         if output.group != "section":
             return tuple(self.rows[component] for component in self.solution.made_of(output))
         link, law = output.part, self.solution.section(output.part).law
-        own = {column: k for column, k in self.rows.items() if column.along and column.part == link}
-        return SectionForce(output.member, link, own, law.length, law.density)
+        of_link = {
+            column: k for column, k in self.rows.items() if column.along and column.part == link
+        }
+        return SectionForce(output.member, link, of_link, law.length, law.density)
 
     def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
         """The units of quantities, by number, and the largest size of anything that has each."""
@@ -486,12 +488,12 @@ class ContinuousSolution:
         """A link's law with columns of the graph, or of their rates, for its coefficients, loads
         and stations.
         """
-        own = {
+        of_link = {
             output: columns[k]
             for output, k in self.rows.items()
             if output.along and output.part == link
         }
-        return self.solution.section(link).law.of(link, own)
+        return self.solution.section(link).law.of(link, of_link)
 
 
 def _columns(quantity: Quantity) -> set[int]:

@@ -81,11 +81,13 @@ class Sensitivities:
         Its unit is the quantity's over both parameters'. Raises :class:`.DeclarationError` also for
         a motion by samples that does not tell its knots.
         """
-        row, way = self._number(parameter), np.zeros((1, 2 + self.p.size))
-        way[0, 2 + self._number(other)] = 1.0
+        row, direction = self._number(parameter), np.zeros((1, 2 + self.p.size))
+        direction[0, 2 + self._number(other)] = 1.0
 
         def second(t: Array, z: Array, chosen: Numbers, xi: Array) -> Array:
-            return self.slopes.bends(t, z, self.p, chosen, xi, None, way).changes[:, 0, 2 + row]
+            return self.slopes.bends(t, z, self.p, chosen, xi, None, direction).changes[
+                :, 0, 2 + row
+            ]
 
         return self._made(name, second, ())
 

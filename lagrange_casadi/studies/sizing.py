@@ -209,7 +209,7 @@ class _Search:
         if unknown := [name for name in links or () if name not in having]:
             raise UnknownNameError("link with a beam", unknown, having)
         slots: dict[str, _Slot] = {}
-        left: dict[str, str] = {}
+        remaining: dict[str, str] = {}
         defaults = scene.values(request.parameters)
         spinning = [
             name for name in content.get("bars", ()) if name not in content.get("beside", ())
@@ -222,9 +222,9 @@ class _Search:
             except _UnfitError as error:
                 if links is not None:
                     raise DeclarationError(f"link '{name}': {error}") from None
-                left[name] = str(error)
+                remaining[name] = str(error)
         if not slots:
-            why = "; ".join(f"{name}: {reason}" for name, reason in left.items())
+            why = "; ".join(f"{name}: {reason}" for name, reason in remaining.items())
             raise DeclarationError(f"size: the profiles fit no link; {why or 'no link has a beam'}")
         taken: dict[str, str] = {}
         for name, slot in slots.items():
@@ -236,7 +236,7 @@ class _Search:
                     )
         sections = [f"section:{name}" for name in having]
         evaluated = partial(solve, scene)
-        return cls(evaluated, request, described, slots, enough, left, scene.wanted, sections)
+        return cls(evaluated, request, described, slots, enough, remaining, scene.wanted, sections)
 
     @property
     def fixed(self) -> Mapping[str, float]:
@@ -386,7 +386,7 @@ def _slot(
     defaults: Mapping[str, float],
 ) -> _Slot:
     """Find the profiles that may be a link's own. Raises :class:`_UnfitError`."""
-    own: dict[str, str] = {}
+    owners: dict[str, str] = {}
     shapes = list(
         beam_at(
             described, link, ca.vertcat(ca.SX(0, 1), *(one.symbol for one in parameters.values()))
@@ -399,18 +399,18 @@ def _slot(
         found = {str(s) for s in symbols if isinstance(s, ca.SX) and s.is_symbolic()}
         if len(found) != 1:
             raise _UnfitError(f"its {name} is not a parameter, so a profile cannot set it")
-        own[name] = found.pop()
-    slot = _Slot(own, ())
+        owners[name] = found.pop()
+    slot = _Slot(owners, ())
     weights = []
     for profile in profiles:
         values = slot.values(profile)
         for name, value in profile.dimensions.items():
-            if values[own[name]] != value:
+            if values[owners[name]] != value:
                 raise _UnfitError(
-                    f"profile '{profile.name}' gives parameter '{own[name]}' two values"
+                    f"profile '{profile.name}' gives parameter '{owners[name]}' two values"
                 )
-            if fault := parameters[own[name]].fault(value):
+            if fault := parameters[owners[name]].fault(value):
                 raise _UnfitError(f"profile '{profile.name}': {fault}")
         weights.append(_area(beam_at(described, link, list((dict(defaults) | values).values()))))
     order = sorted(range(len(profiles)), key=lambda k: weights[k])
-    return _Slot(own, tuple(profiles[k] for k in order))
+    return _Slot(owners, tuple(profiles[k] for k in order))

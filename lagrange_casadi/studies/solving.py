@@ -195,13 +195,13 @@ def unwind(program: Program, out: Array) -> None:
     of a graph.
     """
     parts, angles = program.loop_rows
-    turns = [
+    revolutions = [
         math.tau * (out[k] - out[k][..., :1]) if whole else _jumps(out[k]) for k, whole in parts
     ]
     for k, signs in angles:
         angle = out[k]
         for number, sign in signs:
-            angle += sign * turns[number]
+            angle += sign * revolutions[number]
         angle -= math.tau * np.ceil(angle[..., :1] / math.tau - 0.5)
 
 

@@ -69,7 +69,7 @@ def refine_safety(
     found = _Searched.of(scene, solution, link)
     if found is None:
         return unrefined
-    verdicts, left = [], list(unrefined.not_evaluated)
+    verdicts, missing = [], list(unrefined.not_evaluated)
     for verdict in unrefined.verdicts:
         refined: Verdict | None = verdict
         if verdict.against == "yield":
@@ -78,13 +78,13 @@ def refine_safety(
         elif verdict.against == "buckling":
             refined = found.buckled(verdict, as_column(solution.description, found.member))
         if refined is None:
-            left.append(
+            missing.append(
                 f"{verdict.against}: between the instants it may be less than"
                 f" {verdict.factor:.4g}; take more instants"
             )
         else:
             verdicts.append(refined)
-    return Safety(link, tuple(verdicts), tuple(left))
+    return Safety(link, tuple(verdicts), tuple(missing))
 
 
 _BESIDE = 1e-4
@@ -185,9 +185,9 @@ class _Searched:
 
     def _along(self, size: Callable[[Member], Array]) -> _Along:
         link = self.member.link
-        own = {
+        of_link = {
             output: k
             for output, k in self.over_time.rows.items()
             if output.along and output.part == link
         }
-        return _Along(self.member, own, size)
+        return _Along(self.member, of_link, size)

@@ -122,13 +122,14 @@ def tool_deflection(
         unit = sections({name: push})
         for link, beam in beams.items():
             at = nodes(beam.member)
-            own = beam.member.at(at.u)
+            section = beam.member.at(at.u)
             more = (
                 np.stack([unit.section(link).law.at(force, at.u) for force in beam.member.forces])
-                - own
+                - section
             )
             by_link[link][:, k] = (
-                np.sum(beam.strains(own, at.index, at.u) * more * at.weights, axis=(0, 2)) / push
+                np.sum(beam.strains(section, at.index, at.u) * more * at.weights, axis=(0, 2))
+                / push
             )
     return ToolDeflection(plain.t, by_link)
 

@@ -200,7 +200,9 @@ def _open(instants: Instants) -> Array:
     looked_at = np.unique(
         [*range(min(n, _FIRST)), *np.linspace(0, n - 1, min(n, _MANY)).astype(int)]
     )
-    left = openness(instants.at(looked_at))
+    residual = openness(instants.at(looked_at))
     return (
-        looked_at[np.argsort(left)[-_WORST:]] if np.fmax.reduce(left) > _CLOSED else looked_at[:0]
+        looked_at[np.argsort(residual)[-_WORST:]]
+        if np.fmax.reduce(residual) > _CLOSED
+        else looked_at[:0]
     )

@@ -248,11 +248,11 @@ def _unlike(placed: Placed) -> Scalar:
         if Output("reaction", name, "fu") in reported.outputs:
             axes = placed.ends(name)[0].axes.carry(Axes.of(joint.triad))
             for letter, arm in (("f", 1.0), ("m", placed.declared.size)):
-                there, own = (
+                there, anchor = (
                     reported.force("reaction", name, letter, components)
                     for components in ("xyz", "uvw")
                 )
-                worst = np.maximum(worst, (there - axes.turn(own)).size / arm)
+                worst = np.maximum(worst, (there - axes.turn(anchor)).size / arm)
     return worst
 
 

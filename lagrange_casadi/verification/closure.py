@@ -30,8 +30,8 @@ def closure(placed: Placed, digits: Digits) -> list[Residuals]:
         for residual in residuals(placed, digits):
             worst = np.maximum(worst, residual)
     motions = list(_of_motions(placed, digits))
-    for turns, (residual, _, _) in motions:
-        worst = np.maximum(worst, residual * placed.declared.size if turns else residual)
+    for rotations, (residual, _, _) in motions:
+        worst = np.maximum(worst, residual * placed.declared.size if rotations else residual)
     return [(worst, placed.declared.size), *_of_rates(placed, motions)]
 
 
@@ -59,7 +59,7 @@ def _of_rates(placed: Placed, motions: Sequence[tuple[bool, Array]]) -> list[Res
     largest = (fastest, fastest / size, changes, changes / size)
     found: list[Residuals] = []
     for k, one in enumerate(largest):
-        moved = (off[1 + k // 2] for turns, off in motions if turns == bool(k % 2))
+        moved = (off[1 + k // 2] for rotations, off in motions if rotations == bool(k % 2))
         off = most([*(each[k].size for each in residuals), *moved])
         found.append((np.zeros_like(placed.reported.t) + off, float(np.max(one))))
     return found
@@ -76,7 +76,7 @@ def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
         (entry,) = motion.entries
         if entry.part in placed.reported.unmeasured:
             continue
-        moving, turns = stacked(placed, motion), placed.turns(entry)
+        moving, rotations = stacked(placed, motion), placed.turns(entry)
         found = motion.at(*moving, t)
         off = np.abs(found)
         if entry.kind == "direction":
@@ -84,15 +84,16 @@ def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
         off[0] = np.maximum(off[0] - ROUNDINGS * digits.rounding * np.abs(moving[0][0]), 0.0)
         largest = [size, *(float(np.max(one)) for one in fastest)]
         if any(
-            np.max(residual) * (size if turns else 1.0) > digits.doubted * one
+            np.max(residual) * (size if rotations else 1.0) > digits.doubted * one
             for residual, one in zip(off, largest, strict=True)
         ):
             blur = NEARBY * digits.rounding * np.max(np.abs(t))
             open_ = np.nansum(
-                [np.abs(motion.at(*moving, t + way) - found) for way in (-blur, blur)], axis=0
+                [np.abs(motion.at(*moving, t + direction) - found) for direction in (-blur, blur)],
+                axis=0,
             )
             off = np.maximum(off - open_, 0.0)
-        yield turns, off
+        yield rotations, off
 
 
 def _of_angles(placed: Placed, digits: Digits) -> Iterator[Scalar]:
@@ -129,7 +130,14 @@ def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
         x, y, z = axes.x, axes.y, axes.z
         yield axes.off(body.axes) * declared.size
         yield (
-            most([*(way.dot(way) - 1.0 for way in (x, y, z)), x.dot(y), y.dot(z), z.dot(x)])
+            most(
+                [
+                    *(direction.dot(direction) - 1.0 for direction in (x, y, z)),
+                    x.dot(y),
+                    y.dot(z),
+                    z.dot(x),
+                ]
+            )
             * declared.size
         )
         yield (x.cross(y) - z).size * declared.size

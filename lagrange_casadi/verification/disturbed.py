@@ -351,11 +351,11 @@ def _taken(
     where = np.flatnonzero(uncertain & (np.fmax.reduce(beside, axis=0) > _BESIDE))
     if not where.size:
         return {}
-    own = [
+    moved = [
         None if step.decision is None else np.broadcast_to(step.decision, instants.t.shape)
         for step in course.steps
     ]
-    lanes: list[Any] = [None if decision is None else decision[where] for decision in own]
+    lanes: list[Any] = [None if decision is None else decision[where] for decision in moved]
     for k, found in sides.items():
         lanes[k] = np.concatenate([lanes[k][None], found[:, where]])
     residuals = (
@@ -363,7 +363,7 @@ def _taken(
         / np.where(size > 0.0, size, np.inf)[:, None, where]
     )
     best = np.argmin(np.fmax.reduce(residuals, axis=0), axis=0)
-    taken = {k: np.array(own[k], float) for k in sides}
+    taken = {k: np.array(moved[k], float) for k in sides}
     for k in taken:
         taken[k][where] = lanes[k][best, np.arange(where.size)]
     return taken if best.any() else {}
@@ -401,18 +401,18 @@ def _following(code: int, values: tuple[Operand, ...], decision: Operand) -> Ope
 
 def _differs(step: _Step, decision: Operand, unit: float) -> npt.NDArray[np.bool_]:
     """Return whether a decision differs from the one that was taken."""
-    own = step.decision
+    moved = step.decision
     if step.code == _HANDED:
-        off = np.abs(decision - own)
-        return np.asarray(off > _JUMP * (np.median(off) + unit**2 * np.abs(own)))
+        off = np.abs(decision - moved)
+        return np.asarray(off > _JUMP * (np.median(off) + unit**2 * np.abs(moved)))
     if step.code == ca.OP_COPYSIGN:
-        return np.asarray(np.signbit(decision) != np.signbit(own))
+        return np.asarray(np.signbit(decision) != np.signbit(moved))
     if step.code == ca.OP_IF_ELSE_ZERO:
-        return np.asarray((decision != 0) != (own != 0))
+        return np.asarray((decision != 0) != (moved != 0))
     if step.code in _WHOLE:
-        return np.asarray(decision != own)
+        return np.asarray(decision != moved)
     return np.asarray(
-        np.abs(decision - own)
+        np.abs(decision - moved)
         > (np.abs(step.operands[1]) if step.code in REMAINDERS else math.tau) / 2
     )
 

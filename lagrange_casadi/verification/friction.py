@@ -45,13 +45,13 @@ def _of_losses(placed: Placed, digits: Digits) -> Iterator[Array]:
     largest.
     """
     outputs, (turned, fastest, _) = placed.reported.outputs, placed.rates
-    for name, rate, turns in _sliding(placed):
+    for name, rate, rotates in _sliding(placed):
         value, lost = (
             outputs.get(Output("friction", name, member)) for member in ("along", "loss")
         )
         if value is None or lost is None:
             continue
-        blur = digits.coarseness * np.max(turned if turns else fastest)
+        blur = digits.coarseness * np.max(turned if rotates else fastest)
         scale = _largest(value) * (_largest(rate) + float(blur))
         residual = np.abs(lost + value * rate) / (scale or 1.0)
         yield np.where(np.isnan(residual), 0.0, residual)
@@ -97,16 +97,16 @@ def _of_laws(placed: Placed) -> Array | None:
         if rate is None:
             continue
         worst = np.zeros_like(value) if worst is None else worst
-        turns = declared.kinds[load.coordinate] == "angle"
-        lever = numbers.get("radius", 1.0) if turns else 1.0
+        rotates = declared.kinds[load.coordinate] == "angle"
+        lever = numbers.get("radius", 1.0) if rotates else 1.0
         speed, share = np.abs(rate) * lever, None
         if (other := _beside(load.coordinate)) is not None:
             beside = outputs.get(Output("motion", other, "rate"))
             if beside is None:
                 continue
-            speed = np.hypot(speed, beside * (1.0 if turns else numbers.get("radius", 1.0)))
+            speed = np.hypot(speed, beside * (1.0 if rotates else numbers.get("radius", 1.0)))
             share = np.divide(rate * lever, speed, out=np.zeros_like(rate), where=speed > 0.0)
-        pressing = _pressing(placed, holder, numbers, turns)
+        pressing = _pressing(placed, holder, numbers, rotates)
         mu = np.full_like(rate, numbers.get("mu", 0.0))
         if "static" in numbers:
             mu += (numbers["static"] - mu) * np.exp(-((speed / numbers["stribeck"]) ** 2))
@@ -131,7 +131,7 @@ def _of_laws(placed: Placed) -> Array | None:
                 if share is None
                 else np.maximum(np.abs(value - steady) - mu * pressing(np.sign(rate)), 0.0)
             )
-            quick = _quick(placed, load.coordinate, turns)
+            quick = _quick(placed, load.coordinate, rotates)
             moves = speed > _SLOW * max(float(np.max(speed)), lever * quick)
             residual = np.where(
                 moves,
@@ -156,12 +156,12 @@ def _aside(reported: Reported, name: str, value: Array, spin: Vector) -> Scalar:
     return (reported.force("load", name, "m") - each * spin).size
 
 
-def _quick(placed: Placed, coordinate: str, turns: bool) -> float:
+def _quick(placed: Placed, coordinate: str, rotates: bool) -> float:
     """A rate that the accelerations of a coordinate lead to: where all instants are ends of
     strokes, the rates are rounding.
     """
     change = placed.reported.outputs.get(Output("motion", coordinate, "acceleration"), np.zeros(1))
-    return float(np.sqrt(np.max(np.abs(change)) * (1.0 if turns else placed.declared.size)))
+    return float(np.sqrt(np.max(np.abs(change)) * (1.0 if rotates else placed.declared.size)))
 
 
 def _beside(coordinate: str) -> str | None:
@@ -182,11 +182,11 @@ def _most(outputs: Mapping[Output, Array], numbers: Mapping[str, float]) -> floa
     return sizes["f"] + 2.0 * sizes["m"] / arm
 
 
-def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], turns: bool) -> Pressing:
+def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], rotates: bool) -> Pressing:
     """Normal force in a joint, from its reaction on its own axes, the joint's axis first."""
     joint, reported = placed.declared.joints[name], placed.reported
-    own = placed.ends(name)[0].axes.carry(Axes.of(joint.triad))
-    force, moment = (own.resolve(reported.force("reaction", name, letter)) for letter in "fm")
+    axes = placed.ends(name)[0].axes.carry(Axes.of(joint.triad))
+    force, moment = (axes.resolve(reported.force("reaction", name, letter)) for letter in "fm")
     radius = numbers.get("radius", 0.0)
     if joint.kind == "screw" and "mu" in numbers:
         return _thread(joint, numbers, force.x)
@@ -199,7 +199,7 @@ def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], turns: bo
         size = size + np.abs(force.x)
     elif joint.kind == "prismatic" and radius:
         size = size + np.abs(moment.x) / radius
-    size = size * (radius if turns else 1.0)
+    size = size * (radius if rotates else 1.0)
     return lambda _: size
 
 

@@ -134,9 +134,9 @@ def _turned(
 
     for k in angles * _TRIALS:
         tried = []
-        for turns in (0.0, 1.0, -1.0):
+        for revolutions in (0.0, 1.0, -1.0):
             there = places.copy()
-            there[k] += turns * math.tau
+            there[k] += revolutions * math.tau
             tried.append((there, residual(there)))
         # By one turn, or by as many as a law needs that is linear in them.
         here, change = tried[0][1], (tried[2][1] - tried[1][1]) / 2.0
@@ -165,7 +165,7 @@ def _open(
     t, (turned, fastest, _) = placed.reported.t, placed.rates
     found = np.zeros_like(t)
     for sign in (-off, off):
-        seen = [law.at(places, rates, t + sign * np.max(np.abs(t)))]
+        evaluated = [law.at(places, rates, t + sign * np.max(np.abs(t)))]
         for k, entry in enumerate(law.entries):
             angle = placed.turns(entry)
             for rows, step in (
@@ -174,9 +174,9 @@ def _open(
             ):
                 kept = rows[k].copy()
                 rows[k] += sign * step
-                seen.append(law.at(places, rates, t))
+                evaluated.append(law.at(places, rates, t))
                 rows[k] = kept
-        for numbers in seen:
+        for numbers in evaluated:
             found += np.nan_to_num(_apart(placed, _acting(placed, law, load, numbers), acts))
     if law.graph.kind == "spring":
         stiffness, _, damping = np.abs(law.at(places, rates, t))

@@ -44,8 +44,10 @@ class Moving:
         """The motion of a body that turns as said and whose ``point`` has the given place, velocity
         and acceleration.
         """
-        own = cls(NIL, NIL, NIL, axes, rate, acceleration).point(point)
-        return cls(at[0] - own[0], at[1] - own[1], at[2] - own[2], axes, rate, acceleration)
+        anchor = cls(NIL, NIL, NIL, axes, rate, acceleration).point(point)
+        return cls(
+            at[0] - anchor[0], at[1] - anchor[1], at[2] - anchor[2], axes, rate, acceleration
+        )
 
     @classmethod
     def directionless(cls, at: Motion, point: Vector) -> Moving:
@@ -163,8 +165,8 @@ class Placed:
         if axis.kind == "slide":
             return effort * near.axes.turn(Vector(*axis.direction)), NIL
         about = self.relatives[joint].about
-        turns = [near.axes.turn(direction) for direction in about.values()]
-        return NIL, effort * _reciprocal(turns, [*about].index(axis.coordinate))
+        rotations = [near.axes.turn(direction) for direction in about.values()]
+        return NIL, effort * _reciprocal(rotations, [*about].index(axis.coordinate))
 
     def turns(self, entry: Entry) -> bool:
         """Return whether an entry of an equation is an angle."""

@@ -59,11 +59,11 @@ class Reported:
         return replace(self, unmeasured=self.unmeasured | locked) if locked else self
 
     def _locked(self, declared: Declared, joint: JointNumbers) -> list[str]:
-        turns = [axis.coordinate for axis in joint.axes if axis.kind == "angle"]
-        if len(turns) < 3 or {*turns} & {*declared.driven, *self.unmeasured}:
+        rotations = [axis.coordinate for axis in joint.axes if axis.kind == "angle"]
+        if len(rotations) < 3 or {*rotations} & {*declared.driven, *self.unmeasured}:
             return []
-        second = self.outputs[Output("motion", turns[1])]
-        return [] if np.min(np.cos(second) ** 2) > _NEAR else turns
+        second = self.outputs[Output("motion", rotations[1])]
+        return [] if np.min(np.cos(second) ** 2) > _NEAR else rotations
 
     def value(self, coordinate: str) -> Array:
         """The value of a coordinate."""

@@ -76,10 +76,10 @@ def _together(placed: Placed) -> list[list[str]]:
     joined = [{joint.parent.body, joint.child.body} for joint in declared.joints.values()]
     joined += [_parts(equation) for equation in declared.equations]
     for ends in joined:
-        own = [group for group in groups if ends & {*group}]
-        if len(own) > 1:
-            groups = [group for group in groups if group not in own] + [
-                [name for group in own for name in group]
+        groups_here = [group for group in groups if ends & {*group}]
+        if len(groups_here) > 1:
+            groups = [group for group in groups if group not in groups_here] + [
+                [name for group in groups_here for name in group]
             ]
     return groups
 
@@ -116,10 +116,10 @@ class _Unplaced:
 
     def _free(self, name: str) -> Sequence[int]:
         """The components of a body's velocity and angular velocity, by number, that are unknown."""
-        turns = self.placed.declared.oriented(name)
+        rotations = self.placed.declared.oriented(name)
         if self.reported.space:
-            return range(6 if turns else 3)
-        return (0, 1, 5) if turns else (0, 1)
+            return range(6 if rotations else 3)
+        return (0, 1, 5) if rotations else (0, 1)
 
     def _trial(self, rates: Array, accelerations: Array | None) -> dict[str, Moving]:
         """The bodies with velocities, and accelerations, each (unknowns, t)."""

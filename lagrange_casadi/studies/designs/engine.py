@@ -326,9 +326,9 @@ class DesignEngine:
         together = series is not None and asked is even
         shape = (len(p), len(self.program.columns), self.count)
         columns = series if together else np.empty(shape) if self.watch.columns else None
-        own = found | {"history": columns}
-        self.library.designs(even, self.bent(p, even), p, own, threads)
-        self._refuse_motions(p, even, own)
+        results = found | {"history": columns}
+        self.library.designs(even, self.bent(p, even), p, results, threads)
+        self._refuse_motions(p, even, results)
         if series is None or together:
             return
         others: Results = {"status": np.zeros(len(p), np.int8), "history": series}

@@ -309,9 +309,9 @@ class Prepared:
         :class:`DeclarationError` for a motion by samples that does not tell its knots.
         """
         p, value, t, xi = self._kept_peaks(values, named)
-        own = self._engine.gradient(p, value, t, xi)
+        gradient = self._engine.gradient(p, value, t, xi)
         return Curvature(
-            self.quantities, self.parameters, self._engine.curvature(p, value, t, xi, own)
+            self.quantities, self.parameters, self._engine.curvature(p, value, t, xi, gradient)
         )
 
     @public

@@ -66,11 +66,11 @@ class DesignTimes:
         if self.law is None:
             even = self._steps(*self._valid(start, stop))
             return even, even
-        way = self.law.passage(start, stop, p, around, samples=max(_SAMPLES, self.timing.count))
-        even = self._steps(*self._valid(way.first, way.last))
+        passage = self.law.passage(start, stop, p, around, samples=max(_SAMPLES, self.timing.count))
+        even = self._steps(*self._valid(passage.first, passage.last))
         if self.law.steady or not asked:
             return even, even
-        found = self.law.times(way, self._steps(start, stop), p)
+        found = self.law.times(passage, self._steps(start, stop), p)
         found[np.isnan(even[:, 0])] = np.nan
         return even, found
 

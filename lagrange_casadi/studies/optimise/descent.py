@@ -215,10 +215,12 @@ class Descent:
         A program holds some peaks where they are, so that its second derivatives may be less than
         those of the peaks.
         """
-        way = found.conditions.way / (np.abs(found.conditions.way).max() or 1.0)
+        direction = found.conditions.way / (np.abs(found.conditions.way).max() or 1.0)
         excess, objective = self._merit(evaluated)
         for step in (share * sign for share in _STEPS for sign in (1.0, -1.0)):
-            tried = self.evaluator.evaluate(self.box.all(np.clip(found.x + step * way, 0.0, 1.0)))
+            tried = self.evaluator.evaluate(
+                self.box.all(np.clip(found.x + step * direction, 0.0, 1.0))
+            )
             if self._merit(tried) < (excess, objective):
                 return tried
         return None

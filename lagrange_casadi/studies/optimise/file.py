@@ -96,7 +96,7 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
     check_dataset(history, (len(history), len(_COLUMNS) + len(names)))
     if list(history.attrs["columns"]) != [*_COLUMNS, *names]:
         yield f"{place}/history: its columns are not those of a history"
-    ways, ends = [], []
+    runs, ends = [], []
     for number, start in group["starts"].items():
         rows = history[()][history[:, 0] == int(number)]
         for end in ("start", "end"):
@@ -108,11 +108,11 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
         ):
             yield f"{start.name}: does not agree with the history"
         shown(start.attrs["ending"])
-        ways.append(np.delete(came, 1))
+        runs.append(np.delete(came, 1))
         if start.attrs["ending"] == CONVERGED:
-            ends.append(ways[-1])
+            ends.append(runs[-1])
     chosen = [group.attrs["objective"], *(group["parameters"][name][()] for name in names)]
-    if not any(_alike(chosen, way) for way in ways):
+    if not any(_alike(chosen, run) for run in runs):
         yield (
             f"{place}/parameters: are not the design at which a start has ended, with its objective"
         )
@@ -133,20 +133,20 @@ def _write_front(file: h5py.File, front: Front) -> None:
     for name in ("stopped", "feasible", "converged", "evaluations"):
         file.attrs[name] = getattr(front, name)
     names = list(front.points[0].optimum.values)
-    own = file.create_group("front", track_order=True)
-    own.attrs.update(
+    group = file.create_group("front", track_order=True)
+    group.attrs.update(
         {
             "minimised": list(map(str, front.minimised)),
             "units": list(front.units),
             "parameters": names,
         }
     )
-    own["objectives"] = front.objectives
-    own["trades"] = np.array([point.trades for point in front.points])
-    own["designs"] = np.array(
+    group["objectives"] = front.objectives
+    group["trades"] = np.array([point.trades for point in front.points])
+    group["designs"] = np.array(
         [[point.optimum.values[name] for name in names] for point in front.points]
     )
-    own["converged"] = np.array([point.optimum.converged for point in front.points])
+    group["converged"] = np.array([point.optimum.converged for point in front.points])
     points = file.create_group("points", track_order=True)
     for number, point in enumerate(front.points):
         _write_optimum(points.create_group(f"{number}", track_order=True), point.optimum)

@@ -95,7 +95,7 @@ def kept(
             f"{path} is of an unfinished search: continue with resume=True, or start anew with"
             " force=True"
         )
-    journal, own = Journal(target), False
+    journal, ours = Journal(target), False
     try:
         with telling(path), path.open("a+b") as file:
             if fcntl is not None:
@@ -107,15 +107,15 @@ def kept(
                     ) from None
             journal.file = file
             file.seek(0)
-            own = force or _holds_nothing(file.read())
+            ours = force or _holds_nothing(file.read())
             if force or not _read(journal, path, identity):
                 file.truncate(0)
                 file.write(_line({"identity": identity}))
                 file.flush()
-            own = True
+            ours = True
             yield journal
     finally:
-        if own and not journal.known:
+        if ours and not journal.known:
             path.unlink(missing_ok=True)
 
 

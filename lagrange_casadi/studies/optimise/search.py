@@ -158,9 +158,9 @@ def optimise(
     ClusterError
         If a cluster is not available.
     """
-    own = scene_of(scene)
+    found_scene = scene_of(scene)
     question = Question.of(
-        own,
+        found_scene,
         minimise,
         over,
         subject_to,
@@ -176,7 +176,7 @@ def optimise(
     if resume and out is None:
         raise DeclarationError("resume: expected out, the file of the search that was stopped")
     executor: Executor = LocalExecutor() if dask is None else method("optimise.dask")(dask)
-    solver = Solver.of(question, question.engine(own))
+    solver = Solver.of(question, question.engine(found_scene))
     target = None if out is None else Path(out)
     if target is not None:
         check_target(target, SCHEMA)

@@ -28,7 +28,7 @@ def constraints_of(text: str, scene: Scene) -> list[Constraint]:
     found = _LEAST.fullmatch(text) if isinstance(text, str) else None
     if found is None:
         return [Constraint.parse(text, scene.parameters)]
-    way, link, relation, number = found.groups()
+    mode, link, relation, number = found.groups()
     scene.wants([f"safety:{link}"])
     try:
         factor = real(number)
@@ -39,14 +39,14 @@ def constraints_of(text: str, scene: Scene) -> list[Constraint]:
             f"'{text}': expected a least factor of safety, as least:safety:{link} >= 2"
         )
     material = materials_of(template(scene).content)[link]
-    if way == "fatigue":
+    if mode == "fatigue":
         strengths(material, "goodman")
-    ways = (
+    modes = (
         tuple(w for w in WAYS if w != "fatigue" or not lacking(material))
-        if way == "safety"
-        else (way,)
+        if mode == "safety"
+        else (mode,)
     )
     return [
         Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", scene.parameters)
-        for each in ways
+        for each in modes
     ]

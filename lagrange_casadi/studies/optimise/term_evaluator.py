@@ -77,10 +77,10 @@ class TermEvaluator:
                     return nothing
         values, points = {}, {}
         for term in self.terms:
-            own: list[Signed] = []
+            signed: list[Signed] = []
             if sampled is not None and term.output is not None and not term.averaged:
-                own = self._points(sampled, term)
-            points[term] = tuple(own)
+                signed = self._points(sampled, term)
+            points[term] = tuple(signed)
             if term.output is None:
                 values[term] = float(term.of_parameters(self.engine.program.data)(p))
             elif link := tired_link(term.output):
@@ -90,8 +90,8 @@ class TermEvaluator:
                     if name.startswith(f"section:{link}:")
                 ]
                 values[term] = (
-                    own[0][0].value
-                    if own and np.isfinite(found.value[row, forces]).all()
+                    signed[0][0].value
+                    if signed and np.isfinite(found.value[row, forces]).all()
                     else math.nan
                 )
             elif term.kind == "peak":
@@ -101,7 +101,7 @@ class TermEvaluator:
                     getattr(found, term.kind)[row, self.engine.efforts.index(term.name)]
                 )
             else:
-                values[term] = own[0][0].value if own else math.nan
+                values[term] = signed[0][0].value if signed else math.nan
         evaluated = EvaluatedDesign(p, values, sampled, closure, closing, points)
         return evaluated if evaluated.has_result else nothing
 
@@ -110,10 +110,10 @@ class TermEvaluator:
         assert term.output is not None
         if link := tired_link(term.output):
             return [(point, 1.0) for point in self.values.tired(link).points(sampled.as_asked())]
-        way = {"min": -1, "max": 1}.get(term.kind, 0)
+        sign = {"min": -1, "max": 1}.get(term.kind, 0)
         return [
-            (point, float(way or math.copysign(1.0, point.value)))
-            for point in sampled.points(term.output, way)
+            (point, float(sign or math.copysign(1.0, point.value)))
+            for point in sampled.points(term.output, sign)
         ]
 
     def drifting(self, term: Term, point: Point, p: Array, box: Box) -> Point:
@@ -124,9 +124,9 @@ class TermEvaluator:
         point itself.
         """
         x, size = box.share(p), len(box.names)
-        ways = np.where(x + _BESIDE <= 1.0, _BESIDE, -_BESIDE)
+        directions = np.where(x + _BESIDE <= 1.0, _BESIDE, -_BESIDE)
         rows = np.array(
-            [box.all(x + way * unit) for way, unit in zip(ways, np.eye(size), strict=True)]
+            [box.all(x + sign * unit) for sign, unit in zip(directions, np.eye(size), strict=True)]
         )
         self.evaluations += size
         found = self.engine.evaluate(rows, threads=1)
@@ -134,7 +134,7 @@ class TermEvaluator:
         even = self.engine.times.of(rows)[0]
         shares = (found.t[:, k] - even[:, 0]) / (even[:, -1] - even[:, 0])
         moved = np.where(np.abs(shares - point.share) <= _BESIDE_MOST, shares - point.share, 0.0)
-        drift = np.where(np.abs(moved) > _STILL, moved / ways, 0.0)
+        drift = np.where(np.abs(moved) > _STILL, moved / directions, 0.0)
         if not drift.any():
             return point
         return replace(point, share=float(point.share - drift @ x), drift=tuple(drift.tolist()))

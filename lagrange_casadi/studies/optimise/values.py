@@ -80,8 +80,10 @@ class Followed:
         def slopes(at: Array) -> Array:
             return np.asarray(self.slopes(at[0], guess, p, at[1], place).full().ravel()[:size])
 
-        ways = np.eye(2)[:size] * nudges
-        bend = np.array([(slopes(at + way) - slopes(at - way)) / (2 * way.sum()) for way in ways])
+        directions = np.eye(2)[:size] * nudges
+        bend = np.array(
+            [(slopes(at + way) - slopes(at - way)) / (2 * way.sum()) for way in directions]
+        )
         bend = (bend + bend.T) / 2
         if not np.isfinite(bend).all() or not (np.linalg.eigvalsh(sign * bend) < 0.0).all():
             return point
@@ -91,12 +93,12 @@ class Followed:
         if not (np.abs(away) <= _NEAR * np.array([step, 1.0])).all():
             return point
         reach = (_REACH * step, 0.1 if free else 0.0)
-        turns = (float(turn[0, 0]), float(turn[0, 1]), float(turn[1, 1]))
+        rotation = (float(turn[0, 0]), float(turn[0, 1]), float(turn[1, 1]))
         return replace(
             point,
             share=float(point.share + away[0]),
             xi=float(point.xi + away[1]),
-            turn=turns,
+            turn=rotation,
             reach=reach,
         )
 

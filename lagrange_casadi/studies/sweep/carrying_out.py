@@ -59,13 +59,13 @@ def carry_out(
         if _settled(folder, plan, resume, force):
             folder.remove()
             return None
-        seen = None
+        verified = None
         try:
             with uninterrupted() as breathe:
-                seen = _fill(folder, plan, workers, breathe, progress)
+                verified = _fill(folder, plan, workers, breathe, progress)
         except KeyboardInterrupt:
-            if seen:  # it came when there was nothing left to interrupt
-                return seen
+            if verified:  # it came when there was nothing left to interrupt
+                return verified
             raise StoppedError(f"stopped; {_kept(folder, plan)}") from None
         except (StoreError, ClusterError, SizeError) as error:
             raise type(error)(f"{error}; {_kept(folder, plan)}") from None
@@ -73,7 +73,7 @@ def carry_out(
             raise SizeError(
                 f"out of memory: {str(error) or 'fewer workers take less'}; {_kept(folder, plan)}"
             ) from None
-        return seen
+        return verified
 
 
 def _kept(folder: Folder, plan: Plan) -> str:
@@ -192,9 +192,9 @@ def _fill(
                 f"{folder.path}: no part continues after {counted(joined)} of {grouped(plan.size)}"
             )
     with telling(folder.target):
-        seen = seal(folder.joined, SCHEMA)
+        verified = seal(folder.joined, SCHEMA)
     folder.publish()
-    return seen
+    return verified
 
 
 def _fitting(folder: Folder, plan: Plan) -> Iterator[Part]:

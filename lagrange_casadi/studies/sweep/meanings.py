@@ -59,7 +59,7 @@ _BESIDE = {
 }
 """Kinds that have none, and their units, if these are not the quantity's."""
 
-_AGAINST = {way: f"against {'yielding' if way == 'yield' else way}" for way in WAYS}
+_AGAINST = {mode: f"against {'yielding' if mode == 'yield' else mode}" for mode in WAYS}
 
 Meaning = tuple[str, dict[str, str]]
 """A unit, and what else a file says."""
@@ -169,8 +169,8 @@ def _of_strength(kind: str, rest: str, among: Collection[str]) -> Meaning:
         }
     if kind == LIFE:
         return "1", {"long_name": "life in cycles of the whole time span"}
-    way, _, link = rest.partition(":")
-    if way in WAYS:
-        return "1", {"long_name": f"least factor of safety {_AGAINST[way]}"}
+    mode, _, link = rest.partition(":")
+    if mode in WAYS:
+        return "1", {"long_name": f"least factor of safety {_AGAINST[mode]}"}
     known = (_AGAINST[each] for each in WAYS if f"{LEAST}:{each}:{link}" in among)
     return "1", {"long_name": f"least factor of safety, the smallest of those {', '.join(known)}"}

@@ -339,10 +339,12 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     names = tuple(scene.wanted if wanted is None else wanted)
     if "all" not in names or "motion" in names:
         return names
-    own = (name for name in scene.outputs if name.partition(":")[0] not in (*STRENGTH, SENSITIVITY))
+    user_outputs = (
+        name for name in scene.outputs if name.partition(":")[0] not in (*STRENGTH, SENSITIVITY)
+    )
     strength = (name for name in names if name.partition(":")[0] in STRENGTH)
     slopes = (f"{SENSITIVITY}:{name}" for name in by_parameters(scene.parameters, names))
-    return (*(name for name in own if name not in ("all", "motion")), *strength, *slopes)
+    return (*(name for name in user_outputs if name not in ("all", "motion")), *strength, *slopes)
 
 
 def signature(program: Program, task: Task, provenance: Provenance) -> dict[str, Json]:

@@ -270,11 +270,11 @@ class Front:
             for name in sweep.parameters
             if name not in self.at and sweep.dimensions.get(name) != 1
         ]
-        seen = (axes.transScale + axes.transLimits).transform(np.column_stack([u, v])) * (
+        screen = (axes.transScale + axes.transLimits).transform(np.column_stack([u, v])) * (
             sheet.across,
             sheet.up,
         )
-        for n, k in enumerate(_apart(seen), 1):
+        for n, k in enumerate(_apart(screen), 1):
             where = ", ".join(value(sweep, name, front[k].values[name]) for name in varied)
             style = {"color": _RED, "linestyle": "", "zorder": 4}
             sheet.legend[where] = (
@@ -394,8 +394,8 @@ def _curves(
 def _flips(values: Array) -> npt.NDArray[np.bool_]:
     """Return where the next value has the other sign, and both are more than rounding."""
     small = 1e-6 * np.nanmax(np.abs(values), initial=0.0)
-    seen = np.where(np.abs(values) > small, values, 0.0)
-    return np.asarray(seen[1:] * seen[:-1] < 0.0)
+    screen = np.where(np.abs(values) > small, values, 0.0)
+    return np.asarray(screen[1:] * screen[:-1] < 0.0)
 
 
 def _alternates(values: Array) -> bool:
@@ -424,11 +424,11 @@ def _apart(places: Array) -> list[int]:
     """Numbers of a few places (n, 2) in inches along a curve, its ends among them, that lie evenly
     and apart.
     """
-    way = np.abs(places - places[0]).sum(axis=1)
-    count = min(_KEYED, 1 + int(way[-1] / _RING))
+    distance = np.abs(places - places[0]).sum(axis=1)
+    count = min(_KEYED, 1 + int(distance[-1] / _RING))
     kept: list[int] = []
-    for wanted in (0.0, *np.linspace(way[-1], 0.0, count)[:-1]):
-        k = int(np.argmin(np.abs(way - wanted)))
+    for wanted in (0.0, *np.linspace(distance[-1], 0.0, count)[:-1]):
+        k = int(np.argmin(np.abs(distance - wanted)))
         if all(np.hypot(*(places[k] - places[j])) > _RING for j in kept):
             kept.append(k)
     return sorted(kept)

@@ -404,8 +404,8 @@ class Sweep:
             rows = math.prod(lengths)
             for start, stop, where in slabs(dims, chunk_of(dims, _BLOCK // rows)):
                 numbers = np.arange(start, stop)
-                left = self._left(numbers)
-                shape = (numbers[left].size, *lengths)
+                remaining = self._left(numbers)
+                shape = (numbers[remaining].size, *lengths)
                 found = {}
                 for name in names:
                     if name in places:
@@ -413,15 +413,15 @@ class Sweep:
                     elif name in self.parameters:
                         values = _along(
                             file["grid"][name], name, list(self.dimensions), dims, where
-                        )[left]
+                        )[remaining]
                     else:
                         values = _taken(file[name.replace(":", "/")], where)
                         values = values.reshape(
                             numbers.size, *(lengths if self.columns[name].axes else ())
-                        )[left]
+                        )[remaining]
                     values = values.reshape(*values.shape, *(1,) * (len(shape) - values.ndim))
                     found[name] = np.broadcast_to(values, shape).reshape(-1)
-                yield np.repeat(numbers[left], rows), found
+                yield np.repeat(numbers[remaining], rows), found
 
     def _left(self, numbers: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.bool_]:
         """Selected designs."""
@@ -486,17 +486,17 @@ def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
 
 
 def opened_sweep(
-    path: str | Path, seen: VerifiedFile | None = None, keeper: object = None
+    path: str | Path, verified: VerifiedFile | None = None, keeper: object = None
 ) -> Sweep:
-    """A sweep, compared with its seal unless its file was ``seen`` already.
+    """A sweep, compared with its seal unless its file was ``verified`` already.
 
     ``keeper`` is kept alive as long as the sweep.
 
     Raises :class:`StoreError` for what is not a whole file of a sweep.
     """
-    seen = seen if seen and seen.is_at(path) else verify(path)
-    with _opened(path, seen) as file:
-        return Sweep(Path(path), **contents(file), keeper=keeper, verified=seen)
+    verified = verified if verified and verified.is_at(path) else verify(path)
+    with _opened(path, verified) as file:
+        return Sweep(Path(path), **contents(file), keeper=keeper, verified=verified)
 
 
 def names_in(given: str | Sequence[str]) -> list[str]:

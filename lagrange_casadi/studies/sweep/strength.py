@@ -69,9 +69,9 @@ class Kept:
         where there is a result.
         """
         found = {
-            f"{LEAST}:{way}:{link}": link in self.indeterminate
+            f"{LEAST}:{mode}:{link}": link in self.indeterminate
             for link in self._rated
-            for way in ("safety", *self._ways(link))
+            for mode in ("safety", *self._ways(link))
         }
         found |= {f"{LIFE}:{link}": link in self.indeterminate for link in self._lives}
         return found | {f"{MASS}:{part}": False for part in (*self.links, ALL) if self.links}
@@ -92,7 +92,7 @@ class Kept:
         }
         found: list[Array] = []
         for link in self._rated:
-            kept = [f"utilisation:{link}:{way}" for way in self._ways(link) if way != "fatigue"]
+            kept = [f"utilisation:{link}:{mode}" for mode in self._ways(link) if mode != "fatigue"]
             shares = [np.abs(value[:, self.quantities.index(name)]) for name in kept]
             shares += [tired[link][0]] if link in tired else []
             with np.errstate(divide="ignore"):
@@ -103,7 +103,7 @@ class Kept:
         return found + [np.where(status == 0, row, np.nan) for row in masses]
 
     def _ways(self, link: str) -> list[str]:
-        known = [way for way in WAYS[:2] if f"utilisation:{link}:{way}" in self.quantities]
+        known = [mode for mode in WAYS[:2] if f"utilisation:{link}:{mode}" in self.quantities]
         return known + (["fatigue"] if self._tires(link) else [])
 
     @property

@@ -121,10 +121,10 @@ def sweep(
     if isinstance(scene, Case) and not keeper:
         plan = replace(plan, case_file=scene.reference(target.parent))
     workforce = hired(workers, dask)
-    seen = carry_out(
+    verified = carry_out(
         plan, target, workforce, resume=resume, force=force, progress=progress or (lambda *_: None)
     )
-    return opened_sweep(target, seen, keeper)
+    return opened_sweep(target, verified, keeper)
 
 
 class _Temporary:
