@@ -91,7 +91,8 @@ def link_load_cases(
         Name of the link, rigid body or point mass.
     t
         Instants of the solution [s]. Default: those at which a section force of the link, or the
-        force or moment of a joint on it, is largest in size.
+        force or moment of a joint on it, is largest in size; those at which friction at rest
+        leaves forces indeterminate are left out.
     scene
         The scene, for a mechanism with constraints: along which directions they act is not in a
         solution.
@@ -211,70 +212,85 @@ class _History:
 
     def cases(self, solution: Solution, t: Sequence[float] | None) -> tuple[LoadCase, ...]:
         """Return the load cases at times, or at the instants that govern."""
-        body = self.declared.bodies[self.link]
-        forces = {name: load[1] for name, load in self.loads.items()}
-        moments = {name: load[2] for name, load in self.loads.items()}
-        finite = np.ones(self.shape[0], dtype=bool)
-        for name in self.loads:
-            finite &= np.isfinite(forces[name] + moments[name]).all(axis=1)
-        chosen = self._chosen(solution.t, t, finite)
-        centre, inertia = np.array(body.centre), np.array(body.inertia)
-        gravity = self._rows(Vector(*self.declared.gravity))
-        acceleration = self._rows(self.motion.change)
-        omega, alpha = self._rows(self.motion.rate), self._rows(self.motion.acceleration)
-        change = acceleration + np.cross(alpha, centre)
-        change += np.cross(omega, np.cross(omega, centre))
-        inertial = body.mass * (change - gravity)
-        spun = alpha @ inertia.T + np.cross(omega, omega @ inertia.T)
-        arms = {name: load[0] - centre for name, load in self.loads.items()}
-        turning = {name: moments[name] + np.cross(arms[name], forces[name]) for name in self.loads}
-        force = sum(forces.values(), -inertial)
-        moment = sum(turning.values(), -spun)
-        largest = _largest([*forces.values(), inertial], finite)
-        reach = max([body.length or 0.0, *(_largest([arm], finite) for arm in arms.values())])
-        twisting = max(_largest([*moments.values(), spun], finite), largest * reach)
-        off = np.zeros((2, self.shape[0]))
-        off[0] = _sizes(force) / (largest or 1.0)
-        if self.declared.oriented(self.link):
-            off[1] = _sizes(moment) / (twisting or 1.0)
+        body, limit = self.declared.bodies[self.link], tolerance(solution)
+        known = np.ones(self.shape[0], dtype=bool)
+        for _, force, moment in self.loads.values():
+            known &= np.isfinite(force + moment).all(axis=1)
+        chosen = self._chosen(solution, t, known)
+        vectors = (self.motion.change, self.motion.rate, self.motion.acceleration)
+        fields = [*map(self._rows, vectors), self._rows(Vector(*self.declared.gravity))]
+        residuals, largest = self._residuals(known, *fields)
         governing: dict[int, list[str]] = {i: [] for i in chosen}
         if t is None:
-            governing = self._governing(solution, finite, largest)
-        limit = tolerance(solution)
+            governing = self._governing(solution, known, largest)
         found = []
         for i, governs in sorted(governing.items()):
-            if not off[:, i].max() <= limit:
+            force_residual, moment_residual = residuals[:, i].tolist()
+            if not max(force_residual, moment_residual) <= limit:
                 raise CertificateError(
                     f"load case of link '{self.link}' at t = {solution.t[i]:.6g} s is not in"
-                    f" equilibrium: residuals of force {off[0, i]:.2g} and moment {off[1, i]:.2g},"
-                    f" but at most {limit:.2g} is rounding"
+                    f" equilibrium: residuals of force {force_residual:.2g} and moment"
+                    f" {moment_residual:.2g}, but at most {limit:.2g} is rounding"
                 )
             loads = (
                 Load(name, *(_triple(rows[i]) for rows in load))
                 for name, load in self.loads.items()
             )
+            acceleration, omega, alpha, gravity = (_triple(rows[i]) for rows in fields)
             case = LoadCase(
                 link=self.link,
                 t=float(solution.t[i]),
                 governs=tuple(governs),
                 loads=tuple(loads),
-                acceleration=_triple(acceleration[i]),
-                omega=_triple(omega[i]),
-                alpha=_triple(alpha[i]),
-                gravity=_triple(gravity[i]),
+                acceleration=acceleration,
+                omega=omega,
+                alpha=alpha,
+                gravity=gravity,
                 mass=body.mass,
                 centre=body.centre,
                 inertia=body.inertia,
-                residual=(float(off[0, i]), float(off[1, i])),
+                residual=(force_residual, moment_residual),
             )
             found.append(case)
         return tuple(found)
 
+    def _residuals(
+        self,
+        known: npt.NDArray[np.bool_],
+        acceleration: Array,
+        omega: Array,
+        alpha: Array,
+        gravity: Array,
+    ) -> tuple[Array, float]:
+        """Return the residuals of forces and of moments about the centre (2, t), and the largest
+        force.
+        """
+        body = self.declared.bodies[self.link]
+        centre, inertia = np.array(body.centre), np.array(body.inertia)
+        change = acceleration + np.cross(alpha, centre)
+        change += np.cross(omega, np.cross(omega, centre))
+        inertial = body.mass * (change - gravity)
+        spun = alpha @ inertia.T + np.cross(omega, omega @ inertia.T)
+        force, moment = -inertial, -spun
+        largest, twisting = _largest(inertial[known]), _largest(spun[known])
+        reach = body.length or 0.0
+        for at, push, couple in self.loads.values():
+            force = force + push
+            moment = moment + couple + np.cross(at - centre, push)
+            largest = max(largest, _largest(push[known]))
+            twisting = max(twisting, _largest(couple[known]))
+            reach = max(reach, _largest((at - centre)[known]))
+        residuals = np.zeros((2, self.shape[0]))
+        residuals[0] = _sizes(force) / (largest or 1.0)
+        if self.declared.oriented(self.link):
+            residuals[1] = _sizes(moment) / (max(twisting, largest * reach) or 1.0)
+        return residuals, largest
+
     def _chosen(
-        self, instants: Array, t: Sequence[float] | None, finite: npt.NDArray[np.bool_]
+        self, solution: Solution, t: Sequence[float] | None, known: npt.NDArray[np.bool_]
     ) -> list[int]:
-        """Return the numbers of the instants that were asked for, in each of which all is known."""
-        chosen = []
+        """Return the numbers of the instants that were asked for, at each of which all is known."""
+        instants, chosen = solution.t, []
         for time in () if t is None else t:
             i = int(np.argmin(np.abs(instants - time)))
             if not abs(instants[i] - time) <= _NEAR * np.abs(instants).max():
@@ -283,32 +299,37 @@ class _History:
                     f" solution; the nearest is {instants[i]:.9g} s"
                 )
             chosen.append(i)
-        asked = finite[chosen] if t is not None else finite
-        if asked.all() if t is not None else asked.any():
+        numbers = np.flatnonzero(known) if t is None else np.array(chosen, dtype=int)
+        if known[numbers].all() and (numbers.size or t is not None):
             return chosen
-        numbers = chosen if t is not None else slice(None)
-        names = [
+        numbers = numbers[~known[numbers]] if t is not None else np.arange(known.size)
+        names = ", ".join(
             name
             for name, (_, force, moment) in self.loads.items()
             if not np.isfinite(force[numbers] + moment[numbers]).all()
-        ]
+        )
+        if solution.resting[numbers].any():
+            raise DeclarationError(
+                f"load cases of link '{self.link}': a joint with friction is at rest at"
+                f" t = {solution.t[numbers[0]]:.6g} s, which leaves {names} indeterminate"
+            )
         raise DeclarationError(
-            f"load cases of link '{self.link}': equilibrium does not determine {', '.join(names)};"
-            " give the links beams and evaluate with elastic=True, or release a joint"
+            f"load cases of link '{self.link}': equilibrium does not determine {names}; give the"
+            " links beams and evaluate with elastic=True, or release a joint"
         )
 
     def _governing(
-        self, solution: Solution, finite: npt.NDArray[np.bool_], largest: float
+        self, solution: Solution, known: npt.NDArray[np.bool_], largest: float
     ) -> dict[int, list[str]]:
         """Return what is largest in size at an instant, by its number."""
         found: dict[int, list[str]] = {}
         size = largest * self.declared.size
         for name, values, scale in self._peaking(solution, largest, size):
-            sizes = np.where(finite, np.nan_to_num(np.abs(values)), 0.0)
+            sizes = np.where(known, np.nan_to_num(np.abs(values)), 0.0)
             i = int(np.argmax(sizes))
             if sizes[i] > _SLIGHT * scale:
                 found.setdefault(i, []).append(name)
-        return found or {int(np.argmax(finite)): []}
+        return found or {int(np.argmax(known)): []}
 
     def _peaking(
         self, solution: Solution, force: float, moment: float
@@ -329,9 +350,8 @@ def _sizes(rows: Array) -> Array:
     return np.asarray(np.linalg.norm(rows, axis=1))
 
 
-def _largest(each: Sequence[Array], finite: npt.NDArray[np.bool_]) -> float:
-    """Return the largest size of vectors over the instants where all are known."""
-    return max((float(_sizes(rows[finite]).max(initial=0.0)) for rows in each), default=0.0)
+def _largest(rows: Array) -> float:
+    return float(_sizes(rows).max(initial=0.0))
 
 
 def _triple(row: Array) -> Triple:
