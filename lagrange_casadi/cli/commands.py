@@ -13,6 +13,7 @@ import click
 from ..base.packages import check_installed
 from ..base.space import MOST_THREADS
 from ..base.vocabulary import (
+    LOAD_FORMATS,
     RATE,
     SECONDS,
     TIME_LIMIT,
@@ -405,7 +406,7 @@ def cache(**given: Any) -> None:
 @click.option(
     "--format",
     "formats",
-    type=click.Choice(("json", "csv", "inp")),
+    type=click.Choice(LOAD_FORMATS),
     multiple=True,
     help="Write this format; repeatable. inp is included by input files of CalculiX and Abaqus."
     " Default: all.",

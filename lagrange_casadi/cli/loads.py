@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..base.publish import check_writable
+from ..base.vocabulary import LOAD_FORMATS
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.scene import kinds
 from ..declare.times import Over
 from ..errors import CertificateError
-from ..load_cases import FORMATS, link_load_cases, write_load_cases
+from ..load_cases import link_load_cases, write_load_cases
 from ..studies.evaluate import evaluate
 from ..verification.certificate import failure, summary
 from .echo import echo
@@ -43,6 +44,6 @@ def loads_command(
     for one in cases:
         governs = f": {', '.join(one.governs)}" if one.governs else ""
         echo(f"{one.link} at t = {one.t:.6g} s, residual {max(one.residual):.1e}{governs}")
-    files = write_load_cases(cases, out, formats or tuple(FORMATS))
+    files = write_load_cases(cases, out, formats or LOAD_FORMATS)
     echo(f"wrote {out}: {len(cases)} load cases in {len(files)} files")
     echo(summary(solution.certificate))

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ..arguments import public
 from ..base.publish import filling
+from ..base.vocabulary import LOAD_FORMATS
 from ..declare.stated import Triple
 from ..errors import UnknownNameError
 from .equilibrium import LoadCase
@@ -64,15 +65,15 @@ def write_load_cases(
     PathError
         If the folder cannot be written.
     """
-    if unknown := [name for name in formats if name not in FORMATS]:
-        raise UnknownNameError("format", unknown, FORMATS)
+    if unknown := [name for name in formats if name not in LOAD_FORMATS]:
+        raise UnknownNameError("format", unknown, LOAD_FORMATS)
     links = dict.fromkeys(case.link for case in cases)
     written = []
     with filling(Path(folder)) as draft:
         for link in links:
             chosen = [case for case in cases if case.link == link]
             for name in dict.fromkeys(formats):
-                for file, text in FORMATS[name](chosen):
+                for file, text in _WRITERS[name](chosen):
                     (draft / file).write_text(text, encoding="utf-8", newline="\n")
                     written.append(file)
     return tuple(written)
@@ -170,7 +171,7 @@ def _nodes(case: LoadCase) -> dict[str, tuple[Triple, Triple, Triple]]:
                 break
         else:
             name = _word(load.name.partition(":")[2])
-            while name in found:
+            while name.upper() in {other.upper() for other in found}:
                 name += "_"
             found[name] = (load.at, load.force, load.moment)
     return found
@@ -189,9 +190,7 @@ def _word(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_]", "_", name)
 
 
-FORMATS: dict[str, Callable[[Sequence[LoadCase]], Iterator[tuple[str, str]]]] = {
-    "json": _json,
-    "csv": _csv,
-    "inp": _inp,
-}
-"""Formats: each gives names and texts of the files of a link."""
+_WRITERS: dict[str, Callable[[Sequence[LoadCase]], Iterator[tuple[str, str]]]] = dict(
+    zip(LOAD_FORMATS, (_json, _csv, _inp), strict=True)
+)
+"""Names and texts of the files of a link, by format."""
