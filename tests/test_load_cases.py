@@ -169,7 +169,7 @@ def test_files_hold_the_load_cases(crank_rod, tmp_path):
     with (tmp_path / "loads" / "rod.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [float(row["fx [N]"]) for row in rows] == [x.force[0] for c in cases for x in c.loads]
-    with (tmp_path / "loads" / "rod_inertia.csv").open() as file:
+    with (tmp_path / "loads" / "rod.inertia.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [float(row["alpha_z [rad/s^2]"]) for row in rows] == [c.alpha[2] for c in cases]
     text = (tmp_path / "loads" / "rod_1.inp").read_text()

@@ -7,7 +7,6 @@ import io
 import json
 import math
 import os
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -56,7 +55,7 @@ def write_load_cases(
     Returns
     -------
     tuple of str
-        Names of the files: LINK.json, LINK.csv and LINK_inertia.csv, LINK_1.inp, LINK_2.inp, ...
+        Names of the files: LINK.json, LINK.csv and LINK.inertia.csv, LINK_1.inp, LINK_2.inp, ...
 
     Raises
     ------
@@ -87,7 +86,7 @@ def _json(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
         "units": _UNITS,
         "cases": [asdict(case) for case in cases],
     }
-    yield f"{_word(cases[0].link)}.json", json.dumps(content, indent=1) + "\n"
+    yield f"{cases[0].link}.json", json.dumps(content, indent=1) + "\n"
 
 
 def _csv(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
@@ -108,10 +107,10 @@ def _csv(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
         vectors = (case.acceleration, case.omega, case.alpha, case.gravity, case.centre)
         row = [x for vector in vectors for x in vector]
         fields.append([number, case.t, " ".join(case.governs), *row, case.mass, *case.residual])
-    for name, rows in (("", loads), ("_inertia", fields)):
+    for name, rows in (("", loads), (".inertia", fields)):
         text = io.StringIO()
         csv.writer(text, lineterminator="\n").writerows(rows)
-        yield f"{_word(cases[0].link)}{name}.csv", text.getvalue()
+        yield f"{cases[0].link}{name}.csv", text.getvalue()
 
 
 def _columns(heads: Sequence[tuple[str, str]]) -> list[str]:
@@ -121,16 +120,15 @@ def _columns(heads: Sequence[tuple[str, str]]) -> list[str]:
 def _inp(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
     """Yield a file for each load case, to be included in a step."""
     for number, case in enumerate(cases, 1):
-        name = f"{_word(case.link)}_{number}.inp"
+        name = f"{case.link}_{number}.inp"
         yield name, "\n".join(_inp_lines(case, name)) + "\n"
 
 
 def _inp_lines(case: LoadCase, file: str) -> Iterator[str]:
-    link = _word(case.link)
     yield f"** {case.link} at t = {case.t:.9g} s: {', '.join(case.governs) or 'as asked'}"
     yield "** SI units, on the axes of the link, from its origin. Within a step:"
     yield f"** *INCLUDE, INPUT={file}"
-    yield f"** Element set {link}: mass {case.mass:.9g} kg, centre {_listed(case.centre)} m"
+    yield f"** Element set {case.link}: mass {case.mass:.9g} kg, centre {_listed(case.centre)} m"
     yield "** Node sets, each of the one node that takes a joint's load:"
     nodes = _nodes(case)
     for name, (at, _, _) in nodes.items():
@@ -148,11 +146,11 @@ def _inp_lines(case: LoadCase, file: str) -> Iterator[str]:
         yield "*DLOAD"
     if size:
         yield "** gravity less the acceleration of the origin"
-        yield f"{link}, GRAV, {size:.12g}, {_listed([x / size for x in weight])}"
+        yield f"{case.link}, GRAV, {size:.12g}, {_listed([x / size for x in weight])}"
     if spin:
         yield "** square of the angular velocity, a point of its axis, its direction"
         axis = [x / spin for x in case.omega]
-        yield f"{link}, CENTRIF, {spin**2:.12g}, 0., 0., 0., {_listed(axis)}"
+        yield f"{case.link}, CENTRIF, {spin**2:.12g}, 0., 0., 0., {_listed(axis)}"
     if any(case.alpha):
         yield f"** Angular acceleration [rad/s^2]: {_listed(case.alpha)}"
         yield "** CalculiX has no load for it: add the force -m (alpha x r) on the mass m of each"
@@ -170,7 +168,7 @@ def _nodes(case: LoadCase) -> dict[str, tuple[Triple, Triple, Triple]]:
                 found[name] = (at, _sum(force, load.force), _sum(moment, load.moment))
                 break
         else:
-            name = _word(load.name.partition(":")[2])
+            name = load.name.partition(":")[2].replace(":", "_")
             while name.upper() in {other.upper() for other in found}:
                 name += "_"
             found[name] = (load.at, load.force, load.moment)
@@ -183,11 +181,6 @@ def _sum(a: Triple, b: Triple) -> Triple:
 
 def _listed(numbers: Sequence[float]) -> str:
     return ", ".join(f"{x:.12g}" for x in numbers)
-
-
-def _word(name: str) -> str:
-    """Return a name of letters, digits and underscores."""
-    return re.sub(r"[^A-Za-z0-9_]", "_", name)
 
 
 _WRITERS: dict[str, Callable[[Sequence[LoadCase]], Iterator[tuple[str, str]]]] = dict(
