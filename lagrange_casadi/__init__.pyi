@@ -30,6 +30,7 @@ from .exports import export
 from .formats import read, save_model
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
+from .load_cases import LoadCase, link_load_cases, write_load_cases
 from .store.runs import check, load, save
 from .studies.designs.prepared import Prepared, prepare
 from .studies.evaluate import evaluate
@@ -48,6 +49,7 @@ __all__ = [
     "Front",
     "LagrangeCasadiError",
     "LagrangeSystem",
+    "LoadCase",
     "Mechanism",
     "Optimum",
     "Peak",
@@ -74,6 +76,7 @@ __all__ = [
     "export",
     "figures",
     "holding",
+    "link_load_cases",
     "load",
     "load_case",
     "motion",
@@ -95,4 +98,5 @@ __all__ = [
     "tolerances",
     "tool_deflection",
     "vibration",
+    "write_load_cases",
 ]

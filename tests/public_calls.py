@@ -109,6 +109,8 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         "load_case": {"path": "slider_crank"},
         "read": {"path": str(PRESS)},
         "save_model": {"scene": scene, "path": "model.json"},
+        "link_load_cases": {"solution": solution, "link": "arm"},
+        "write_load_cases": {"cases": [], "folder": "load_cases"},
         "export": {"scene": scene, "out": "exported", "wanted": ["effort"], "force": True},
     }.items():
         yield name, (getattr(root, name), given)

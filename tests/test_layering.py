@@ -57,6 +57,7 @@ ORDER = (
     "actuators",
     "cluster",
     "formats",
+    "load_cases",
     "cli",
 )
 """A room imports only those before it, late imports too."""
@@ -64,7 +65,10 @@ ORDER = (
 DECLARED = ORDER[: ORDER.index("equations") + 1]
 """The rooms up to where a scene is compiled. All others read what it is compiled to."""
 
-LEAVES = ("exports", "figures", "report", "animation", "actuators", "cluster", "formats", "cli")
+LEAVES = (
+    *("exports", "figures", "report", "animation", "actuators", "cluster"),
+    *("formats", "load_cases", "cli"),
+)
 """What nothing but the command line imports."""
 
 MOST_ANY = 94
@@ -295,6 +299,7 @@ else:
     assert main(["run", case, "--no-figures", "--backend", "vm", "--t", "0:0.1:5", "--out", out]) == 0
     asked = {"animate": [out], "drive": [case], "export": [case, "--out", out + "_c"], "plot": [out, "--out", out + "_p"]}
     asked |= {"report": [out], "new": [out + "_new", "--from", "model.json"]}
+    asked |= {"loads": [case, "--link", "crank", "--out", out + "_l"]}
     for word in commands:
         assert main([word, *asked[word]]) == 1
 print(json.dumps([lost, refused]))
@@ -316,6 +321,11 @@ GOES = {
     "actuators": (["cli.drive"], ["actuators"], ["drive"]),
     "cluster": ([], ["optimise.dask", "sweep.dask"], []),
     "formats": ([], ["read", "save_model"], ["new"]),
+    "load_cases": (
+        ["cli.loads"],
+        ["LoadCase", "link_load_cases", "write_load_cases"],
+        ["loads"],
+    ),
     "cli": ([], [], []),
 }
 """What goes with each leaf: commands' modules, methods and public names, and commands that then say

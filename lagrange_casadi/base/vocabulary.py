@@ -34,3 +34,6 @@ TIME_LIMIT = 60.0
 
 SIMPLE = "four_bar"
 """The case that another one begins as."""
+
+LOAD_FORMATS = ("json", "csv", "inp")
+"""Formats of load cases for finite elements."""

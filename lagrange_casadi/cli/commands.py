@@ -13,6 +13,7 @@ import click
 from ..base.packages import check_installed
 from ..base.space import MOST_THREADS
 from ..base.vocabulary import (
+    LOAD_FORMATS,
     RATE,
     SECONDS,
     TIME_LIMIT,
@@ -382,11 +383,50 @@ def cache(**given: Any) -> None:
     cache(**given)
 
 
+@command()
+@click.argument("case", type=CASE)
+@click.option(
+    "--link",
+    "links",
+    multiple=True,
+    required=True,
+    metavar="NAME",
+    help="Write the load cases of this link, rigid body or point mass; repeatable.",
+)
+@click.option("--out", type=PATH, required=True, metavar="DIR", help="Write into this folder.")
+@settings_by()
+@instants()
+@over
+@click.option(
+    "--every",
+    is_flag=True,
+    help="Write a load case for every instant; default: for those at which a section force of the"
+    " link, or a reaction on it, is largest.",
+)
+@click.option(
+    "--format",
+    "formats",
+    type=click.Choice(LOAD_FORMATS),
+    multiple=True,
+    help="Write this format; repeatable. inp is included by input files of CalculiX and Abaqus."
+    " Default: all.",
+)
+def loads(**given: Any) -> None:
+    """Write loads on links of CASE for finite elements.
+
+    Each load case has the forces and moments on the link, its acceleration and gravity, on the
+    link's own axes. These are in equilibrium.
+    """
+    from .loads import loads_command
+
+    loads_command(**given)
+
+
 GROUPS = {
     "Run": (run, info, check, cases, new),
     "Many designs": (sweep, best, table),
     "Design": (optimise, size, drive, tolerances, trade),
-    "Other programs": (export,),
+    "Other programs": (export, loads),
     "Look": (plot, report, animate),
     "Cache": (cache,),
 }

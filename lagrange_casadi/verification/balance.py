@@ -28,9 +28,11 @@ class Action:
     """A force and a couple on a body at a place, in ground axes; and the opposite there ``against``
     another body, where given.
 
-    ``works`` says whether they do work.
+    ``name`` is that of the output it is reported as: ``reaction:A``, ``effort:O``, ``load:gas``,
+    ``multiplier:mesh``. ``works`` says whether they do work.
     """
 
+    name: str
     body: str
     at: Vector
     force: Vector
@@ -93,7 +95,7 @@ def forces_reported(placed: Placed) -> bool:
 
 def balance(placed: Placed, digits: Digits) -> dict[str, list[Residuals]]:
     """The residuals of forces, each with what it is to be compared with."""
-    acting = list(_acting(placed))
+    acting = list(all_actions(placed))
     centres = {
         name: placed.bodies[name].point(Vector(*body.centre))
         for name, body in placed.declared.bodies.items()
@@ -136,12 +138,13 @@ def balance(placed: Placed, digits: Digits) -> dict[str, list[Residuals]]:
     return found | ({"ends": [_ends(placed, acting, digits)]} if placed.reported.laws else {})
 
 
-def _acting(placed: Placed) -> Iterator[Action]:
-    """Every force of joints, drives, loads and equations."""
+def all_actions(placed: Placed) -> Iterator[Action]:
+    """Yield every force of joints, drives, loads and equations."""
     reported, declared = placed.reported, placed.declared
     for name, joint in declared.joints.items():
         at, child, parent = placed.pins[name][0], joint.child.body, joint.parent.body
         yield Action(
+            f"reaction:{name}",
             child,
             at,
             reported.force("reaction", name),
@@ -157,14 +160,14 @@ def _acting(placed: Placed) -> Iterator[Action]:
                 along, driven = placed.along(name, axis, effort), True
                 force, couple = force + along[0], couple + along[1]
         if driven:
-            yield Action(child, at, force, couple, parent)
+            yield Action(f"effort:{name}", child, at, force, couple, parent)
     for name, load in declared.loads.items():
         force, couple = reported.force("load", name), reported.force("load", name, "m")
         for point, sign in zip(load.points, (1.0, -1.0), strict=False):
             # Friction is where the joint's child is, on both.
             place = load.points[0] if load.friction is not None else point
             at = placed.bodies[place.body].point(Vector(*place.at))[0]
-            yield Action(point.body, at, sign * force, sign * couple)
+            yield Action(f"load:{name}", point.body, at, sign * force, sign * couple)
     for equation in declared.equations:
         yield from _held(placed, equation)
 
@@ -174,38 +177,40 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
     transmission's parts.
     """
     declared, reported = placed.declared, placed.reported
-    multiplier = reported.outputs[Output("multiplier", equation.name)]
+    output = Output("multiplier", equation.name)
+    multiplier, name = reported.outputs[output], str(output)
     for touch in equation.touches:
         for part in actions(
             touch, placed.bodies[touch.carrier], multiplier, sense(touch, declared, reported)
         ):
-            yield Action(*part)
+            yield Action(name, *part)
     if equation.touches:
         return
     places, moving, _ = stacked(placed, equation)
     forces = multiplier * equation.slopes_at(places, moving, reported.t)
     axes = {
-        axis.coordinate: (name, axis)
-        for name, joint in declared.joints.items()
+        axis.coordinate: (joint_name, axis)
+        for joint_name, joint in declared.joints.items()
         for axis in joint.axes
     }
     for entry, force in zip(equation.entries, forces, strict=True):
         if entry.kind == "coordinate":
-            name, axis = axes[entry.part]
-            joint = declared.joints[name]
+            joint_name, axis = axes[entry.part]
+            joint = declared.joints[joint_name]
             yield Action(
+                name,
                 joint.child.body,
-                placed.pins[name][0],
-                *placed.along(name, axis, force),
+                placed.pins[joint_name][0],
+                *placed.along(joint_name, axis, force),
                 joint.parent.body,
             )
         elif entry.kind == "direction":
-            yield Action(entry.part, placed.bodies[entry.part].at, NIL, Vector(0.0, 0.0, force))
+            couple = Vector(0.0, 0.0, force)
+            yield Action(name, entry.part, placed.bodies[entry.part].at, NIL, couple)
         else:
             push = Vector(*(force if entry.kind == x else 0.0 for x in "xyz"))
-            yield Action(
-                entry.part, placed.bodies[entry.part].point(Vector(*entry.point))[0], push, NIL
-            )
+            at = placed.bodies[entry.part].point(Vector(*entry.point))[0]
+            yield Action(name, entry.part, at, push, NIL)
 
 
 def _sums(placed: Placed, acting: Sequence[Action], centres: Mapping[str, Motion]) -> _Sums:

@@ -28,7 +28,7 @@ from .digits import TOLERANCE as TOLERANCE
 from .digits import Digits
 from .digits import blur as blur
 from .friction import friction_residuals
-from .placing import place
+from .placing import Placed, place
 from .reported import Reported
 from .unplaced import place_all
 
@@ -69,7 +69,7 @@ def certify(
                 merged.setdefault(name, np.zeros_like(solution.t))[some] = distances
         return merged
     whole = replace(solution, outputs={**solution.outputs, **(hidden or {})}, indeterminate=())
-    reported = _reported(whole, phases or {})
+    reported = reported_of(whole, phases or {})
     digits = Digits.of(solution)
     found: dict[tuple[str, int], list[Array]] = {}
     scales: dict[tuple[str, int], float] = {}
@@ -116,7 +116,8 @@ def summary(residuals: Mapping[str, Array]) -> str:
     )
 
 
-def _reported(solution: Solution, phases: Mapping[Output, Array]) -> Reported:
+def reported_of(solution: Solution, phases: Mapping[Output, Array]) -> Reported:
+    """Read a solution as vectors; ``phases`` as in :func:`certify`."""
     description = solution.description
     return Reported(
         t=solution.t,
@@ -137,19 +138,24 @@ def _law_at_base(solution: Solution, link: str) -> SectionLaw:
     return replace(law, slack=max(_EDGE, law.slack))
 
 
-def _residuals(
-    declared: Declared, reported: Reported, digits: Digits
-) -> dict[str, list[Residuals]]:
-    """The gaps of each residual, each with the largest of what it is to be compared with."""
+def placed_of(declared: Declared, reported: Reported) -> Placed | None:
+    """Place every body by the reported motions; None where some is not reported."""
     if any(
         Output("motion", name) not in reported.outputs
         for name in {*declared.kinds} - reported.unmeasured
     ):
-        return {}
+        return None
     if any(Output("pose", name, "x") not in reported.outputs for name in declared.bodies):
-        return {}
+        return None
     placed = place_all(place(declared, reported.without_locked(declared)))
-    if len(placed.bodies) < len(declared.bodies) + 1:
+    return placed if len(placed.bodies) == len(declared.bodies) + 1 else None
+
+
+def _residuals(
+    declared: Declared, reported: Reported, digits: Digits
+) -> dict[str, list[Residuals]]:
+    """The gaps of each residual, each with the largest of what it is to be compared with."""
+    if (placed := placed_of(declared, reported)) is None:
         return {}
     found = {"closure": closure(placed, digits)}
     if (rubbed := friction_residuals(placed, digits)) is not None:
