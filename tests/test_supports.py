@@ -227,6 +227,9 @@ def test_what_cannot_be():
         two_bearings(m, "a", m.ground, rod.at(0.1), rod.at(0.1))
     with pytest.raises(DeclarationError, match=r"bearings 'a': .* on two bodies; expected apart="):
         two_bearings(m, "a", m.ground, rod.at(0.1), other)
+    for apart in (-1, 0.0, m.parameter("span", -1.0, "m")):
+        with pytest.raises(DeclarationError, match=r"bearings 'a': apart must be positive, got"):
+            two_bearings(m, "a", m.ground, rod.at(0.1), other, apart=apart)
     with pytest.raises(DeclarationError, match=r"bushes 'a': expected two places of one body"):
         two_bushes(m, "a", rod, m.ground, other.tip)
     with pytest.raises(DeclarationError, match=r"bushes 'a': both are at one place of 'ground'"):

@@ -81,8 +81,8 @@ def two_bearings(
         Direction of the shaft's x axis in the axes of the housing; by default x. In space the
         shaft's y axis is across it, along the housing's y if that is at right angles.
     apart : float or expression, optional
-        How far the floating bearing is from the fixed one along the axis [m]; needed if they are
-        on two bodies.
+        How far the floating bearing is from the fixed one along the axis [m], positive; needed if
+        they are on two bodies.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def two_bearings(
     Raises
     ------
     DeclarationError
-        If both places are one, and as declaring joints does.
+        If both places are one, ``apart`` is not positive, and as declaring joints does.
     """
     what, ownership = f"bearings '{name}'", mechanism.own
     near, *ends = (ownership.point(what, place) for place in (housing, fixed, floating))
@@ -105,6 +105,8 @@ def two_bearings(
         if apart is None
         else ownership.expression(f"{what}: apart", apart, "m")
     )
+    if apart is not None and not (distance := ownership.at_defaults(gap)) > 0.0:
+        raise DeclarationError(f"{what}: apart must be positive, got {distance:g} m")
     if not isinstance(gap, ca.SX) and gap == 0.0:
         raise DeclarationError(f"{what}: expected two places along the shaft, got one")
     u, v, _ = _triad(mechanism, what, axis)
