@@ -22,6 +22,8 @@ Cell = float | str
 
 _ROWS, _COLUMNS = 1_048_576, 16_384
 """Rows and columns of a workbook at most, heads included."""
+_OTHER_BOOKS = (".xls", ".xlsb", ".xlsm", ".ods")
+"""Suffixes of workbooks that are not written."""
 _WIDTH = 12
 _TIMES = re.compile(rb"(<dcterms:\w+[^>]*>)[^<]*")
 _NO_TIME = (1980, 1, 1, 0, 0, 0)
@@ -47,10 +49,14 @@ class TableFile:
     def check(self) -> None:
         """Raise where the table cannot be written, before anything is computed.
 
-        Raises :class:`.DeclarationError` for a workbook with decimal commas,
+        Raises :class:`.DeclarationError` for a workbook with decimal commas or of another kind,
         :class:`.LagrangeCasadiError` where openpyxl is missing, :class:`.PathError` where no file
         can be put.
         """
+        if self.path.suffix.lower() in _OTHER_BOOKS:
+            raise DeclarationError(
+                f"{self.path}: no table is written as {self.path.suffix}; use .csv or .xlsx"
+            )
         if self._is_workbook:
             if self.decimal_comma:
                 raise DeclarationError(
