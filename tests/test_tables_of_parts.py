@@ -11,7 +11,7 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, actuators, beams, bearings, evaluate
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import DeclarationError, NoDesignError
+from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -177,6 +177,10 @@ def test_the_smallest_bearing_that_lives_long_enough(rotor):
         bearings.select_bearing(rotor, "O", every, hours=1e12)
     with pytest.raises(NoDesignError, match="no bearing has a bore of 200 mm or more"):
         bearings.select_bearing(rotor, "O", every, hours=1.0, bore=0.2)
+    with pytest.raises(UnknownNameError, match="unknown joint 'main'; valid: O"):
+        bearings.select_bearing(rotor, "main", every, hours=1.0)
+    with pytest.raises(DeclarationError, match="select_bearing: bearings: expected at least one"):
+        bearings.select_bearing(rotor, "O", [], hours=1.0)
 
 
 def test_a_table_of_ones_own_bearings(tmp_path):

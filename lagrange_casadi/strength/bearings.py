@@ -21,7 +21,7 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..declare.description import fitted_of
 from ..declare.fitted import Fitted, Pin, Plain, Rolling, parts_from_numbers, positive
-from ..errors import DeclarationError
+from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Solution
 from ..instants.statistics import counted
 from .safety import Safety, Verdict
@@ -76,16 +76,20 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
     all instants: by how much its reaction may grow.
 
     Of speed and heating it is by how much these may. ``not_evaluated`` names what is missing, and
-    why. Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not evaluated
-    or is indeterminate, or a number that depends on parameters is not positive.
+    why. Raises :class:`.DeclarationError` where there is no such joint, nothing is fitted, its
+    reaction was not evaluated or is indeterminate, or a number that depends on parameters is not
+    positive.
     """
-    fitted = solution.description["joints"].get(joint, {}).get("fitted", {})
+    joints = solution.description["joints"]
+    fitted = joints.get(joint, {}).get("fitted", {})
     if not fitted and parts is None:
         having = ", ".join(fitted_of(solution.description))
         raise DeclarationError(
             f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
             f" {having or 'none'}"
         )
+    if joint not in joints:
+        raise UnknownNameError("joint", joint, joints)
     members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
     if not members:
         raise DeclarationError(

@@ -208,8 +208,10 @@ def select_bearing(
     NoDesignError
         If none serves, which says how near the strongest comes.
     DeclarationError
-        As :func:`.joint_safety` does.
+        If there are no bearings to choose from, and as :func:`.joint_safety` does.
     """
+    if not bearings:
+        raise DeclarationError("select_bearing: bearings: expected at least one")
     fitting = [one for one in bearings if one.bore >= bore]
     if not fitting:
         raise NoDesignError(f"joint '{joint}': no bearing has a bore of {1e3 * bore:g} mm or more")
