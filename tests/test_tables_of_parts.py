@@ -11,7 +11,7 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, actuators, beams, bearings, evaluate
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
+from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -68,6 +68,18 @@ def test_a_file_of_the_same_name_comes_first(tmp_path, monkeypatch):
         "mine,1,1,3000,3,5000,1e-5\n"
     )
     assert [motor.name for motor in actuators.read_motors("servo")] == ["mine"]
+
+
+def test_a_name_of_no_table_lists_those_there_are(here):
+    tables = "tables: CHS, HEA, HEB, IPE, flat, round"
+    for read, listed in (
+        (beams.read_profiles, tables),
+        (actuators.read_motors, "classes: servo, induction"),
+    ):
+        with pytest.raises(PathError, match=f"^IPX: no such file; {listed}$"):
+            read("IPX")
+        with pytest.raises(PathError, match=r"^IPX\.csv: no such file$"):
+            read("IPX.csv")
 
 
 @pytest.mark.parametrize("name", ["servo", "induction"])

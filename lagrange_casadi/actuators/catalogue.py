@@ -52,7 +52,8 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     """
     if str(path) in CLASSES and not Path(path).exists():
         return CLASSES[str(path)].motors(str(path))
-    rows = read_rows(path, f"the columns name, {', '.join(_ROTARY)}")
+    classes = f"classes: {', '.join(CLASSES)}"
+    rows = read_rows(path, f"the columns name, {', '.join(_ROTARY)}", names=classes)
     head = next(rows)
     cells = [_HEAD.fullmatch(cell) for cell in head.cells]
     names = [

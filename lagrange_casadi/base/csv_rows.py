@@ -67,7 +67,9 @@ class Row:
         return found if math.isfinite(found) else math.nan
 
 
-def read_rows(path: str | os.PathLike[str], expected: str, skip: int = 0) -> Iterator[Row]:
+def read_rows(
+    path: str | os.PathLike[str], expected: str, skip: int = 0, names: str = ""
+) -> Iterator[Row]:
     """The rows of a table in UTF-8, the head first where it has one; lines that are empty or begin
     with ``#``, and the first ``skip`` lines, are passed over.
 
@@ -76,12 +78,13 @@ def read_rows(path: str | os.PathLike[str], expected: str, skip: int = 0) -> Ite
     Where they are not parted by commas, the decimal mark may be one, in all numbers or in none.
     Cells may be quoted; a row is one line, and all rows have as many cells.
 
-    Raises :class:`.PathError` for what is no regular file, or cannot be read as text, and
+    Raises :class:`.PathError` for what is no regular file, with the ``names`` that may stand in its
+    place as :func:`.check_regular` says, or cannot be read as text, and
     :class:`.DeclarationError` for a row that is longer or shorter than the first, for a quote that
     does not end on its line, and for a file without rows, of which ``expected`` says what was.
     """
     check_kind("file", path, "a path", str, os.PathLike)
-    check_regular(path)
+    check_regular(path, names)
     first, delimiter, length = "", "", 0
     marks: dict[str, str] | None = None
     try:

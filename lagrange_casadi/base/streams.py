@@ -38,14 +38,17 @@ def stream_word(path: Path) -> str:
     return "a pipe" if stat.S_ISFIFO(mode) else SOCKET if stat.S_ISSOCK(mode) else "a device"
 
 
-def check_regular(path: str | os.PathLike[str]) -> None:
+def check_regular(path: str | os.PathLike[str], names: str = "") -> None:
     """Raise :class:`PathError` for what is no file to read: to open a pipe may take for ever, to
     open a device may do something.
+
+    ``names`` says which names there are in place of files, for a path without a suffix.
     """
     try:
         mode = os.stat(path).st_mode
     except (OSError, ValueError):
-        raise PathError(f"{path}: no such file") from None
+        listed = f"; {names}" if names and not os.path.splitext(path)[1] else ""
+        raise PathError(f"{path}: no such file{listed}") from None
     if not stat.S_ISREG(mode):
         raise PathError(
             f"{path}: is {'a folder' if stat.S_ISDIR(mode) else 'a device or a pipe'}, not a file"

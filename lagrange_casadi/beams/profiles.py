@@ -59,7 +59,8 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
     name = str(path)
     if name in STANDARD and not Path(path).exists():
         path = _TABLES / f"{name}.csv"
-    rows = read_rows(path, "a head and a line for every profile")
+    tables = f"tables: {', '.join(STANDARD)}"
+    rows = read_rows(path, "a head and a line for every profile", names=tables)
     head = next(rows)
     heads = [_head(head.where, cell) for cell in head.cells]
     names = [name for name, _ in heads]
