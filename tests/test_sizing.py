@@ -8,9 +8,10 @@ from internals import Profile, read_profiles, size
 from internals import equations_derive as derive
 from strong import BARS, arms
 
-from lagrange_casadi import evaluate
+from lagrange_casadi import Mechanism, Scene, beams, evaluate
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -165,6 +166,36 @@ def test_every_link_is_stiff_and_none_alone_can_be_lighter(scene, sized):
 def test_what_cannot_be_sized(scene, arguments, error, says):
     with pytest.raises(error, match=says):
         size(scene, **{"profiles": BARS, **arguments})
+
+
+@pytest.fixture
+def two_beams():
+    m = Mechanism("two_beams")
+    height, width = m.parameter("h", 0.08, "m", low=0.0), m.parameter("b", 0.04, "m", low=0.0)
+    web = m.parameter("web", 0.005, "m", low=0.0)
+    material = beams.material("S355")
+    section = beams.i_section(height, width, web, m.parameter("flange", 0.007, "m", low=0.0))
+    first = m.link("first", length=0.5, beam=beams.Beam(section, material))
+    flat = beams.rectangle(m.parameter("h2", 0.05, "m"), m.parameter("b2", 0.02, "m"))
+    second = m.link("second", length=0.5, beam=beams.Beam(flat, material))
+    m.revolute("O", m.ground, first)
+    m.revolute("A", first.tip, second)
+    still = polynomial(0.3)
+    return Scene(m, {"O": still, "A": still}, t=(0, 1, 3))
+
+
+def test_a_standard_table_fits_a_whole_cross_section(two_beams):
+    found = size(two_beams, read_profiles("flat"))
+    assert [one.link for one in found.links] == ["second"]
+    assert found.left == {"first": "table 'flat' has no web, flange of its i_section"}
+
+
+def test_a_profile_that_is_impossible_in_a_link_is_named(two_beams):
+    bars = [Profile(f"{h} mm", {"height": h / 1e3, "width": 0.04}) for h in (10, 60)]
+    found = size(two_beams, bars)
+    assert [one.link for one in found.links] == ["second"]
+    words = "height between the flanges of its i_section must be positive, got -0.004"
+    assert found.left == {"first": f"profile '10 mm': {words}"}
 
 
 def test_two_links_that_share_a_parameter():

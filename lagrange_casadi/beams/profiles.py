@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..arguments import public
@@ -23,10 +23,14 @@ STANDARD = tuple(sorted(path.stem for path in _TABLES.glob("*.csv")))
 @public
 @dataclass(frozen=True)
 class Profile:
-    """A profile: its name, and dimensions [m] by name."""
+    """A profile: its name, and dimensions [m] by name.
+
+    ``table`` is the standard table that it is of, if any: its dimensions are all of its shape's.
+    """
 
     name: str
     dimensions: dict[str, float]
+    table: str = field(default="", repr=False, compare=False)
 
     def shape(self, kind: str) -> Shape:
         """The cross-section of a kind that has these dimensions.
@@ -56,9 +60,9 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
     Raises :class:`.PathError` for a file that cannot be read, and :class:`.DeclarationError` that
     names the line which is wrong.
     """
-    name = str(path)
-    if name in STANDARD and not Path(path).exists():
-        path = _TABLES / f"{name}.csv"
+    table = str(path) if str(path) in STANDARD and not Path(path).exists() else ""
+    if table:
+        path = _TABLES / f"{table}.csv"
     tables = f"tables: {', '.join(STANDARD)}"
     rows = read_rows(path, "a head and a line for every profile", names=tables)
     head = next(rows)
@@ -79,7 +83,9 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
                 + (f"profile '{name}' is listed twice" if name in found else "it has no name")
             )
         found[name] = Profile(
-            name, {key: _size(row, key, text, dict(heads)[key]) for key, text in cells.items()}
+            name,
+            {key: _size(row, key, text, dict(heads)[key]) for key, text in cells.items()},
+            table,
         )
     if not found:
         raise DeclarationError(f"{head.where}: expected a line for every profile below this head")

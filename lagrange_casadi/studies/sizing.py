@@ -12,6 +12,7 @@ from functools import partial
 import casadi as ca
 
 from ..arguments import Positive, public
+from ..base.numerals import readable
 from ..beams.beam import Beam
 from ..beams.profiles import Profile
 from ..declare.description import Template, beams_of, values_of
@@ -400,6 +401,10 @@ def _slot(
         if len(found) != 1:
             raise _UnfitError(f"its {name} is not a parameter, so a profile cannot set it")
         owners[name] = found.pop()
+    table = next((profile.table for profile in profiles if profile.table), "")
+    for shape in shapes:
+        if table and (lacking := [name for name in shape.dimensions if name not in owners]):
+            raise _UnfitError(f"table '{table}' has no {', '.join(lacking)} of its {shape.kind}")
     slot = _Slot(owners, ())
     weights = []
     for profile in profiles:
@@ -411,6 +416,14 @@ def _slot(
                 )
             if fault := parameters[owners[name]].fault(value):
                 raise _UnfitError(f"profile '{profile.name}': {fault}")
-        weights.append(_area(beam_at(described, link, list((dict(defaults) | values).values()))))
+        beam = beam_at(described, link, list((dict(defaults) | values).values()))
+        for shape in beam.course.shapes():
+            for value, words in shape.parameter_constraints():
+                if not float(value) > 0.0:
+                    raise _UnfitError(
+                        f"profile '{profile.name}': {words} of its {shape.kind} must be positive,"
+                        f" got {readable(float(value))}"
+                    )
+        weights.append(_area(beam))
     order = sorted(range(len(profiles)), key=lambda k: weights[k])
     return _Slot(owners, tuple(profiles[k] for k in order))
