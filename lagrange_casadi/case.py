@@ -45,17 +45,18 @@ class Case:
         """The name of its folder, or of its file without the ending."""
         return self.path.parent.name if self.path.name == "case.py" else self.path.stem
 
-    def reference(self, folder: Path) -> str:
-        """Path of the case from a folder, or the name of one that comes with the package."""
-        place = self.path.parent if self.path.name == "case.py" else self.path
-        shipped = shipped_cases().get(self.name)
-        if shipped and shipped.resolve() == place:
-            return self.name
-        return Path(os.path.relpath(place, folder.resolve())).as_posix()
-
     def __reduce__(self) -> tuple[Callable[[Path], Case], tuple[Path]]:
         """Sent to another process, a case is loaded there from its file."""
         return load_case, (self.path,)
+
+
+def reference(case: Case, folder: Path) -> str:
+    """Path of a case from a folder, or the name of one that comes with the package."""
+    place = case.path.parent if case.path.name == "case.py" else case.path
+    shipped = shipped_cases().get(case.name)
+    if shipped and shipped.resolve() == place:
+        return case.name
+    return Path(os.path.relpath(place, folder.resolve())).as_posix()
 
 
 @public

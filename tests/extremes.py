@@ -291,7 +291,7 @@ def _times():
 EXTREMES = (
     Extreme("slider-crank as it is", slider_crank, ordinary=True),
     Extreme("four-bar as it is", four_bar, ordinary=True),
-    Extreme("lever with stations as it is", lever, ordinary=True),
+    Extreme("lever with load points as it is", lever, ordinary=True),
     Extreme("rod of a table of densities", tapered, ordinary=True),
     Extreme("slider-crank: r/l = 1e-6", slider_crank, {"r": 0.2e-6}, ordinary=True),
     Extreme("slider-crank: r/l = 1 - 1e-3 through 90 deg", slider_crank, *_90_TO_3),

@@ -134,7 +134,7 @@ def test_what_is_open_is_told():
         "plain bearing",
         "rolling bearing",
     ]
-    with pytest.raises(DeclarationError, match="want reaction:O too"):
+    with pytest.raises(DeclarationError, match="not evaluated; add reaction:O too"):
         evaluate(scene, wanted=["effort"]).safety("O")
 
 

@@ -541,8 +541,8 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
         process.kill()
     assert process.returncode == 130
     assert re.fullmatch(
-        r"(note: 10 000 000 instants take about .*\n)?error: interrupted; nothing was left"
-        r" half-written\n",
+        r"(note: 10 000 000 instants take about .*\n)?error: interrupted; no file was left"
+        r" incomplete\n",
         err,
     )
     assert out == ""

@@ -314,13 +314,21 @@ def test_a_scene_takes_motions_of_several_joints(here):
     assert found.motion("B").value == pytest.approx(SLIDE, abs=1e-12)
 
 
+def test_a_length_does_not_turn_a_joint(here):
+    file = write(here / "arm.csv", ["t", "A [mm]"], np.column_stack([TIMES, SLIDE]))
+    m = Mechanism("arm")
+    m.revolute("A", m.ground, m.link("upper", length=0.4, mass=1.0))
+    with pytest.raises(DeclarationError, match="motion of 'A': it is in m, but its coordinate is"):
+        evaluate(Scene(m, read_motion(file), t=(0, 1.2, 61)))
+
+
 @pytest.mark.parametrize(
     ("heads", "options", "says"),
     [
         (["t", "a [deg]"], {"columns": ["b"]}, "two.csv: unknown column 'b'; valid: t, a"),
         (["t", "a [yd]"], {}, "two.csv: unknown unit 'yd'; valid: .*counts"),
         (["t [h]", "a"], {}, "two.csv: unknown time unit 'h'; valid: s, ms, us"),
-        (["t", "a [counts]"], {}, r"two.csv: its column is in counts; expected counts_per_turn="),
+        (["t", "a [counts]"], {}, r"two.csv: column a is in counts; expected counts_per_turn="),
         (["t", "a"], {"unit": {"b": "deg"}}, "two.csv: unknown coordinate of unit= 'b'; valid: a"),
         (["t", "a"], {"columns": []}, "two.csv: columns= expected at least one coordinate"),
         ([], {}, "two.csv: it has no heads; expected columns="),

@@ -138,7 +138,7 @@ def test_names_that_the_file_keeps_are_refused(monkeypatch, tmp_path):
     scene = Scene(m, {"O": polynomial(0, 1)})
     with pytest.raises(
         DeclarationError,
-        match="parameter 't' cannot be an axis: the file keeps that name for its own",
+        match="parameter 't' cannot be an axis: the file uses that name itself",
     ):
         sweep(scene, {"t": [0.1, 0.2]}, out=tmp_path / "x.h5")
     assert list(tmp_path.iterdir()) == []

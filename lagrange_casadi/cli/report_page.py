@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from ..base.publish import check_writable
-from ..case import Case, load_case
+from ..case import Case, load_case, reference
 from ..codegen.compiler import statements
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
@@ -88,7 +88,7 @@ def report(
         engine = None
         if asked.live:
             say_step(2, f"deriving the equations of {loaded.name}")
-            engine = Live.of(scene, timing, wanted, run_of(loaded.reference(Path())), given)
+            engine = Live.of(scene, timing, wanted, run_of(reference(loaded, Path())), given)
             size = grouped(statements(engine.source.code))
             say_step(3, f"compiling {size} statements for this machine and for the browser at once")
         solution = _evaluated(loaded, asked, given)
@@ -160,7 +160,7 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
         check_zig("the mechanism of a design in motion")
         scene = found.scene
         if case is None and not is_of(sweep, scene):
-            raise DeclarationError(f"the case '{found.reference(Path())}' is not as it was swept")
+            raise DeclarationError(f"the case '{reference(found, Path())}' is not as it was swept")
     except LagrangeCasadiError as error:
         if case is not None:
             raise
@@ -172,7 +172,7 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
         found = scene = None
     with reported_as(_UNSHOWN, target):
         write_sweep_report(
-            sweep, out, scene, run_of(found.reference(Path()) if found else sweep.case)
+            sweep, out, scene, run_of(reference(found, Path()) if found else sweep.case)
         )
     echo(f"wrote {out}: open it in a browser")
 

@@ -228,7 +228,7 @@ def read_motion(
     found = {}
     for place, name, values in zip(places[1:], named, series, strict=True):
         word = units[name] or table.units[place] or "rad"
-        size = _size(path, f"{name}: " if len(named) > 1 else "", word, counts[name])
+        size = _size(path, named[name], word, counts[name])
         law = _Fit(
             noises[name],
             points,
@@ -239,7 +239,7 @@ def read_motion(
             offsets[name],
             stretch,
         )
-        called = f"{path.name}, column {name}"
+        called = f"{path.name}, column {named[name]}"
         found[name] = _motion(Recording(called, word, t * second, values, size), law, second)
     return found
 
@@ -260,7 +260,7 @@ def _each(
     return {name: given.get(name, usual) for name in named}
 
 
-def _size(path: Path, name: str, unit: str, turn: float | None) -> float:
+def _size(path: Path, column: str | int, unit: str, turn: float | None) -> float:
     """The size of a unit in rad or m; of the counts of an encoder by how many are a turn."""
     if unit not in _COUNTS:
         return _known(path, unit, {**_UNITS, "counts": 0.0}, "unit")
@@ -270,7 +270,7 @@ def _size(path: Path, name: str, unit: str, turn: float | None) -> float:
         per_turn = 0.0
     if not per_turn > 0.0:
         raise DeclarationError(
-            f"{path.name}: {name}its column is in counts; expected counts_per_turn=, a number above"
+            f"{path.name}: column {column} is in counts; expected counts_per_turn=, a number above"
             f" 0, got {turn!r}"
         )
     return math.tau / per_turn
@@ -296,6 +296,9 @@ def _motion(recording: Recording, law: _Fit, second: float) -> Motion:
         recording = _closed(recording, period, law.advance)
     elif law.advance:
         raise DeclarationError(f"{name}: advance= needs periodic=True")
+    # A ratio may make turns of lengths, and radians may be a rule's usual unit.
+    if not unit_in and isinstance(law.ratio, float) and law.ratio == 1.0:
+        unit_in = "m" if recording.unit in UNITS["m"] else "" if recording.unit == "rad" else "rad"
     noise = _noise(recording, law.smoothing)
     return _law(recording, noise, law.points, cyclic, law.advance, scales, unit_in)
 

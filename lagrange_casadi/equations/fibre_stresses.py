@@ -173,7 +173,7 @@ class FibrePart(Graphs):
         return np.stack(rows, axis=1)
 
     def ends(self, members: Array, numbers: Array) -> tuple[Array, Array]:
-        """Where the part begins, and its width, of designs: each (n,)."""
+        """Return the beginning and the width of the part for designs: each (n,)."""
         low, width = self.span(members[:, :, 0].T, numbers.T).full()
         return low, width
 
@@ -221,7 +221,7 @@ class FibreStresses:
 
     @cached_property
     def places(self) -> list[int]:
-        """Those of the members that tell where something acts, not how much."""
+        """Return the members that say where something acts, not how much."""
         return [k for k, member in enumerate(self.members) if _is_place(member)]
 
     def stands(self, members: Array) -> npt.NDArray[np.bool_]:

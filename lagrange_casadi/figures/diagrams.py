@@ -237,7 +237,11 @@ def _polar(
         for output in outputs
     ]
     sizes = np.hypot(*forces)
-    i = int(np.argmax(sizes))
+    if np.isnan(sizes).all():
+        axes.text(x0, y0, "not evaluated", fontsize=9, ha="center", va="center")
+        return
+    # Friction at rest leaves instants without a force.
+    i = int(np.nanargmax(sizes))
     most = float(sizes[i])
     scale = scale_for("N", most, si)
     radius = _round_up(scale.factor * most or 1.0)

@@ -52,6 +52,8 @@ class Batch:
         one is for, 0 for all. Of what is ``chosen`` the numbers are given.
         """
         into = np.full((n, self.function.numel_out(0)), np.nan)
+        if not n:
+            return into
         if self.library is not None:
             self.library.evaluate(n, given, into)
             return into

@@ -89,7 +89,7 @@ def plane_factor(plane: Plane, material: Material, share: NotNegative = DUCTILE)
 
 
 def plane_score(share: float = DUCTILE) -> Score:
-    """What is largest on the worst critical plane: shear amplitude and ``share`` of the normal
+    """Return the score of the worst critical plane: its shear amplitude and ``share`` of its normal
     stress.
 
     No plane is above a bound from the largest shear and principal stresses.

@@ -178,7 +178,7 @@ class LinkHistories:
         return np.asarray(wide | (part.notch is not None))
 
     def of_designs(self, designs: npt.NDArray[Any]) -> LinkHistories:
-        """The same of some of the designs."""
+        """Return the histories of some of the designs."""
         return replace(self, members=self.members[designs], numbers=self.numbers[designs])
 
     def _bounds(self, part: FibrePart, score: Score) -> Array:
@@ -234,8 +234,8 @@ def _local_maxima(sizes: Array) -> npt.NDArray[np.bool_]:
 
 
 def _promised(sizes: Array) -> Array:
-    """How high local maxima are at most, by twice what a parabola through neighbours is above them,
-    or as told by :data:`_MISSED`.
+    """Return bounds on local maxima, by twice the height of a parabola through neighbours above
+    them, or by :data:`_MISSED`.
     """
     before, after = _beside(sizes)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -293,7 +293,7 @@ class _Followed:
         return replace(self.histories, members=np.array(pairs))
 
     def _guide(self, cycles: LinkHistories, x: Array) -> Array:
-        """How bad cycles are at places."""
+        """Return the scores of cycles at places."""
         chosen = self._at(cycles, x)
         values = np.zeros((3, len(x), 2))
         values[0] = chosen.normal[:, 0]

@@ -14,7 +14,7 @@ from typing import Annotated
 from ...arguments import LATER, Outputs, ThreadCount, public
 from ...base.space import MOST_THREADS
 from ...base.vocabulary import Backend, Keep, Precision
-from ...case import Case, scene_of
+from ...case import Case, reference, scene_of
 from ...declare.even_points import EvenPoints
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
@@ -119,7 +119,7 @@ def sweep(
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     if isinstance(scene, Case) and not keeper:
-        plan = replace(plan, case_file=scene.reference(target.parent))
+        plan = replace(plan, case_file=reference(scene, target.parent))
     workforce = hired(workers, dask)
     verified = carry_out(
         plan, target, workforce, resume=resume, force=force, progress=progress or (lambda *_: None)
