@@ -195,11 +195,11 @@ def _time(spec: TimePlot, solution: Solution, si: bool) -> Figure:
 def _draw_time(spec: TimePlot, axes: Axes, solution: Solution, name: str) -> None:
     output = Output.of(name)
     label = name.partition(":")[2].replace(":", " ") if len(spec.quantities) > 1 else None
+    factor = 0.0 if vanishes(solution, output) else spec.factor
     if output.group != "section":
-        axes.plot(_along(solution)[0], spec.factor * solution.array(output), label=label)
+        axes.plot(_along(solution)[0], factor * solution.array(output), label=label)
         return
     values = solution.section(output.part).law.on_grid(output.member, np.array(spec.xi))
-    factor = 0.0 if vanishes(solution, output) else spec.factor
     for xi, curve in zip(spec.xi, values.T, strict=True):
         of = f"{label}, " if label else ""
         axes.plot(_along(solution)[0], factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
