@@ -118,7 +118,12 @@ def test_polar_plots_show_the_largest_load():
 
 
 def test_both_are_among_the_usual_figures(tmp_path):
-    for name, joints in (("slider_crank", ("O", "A", "B")), ("rssr", ("O", "Q"))):
+    cases = {
+        "slider_crank": ("O", "A", "B"),
+        "rssr": ("O", "Q"),
+        "v6": ("main_fixed", "main_floating"),
+    }
+    for name, joints in cases.items():
         specs = {spec.name: spec for spec in figures.default_figures(solved(name))}
         assert specs["bearings"] == PolarPlots("bearings", joints)
         assert set(specs["diagrams"].links) == set(solved(name).links_with_sections)
