@@ -49,6 +49,19 @@ def test_diagrams_have_the_values_of_the_law(case, link):
             assert f"{0.0 if abs(mark.value) < 1e-9 * size else mark.value:.4g}" in written
 
 
+def test_signs_have_the_colours_of_the_maps():
+    """Red is positive: tension drawn upwards, as in the maps of section forces."""
+    sheet = SectionDiagrams("d", ("rod",)).draw(solved("connecting_rod")).axes[0]
+    maps = figures.SectionMaps("m", "rod").draw(solved("connecting_rod")).axes[0].collections[0]
+    for area in sheet.collections:
+        heights = area.get_paths()[0].vertices[:, 1]
+        base = min(heights, key=lambda height: np.abs(heights - height).sum())
+        up = np.abs(heights.max() - base) > np.abs(heights.min() - base)
+        red, _, blue, _ = area.get_facecolor()[0]
+        most = maps.cmap(1.0 if up else 0.0)
+        assert (red > blue) == (most[0] > most[2])
+
+
 def test_both_sides_of_a_load_are_marked():
     """A bar with a point load: the shear force jumps by its share across the bar."""
     solution = snowed()
@@ -105,7 +118,12 @@ def test_polar_plots_show_the_largest_load():
 
 
 def test_both_are_among_the_usual_figures(tmp_path):
-    for name, joints in (("slider_crank", ("O", "A", "B")), ("rssr", ("O", "Q"))):
+    cases = {
+        "slider_crank": ("O", "A", "B"),
+        "rssr": ("O", "Q"),
+        "v6": ("main_fixed", "main_floating"),
+    }
+    for name, joints in cases.items():
         specs = {spec.name: spec for spec in figures.default_figures(solved(name))}
         assert specs["bearings"] == PolarPlots("bearings", joints)
         assert set(specs["diagrams"].links) == set(solved(name).links_with_sections)

@@ -39,6 +39,15 @@ def test_time_plot_applies_the_factor(solution):
     assert figure.get_supxlabel() == "sign of the paper"
 
 
+def test_series_that_are_rounding_are_drawn_as_zero():
+    """A balanced flywheel does not load its flange across, and bearings hold a shaft straight."""
+    solution = solved("v6")
+    for name in ("reaction:flange:fy", "motion:main_fixed:turn_2"):
+        assert np.any(solution.array(name))
+        (curve,) = curves(TimePlot("p", (name,)).draw(solution))
+        assert not curve[:, 1].any()
+
+
 def test_time_plot_of_sections(solution):
     figure = TimePlot("axial", ("section:rod:axial",), xi=(0.25, 0.5)).draw(solution)
     quarter, half = curves(figure)

@@ -219,6 +219,20 @@ def fitted_of(description: Description) -> list[str]:
     return [name for name, joint in description["joints"].items() if "fitted" in joint]
 
 
+def shaft_bearings_of(description: Description) -> list[str]:
+    """Return the joints of shafts in a fixed and a floating bearing in space, by the names that
+    they get there.
+    """
+    joints, found = description["joints"], []
+    for name, joint in joints.items():
+        shaft, fixed, rest = name.rpartition("_fixed")
+        other = joints.get(f"{shaft}_floating")
+        if fixed and not rest and other and (joint["kind"], other["kind"]) == ("spherical", "slot"):
+            bodies = {one["parent"]["body"] for one in (joint, other)}
+            found += [name, f"{shaft}_floating"] if len(bodies) == 1 else []
+    return found
+
+
 def bends_of(description: Description) -> list[str]:
     """Return the welds between the pieces of bent bars, by the names that they get there."""
     found = []

@@ -36,7 +36,9 @@ _SYMBOLS = {
 }
 _SIDES: tuple[Side, Side] = ("base", "tip")
 _POINTS, _SAME = 121, 1e-9
-_POSITIVE, _NEGATIVE, _CURVE = "#2166ac", "#b2182b", "#b2182b"
+_POSITIVE, _NEGATIVE = "#b2182b", "#2166ac"
+_CURVE, _LARGEST = "#2166ac", "#b2182b"
+"""Colours of the loads of a bearing over time, and of the largest one."""
 _ROW, _PANEL, _LENGTH, _HEIGHT = 1.5, 3.1, 2.2, 0.42
 """Height of a row, and width of a panel; length of a link in it, and height of its largest value
 [inch].
@@ -257,14 +259,14 @@ def _polar(
             x0 + dx, y0 + dy, f"${member[0]}_{member[1]}$", fontsize=9, ha="center", va="center"
         )
     points: Array = _RADIUS / radius * scale.factor * np.array(forces)
-    axes.plot(x0 + points[0], y0 + points[1], color=_POSITIVE, linewidth=1.4)
+    axes.plot(x0 + points[0], y0 + points[1], color=_CURVE, linewidth=1.4)
     axes.plot(
         x0 + np.array([0.0, points[0, i]]),
         y0 + np.array([0.0, points[1, i]]),
-        color=_CURVE,
+        color=_LARGEST,
         linewidth=1.2,
     )
-    axes.plot(x0 + points[0, i], y0 + points[1, i], "o", color=_CURVE, markersize=4)
+    axes.plot(x0 + points[0, i], y0 + points[1, i], "o", color=_LARGEST, markersize=4)
     angle = math.degrees(math.atan2(points[1, i], points[0, i]))
     words = f"{scale.said(most)} at {_written(angle, 3)}°" if most else "0"
     axes.text(x0, y0 - _RADIUS - 0.14, words, fontsize=8, ha="center", va="top")

@@ -18,7 +18,7 @@ from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import PLANE, SPACE
-from ..declare.description import parts_of
+from ..declare.description import parts_of, shaft_bearings_of
 from ..errors import DeclarationError, PathError, UnknownNameError, shown
 from ..instants.ordering import vanishes
 from ..instants.solution import Peak, Solution
@@ -86,10 +86,12 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
             specs.append(SectionMaps(f"section_{link}", link))
     if diagrams := tuple(spec.link for spec in specs if isinstance(spec, SectionMaps)):
         specs.append(SectionDiagrams("diagrams", diagrams))
+    shafts = shaft_bearings_of(solution.description)
     bearings = tuple(
         name
         for name, joint in solution.description["joints"].items()
-        if joint["kind"] in ("revolute", "cylindrical") and polar_members(solution, name)
+        if (joint["kind"] in ("revolute", "cylindrical") or name in shafts)
+        and polar_members(solution, name)
     )
     if bearings:
         specs.append(PolarPlots("bearings", bearings))
@@ -195,11 +197,11 @@ def _time(spec: TimePlot, solution: Solution, si: bool) -> Figure:
 def _draw_time(spec: TimePlot, axes: Axes, solution: Solution, name: str) -> None:
     output = Output.of(name)
     label = name.partition(":")[2].replace(":", " ") if len(spec.quantities) > 1 else None
+    factor = 0.0 if vanishes(solution, output) else spec.factor
     if output.group != "section":
-        axes.plot(_along(solution)[0], spec.factor * solution.array(output), label=label)
+        axes.plot(_along(solution)[0], factor * solution.array(output), label=label)
         return
     values = solution.section(output.part).law.on_grid(output.member, np.array(spec.xi))
-    factor = 0.0 if vanishes(solution, output) else spec.factor
     for xi, curve in zip(spec.xi, values.T, strict=True):
         of = f"{label}, " if label else ""
         axes.plot(_along(solution)[0], factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
