@@ -78,7 +78,7 @@ class Program(Graphs):
 
     @cached_property
     def loop_rows(self) -> tuple[tuple[tuple[int, bool], ...], tuple[tuple[int, Turns], ...]]:
-        """Rows of what :attr:`loop_angles` are sums of, and whether each has whole turns; and by
+        """Rows of what ``loop_angles`` are sums of, and whether each has whole turns; and by
         the row of each angle, the numbers among these of its parts, with their signs.
         """
         rows = {column: k for k, column in enumerate(self.columns)}
