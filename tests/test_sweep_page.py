@@ -231,6 +231,20 @@ def test_the_page_opens_on_what_varies_most_and_tells_the_rest_in_a_line(page, f
         assert "peak:reaction:guide:fx" not in [word.replace("\u200b", "") for word in words]
 
 
+def test_designs_without_a_result_have_their_parameters(page):
+    one = page()
+    table = one.run(
+        "[...document.querySelectorAll('.designs tr')].map((row) => [...row.children].map((one) =>"
+        " one.textContent))"
+    )
+    failed = [row for row in table[1:] if row[-1] != "ok"]
+    names = [name.strip() for name in table[0]]
+    assert failed
+    for row in failed:
+        dashes = {name for name, words in zip(names, row, strict=True) if words == "\N{EN DASH}"}
+        assert dashes == set(names[4:-1])
+
+
 @pytest.mark.parametrize("width", [1280, 400])
 def test_no_number_lies_over_a_name(page, width):
     one = page()

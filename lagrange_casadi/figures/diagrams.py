@@ -132,6 +132,8 @@ def _panel(
     si: bool,
 ) -> None:
     """One force along a link, from a ``corner`` on its base line [inch]."""
+    from matplotlib.patheffects import withStroke
+
     x0, y0 = corner
     force, unit = output.member, solution.unit(output)
     symbol = f"${_SYMBOLS[force].replace('_', '_{') + ('}' if '_' in force else '')}$"
@@ -164,6 +166,7 @@ def _panel(
             fontsize=8,
             ha=_aligned(mark, found),
             va="bottom" if up else "top",
+            path_effects=[withStroke(linewidth=2.0, foreground="white")],
         )
 
 

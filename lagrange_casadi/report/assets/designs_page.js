@@ -122,7 +122,7 @@ function designTable() {
   const chosen = [...new Set([...parameters, ...pair, ...varying])].slice(0, 9);
   const heads = [["design", (row) => String(designs.numbers[row.at]), (row) => designs.numbers[row.at]],
     // A long name may go on in the next line, behind a colon.
-    ...chosen.map((one) => [one.title.replaceAll(":", ":\u200b"), (row) => (status[row.at] ? "–" : columnWords(one, row.at)), (row) => costOf(one, row.at)]),
+    ...chosen.map((one) => [one.title.replaceAll(":", ":\u200b"), (row) => (status[row.at] && !parameters.includes(one) ? "–" : columnWords(one, row.at)), (row) => costOf(one, row.at)]),
     ["result", (row) => (status[row.at] ? contents.statuses[status[row.at]] : "ok")]];
   const plain = [["design", (row) => designs.numbers[row.at]], ...columns.map((one) => [`${one.name} [${one.unit}]`, (row) => one.values[row.at]]), ["status", (row) => status[row.at]]];
   const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), told: "Look at this design", aside: sameLine(), plain, most: MOST_ROWS });
