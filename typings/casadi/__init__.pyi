@@ -1,3 +1,5 @@
+# mypy: disable-error-code="overload-overlap"
+# Numbers give a number or a DM: the first overload that fits is the true one.
 """Types of what this project uses of CasADi, whose modules have none."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
