@@ -15,15 +15,19 @@ function diagramLinks() {
 /** Values of a force that are told: at ends, on both sides of jumps, and where it turns; the largest first, those of ends next. */
 function marksOf({ ratios, values }) {
   const last = ratios.length - 1;
+  const least = 1e-6 * largestOf(values);
+  const jumps = (k) => k > 0 && k <= last && ratios[k] === ratios[k - 1] && Math.abs(values[k] - values[k - 1]) > least;
   const found = [];
   for (let k = 0; k <= last; k += 1) {
-    const jump = (k > 0 && ratios[k] === ratios[k - 1]) || (k < last && ratios[k] === ratios[k + 1]);
+    const tip = jumps(k);
+    const jump = tip || jumps(k + 1);
     if (k === 0 || k === last || jump) {
-      const tip = k > 0 && ratios[k] === ratios[k - 1];
       found.push({ xi: ratios[k], value: values[k], anchor: jump ? (tip ? "start" : "end") : "middle" });
       continue;
     }
-    const [a, b, c] = [values[k - 1], values[k], values[k + 1]];
+    // Of two points at one place that do not jump the second stands for both.
+    if (ratios[k] === ratios[k + 1]) continue;
+    const [a, b, c] = [values[k - (ratios[k] === ratios[k - 1] ? 2 : 1)], values[k], values[k + 1]];
     if ((b - a) * (c - b) >= 0) continue;
     // The parabola through three points, evenly apart but beside a jump.
     const h = ratios[k + 1] - ratios[k];
