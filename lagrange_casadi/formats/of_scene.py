@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arithmetic.interpret import Arithmetic, interpret
 from ..base.arrays import Array
+from ..declare.declared import BodyNumbers, Declared, JointNumbers
 from ..declare.description import density_of, slices_of
 from ..declare.scene import Scene
 from ..errors import DeclarationError
@@ -66,15 +67,16 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
         model.notes.append(f"Loads are not exported: {', '.join(described['loads'])}.")
     x, y, z = (*described["gravity"], 0.0)[:3]
     model.gravity = (x, y, z)
+    declared = Declared.of(described)
     for name, body in described["bodies"].items():
-        model.bodies[name] = _body(name, body, _frame(solution, name))
+        model.bodies[name] = _body(name, body, declared.bodies[name], _frame(solution, name))
         if "density" in body and model.bodies[name].rod is None:
             model.notes.append(
                 f"The mass of '{name}' is exported as a total, without its distribution along"
                 " the link."
             )
-    for name, joint in described["joints"].items():
-        model.joints[name] = _joint(name, joint, len(described["gravity"]) == 2)
+    for name, joint in declared.joints.items():
+        model.joints[name] = _joint(name, joint)
     known = [name for joint in model.joints.values() for name in joint.coordinates]
     values = ca.DM(list(scene.values(parameters).values()))
     laws = scene.prescribed
@@ -99,53 +101,32 @@ def _frame(solution: Solution, body: str) -> Frame:
     return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
 
 
-def _body(name: str, told: Told, frame: Frame) -> Body:
-    mass, zero = told["mass"], np.zeros(3)
-    if told["length"] is None:
+def _body(name: str, told: Told, numbers: BodyNumbers, frame: Frame) -> Body:
+    mass, zero = numbers.mass, np.zeros(3)
+    if numbers.length is None:
         return Body(name, mass, zero, None, frame, point=True)
-    tip = np.array([told["length"], 0.0, 0.0])
     if "centre" not in told:
         density = density_of(told)
-        slices = slices_of(told)
-        if len(density.cells) == 1 and len(density.cells[0]) == 1 and not any(slices):
-            rod = Body.slender(name, mass, (zero, tip))
+        if len(density.cells) == 1 and len(density.cells[0]) == 1 and not any(slices_of(told)):
+            rod = Body.slender(name, mass, (zero, np.array([numbers.length, 0.0, 0.0])))
             return Body(name, mass, rod.centre, rod.inertia, frame, rod=rod.rod)
-        _, first, second = (float(tail[0]) for tail in density.tails(np.zeros(1)))
-        middle, (yy, zz, yz) = first / mass, slices
-        across = (second - first * middle) * told["length"] ** 2
-        inertia = np.array([[yy + zz, 0, 0], [0, across + zz, -yz], [0, -yz, across + yy]])
-        return Body(name, mass, middle * tip, inertia, frame)
-    centre, moments = told["centre"], told["centre"]["inertia"]
-    if not isinstance(moments, list):
-        moments = np.diag([moments / 2.0, moments / 2.0, moments])
-    place = np.array([centre["x"], centre["y"], centre.get("z", 0.0)])
-    return Body(name, mass, place, np.array(moments), frame)
+    inertia = np.array(numbers.inertia)
+    if "centre" in told and not isinstance(told["centre"]["inertia"], list):
+        # In a plane one moment is given; two more that a body may have.
+        inertia[0, 0] = inertia[1, 1] = inertia[2, 2] / 2.0
+    return Body(name, mass, np.array(numbers.centre), inertia, frame)
 
 
-def _joint(name: str, told: Told, plane: bool) -> Joint:
+def _joint(name: str, numbers: JointNumbers) -> Joint:
     """Return a joint, the frames so that its coordinates are those that were declared."""
-    parent, child = (
-        np.array([one["x"], one["y"], one.get("z", 0.0)]) for one in (told["parent"], told["child"])
-    )
-    kind = told["kind"]
-    if plane:
-        x, y = told["axis"]
-        zero = turned(np.array([0.0, 0.0, 1.0]), told["angle"])
-        u, v, w = np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])
-        if kind in ("revolute", "weld"):
-            u, v, w = w, u, v
-    else:
-        u, v, w = np.array(told["triad"])
-        zero = np.array(told["turned"]).T
+    (u, v, w), zero = np.array(numbers.triad), np.array(numbers.turned).T
+    kind, parent, child = numbers.kind, numbers.parent, numbers.child
     # Slides and turns are about z of a frame; of three of a kind about x, y and z.
     columns = (u, v, w) if kind in ("spherical", "free") else (v, w, u)
     near = np.column_stack(columns)
-    far = zero.T @ near
-    if kind == "universal":
-        far = zero.T @ np.column_stack([w, u, v])
-    lead = told.get("pitch", 0.0) * math.tau
-    one, other = told["parent"]["body"], told["child"]["body"]
-    return Joint(name, kind, one, other, Frame(parent, near), Frame(child, far), lead)
+    far = zero.T @ (np.column_stack([w, u, v]) if kind == "universal" else near)
+    frames = Frame(np.array(parent.at), near), Frame(np.array(child.at), far)
+    return Joint(name, kind, parent.body, child.body, *frames, numbers.pitch * math.tau)
 
 
 def _law(law: ca.Function, span: tuple[float, float, int]) -> Law:
