@@ -220,17 +220,10 @@ def fitted_of(description: Description) -> list[str]:
 
 
 def shaft_bearings_of(description: Description) -> list[str]:
-    """Return the joints of shafts in a fixed and a floating bearing in space, by the names that
-    they get there.
+    """Return the joints of shafts in a fixed and a floating bearing in space: those that say by
+    which coordinate the shaft turns in them.
     """
-    joints, found = description["joints"], []
-    for name, joint in joints.items():
-        shaft, fixed, rest = name.rpartition("_fixed")
-        other = joints.get(f"{shaft}_floating")
-        if fixed and not rest and other and (joint["kind"], other["kind"]) == ("spherical", "slot"):
-            bodies = {one["parent"]["body"] for one in (joint, other)}
-            found += [name, f"{shaft}_floating"] if len(bodies) == 1 else []
-    return found
+    return [name for name, joint in description["joints"].items() if "turning" in joint]
 
 
 def bends_of(description: Description) -> list[str]:
