@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from pathlib import Path
 
 from ..arguments import public
-from ..base.csv_rows import Row, read_rows
+from ..base.csv_rows import Row, headings, read_rows
 from ..errors import DeclarationError
 from .classes import CLASSES
 from .motor import Motor
@@ -30,8 +29,6 @@ _UNITS = {
 """The units that a column may have, by the last word of its name; the first is meant where none is
 said.
 """
-
-_HEAD = re.compile(r"(\w+)\s*(?:\[\s*(.+?)\s*\])?")
 
 
 @public
@@ -55,10 +52,7 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     classes = f"classes: {', '.join(CLASSES)}"
     rows = read_rows(path, f"the columns name, {', '.join(_ROTARY)}", names=classes)
     head = next(rows)
-    cells = [_HEAD.fullmatch(cell) for cell in head.cells]
-    names = [
-        match.group(1) if match else cell for match, cell in zip(cells, head.cells, strict=True)
-    ]
+    names = [name for name, _ in headings(head.cells)]
     linear = any(name in names for name in ("stall_force", "rated_force", "peak_force"))
     needed, knee = (_LINEAR if linear else _ROTARY), _KNEE[linear]
     if missing := [column for column in ("name", *needed) if column not in names]:
@@ -70,8 +64,8 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     if twice := [column for column in ("name", *needed, *knee, _LASTS) if names.count(column) > 1]:
         raise DeclarationError(f"{head.where}: the column '{twice[0]}' is listed twice")
     units = {
-        column: _unit(head, column, match.group(2) if match else None, linear)
-        for column, match in zip(names, cells, strict=True)
+        column: _unit(head, column, unit, linear)
+        for column, unit in headings(head.cells)
         if column in (*needed, *knee, _LASTS)
     }
     motors: dict[str, Motor] = {}
@@ -85,15 +79,15 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     return list(motors.values())
 
 
-def _unit(head: Row, column: str, unit: str | None, linear: bool) -> float:
+def _unit(head: Row, column: str, unit: str, linear: bool) -> float:
     """SI unit of a column."""
     kind = column.rpartition("_")[2]
     units = _UNITS[("sliding" if linear else "turning") if kind == "speed" else kind]
-    if unit is not None and unit not in units:
+    if unit and unit not in units:
         raise DeclarationError(
             f"{head.where}: column '{column}' cannot be in '{unit}'; valid: {', '.join(units)}"
         )
-    return units[unit] if unit is not None else next(iter(units.values()))
+    return units[unit] if unit else next(iter(units.values()))
 
 
 def _motor(

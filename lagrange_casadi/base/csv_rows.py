@@ -8,7 +8,7 @@ import csv
 import math
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 
@@ -19,6 +19,7 @@ from .streams import check_regular
 _DELIMITERS = (";", "\t", ",")
 _QUOTED = re.compile(r'"[^"]*"')
 _DECIMAL = re.compile(r"[-+]?(?=[.,]?[0-9])[0-9]*([.,])[0-9]*(?:[eE][-+]?[0-9]+)?(?: *[a-z]+)?")
+_HEADING = re.compile(r"(.*?)\s*(?:[\[(]\s*([^\[\]()]+?)\s*[\])])?")
 _TWO_NUMBERS = re.compile("[0-9],[0-9]")
 _MARKS = {".": "decimal points", ",": "decimal commas"}
 
@@ -65,6 +66,14 @@ class Row:
         except (ArithmeticError, ValueError):
             return math.nan
         return found if math.isfinite(found) else math.nan
+
+
+def headings(cells: Sequence[str]) -> list[tuple[str, str]]:
+    """Names of columns with their units, as of ``height [mm]`` or ``height (mm)``; an empty text
+    if a cell has no unit.
+    """
+    found = (_HEADING.fullmatch(cell) for cell in cells)
+    return [(match[1], match[2] or "") for match in found if match]
 
 
 def read_rows(

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..arguments import public
-from ..base.csv_rows import Row, read_rows
+from ..base.csv_rows import Row, headings, read_rows
 from ..errors import DeclarationError
 from .shape import Shape, dimensions_of
 
-_HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:\[\s*(\w+)\s*\])?\s*")
 _UNITS = {"": 1, "m": 1, "cm": 100, "mm": 1000}
 """Number of each unit in a metre."""
 _TABLES = Path(__file__).parent / "tables"
@@ -66,8 +64,8 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
     tables = f"tables: {', '.join(STANDARD)}"
     rows = read_rows(path, "a head and a line for every profile", names=tables)
     head = next(rows)
-    heads = [_head(head.where, cell) for cell in head.cells]
-    names = [name for name, _ in heads]
+    sizes = {name: _size_of(head.where, name, unit) for name, unit in headings(head.cells)}
+    names = [name for name, _ in headings(head.cells)]
     if names.count("name") != 1 or len(set(names)) < len(names) or len(names) < 2:
         raise DeclarationError(
             f"{head.where}: expected a column 'name' and one for each dimension, got"
@@ -84,7 +82,7 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
             )
         found[name] = Profile(
             name,
-            {key: _size(row, key, text, dict(heads)[key]) for key, text in cells.items()},
+            {key: _size(row, key, text, sizes[key]) for key, text in cells.items()},
             table,
         )
     if not found:
@@ -92,16 +90,15 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
     return tuple(found.values())
 
 
-def _head(place: str, text: str) -> tuple[str, int]:
-    """The name of a column, and how many of its unit are a metre."""
-    match = _HEAD.fullmatch(text)
-    name, unit = (match.group(1), match.group(2) or "") if match else ("", "")
-    if not name or unit not in _UNITS:
+def _size_of(place: str, name: str, unit: str) -> int:
+    """Return how many of a column's unit are a metre."""
+    if not name.isidentifier() or unit not in _UNITS:
+        text = f"{name} [{unit}]" if unit else name
         raise DeclarationError(
             f"{place}: column '{text}': expected a name, and m, cm or mm as its unit, as in height"
             " [mm]"
         )
-    return name, _UNITS[unit]
+    return _UNITS[unit]
 
 
 def _size(row: Row, key: str, text: str, unit: int) -> float:

@@ -5,7 +5,6 @@ smoothed, as one smooth curve.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
@@ -16,7 +15,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.csv_rows import Row, read_rows
+from ..base.csv_rows import Row, headings, read_rows
 from ..base.units import UNITS, count, number
 from ..errors import DeclarationError, NumberError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
@@ -35,7 +34,6 @@ _CLOSES = 6.0
 _SAME = 1e-9
 """Largest relative difference of the ends if nothing is smoothed."""
 
-_HEAD = re.compile(r"(.*\S)\s*[\[(]\s*(\w+)\s*[\])]")
 _COUNTS = ("count", "counts")
 _LONGEST = 200
 """Lines of a header of OpenSim's, at most."""
@@ -335,9 +333,8 @@ class _Table:
         """A table with its units: in the heads, in a row below them, or as OpenSim tells them."""
         skip, described = _header(path)
         heads, rows, many = _opened(path, skip)
-        split = [_HEAD.fullmatch(head) for head in heads]
-        units = [match[2] if match else "" for match in split]
-        heads = tuple(match[1] if match else head for match, head in zip(split, heads, strict=True))
+        parted = headings(heads)
+        heads, units = tuple(name for name, _ in parted), [unit for _, unit in parted]
         if skip:
             angle = "deg" if described.get("indegrees", "no").lower() == "yes" else "rad"
             units = [

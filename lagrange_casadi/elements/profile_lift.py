@@ -11,15 +11,13 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arguments import Numeric, public
 from ..base.arrays import Array, Expression
-from ..base.csv_rows import read_rows
+from ..base.csv_rows import headings, read_rows
 from ..declare.curves import Curve, curve
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
@@ -27,10 +25,6 @@ from ..declare.parts import Point
 from ..errors import DeclarationError, one_line
 from .cam import layout_of
 
-if TYPE_CHECKING:
-    pass
-
-_HEAD = re.compile(r"(\w+)\s*(?:\[\s*(\w+)\s*\])?")
 _UNITS = {"m": 1, "mm": 1000, "um": 1_000_000}
 _LEAST = 16
 
@@ -65,8 +59,7 @@ def read_profile(path: str | os.PathLike[str]) -> Array:
     """
     rows = read_rows(path, "the columns x and y")
     first = next(rows)
-    heads = [_HEAD.fullmatch(cell) for cell in first.cells]
-    names = [head.group(1) if head else "" for head in heads]
+    names, units = zip(*headings(first.cells), strict=True)
     places = []
     for column in "xy":
         if names.count(column) != 1:
@@ -74,8 +67,7 @@ def read_profile(path: str | os.PathLike[str]) -> Array:
                 f"{first.where}: expected one column '{column}', as in x [mm], got"
                 f" {', '.join(first.cells)}"
             )
-        head = heads[names.index(column)]
-        unit = (head.group(2) if head else None) or "m"
+        unit = units[names.index(column)] or "m"
         if unit not in _UNITS:
             raise DeclarationError(
                 f"{first.where}: column '{column}' cannot be in '{unit}'; valid:"

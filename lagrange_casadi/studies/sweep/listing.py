@@ -6,20 +6,16 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from array import array
 from collections.abc import Collection, Sequence
 
 import numpy as np
 
 from ...arguments import public
-from ...base.csv_rows import Row, read_rows
+from ...base.csv_rows import Row, headings, read_rows
 from ...base.units import typed
 from ...errors import DeclarationError
 from .axes import Listed, check_known, not_parameter
-
-_HEAD = re.compile(r"(.*?) *\[([^]]+)\]")
-"""A name, and its unit in brackets."""
 
 
 @public
@@ -52,11 +48,7 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
     """
     rows = read_rows(path, "a first line of parameters' names")
     head = next(rows)
-    parted = [_HEAD.fullmatch(cell) for cell in head.cells]
-    names = tuple(
-        found[1] if found else cell for found, cell in zip(parted, head.cells, strict=True)
-    )
-    in_head = [found[2] if found else "" for found in parted]
+    names, in_head = zip(*headings(head.cells), strict=True)
     _check_head(head, names)
     if parameters is not None:
         check_known(names, parameters, head.where)
