@@ -24,7 +24,7 @@ from ..base.arrays import Array, Operand
 from ..beams.material import Material
 from ..beams.properties import larger
 from ..errors import UnknownNameError
-from .rainflow import rainflow
+from .rainflow import counted
 
 _LEAST = 1e3
 """Cycles from which on S-N lines hold."""
@@ -175,7 +175,7 @@ def loaded(values: Array) -> Loaded:
     vector, (first, last) = values * _VON_MISES, widest(values)
     along = vector[:, last] - vector[:, first]
     size = float(np.linalg.norm(along))
-    stress_cycles = rainflow(along @ vector / size, repeating=True) if size else []
+    stress_cycles = counted(along @ vector / size, repeating=True) if size else []
     if not stress_cycles:  # none that is more than rounding
         pairs, counts = [(first, first)], [1.0]
     else:
@@ -209,41 +209,40 @@ def _farthest(points: Array) -> tuple[int, int]:
     """Two points (3, t) farthest from each other: those that are outermost in many directions, and
     from there on uphill.
     """
-    if not points[1:].any():
+    sheared = [axis for axis in (1, 2) if points[axis].any()]
+    if not sheared:
         return int(np.argmin(points[0])), int(np.argmax(points[0]))
-    levels = _DIRECTIONS @ points
+    if len(sheared) == 1:
+        points = points[[0, *sheared]]
+    levels = _DIRECTIONS[len(points)] @ points
     low, high = np.argmin(levels, axis=1), np.argmax(levels, axis=1)
-    k = int(np.argmax(np.linalg.norm(points[:, high] - points[:, low], axis=0)))
+    k = int(np.argmax(_squares(points[:, high] - points[:, low])))
     first, last, best = int(low[k]), int(high[k]), -1.0
-    while (size := float(np.linalg.norm(points[:, last] - points[:, first]))) > best:
+    while (size := float(_squares(points[:, last] - points[:, first]))) > best:
         best = size
-        first, last = (
-            last,
-            int(np.argmax(np.linalg.norm(points - points[:, last : last + 1], axis=0))),
-        )
+        first, last = last, int(np.argmax(_squares(points - points[:, last : last + 1])))
     return first, last
 
 
-def _directions() -> Array:
-    """Half of all directions: in the planes of normal stress and one
-    shear stress, and all around.
-    """
+def _squares(vectors: Array) -> Array:
+    return np.asarray(np.einsum("i...,i...->...", vectors, vectors))
+
+
+def _directions() -> dict[int, Array]:
+    """Half of all directions: in the plane of normal and one shear stress, and all around."""
     angles = np.arange(32) * math.pi / 32
     zero, c, s = np.zeros(32), np.cos(angles), np.sin(angles)
     # The even spirals of Saff and Kuijlaars.
     z = (np.arange(64) + 0.5) / 64
     turn = math.pi * (1.0 + math.sqrt(5.0)) * np.arange(64)
     r = np.sqrt(1.0 - z * z)
-    return np.vstack(
-        [
-            np.stack([c, s, zero], 1),
-            np.stack([c, zero, s], 1),
-            np.stack([z, r * np.cos(turn), r * np.sin(turn)], 1),
-        ]
-    )
+    around = np.stack([z, r * np.cos(turn), r * np.sin(turn)], 1)
+    planes = [np.stack([c, s, zero], 1), np.stack([c, zero, s], 1)]
+    return {2: np.stack([c, s], 1), 3: np.vstack([*planes, around])}
 
 
 _DIRECTIONS = _directions()
+"""Directions by the number of stresses that are not zero throughout."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -47,10 +47,15 @@ def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> li
     values = np.asarray(history, float)
     if values.ndim != 1 or not values.size or not np.isfinite(values).all():
         raise DeclarationError("rainflow: expected a row of finite numbers")
+    return counted(values, repeating=repeating)
+
+
+def counted(values: Array, *, repeating: bool) -> list[StressCycle]:
+    """Count the cycles of a history of finite numbers, as :func:`rainflow` does."""
     order = np.arange(values.size)
     if repeating:
         start = int(np.argmax(values))
-        order = np.append(np.roll(order, -start), start)
+        order = np.concatenate([order[start:], order[: start + 1]])
     turning_points = order[reversals(values[order])]
     found: list[StressCycle] = []
     stack: list[int] = []

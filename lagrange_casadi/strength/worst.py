@@ -14,7 +14,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -42,7 +42,7 @@ sides.
 """
 
 _MANY = 16
-"""Number of designs that are looked at together."""
+"""Number of designs, and of candidates, that are evaluated together."""
 
 _NUMBERS = 1 << 19
 """Stresses that are at hand at once: so many stay in the memory next to a processor."""
@@ -61,6 +61,16 @@ class Maximum:
     def name(self) -> str:
         """Name of the fibre."""
         return self.part.fibres[self.fibre]
+
+
+class _Candidate(NamedTuple):
+    """A fibre at a place of a part by their numbers, in a design, with a bound on its score."""
+
+    bound: tuple[float, ...]
+    part: int
+    design: int
+    place: int
+    fibre: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,22 +210,41 @@ class LinkHistories:
         """Put scores in the place of bounds that are above the ``best`` of a design, which they
         raise, from the largest on; and in that of others less than any.
         """
-        found: list[tuple[tuple[float, ...], int, int, int, int]] = []
+        least = np.array([value[0] if value else -np.inf for value in best])[:, None, None]
+        found: list[_Candidate] = []
         for number, (part, values) in enumerate(zip(self.parts, sampled, strict=True)):
-            least = np.array([value[0] if value else -np.inf for value in best])
-            for fibre in part.sheared if score.exact else range(len(part.fibres)):
-                own = values[:, :, fibre]
-                for i, j in np.argwhere(own[..., 0] >= least[:, None]).tolist():
-                    found.append((tuple(own[i, j].tolist()), number, i, j, int(fibre)))
-                own[own[..., 0] < least[:, None]] = -np.inf
-        for bound, number, i, j, fibre in sorted(found, reverse=True):
-            part, value = self.parts[number], (-math.inf,) * len(bound)
-            if bound > best[i]:
-                place = self.places(part)[j : j + 1, None]
-                one = self.of_designs(np.array([i])).at(part, place, np.array([fibre]))
-                value = score.of(one.at(0, 0))
-                best[i] = max(best[i], value)
-            sampled[number][i, j, fibre] = value
+            fibres = part.sheared if score.exact else np.arange(len(part.fibres))
+            bounds = values[:, :, fibres]
+            above = bounds[..., 0] >= least
+            for i, j, k in np.argwhere(above).tolist():
+                found.append(
+                    _Candidate(tuple(bounds[i, j, k].tolist()), number, i, j, int(fibres[k]))
+                )
+            values[:, :, fibres] = np.where(above[..., None], bounds, -np.inf)
+        found.sort(reverse=True)
+        for start in range(0, len(found), _MANY):
+            some = found[start : start + _MANY]
+            histories = self._histories([one for one in some if one.bound > best[one.design]])
+            for one in some:
+                value = (-math.inf,) * len(one.bound)
+                if one.bound > best[one.design]:
+                    value = score.of(histories[one])
+                    best[one.design] = max(best[one.design], value)
+                sampled[one.part][one.design, one.place, one.fibre] = value
+
+    def _histories(self, candidates: list[_Candidate]) -> dict[_Candidate, Array]:
+        """The stresses (3, t) of candidates: those of one part, sheared or not, at a time."""
+        found: dict[_Candidate, Array] = {}
+        groups: dict[tuple[int, bool], list[_Candidate]] = {}
+        for one in candidates:
+            sheared = one.fibre in self.parts[one.part].sheared
+            groups.setdefault((one.part, sheared), []).append(one)
+        for (number, _), group in groups.items():
+            part = self.parts[number]
+            designs, places, fibres = np.array([one[2:] for one in group]).T
+            there = self.of_designs(designs).at(part, self.places(part)[places, None], fibres)
+            found.update((one, there.at(k, 0)) for k, one in enumerate(group))
+        return found
 
 
 def _beside(sizes: Array) -> tuple[Array, Array]:
