@@ -107,11 +107,12 @@ def select(
         if serving:
             return min(serving, key=lambda choice: choice.heat)
         best = min(tried, key=_worst)
-        refused.append(f"{motor.name}: {_told(best)}")
+        refused.append(f"{motor.name}: {_exceeded(best)}")
         nearest = best if nearest is None or _worst(best) < _worst(nearest) else nearest
     assert nearest is not None
     raise NoDesignError(
-        f"no motor of {len(given)} is suitable; nearest is {nearest.motor.name}: {_told(nearest)}"
+        f"no motor of {len(given)} is suitable; nearest is {nearest.motor.name}:"
+        f" {_exceeded(nearest)}"
     )
 
 
@@ -119,7 +120,7 @@ def _worst(choice: Choice) -> float:
     return max(choice.shares.values())
 
 
-def _told(choice: Choice) -> str:
+def _exceeded(choice: Choice) -> str:
     """Name the limit that is exceeded most, and by how much."""
     share = 100.0 * choice.shares[choice.governs]
     return f"{choice.governs} {share:.3g} % of its limit, with a ratio of {choice.ratio:g}"

@@ -90,11 +90,11 @@ class TableFile:
     ) -> int:
         text = TextIOWrapper(file, encoding="utf-8", newline="")
         writer = csv.writer(text, delimiter=";" if self.decimal_comma else ",", lineterminator="\n")
-        told = _with_comma if self.decimal_comma else _with_point
+        written = _with_comma if self.decimal_comma else _with_point
         writer.writerow(heads)
         count = 0
         for row in rows:
-            writer.writerow(map(told, row))
+            writer.writerow(map(written, row))
             count += 1
         text.detach()
         file.flush()

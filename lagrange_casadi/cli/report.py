@@ -101,7 +101,7 @@ class Rows:
                 yield card(words, line)
 
     def table(self, capacity: int | None = None) -> Iterator[str]:
-        """Write a row for each quantity, or for the most important ones if there is ``room`` for
+        """Write a row for each quantity, or for the most important ones if ``capacity`` is for
         some only.
         """
         if not self.rows:

@@ -19,7 +19,7 @@ from .echo import echo
 from .rows import heads_of, show
 
 _WIDE = 6
-_TOLD = 6
+_LISTED = 6
 
 
 def table(
@@ -81,8 +81,8 @@ def _mention_others(sweep: Sweep, shown: Sequence[str]) -> None:
             others.setdefault(kept.axes, []).append(kept.name)
     for axes, names in others.items():
         more = (
-            f" and {len(names) - _TOLD} more (`lagrange-casadi info {sweep.path}` lists them)"
-            if len(names) > _TOLD
+            f" and {len(names) - _LISTED} more (`lagrange-casadi info {sweep.path}` lists them)"
+            if len(names) > _LISTED
             else ""
         )
         over, rows = (
@@ -92,6 +92,6 @@ def _mention_others(sweep: Sweep, shown: Sequence[str]) -> None:
         )
         echo(
             f"note: --column NAME shows other columns{over}{rows}:"
-            f" {', '.join(names[:_TOLD])}{more}",
+            f" {', '.join(names[:_LISTED])}{more}",
             err=True,
         )

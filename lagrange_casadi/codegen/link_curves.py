@@ -18,14 +18,14 @@ from ..peak_search.polynomials import interpolation
 
 @dataclass(frozen=True)
 class Along:
-    """A link's part in the columns: its coefficients, what acts at each station, place first; and
-    how its mass lies.
+    """Columns of a link: its coefficients, its load points with the place first, and the
+    distribution of its mass.
 
-    The coefficients are those of a planar link, or those of a link in space. ``spreads`` are loads
-    along it: the width of each, where it ends, and of each direction the coefficients of all
-    powers, -1 for one that it has not. ``marks`` are places at which these begin or end: a column,
-    or one less another; or at which the density jumps: numbers. Where slices are ``thick`` there
-    are three more directions, of couples.
+    The coefficients are those of a planar link, or those of a link in space. ``distributed_loads``
+    have for each load the column of its width, that of its end, and for each direction those of the
+    coefficients of all powers, -1 if there is none. ``marks`` are places at which these begin or
+    end, a column or the difference of two, and places at which the density jumps, numbers. If
+    slices are ``thick`` there are three more directions, of couples.
     """
 
     law: tuple[int, ...]

@@ -40,7 +40,7 @@ class Clearance:
     """Proof that ``marks(x, p)`` stay off zero, or off whole numbers if ``whole``, all along a
     path.
 
-    What stays the same there makes no kink either, unless it is ``open``.
+    A mark that does not change along the path makes no kink either.
     """
 
     def __init__(self, marks: ca.Function, whole: Flags, open_: Flags) -> None:

@@ -21,8 +21,8 @@ _IN_PLANE, _IN_SPACE = (
 def friction(
     own: Ownership, name: str, joint: Joint, along: str, given: Mapping[str, Expression | None]
 ) -> Friction:
-    """Friction in a joint of a mechanism, with the numbers that are ``told`` of it; ``along`` names
-    a coordinate of a joint of two.
+    """Friction in a joint of a mechanism, with the numbers ``given``; ``along`` names a coordinate
+    of a joint of two.
 
     Raises :class:`DeclarationError` where the joint has no such friction, and where a number is
     missing or says nothing.

@@ -25,7 +25,7 @@ END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
 ROUNDED = 1e-6
 """Largest rounding of a drawing, of directions [rad] and places [of a link's length]."""
 
-_TOLD = 8
+_LISTED = 8
 """Parameters that a message names."""
 
 
@@ -156,8 +156,8 @@ def parameters_note(mechanism: Mechanism, values: Mapping[str, float]) -> str:
 def values_note(values: Mapping[str, float], default: bool = False) -> str:
     """Name the values of all parameters, to end a message with; nothing where there are none."""
     listed = [f"{name} = {value:.6g}" for name, value in values.items()]
-    if len(listed) > _TOLD:
-        listed = [*listed[:_TOLD], f"{len(listed) - _TOLD} more"]
+    if len(listed) > _LISTED:
+        listed = [*listed[:_LISTED], f"{len(listed) - _LISTED} more"]
     return (
         f"; with the {'default ' if default else ''}parameters {', '.join(listed)}"
         if listed

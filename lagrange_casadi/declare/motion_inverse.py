@@ -133,8 +133,8 @@ class MotionInverse:
         direction.
 
         ``p`` is (n, parameters). A law that is not steady is followed from the times ``around``
-        (n,) [s], or from where it is defined; that it does not turn back is looked at ``looks``
-        times.
+        (n,) [s], or from where it is defined; ``samples`` times between show that it does not turn
+        back.
         """
         sense = np.sign(stop - start)
         if self.steady:

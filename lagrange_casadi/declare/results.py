@@ -90,7 +90,7 @@ class SpatialSectionForces(NamedTuple):
     bending_z: Any
 
 
-class Rubbed(NamedTuple):
+class FrictionSymbols(NamedTuple):
     """The symbols of friction along a joint's coordinate, on the child [N or N m], and of the power
     that it takes [W].
     """
@@ -150,11 +150,11 @@ class Results:
             "load", self._own("load", load, self.mechanism.loads.values()), moment=True
         )
 
-    def friction(self, friction: Friction) -> Rubbed:
+    def friction(self, friction: Friction) -> FrictionSymbols:
         """The symbols of a friction and of the power that it takes."""
         sliding = [load for load in self.mechanism.loads.values() if isinstance(load, Friction)]
         name = self._own("friction", friction, sliding)
-        return Rubbed(
+        return FrictionSymbols(
             self._ask(Output("friction", name, "along")),
             self._ask(Output("friction", name, "loss")),
         )

@@ -290,7 +290,7 @@ class LoadGraph(Graphs):
     @classmethod
     def of(cls, mechanism: Mechanism, load: Force | Torque | Spring | LineLoad) -> LoadGraph:
         """The law of a load, from the expressions as they were declared."""
-        kind, coefficients = _told(load)
+        kind, coefficients = _kind_and_numbers(load)
         numbers = ca.densify(ca.vertcat(*map(ca.SX, coefficients)))
         found = _seen(mechanism, numbers)
         given = [*_columns(found), mechanism.time, mechanism.symbols]
@@ -438,7 +438,9 @@ def _columns(found: Iterable[_Measured]) -> tuple[ca.SX, ca.SX]:
     return ca.vertcat(ca.SX(0, 1), *places), ca.vertcat(ca.SX(0, 1), *rates)
 
 
-def _told(load: Force | Torque | Spring | LineLoad) -> tuple[LoadKind, Sequence[Expression]]:
+def _kind_and_numbers(
+    load: Force | Torque | Spring | LineLoad,
+) -> tuple[LoadKind, Sequence[Expression]]:
     """The kind of a load, and its numbers."""
     if isinstance(load, Spring):
         return "spring", (load.stiffness, load.length, load.damping)

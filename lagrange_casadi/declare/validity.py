@@ -59,7 +59,7 @@ class Demand:
 
 @dataclass(frozen=True, eq=False)
 class ParameterConstraints:
-    """All demands of a mechanism's parts, in the order in which they are told."""
+    """All demands of a mechanism's parts, in the order in which errors name them."""
 
     symbols: ca.SX
     each: tuple[Demand, ...]
@@ -223,7 +223,7 @@ def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
     if load.whole:
         return []
 
-    def told(number: Evaluator) -> str:
+    def text(number: Evaluator) -> str:
         return (
             f"load '{load.name}': it acts between {readable(number(start))} and"
             f" {readable(number(end))} m"
@@ -231,7 +231,7 @@ def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
 
     def beyond(number: Evaluator) -> str:
         return (
-            f"{told(number)}, but link '{link.name}' is from 0 to {readable(number(link.length))} m"
+            f"{text(number)}, but link '{link.name}' is from 0 to {readable(number(link.length))} m"
         )
 
     margins = (
@@ -239,7 +239,7 @@ def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
         (link.length - end) + END[precision] * link.length,
     )
     rising = Demand(
-        load.reach, True, lambda number: f"{told(number)}; expected an end greater than the start"
+        load.reach, True, lambda number: f"{text(number)}; expected an end greater than the start"
     )
     return [*(Demand(margin, False, beyond) for margin in margins), rising]
 
@@ -259,9 +259,9 @@ def _of_friction(friction: Friction) -> Iterator[Demand]:
         least = "positive" if positive else "at least 0"
 
         def refusal(
-            evaluated: Evaluator, value: Expression = value, told: str = f"{word} must be {least}"
+            evaluated: Evaluator, value: Expression = value, text: str = f"{word} must be {least}"
         ) -> str:
-            return f"friction '{friction.name}': {told}, got {readable(evaluated(value))}"
+            return f"friction '{friction.name}': {text}, got {readable(evaluated(value))}"
 
         if isinstance(number, ca.SX):
             yield Demand(number, positive, refusal)

@@ -49,7 +49,7 @@ def within(what: str, name: str, angle: Expression, low: float, high: float) -> 
 
 
 def at_least(what: str, words: str, value: Expression, low: float, shown: Expression) -> list[Fit]:
-    """Check that a number is not below another; an error names ``told``."""
+    """Check that a number is not below another; an error has ``words``."""
     if isinstance(value, ca.SX):
         return [Fit(f"{words}, got {{got}}", shown, shown + ca.fmax(low - value, 0.0), LEAST)]
     if value < low:

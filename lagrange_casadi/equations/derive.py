@@ -254,13 +254,13 @@ class _JointForces:
             moving.body.coordinates,
         )
         forces = internal_forces(moving.body, moving.solved, want, moving.scene.weights)
-        rubbed = forces.rubbed
+        friction = forces.friction
         dependent = {
             key: value
             for key, value in columns.items()
-            if rubbed.symbols.numel() and ca.depends_on(ca.SX(value), rubbed.symbols)
+            if friction.symbols.numel() and ca.depends_on(ca.SX(value), friction.symbols)
         }
-        placed = ca.substitute(column(dependent.values()), rubbed.symbols, rubbed.values)
+        placed = ca.substitute(column(dependent.values()), friction.symbols, friction.values)
         pressed = dict(zip(dependent, ca.vertsplit(placed) if dependent else (), strict=True))
         acting = gathered(forces.columns, forces.free, links, coordinates) | pressed
         # Beside the start of the motion, for a drive through a gear moves little of what it drives,
@@ -269,7 +269,7 @@ class _JointForces:
             check for check in acting if isinstance(check, Check) and check.kind == "hold"
         ]:
             acting[check] = closure(acting[check], float(moving.begins(acting[check])))
-        return cls(acting, forces.free, rubbed.forces)
+        return cls(acting, forces.free, friction.forces)
 
 
 def _derive(scene: Scene, asked: Wanted) -> Program:

@@ -272,7 +272,7 @@ def coordinates_of(
 ) -> dict[str, tuple[Coordinate, ...]]:
     """The coordinates of every branch, by its joint; none where a branch leaves no freedom.
 
-    A joint with three turns none of which is ``driven`` or ``told`` is a ball.
+    A joint with three turns none of which is ``driven`` or ``given`` is a ball.
     """
     # Directions that drives alone set, and their rates, by body: of a plane.
     turned: dict[str, tuple[Any, Any]] = (

@@ -131,8 +131,8 @@ def place_roughly(
     numbers: Numbers,
     but: Collection[Coordinate],
 ) -> dict[SphericalCoordinates, list[float]]:
-    """Let ``numbers`` hold where coordinates are by what is ``told`` of them, but for some; and
-    give the quaternions of balls.
+    """Put the coordinates of a ``posture``, but for some, into ``numbers``; return the quaternions
+    of spherical joints.
     """
     found: dict[SphericalCoordinates, list[float]] = {}
     for coordinate in multibody.coordinates:

@@ -56,11 +56,11 @@ class Kinematics:
     unknowns z and the parameters.
 
     ``found`` has the expression of every variable, rate and acceleration of a :class:`.Multibody`;
-    ``systems`` are the factorized Phi_z of ``blocks``. ``closures`` say by joint how far each loop
-    is from a dead centre, ``gaps`` [m] what is left of the equations of a block,
-    ``redundancy_residuals`` how far the equations that are too many are from holding. ``loose``
-    names the joints whose angles are known up to whole turns, ``swings`` how far those of screws
-    are from what counts their turns.
+    ``systems`` are the factorized Phi_z of ``blocks``. ``closures`` are by joint the branch
+    indicators of loops, zero at a dead centre; ``residuals`` [m] those of the equations of a block,
+    ``redundancy_residuals`` those of redundant equations. ``wrapped`` names the joints whose angles
+    are known modulo 2 pi; ``deviations`` are the differences between the angles of screws and the
+    revolutions that are counted.
     """
 
     driven: Any
@@ -290,7 +290,7 @@ class _Solver:
         (size,) = self.numbers.of(self.length)
         total, placed = 0.0, {*self.known, *form.unknown}
         self.numbers.note(column(c.variables for c in form.unknown), values)
-        for name, (place, of) in self._told_of.items():
+        for name, (place, of) in self._measured.items():
             if of & set(form.unknown) and of <= placed:
                 residual = self.numbers.of(place)[0] - self.posture[name]
                 total += (
@@ -301,7 +301,7 @@ class _Solver:
         return total
 
     @cached_property
-    def _told_of(self) -> dict[str, tuple[ca.SX, set[Coordinate]]]:
+    def _measured(self) -> dict[str, tuple[ca.SX, set[Coordinate]]]:
         return measured(self.multibody, self.posture)
 
     def _rough(

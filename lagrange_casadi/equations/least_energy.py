@@ -68,13 +68,14 @@ def feeling(mechanism: Mechanism, want: Wanted) -> Wanted:
 
 @dataclass(frozen=True, eq=False)
 class LeastEnergy:
-    """Choice of what is open as ``x + ways y``: ``x`` by least energy, ``y`` by what stays open;
-    ways of what does not are nil.
+    """Statically indeterminate forces as ``x + ways y``: ``x`` is the solution of least energy,
+    ``y`` what remains indeterminate; columns of ``ways`` of determined forces are zero.
 
-    Of each link whose stiffness is not known, ``firm`` says why, and ``through`` whether it is
-    loaded by what is open. ``idle`` and ``chosen`` tell whether something of it loads no link, and
-    whether something was chosen. ``residual`` is how far the energy is from its least: the largest
-    cosine between the strains of what was chosen and those of the whole, summed at other places.
+    For each link without stiffness ``firm`` is the reason, and ``through`` is true if an
+    indeterminate force loads it. ``idle`` is true if an indeterminate force loads no link, and
+    ``chosen`` if the solution determines any. ``residual`` is the distance of the energy from its
+    least: the largest cosine between the strains of the solution and those of the whole, summed at
+    other places.
     """
 
     x: Any

@@ -376,16 +376,16 @@ def _tied(phi: ca.SX, unknown: Sequence[Coordinate]) -> ClosedForm | None:
     if affine is None or ca.depends_on(affine[1], column(c.variables for c in unknown)):
         return None
     if len(unknown) == 1:
-        return ClosedForm((_told(unknown[0], -affine[1] / affine[0]),))
+        return ClosedForm((_with_sine(unknown[0], -affine[1] / affine[0]),))
     system = LinearSystem.of(affine[0])
     values = ca.vertsplit(system.solve(-affine[1]))
     return ClosedForm(
-        tuple(_told(c, value) for c, value in zip(unknown, values, strict=True)),
+        tuple(_with_sine(c, value) for c, value in zip(unknown, values, strict=True)),
         _square(system.volume),
     )
 
 
-def _told(coordinate: Coordinate, value: Expression) -> Expression:
+def _with_sine(coordinate: Coordinate, value: Expression) -> Expression:
     return value if coordinate.kind == "slide" else ca.vertcat(ca.cos(value), ca.sin(value), value)
 
 

@@ -59,13 +59,13 @@ class InternalForces:
 
     ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism. Among
     the columns, a check tells how far drives are from a place where they cannot make the motion,
-    where they are others than the joints whose motion is given. ``rubbed`` are the forces of
+    where they are others than the joints whose motion is given. ``friction`` are the forces of
     frictions.
     """
 
     columns: dict[Column, Any]
     free: Any
-    rubbed: Solved
+    friction: Solved
 
 
 def needed_reactions(
@@ -157,26 +157,26 @@ def internal_forces(
         columns |= _section_law(multibody, name, found, drives)
     # All at once, for a substitution visits the whole graph; and mobilities rest.
     rates = multibody.mobility_rates
-    rubbed = {}
+    losses = {}
     for name, friction in frictions_of(multibody.mechanism).items():
         supported_there = found[friction.joint.name].ground
-        rubbed[name] = joint_friction(
+        losses[name] = joint_friction(
             multibody, friction, supported_there.force, supported_there.couple
         )
     for name, transmission in transmissions_of(multibody.mechanism).items():
         if transmission.presses:
-            rubbed[name] = pressing_apart(transmission, tying[name])
+            losses[name] = pressing_apart(transmission, tying[name])
         if transmission.loss is not None:
-            rubbed[transmission.loss.name] = braking(multibody, transmission.loss, tying[name])
-    rows = [*columns.values(), *(row for one in rubbed.values() for row in one.rows)]
+            losses[transmission.loss.name] = braking(multibody, transmission.loss, tying[name])
+    rows = [*columns.values(), *(row for one in losses.values() for row in one.rows)]
     resting = ca.substitute(column(rows), rates, ca.SX.zeros(rates.numel()))
     every = iter(
         ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ()
     )
     columns = {name: next(every) for name in columns}
-    rubbed = {name: one.of_rows([next(every) for _ in one.rows]) for name, one in rubbed.items()}
+    losses = {name: one.of_rows([next(every) for _ in one.rows]) for name, one in losses.items()}
     acting = solve(
-        [rubbed[name] for name in needed(column(columns.values()), rubbed, want.frictions)],
+        [losses[name] for name in needed(column(columns.values()), losses, want.frictions)],
         free,
         signs,
     )

@@ -39,7 +39,7 @@ class Moving:
     """A scene whose motion is solved: bodies and coordinates over time and the driven motion, and
     where the motion starts.
 
-    ``swings`` are how far angles that are seen with their turns are from the middle of their swing.
+    ``deviations`` are the differences of unwrapped angles from the middle of their range.
     """
 
     scene: Scene

@@ -110,9 +110,9 @@ class LoopEquations:
     """Equations that a joint that closes a loop, or a constraint, puts on the coordinates, and the
     symbols of their multipliers.
 
-    ``gap`` is Phi, with its total time derivatives. ``joint`` is None for a ``bar``, which has its
-    length, and for a constraint of the user's. Of one that may have kinks, ``seen`` is what it
-    sees.
+    ``residual`` is Phi, followed by its total time derivatives. ``joint`` is None for a
+    ``two_force_link``, which has a length, and for a user's constraint. ``seen`` are the quantities
+    that a constraint with kinks depends on.
     """
 
     name: str
@@ -140,9 +140,9 @@ class Applied:
     """Action of a load, or of the multiplier of a constraint or row, at a point of a body, as
     expressions of the state.
 
-    Force [N] and couple [N m] in ground axes; ``source`` names the load, constraint or row. Of what
-    is ``spread`` along a link they are the resultant; ``spread`` are then the coefficients on its
-    axes [N/m], as of a :class:`.LineLoad`.
+    Force [N] and couple [N m] are in ground axes; ``source`` names the load, constraint or row. Of
+    a load that is ``distributed`` along a link they are the resultant; ``distributed`` are then its
+    coefficients on the link's axes [N/m], as those of a :class:`.LineLoad`.
     """
 
     source: str

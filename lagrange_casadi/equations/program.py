@@ -30,17 +30,16 @@ Turns: TypeAlias = tuple[tuple[int, int], ...]
 
 @dataclass(frozen=True, eq=False)
 class Program(Graphs):
-    """A compiled scene: CasADi functions and plain data that hold nothing else, so that it can be
-    sent, and kept as text.
+    """A compiled scene: CasADi functions and plain data, with no reference to its declaration, so
+    that it can be sent to other processes and stored as text.
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p)
     -> out``, one row of ``out`` for each of ``columns``, which are outputs and checks; ``newton``
-    where loops must be iterated. ``loop_angles`` are the angles that loops set, and what they are
-    sums and differences of: directions of bodies that are known up to whole turns, and by ``turns``
-    of a joint the whole turns of angles that count them, which are in these columns without them.
-    ``completion`` is there where elasticity tells what equilibrium leaves open. ``identity`` is the
-    hash of all that it follows from (see :func:`.fingerprint`), or None where the declaration holds
-    something whose content cannot be told.
+    for loops that must be iterated. ``loop_angles`` are the angles that loops determine, each as a
+    sum of directions of bodies that are known modulo 2 pi, and the revolutions of joints that count
+    them, which the columns leave out. ``completion`` is there if least strain energy determines
+    what equilibrium does not. ``identity`` is the hash of everything that the Program follows from
+    (see :func:`.fingerprint`), or None if the declaration holds something without a stable content.
     """
 
     data: ModelData

@@ -132,13 +132,13 @@ def export(
         )
     if fmu:
         files[unit] = archive(source, np.array(list(source.values.values())))
-    with MANIFEST.filling(folder, _told(source), alone=True, **allowed) as draft:
+    with MANIFEST.filling(folder, _manifest(source), alone=True, **allowed) as draft:
         for file, content in files.items():
             (draft / file).write_bytes(content)
     return agreed
 
 
-def _told(source: Source) -> dict[str, Json]:
+def _manifest(source: Source) -> dict[str, Json]:
     """Contents of the folder, for programs: names, units and places of all members."""
     agreed = source.contract
 

@@ -39,12 +39,12 @@ _BLOCK = 1 << 15
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SectionLaw(Brief):
-    """The law of one link: ``coefficients`` by name, each (t,); length [m], density, loads at
-    stations, and ``spreads`` along it.
+    """Section forces of one link: ``coefficients`` by name, each (t,); length [m], density, loads
+    at load points, and ``distributed_loads``.
 
     The coefficients are the seven of a planar mechanism or the twelve of a spatial one;
-    :attr:`table` says which. ``slack`` is how near to a section a station is that is at it, as a
-    ratio to the length: see :func:`.edge`.
+    :attr:`table` says which. ``slack`` is the distance of a load point from a section, as a ratio
+    to the length, up to which it is at the section: see :func:`.edge`.
     """
 
     length: float

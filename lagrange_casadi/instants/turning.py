@@ -88,10 +88,10 @@ def zeros_of_uniform_shear(
 
 
 class StationaryPoints(NamedTuple):
-    """Candidates of extrema, (t, parts, n): their ``places``, and whether each is a ``summit``.
+    """Candidates of extrema, (t, parts, n): their ``places``, and of each ``is_maximum``.
 
-    All zeros of its slope are among the places. The last two are where it rests in a part that has
-    no summit: the larger of them.
+    All zeros of the slope are among the places. The last two are the ends of a part without a
+    maximum: the larger of them.
     """
 
     places: Array

@@ -78,7 +78,7 @@ def _build(
     files = {
         f"{c.prefix}.h": header(source),
         f"{c.prefix}.c": source.code,
-        "layout.c": _told(source),
+        "layout.c": _size_check(source),
         **more,
     }
     code = [file for file in files if file.endswith(".c")]
@@ -100,12 +100,12 @@ def _build(
     return build
 
 
-def _told(source: Source) -> str:
-    """C that compiles only where a model takes as many bytes as the wrapper is told."""
+def _size_check(source: Source) -> str:
+    """C that compiles only where a model takes as many bytes as the wrapper declares."""
     p = source.contract.prefix
     return (
-        f'#include "{p}.h"\ntypedef char as_told[sizeof({p}_model) == {places(source)["end"]} ? 1 :'
-        " -1];\n"
+        f'#include "{p}.h"\ntypedef char as_known[sizeof({p}_model) == {places(source)["end"]}'
+        " ? 1 : -1];\n"
     )
 
 

@@ -137,7 +137,7 @@ def assembled(
     wasm: bool,
     others: Sequence[str] = (),
 ) -> str:
-    """A page with what is ``told``, which runs ``scripts``; with ``wasm`` it may compile that.
+    """A page with ``content`` as JSON, which runs ``scripts``; with ``wasm`` it may compile that.
 
     ``others`` are digests of scripts that pages within it run.
     """

@@ -51,7 +51,8 @@ def summary(sweep: Sweep) -> str:
     rows = "".join(
         "<tr>"
         + "".join(
-            f"<td>{escape(cell)}</td>" for cell in (name, *_told(ends[name]), sweep.unit(name))
+            f"<td>{escape(cell)}</td>"
+            for cell in (name, *_range_cells(ends[name]), sweep.unit(name))
         )
         + "</tr>"
         for name in shown
@@ -65,6 +66,6 @@ def summary(sweep: Sweep) -> str:
     return f"{head}<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>{more}"
 
 
-def _told(ends: tuple[float, float]) -> tuple[str, str]:
+def _range_cells(ends: tuple[float, float]) -> tuple[str, str]:
     low, high = ends
     return (f"{low:.5g}", f"{high:.5g}") if low <= high else ("", "")

@@ -24,11 +24,10 @@ _BELOW, _ABOVE = 0.6, 0.35
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """An orthographic view: the directions in ground axes that are to the right and up on the page,
-    and its title.
+    """An orthographic view: the directions in ground axes that are to the ``right`` and ``up`` on
+    the page, and its title.
 
-    Of a view along an axis the page shows two coordinates, ``across`` and ``upward``; one may run
-    backward.
+    The two :attr:`coordinates` of a view along an axis may run backward.
     """
 
     title: str

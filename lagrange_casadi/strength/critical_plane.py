@@ -124,8 +124,8 @@ def _best(
     best, middle = Plane(-1.0, 0.0, 0.0), angles[0]
     for _ in range(_ROUNDS + 1):
         normal, direction = planes(angles)
-        across = np.maximum((_told(normal, normal) @ values).max(axis=1), 0.0)
-        amplitude = np.ptp(_told(normal, direction) @ values, axis=1) / 2
+        across = np.maximum((_plane_weights(normal, normal) @ values).max(axis=1), 0.0)
+        amplitude = np.ptp(_plane_weights(normal, direction) @ values, axis=1) / 2
         k = int(np.argmax(amplitude + share * across))
         found = Plane(
             float(amplitude[k]), float(across[k]), math.acos(min(1.0, abs(float(normal[k, 0]))))
@@ -153,7 +153,7 @@ def _around(angles: Array) -> tuple[Array, Array]:
     return normal, u[:, None] * down + v[:, None] * across
 
 
-def _told(n: Array, m: Array) -> Array:
+def _plane_weights(n: Array, m: Array) -> Array:
     """Weights of the three stresses in a beam for the stress on planes ``n`` in directions ``m``:
     (planes, 3).
     """

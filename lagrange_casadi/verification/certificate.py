@@ -158,6 +158,6 @@ def _residuals(
     if (placed := placed_of(declared, reported)) is None:
         return {}
     found = {"closure": closure(placed, digits)}
-    if (rubbed := friction_residuals(placed, digits)) is not None:
-        found["friction"] = [(rubbed, 1.0)]
+    if (residuals := friction_residuals(placed, digits)) is not None:
+        found["friction"] = [(residuals, 1.0)]
     return found | (balance(placed, digits) if forces_reported(placed) else {})

@@ -16,11 +16,11 @@ Signed = tuple[Point, float]
 
 @dataclass(frozen=True, eq=False)
 class EvaluatedDesign:
-    """A design as it is: the value of every term, NaN without a result.
+    """A design after its evaluation: the value of every term, NaN without a result.
 
-    ``closure`` is the least square of the sine of a transmission angle, NaN without loops,
-    ``closing`` by how much it is below what is asked, over that. ``look`` and the local ``points``
-    of the terms, the largest first, are there where they were asked for.
+    ``closure`` is the least square of the sine of a transmission angle, NaN without loops;
+    ``closing`` by how much it is below its limit, relative to the limit. ``sampled`` and the local
+    ``points`` of the terms, the largest first, are None and empty unless they were asked for.
     """
 
     p: Array

@@ -120,7 +120,7 @@ class _Fronts:
         return self.search.whole(self._result)
 
     def _result(self) -> Front:
-        points = [self._told(one) for one in _efficient(self.kept)]
+        points = [self._front_point(one) for one in _efficient(self.kept)]
         data = self.search.solver.engine.program.data
         case, units = data.name, tuple(term.unit(data) for term in self.terms)
         notes = tuple(
@@ -251,7 +251,7 @@ class _Fronts:
         evaluated = self.search.evaluate(tuple(optimum.parameters.values()))
         return _Found(optimum, evaluated, np.array([evaluated.value(term) for term in self.terms]))
 
-    def _told(self, one: _Found) -> FrontPoint:
+    def _front_point(self, one: _Found) -> FrontPoint:
         # Where the first objective is the limit it is at its least: nothing is gained any more.
         limits = one.optimum.limits if one.optimum.minimised == self.terms[0] else ()
         trades = [

@@ -144,8 +144,8 @@ class Plan:
     """A sweep before it runs; ``values`` are those of all parameters, the swept ones at their
     defaults.
 
-    ``graph`` is that of what is wanted, and ``description`` describes the mechanism with these
-    values. ``case_file`` is the case that is swept, as it is found from the file.
+    ``program`` has the wanted outputs, and ``description`` describes the mechanism with these
+    values. ``case_file`` is the file of the case that is swept, as written in the sweep's file.
     """
 
     program: Program

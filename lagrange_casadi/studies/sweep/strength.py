@@ -84,7 +84,7 @@ class Kept:
         p: Array,
     ) -> list[Array]:
         """The columns of designs ``p``: ``value`` (n, quantities) are peaks, ``series`` (n,
-        outputs, t), ``times`` (n, t).
+        outputs, t).
         """
         there = np.flatnonzero(status == 0)
         tired = {
