@@ -13,7 +13,7 @@ import browser
 import numpy as np
 import pytest
 from internals import governing, marks, write_comparison
-from reports import held, press, solved
+from reports import held, press, snowed, solved
 
 from lagrange_casadi import evaluate, load_case, save
 from lagrange_casadi.cli import main
@@ -52,6 +52,22 @@ def test_what_cannot_be_compared_is_refused(tmp_path):
     with pytest.raises(DeclarationError, match="no quantity in common"):
         write_comparison([first, light], path)
     assert not path.exists()
+
+
+def test_two_runs_that_are_the_same_are_said_to_be(here, capfd):
+    """On the console and on the page; files of one name in two folders are named by their paths."""
+    first, second = designs()
+    save(first, "one.h5")
+    assert main(["report", "one.h5", "one.h5"]) == 0
+    assert "note: both runs are the same" in capfd.readouterr().err
+    assert held((here / "one_and_one.html").read_text())[0]["same"] is True
+    (here / "other").mkdir()
+    save(second, "other/one.h5")
+    assert main(["report", "one.h5", "other/one.h5"]) == 0
+    assert "the same" not in capfd.readouterr().err
+    found, _ = held((here / "one_and_one.html").read_text())
+    assert found["same"] is False
+    assert [run["name"] for run in found["runs"]] == ["one.h5", "other/one.h5"]
 
 
 def test_the_command_line_shows_two(here, capfd):
@@ -120,6 +136,64 @@ def test_two_designs_are_side_by_side_on_a_screen_a_telephone_and_paper(page, tm
         assert page.run_within(readout, other) == told
     paper = page.printed(tmp_path / "both.pdf")
     assert paper.startswith(b"%PDF")
+    assert page.complaints == []
+
+
+BARS = """
+(() => {
+  const bars = {};
+  const write = CanvasRenderingContext2D.prototype.fillText;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    if (/ (mm|N · forces|N·m · .*)$/.test(text.replace("\u00a0", " "))) bars[text] = x;
+    write.call(this, text, x, y);
+  };
+  document.querySelector('[aria-label^="One instant on"]').click();
+  CanvasRenderingContext2D.prototype.fillText = write;
+  return bars;
+})()
+"""
+
+
+@alive.NEEDS_BROWSER
+def test_two_pictures_have_one_scale_and_one_clock(page, tmp_path):
+    """The bars beside both pictures are equally long for the same value, also after one of them is
+    changed; at a time after the end of the shorter run that one is at its end.
+    """
+    longer = designs()[1]
+    shorter = evaluate(
+        load_case("slider_crank").scene, wanted=["all"], t=(0, 0.04, 41), backend="vm"
+    )
+    longer.report(tmp_path / "both.html", beside=shorter)
+    page.size(1400, 900)
+    page.open(tmp_path / "both.html")
+
+    def until_equal(read):
+        end = time.monotonic() + 10
+        while (found := [read("run 1"), read("run 2")])[0] != found[1] and time.monotonic() < end:
+            time.sleep(0.05)
+        assert found[0] == found[1]
+        return found[0]
+
+    before = until_equal(lambda run: page.run_within(BARS, run))
+    assert len(before) == 3
+    near = "document.querySelector('[aria-label^=\"Nearer\"]').click()"
+    size = "(() => { const one = document.querySelector('.size'); one.value = 1;"
+    page.run_within(f"{near}; {size} one.dispatchEvent(new Event('input')); }})()", "run 2")
+    after = until_equal(lambda run: page.run_within(BARS, run))
+    assert after != before
+    at = "document.querySelector('.readout').textContent.replace('\\u00a0', ' ')"
+    end = "document.dispatchEvent(new KeyboardEvent('keydown', { key: 'End' }))"
+    for moved, times in (
+        ("run 2", ["t = 40 ms", "t = 40 ms"]),
+        ("run 1", ["t = 80 ms", "t = 40 ms"]),
+    ):
+        page.run_within(end, moved)
+        until = time.monotonic() + 10
+        while (
+            found := [page.run_within(at, run) for run in ("run 1", "run 2")]
+        ) != times and time.monotonic() < until:
+            time.sleep(0.05)
+        assert found == times
     assert page.complaints == []
 
 
@@ -210,3 +284,23 @@ def test_the_diagrams_of_a_page_have_the_values_of_the_law(page, tmp_path, case,
         digits = {text.replace("\u2212", "-") for text in texts}
         scaled = {f"{largest * factor:.4g}" for factor in (1.0, 1e-3)}
         assert scaled & digits
+
+
+@alive.NEEDS_BROWSER
+def test_a_diagram_of_a_page_writes_a_number_once_where_its_force_does_not_jump(page, tmp_path):
+    """A load along a part of a link is a place with two points in each curve."""
+    snowed().report(tmp_path / "report.html")
+    page.size(1400, 900)
+    page.open(tmp_path / "report.html")
+    found = page.run(
+        "[...document.querySelectorAll('.diagram')].map((one) =>"
+        " [...one.querySelectorAll('.value')].map((text) =>"
+        " [text.textContent, ...['x', 'y'].map((one) => Number(text.getAttribute(one)))]))"
+    )
+    texts = [text for diagram in found for text in diagram]
+    assert texts
+    for k, (words, x, y) in enumerate(texts):
+        assert not any(
+            words == other and abs(x - at) < 20 and abs(y - level) < 20
+            for other, at, level in texts[:k]
+        )

@@ -17,6 +17,7 @@ from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, on
 from ..instants.solution import Solution
 from ..portable.wasm import check_zig
 from ..report import ENDINGS, Live, with_motion, write_comparison, write_report
+from ..report.comparison import same_runs
 from ..report.instants import shown_instants
 from ..report.live import run_of
 from ..report.of_sweep import is_of, write_sweep_report
@@ -115,7 +116,7 @@ def _of_two(
     name = "_and_".join(one.stem for one in targets) if others else f"{first.stem}_beside"
     out = out or Path(f"{name}.html")
     check_writable(out)
-    solutions = []
+    solutions: list[Solution] = []
     for target, more in zip((first, *(others or (first,))), ((), beside), strict=True):
         if target.suffix not in _FILES:
             given = parameters(asked.settings) | parameters(more)
@@ -124,9 +125,12 @@ def _of_two(
             raise click.UsageError(f"{target} is a sweep, whose page is of itself alone")
         else:
             solutions.append(load(target))
-    stems = [target.stem for target in targets]
+    names = [[target.stem for target in targets], [str(target) for target in targets]]
+    apart = next((words for words in names if len(set(words)) == 2), ())
     with reported_as(_UNSHOWN, first):
-        write_comparison(solutions, out, stems if len(set(stems)) == 2 else ())
+        write_comparison(solutions, out, apart)
+    if same_runs(*solutions):
+        echo("note: both runs are the same: all their values are equal", err=True)
     for solution in solutions:
         for line in untold_lines(solution):
             echo(line, err=True)

@@ -1,7 +1,8 @@
 """Two runs, or two designs, side by side on one page: what is largest in each, their curves in one
 chart, and both mechanisms in motion.
 
-Each mechanism is a report within the page; both go through their cycles together.
+Each mechanism is a report within the page. Both pictures have one scale and one clock: they show
+the same time, or where both runs are over the same joint, the same place of it.
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
+
+import numpy as np
 
 from ..base.arrays import Json
 from ..errors import DeclarationError, shown
@@ -56,6 +59,7 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
         )
     arrays = Arrays()
     runs: list[Json] = []
+    clock = _clock(solutions)
     for solution, name in zip(solutions, names, strict=True):
         chosen = shown_instants(solution)
         over = solution.over
@@ -77,11 +81,12 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
                     parameter: [entry["value"], entry["unit"]]
                     for parameter, entry in solution.description["parameters"].items()
                 },
-                "frame": page(solution),
+                "frame": page(solution, clock=clock),
             }
         )
     cases = " and ".join(dict.fromkeys(solution.case for solution in solutions))
     content: dict[str, Json] = {"case": cases, "runs": runs, "rows": rows, "groups": GROUPS}
+    content |= {"clock": clock, "same": same_runs(*solutions)}
     content |= {"arrays": arrays.places, "numbers": arrays.block()}
     return assembled(
         f"{cases}: two runs",
@@ -90,6 +95,27 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
         wasm=False,
         others=[page_digest()],
     )
+
+
+def same_runs(first: Solution, second: Solution) -> bool:
+    """Tell two runs that have the same instants, and the same values of all quantities."""
+    return (
+        np.array_equal(first.t, second.t)
+        and first.outputs.keys() == second.outputs.keys()
+        and all(
+            np.array_equal(values, second.outputs[output], equal_nan=True)
+            for output, values in first.outputs.items()
+        )
+    )
+
+
+def _clock(solutions: tuple[Solution, Solution]) -> dict[str, Json]:
+    """Time or the coordinate along which both runs are shown, and the ends of both times [s]."""
+    first, second = (solution.over for solution in solutions)
+    if first and second and (first.joint, first.unit) == (second.joint, second.unit):
+        return {"name": "over"}
+    times = [float(t) for solution in solutions for t in solution.t]
+    return {"name": "t", "ends": [min(times), max(times)]}
 
 
 def _rows(solutions: tuple[Solution, Solution]) -> Iterator[dict[str, Json]]:

@@ -30,6 +30,7 @@ SCRIPTS = (
     *(
         "data",
         "dom",
+        "together",
         "units",
         "instants",
         "law",
@@ -121,12 +122,11 @@ def write_page(target: Path, made: Callable[[], str]) -> None:
         file.write(text)
 
 
-def page(solution: Solution, live: Live | None = None) -> str:
-    """The text of the page."""
+def page(solution: Solution, live: Live | None = None, clock: Json = None) -> str:
+    """The text of the page; within a page of two runs with the ``clock`` of both."""
     alive = [engine(), *map(script, LIVE_SCRIPTS)] if live else []
-    return assembled(
-        solution.case, contents(solution, live), [*alive, *map(script, SCRIPTS)], wasm=bool(live)
-    )
+    content = contents(solution, live) | ({"clock": clock} if clock else {})
+    return assembled(solution.case, content, [*alive, *map(script, SCRIPTS)], wasm=bool(live))
 
 
 def assembled(

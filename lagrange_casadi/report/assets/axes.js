@@ -170,3 +170,8 @@ function showTip(event, head, lines) {
 function whenIs(instant) {
   return whenOf(instants.t[instant], over ? array(over.values)[instant] : null);
 }
+
+/** The number of the value that is nearest to another. */
+function nearest(values, wanted) {
+  return values.reduce((best, value, k) => (Math.abs(value - wanted) < Math.abs(values[best] - wanted) ? k : best), 0);
+}

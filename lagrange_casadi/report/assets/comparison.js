@@ -8,8 +8,7 @@ const shared = runs[0].series.filter((one) => runs[1].seriesByName.get(one.name)
 const titleOf = (one) => (one.part && one.what ? `${one.part}: ${one.what}` : one.part || one.what);
 
 /** How the instants of both are shown: over the drive where both are asked for over the same joint, else over time. */
-const overBoth = runs.every(({ over }) => over && over.joint === runs[0].over.joint && over.unit === runs[0].over.unit);
-const along = runs.map((run) => (overBoth ? { name: "over", title: run.over.joint, unit: run.over.unit, values: array(run.over.values) } : { name: "t", title: "time", unit: "s", values: array(run.t) }));
+const along = runs.map((run) => (contents.clock.name === "over" ? { name: "over", title: run.over.joint, unit: run.over.unit, values: array(run.over.values) } : { name: "t", title: "time", unit: "s", values: array(run.t) }));
 
 function buildComparison() {
   const root = document.getElementById("report");
@@ -19,9 +18,10 @@ function buildComparison() {
     element("iframe", { name: `run ${k + 1}`, sandbox: "allow-scripts allow-modals allow-downloads", title: `${run.name}, in motion`, srcdoc: run.frame })));
   window.addEventListener("message", (event) => {
     const from = frames.findIndex((frame) => frame.lastChild.contentWindow === event.source);
-    if (from >= 0 && typeof event.data?.share === "number") frames[1 - from].lastChild.contentWindow.postMessage(event.data, "*");
+    if (from >= 0) frames[1 - from].lastChild.contentWindow.postMessage(event.data, "*");
   });
-  root.append(headOf(), element("div", { class: "beside" }, frames), element("div", { class: "cards beside" }, cards.map((card) => card.body)),
+  const tell = (data) => frames.forEach((frame) => frame.lastChild.contentWindow.postMessage(data, "*"));
+  root.append(headOf(tell), element("div", { class: "beside" }, frames), element("div", { class: "cards beside" }, cards.map((card) => card.body)),
     element("div", { class: "tables" }, largestTable(), parameterTable()), tip, said);
   const renew = () => cards.forEach((card) => card.draw());
   reading.watchers.add(renew);
@@ -47,15 +47,21 @@ function swatch(k) {
   return drawn("svg", { width: 26, height: 8, "aria-hidden": "true" }, drawn("line", { x1: 1, x2: 25, y1: 4, y2: 4, class: `curve of-${k}`, "stroke-dasharray": k ? "7 3" : "" }));
 }
 
-function headOf() {
+function headOf(tell) {
   const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", title: "Units of the file: SI, without prefixes", click: () => {
     setSi(!reading.si);
     si.setAttribute("aria-pressed", String(reading.si));
+    tell({ act: "si", given: [reading.si] });
   } }, "SI units");
   const names = runs.map((run, k) => element("span", { class: "run" }, swatch(k), ` ${run.name}${run.certified ? "" : ", not certified"}`));
   return element("header", { class: "head" },
-    element("div", {}, element("h1", {}, `${contents.case}: two runs`), element("p", { class: "told" }, names)),
-    element("div", { class: "switches" }, si, element("button", { type: "button", class: "switch", click: () => window.print() }, "Print")));
+    element("div", {}, element("h1", {}, `${contents.case}: two runs`), element("p", { class: "told" }, names),
+      contents.same && element("p", { class: "alarm" }, "Both runs are the same: all their values are equal.")),
+    element("div", { class: "switches" }, si, element("button", { type: "button", class: "switch", click: () => {
+      // Both pictures are at rest, and at the same time, before they are printed.
+      tell({ act: "pause", given: [] });
+      setTimeout(() => window.print(), 200);
+    } }, "Print")));
 }
 
 /** The quantities that are charted first: the largest effort, reaction and section forces. */
@@ -109,7 +115,7 @@ class Comparison {
     const x = this.across.back(this.sheet.at(event)[0]);
     const { unit } = runs[0].seriesByName.get(this.name);
     const most = Math.max(...this.curves.map(largestOf));
-    const at = along.map(({ values }) => values.reduce((best, value, i) => (Math.abs(value - x) < Math.abs(values[best] - x) ? i : best), 0));
+    const at = along.map(({ values }) => nearest(values, x));
     this.sheet.pointer.replaceChildren(...at.map((i, k) => drawn("circle", { cx: this.across.at(along[k].values[i]), cy: this.up.at(this.curves[k][i]), r: 3.6, class: `of-${k}` })));
     showTip(event, `${along[0].title} = ${shown(along[0].values[at[0]], along[0].unit)}`, runs.map((run, k) => [run.name, shownOf(this.curves[k][at[k]], unit, most)]));
   }

@@ -12,7 +12,7 @@ function listenTo(stage, { point, pin }) {
     return [event.clientX - frame.left, event.clientY - frame.top];
   };
 
-  const zoom = (factor, [x, y]) => {
+  const zoom = shared("zoom", (factor, [x, y]) => {
     const { camera, width, height } = paper;
     const to = Math.max(1e-6, Math.min(1e9, camera.scale * factor));
     const real = to / camera.scale;
@@ -22,17 +22,17 @@ function listenTo(stage, { point, pin }) {
     ];
     camera.scale = to;
     changed();
-  };
+  });
 
-  const pan = (dx, dy) => {
+  const pan = shared("pan", (dx, dy) => {
     paper.camera.shift = [paper.camera.shift[0] + dx, paper.camera.shift[1] + dy];
     changed();
-  };
+  });
 
-  const orbit = (dx, dy) => {
+  const orbit = shared("orbit", (dx, dy) => {
     paper.turnTo(paper.camera.azimuth - 0.4 * dx, paper.camera.elevation + 0.4 * dy);
     changed();
-  };
+  });
 
   const changed = () => {
     stage.touched = true;

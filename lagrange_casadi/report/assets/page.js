@@ -1,8 +1,5 @@
 // The page: its head, the picture with what it shows, the cards, the tables; light and dark, units, print.
 
-/** Whether the page is one of two runs within another page. */
-const together = window.parent !== window && /^run [12]$/.test(window.name);
-
 function buildPage() {
   const canvas = element("canvas", { class: "picture", tabindex: 0, role: "img", "aria-label": `The mechanism ${contents.case} in motion` });
   const root = document.getElementById("report");
@@ -32,19 +29,21 @@ function buildPage() {
   if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches && window.name !== "run 2") player.play();
 }
 
-/** Go through the cycle with the other run: tell the page around how far this one is, and go where it says. */
+/** Show the instant of the clock of both runs: tell the other what it is, and go where it says. */
 function goTogether() {
   let following = false;
   player.watchers.add(() => {
-    if (!following && player.span > 0) window.parent.postMessage({ share: (instants.t[player.instant] - instants.t[0]) / player.span }, "*");
+    if (!following) post("follow", [player.time, over && array(over.values)[player.instant]]);
   });
-  window.addEventListener("message", (event) => {
-    if (event.source !== window.parent || typeof event.data?.share !== "number") return;
+  acts.follow = (time, value) => {
     following = true;
     player.pause();
-    player.seek(instantAt(instants.t[0] + event.data.share * player.span));
+    if (clock.name === "over") player.seek(nearest(array(over.values), value));
+    else player.seek(instantAt(time), time);
     following = false;
-  });
+  };
+  acts.pause = () => player.pause();
+  acts.si = setSi;
 }
 
 /** The name, what was evaluated, whether it was certified, and the switches. */
@@ -146,7 +145,6 @@ function showRow(row) {
   if (row.group === "section") {
     const force = row.name.slice(`section:${row.part}:`.length);
     stage.show("ribbon", force);
-    document.querySelector(".shows .ribbon").value = force;
     showSection(row.part, row.peak.xi);
   }
   deck.stage.paper.canvas.scrollIntoView({ block: "nearest", behavior: "smooth" });
@@ -177,16 +175,19 @@ function viewBar(stage, gestures) {
 
 /** What is shown on the mechanism: arrows, ribbons, names. */
 function showBar(stage) {
-  const box = (what, words) => element("label", { class: `show ${what}` },
-    element("input", { type: "checkbox", checked: stage.shows[what], change: (event) => stage.show(what, event.target.checked) }), ` ${words}`);
+  const box = (what, words) => {
+    const field = element("input", { type: "checkbox", checked: stage.shows[what], change: () => stage.show(what, field.checked) });
+    stage.controls[what] = (value) => { field.checked = value; };
+    return element("label", { class: `show ${what}` }, field, ` ${words}`);
+  };
   const kinds = Object.entries(KINDS).filter(([kind]) => actions.some((action) => action.kind === kind));
   const ribbons = ribbonForces.length > 0 && chooser("Section force along links", [...ribbonForces.map((force) => [force.name, force.what]), ["", "no section force"]], stage.shows.ribbon, (name) => stage.show("ribbon", name));
-  if (ribbons) ribbons.classList.add("ribbon");
-  const size = element("input", { type: "range", min: -1.5, max: 1.5, step: 0.05, value: 0, class: "size", "aria-label": "Length of arrows and ribbons", input: () => {
-    stage.size = 2 ** Number(size.value);
-    stage.measure();
-    stage.draw();
-  } });
+  if (ribbons) {
+    ribbons.classList.add("ribbon");
+    stage.controls.ribbon = (name) => { ribbons.value = name; };
+  }
+  const size = element("input", { type: "range", min: -1.5, max: 1.5, step: 0.05, value: 0, class: "size", "aria-label": "Length of arrows and ribbons", input: () => stage.show("size", 2 ** Number(size.value)) });
+  stage.controls.size = (value) => { size.value = Math.log2(value); };
   const signs = element("span", { class: "signs" }, element("i", { class: "positive" }), " + ", element("i", { class: "negative" }), " −");
   return element("div", { class: "shows", role: "group", "aria-label": "Shown on the mechanism" },
     ribbons, ribbons && signs, kinds.map(([kind, words]) => box(kind, words)), box("values", "values"), box("names", "names"), contents.paths.length > 0 && box("traces", "paths"), box("ways", "joints' paths"),
@@ -236,8 +237,9 @@ function listenToPrinter(stage) {
     player.pause();
     document.documentElement.dataset.theme = "light";
     stage.paper.readInks();
-    stage.paper.resize(1060, 560, 3);
-    if (!stage.touched) stage.paper.fit(stage.ends);
+    // Two pictures side by side are each half as wide, with letters of the same size.
+    stage.paper.resize(together ? 530 : 1060, together ? 280 : 560, 3);
+    if (!stage.touched) stage.place();
     stage.draw();
     for (const card of deck.cards) {
       card.seen = true;

@@ -53,8 +53,8 @@ class Paper {
     camera.toward = on(ce * c, ce * s, se);
   }
 
-  /** Have the whole mechanism, over all instants, on the sheet, and other places. */
-  fit(others = []) {
+  /** Have the whole mechanism, over all instants, on the sheet, and other places, with room for at least a `reach` [m]; find how far they reach. */
+  fit(others = [], reach = [0, 0]) {
     const camera = this.camera;
     camera.centre = extent.middle;
     let [x, y] = [1e-9, 1e-9];
@@ -64,9 +64,10 @@ class Paper {
     });
     const ends = [0, 1].map((k) => [Math.min(...at.map((p) => p[k])), Math.max(...at.map((p) => p[k]))]);
     [x, y] = ends.map(([low, high]) => Math.max(high - low, 0.25 * extent.size));
-    camera.scale = Math.min((this.width - 2 * margin(this.width)) / x, (this.height - 2 * margin(this.height)) / y);
+    camera.scale = Math.min((this.width - 2 * margin(this.width)) / Math.max(x, reach[0]), (this.height - 2 * margin(this.height)) / Math.max(y, reach[1]));
     const middle = ends.map(([low, high]) => (low + high) / 2);
     camera.shift = [-camera.scale * middle[0], camera.scale * middle[1]];
+    return [x, y];
   }
 
   /** Where a place is on the sheet: across, down, and how near it is. */

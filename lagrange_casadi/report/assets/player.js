@@ -6,22 +6,23 @@ class Player {
     this.playing = false;
     this.seconds = 4; // that a whole cycle takes on the screen
     this.watchers = new Set();
-    this.time = instants.t[0];
-    this.span = instants.t[instants.count - 1] - instants.t[0];
     this.before = null;
+    this.renew();
   }
 
-  /** Show an instant by its number, and tell all who watch. */
-  seek(instant) {
+  /** Show an instant by its number, at a time of the clock, and tell all who watch. */
+  seek(instant, time) {
     this.instant = Math.max(0, Math.min(instants.count - 1, instant));
-    this.time = instants.t[this.instant];
+    this.time = time ?? instants.t[this.instant];
     for (const watcher of this.watchers) watcher(this.instant);
   }
 
   /** Take the times that there are now. */
   renew() {
     this.time = instants.t[this.instant];
-    this.span = instants.t[instants.count - 1] - instants.t[0];
+    const [first, last] = clock?.ends ?? [instants.t[0], instants.t[instants.count - 1]];
+    this.first = first;
+    this.span = last - first;
   }
 
   step(count) {
@@ -51,11 +52,11 @@ class Player {
   tick(now) {
     if (!this.playing) return;
     if (this.before !== null) {
-      const first = instants.t[0];
-      const way = this.time - first + ((now - this.before) / 1000 / this.seconds) * this.span;
-      const time = first + (way % this.span);
+      const way = this.time - this.first + ((now - this.before) / 1000 / this.seconds) * this.span;
+      const time = this.first + (way % this.span);
       const instant = instantAt(time);
-      if (instant !== this.instant) this.seek(instant);
+      // Beside a longer run a shorter one stays at its end, and its clock goes on.
+      if (instant !== this.instant || clock) this.seek(instant, time);
       this.time = time;
     }
     this.before = now;

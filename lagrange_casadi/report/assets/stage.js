@@ -7,27 +7,52 @@ class Stage {
     this.paper = new Paper(canvas);
     this.instant = 0;
     const bending = ribbonForces.find((force) => force.name === "bending") ?? ribbonForces[0];
-    this.shows = { reaction: true, effort: true, load: true, ribbon: bending?.name ?? "", names: true, traces: true, ways: false, values: false };
-    this.size = 1;
+    this.shows = { reaction: true, effort: true, load: true, ribbon: bending?.name ?? "", names: true, traces: true, ways: false, values: false, size: 1 };
+    this.controls = {};
+    this.beside = {};
     this.pinned = null;
     this.pointed = null;
     this.touched = false;
     this.measure();
     this.ends = arrowEnds(this.shows, this.scale);
     this.trace();
+    for (const act of ["view", "fit", "show"]) this[act] = shared(act, this[act].bind(this));
+    acts.agree = this.agree.bind(this);
   }
 
-  /** Find the scales anew, for what is shown now. */
+  /** Find the scales anew, for what is shown now: with another picture beside this one, scales at which both have room. */
   measure() {
     const [force, moment] = [false, true].map((turning) => largestAction(this.shows, turning));
     const most = this.shows.ribbon ? largestSection(this.shows.ribbon) : 0;
-    const full = LONGEST * extent.size * this.size;
-    this.scale = {
+    const full = LONGEST * extent.size * this.shows.size;
+    this.wanted = {
       force: force ? full / force : 0,
       // In the plane a moment sweeps part of a turn; in space it is an arrow of a length.
-      moment: moment ? (contents.space ? full : Math.min(1, this.size)) / moment : 0,
+      moment: moment ? (contents.space ? full : Math.min(1, this.shows.size)) / moment : 0,
       ribbon: most ? full / most : 0,
     };
+    this.scale = Object.fromEntries(Object.entries(this.wanted).map(([kind, scale]) => [kind, Math.min(scale, this.beside[kind] || Infinity)]));
+  }
+
+  /** Have the whole mechanism on the sheet; with another picture beside this one, at the scale of the larger mechanism. */
+  place() {
+    this.reach = this.paper.fit(this.ends, this.beside.reach);
+    this.askFor();
+  }
+
+  /** Ask the picture beside this one for the scales that this one wants, where they are others than before. */
+  askFor() {
+    const wanted = JSON.stringify({ ...this.wanted, reach: this.reach });
+    if (wanted !== this.asked) post("agree", [JSON.parse(wanted)]);
+    this.asked = wanted;
+  }
+
+  /** Take the scales that the picture beside this one wants. */
+  agree(beside) {
+    // What this one asked for before may have come before the other one could hear it.
+    if (!this.beside.reach) this.asked = null;
+    this.beside = beside;
+    this.renew();
   }
 
   /** Follow the points whose ways are shown, for the motion that there is now. */
@@ -38,7 +63,7 @@ class Stage {
   layOut() {
     this.paper.readInks();
     this.paper.resize();
-    if (!this.touched) this.paper.fit(this.ends);
+    if (!this.touched) this.place();
     this.draw();
   }
 
@@ -50,7 +75,7 @@ class Stage {
 
   fit() {
     this.touched = false;
-    this.paper.fit(this.ends);
+    this.place();
     this.draw();
   }
 
@@ -58,13 +83,18 @@ class Stage {
   renew() {
     this.measure();
     this.ends = arrowEnds(this.shows, this.scale);
-    if (this.touched) this.draw();
-    else this.fit();
+    if (this.touched) this.askFor();
+    else this.place();
+    this.draw();
   }
 
+  /** Show something or not, or a section force by its name, or all in another size. */
   show(what, value) {
+    if (what === "ribbon" && value && !ribbonForces.some((force) => force.name === value)) return;
     this.shows[what] = value;
+    this.controls[what]?.(value);
     this.measure();
+    this.askFor();
     this.trace();
     this.draw();
   }
