@@ -167,7 +167,7 @@ def test_postures_of_two_turns_are_drawn_once_and_one_over_the_other():
     ends = [line.get_xydata()[1] for line in cranks]
     assert min(np.hypot(*(a - b)) for k, a in enumerate(ends) for b in ends[:k]) > 0.02
     assert sorted(line.get_alpha() for line in cranks)[-2:] == [pytest.approx(0.2), 1.0]
-    assert axes.get_title().startswith("8 postures from t = 0 s")
+    assert axes.get_title().startswith("8 positions from t = 0 s")
 
 
 def test_bodies_with_three_joints_are_plates_and_rotors_are_discs():

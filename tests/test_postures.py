@@ -166,6 +166,26 @@ def test_the_command_line_draws_the_ways(here, capfd, command):
     assert (here / "own_postures.png").read_bytes()[:4] == b"\x89PNG"
 
 
+def test_the_picture_is_named_by_the_case_and_lies_beside_the_results(here, capfd):
+    """Ways that can be built come first: those without a negative length of a cylinder."""
+    assert main(["new", "digger", "--like", "excavator"]) == 0
+    text = (here / "digger" / "case.py").read_text()
+    (here / "digger" / "case.py").write_text(re.sub(r"posture=.*", "posture={},", text))
+    (here / "results").mkdir()
+    capfd.readouterr()
+    assert main(["run", "digger/case.py", "--out", "results/run.h5"]) == 2
+    assert [path.name for path in (here / "results").iterdir()] == ["digger_postures.png"]
+    error, *lines = capfd.readouterr().err.splitlines()
+    assert "; results/digger_postures.png draws the 16 of these" in error
+    scene = load_case("excavator").scene
+    postures = [ast.literal_eval(line.partition("posture=")[2]) for line in lines]
+    lengths = [
+        [solution.array(f"motion:{name}_cylinder")[0] for name in ("boom", "stick", "bucket")]
+        for _, solution in (moved(scene, posture=posture) for posture in postures[:3])
+    ]
+    assert [all(length > 0.0 for length in one) for one in lengths] == [True, True, False]
+
+
 def test_where_nothing_can_be_drawn_there_is_no_file(here, capfd):
     assert main(["new", "own", "--like", "rrr3"]) == 0
     text = (here / "own" / "case.py").read_text()
@@ -213,7 +233,8 @@ def test_two_loops_with_sixteen_ways_are_drawn_whole(monkeypatch):
     assert written == postures
     assert [text for text in table if text.isdigit()] == [str(k) for k in range(1, 17)]
     titles = [axes.get_title(loc="left") for axes in figure.axes]
-    assert titles == ["1, 3, 9, 11", "2, 4, 10, 12", "5, 7, 13, 15", "6, 8, 14, 16"]
+    # Ways with fewer slides at negative coordinates come first.
+    assert titles == ["1, 2, 3, 4", "5, 6, 9, 10", "7, 8, 11, 12", "13, 14, 15, 16"]
     figure.draw_without_rendering()
     words = [*figure.texts, *(axes._left_title for axes in figure.axes)]
     boxes = [text.get_window_extent() for text in words]

@@ -18,6 +18,7 @@ from ..shapes.shapes import (
     Spot,
     joint_shapes,
     load_shapes,
+    named_spots,
     path_spots,
     shapes,
 )
@@ -75,7 +76,8 @@ def mechanism(motion: Motion, stage: Stage, *, names: bool) -> Iterator[Thing]:
     for spot in path_spots(description).values():
         yield Dot(stage.on_sheet(motion.place(spot)), 3.6 * stage.unit, PATH)
     if names:
-        yield from _names(motion, stage, joints)
+        named = named_spots(motion.solution.description)
+        yield from _names(motion, stage, [joint for joint in joints if joint.name in named])
 
 
 def _depth(motion: Motion, stage: Stage, shape: Shape) -> float:

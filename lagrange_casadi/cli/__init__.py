@@ -108,12 +108,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         warnings.simplefilter("always", UserWarning)
         warnings.filterwarnings("ignore", _NUMPY, FutureWarning)
         warnings.showwarning = lambda message, *_args, **_kwargs: _say(f"note: {message}")
+        asked: dict[str, Any] = {}
         try:
-            result = program.main(arguments, prog_name=_NAME, standalone_mode=False)
+            result = program.main(arguments, prog_name=_NAME, standalone_mode=False, obj=asked)
         except PostureError as error:
             from .drawing import drawn_ways
 
-            words, postures = drawn_ways(error)
+            words, postures = drawn_ways(error, asked)
             status = _fail(f"{error}{words}", error.exit_status)
             for line in postures:
                 _say(line)

@@ -5,9 +5,10 @@ assembled.
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
@@ -47,8 +48,11 @@ def draw_with_progress(
         )
 
 
-def drawn_ways(error: PostureError) -> tuple[str, list[str]]:
-    """Draw the ways in which a loop that is open can be assembled into a file here.
+def drawn_ways(error: PostureError, asked: Mapping[str, Any]) -> tuple[str, list[str]]:
+    """Draw the ways in which an undecided loop can be assembled.
+
+    The picture is named after the case's file, and lies beside what the command was ``asked`` to
+    write, else in the current folder.
 
     Returns what goes behind the error, nothing where nothing can be drawn, and lines beneath it:
     the posture to paste for each picture, where the error itself does not have them.
@@ -57,7 +61,7 @@ def drawn_ways(error: PostureError) -> tuple[str, list[str]]:
     if not isinstance(scene, Scene) or error.lacking:
         return "", []
     picture = io.BytesIO()
-    path = Path(f"{scene.name}_postures.png")
+    path = Path(asked.get("out") or ".").parent / f"{_name_of(scene, asked)}_postures.png"
     with suppress(LagrangeCasadiError):
         postures, complete = method("PostureError.drawn")(scene, picture)
         if postures:
@@ -73,3 +77,12 @@ def drawn_ways(error: PostureError) -> tuple[str, list[str]]:
             numbered = [f"  {number:>2}  {line}" for number, line in enumerate(postures, 1)]
             return words, numbered if len(error.assembly_modes) > 1 else []
     return "", []
+
+
+def _name_of(scene: Scene, asked: Mapping[str, Any]) -> str:
+    """The name of the case that a command was asked for, else that of its mechanism."""
+    targets = asked.get("targets") or [asked.get("case") or asked.get("target")]
+    if targets[0] is None:
+        return scene.name
+    place = Path(targets[0]).resolve()
+    return place.parent.name if place.name == "case.py" else place.stem

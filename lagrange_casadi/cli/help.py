@@ -29,7 +29,16 @@ _MACHINE = (
 
 
 class Command(click.Command):
-    """A command whose help has the options of the machine in a group of their own."""
+    """A command whose help has the options of the machine in a group of their own.
+
+    What it was asked for is noted in the context's ``obj``, for what follows an error.
+    """
+
+    def invoke(self, ctx: click.Context) -> object:
+        """Run the command."""
+        if ctx.obj is not None:
+            ctx.obj |= ctx.params
+        return super().invoke(ctx)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options in two groups."""

@@ -265,6 +265,13 @@ class _Solver:
             if residual - least <= 1e-6 * (1.0 + least)
         ]
         if len(near) > 1:
+            # No cylinder or rod has a negative length: ways with one come last.
+            near.sort(
+                key=lambda signs: any(
+                    c.kind == "slide" and x < 0.0
+                    for c, x in _numbers(form.unknown, values[signs]).items()
+                )
+            )
             # Taken for now, so that the loops after it are looked at too.
             number = len(self.undecided.ways)
             first = self.ways[number] if number < len(self.ways) else 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,16 @@ from ..base.arrays import Array
 from ..instants.solution import Solution
 from ..shapes.places import drawn_spots, placed
 from ..shapes.readable import scale_for
-from ..shapes.shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.shapes import (
+    JointShape,
+    Shape,
+    Spot,
+    joint_shapes,
+    load_shapes,
+    named_spots,
+    path_spots,
+    shapes,
+)
 from ..shapes.solid import COLOURS, PATH
 from .labels import apart, label_bodies
 from .labels import placed as labelled
@@ -57,7 +66,7 @@ def draw_mechanism(
     if overlay:
         first, last = titles[0], titles[-1]
         words = (
-            f"{len(chosen)} postures from {first.replace(chr(10), ', ')} (strong)\nto"
+            f"{len(chosen)} positions from {first.replace(chr(10), ', ')} (strong)\nto"
             f" {last.replace(chr(10), ', ')}"
         )
         titles = [words if len(chosen) > 1 else first]
@@ -104,12 +113,13 @@ def draw_mechanism(
     # Where everything is on the page is known when it is laid out.
     figure.draw_without_rendering()
     for place, i in zip(axes.flat, chosen[:1] if overlay else chosen, strict=False):
-        _name(place, solution, i, size)
+        now = solution.during(slice(i, i + 1))
+        _name(place, now, named_spots(solution.description), size)
     return figure
 
 
-def draw_into(axes: Axes, solution: Solution) -> None:
-    """The mechanism at its first instant, into axes of a figure."""
+def draw_into(axes: Axes, solution: Solution, named: Mapping[str, Spot]) -> None:
+    """The mechanism at its first instant, into axes of a figure, with the names of some places."""
     box, size = _extent(solution)
     _draw_instant(axes, solution, 0, size)
     _frame(axes, box, False)
@@ -120,7 +130,7 @@ def draw_into(axes: Axes, solution: Solution) -> None:
         figure.draw_without_rendering()
     else:
         axes.apply_aspect()
-    _name(axes, solution, 0, size)
+    _name(axes, solution.during(slice(0, 1)), named, size)
 
 
 def _when(solution: Solution, i: int) -> str:
@@ -304,13 +314,16 @@ def _draw_axis(
     axes.plot(*ends.T, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1, label="_")
 
 
-def _name(axes: Axes, solution: Solution, i: int, size: float) -> None:
+def _name(axes: Axes, now: Solution, spots: Mapping[str, Spot], size: float) -> None:
     """Write the names beside their points, where they hide neither each other nor more of the
     bodies than they must.
     """
+    from matplotlib.patheffects import withStroke
+
     points = 72.0 / axes.figure.dpi
-    now = solution.during(slice(i, i + 1))
-    named = _labels(now, size)
+    if not spots:
+        return
+    named = _labels(now, spots, size)
     words = [", ".join(names) for names in named.values()]
     sizes = np.array([(_extent_of(word, _POINTS) + 1.0, 1.2 * _POINTS) for word in words])
     anchors = axes.transData.transform(np.array(list(named))) * points
@@ -350,7 +363,9 @@ def _name(axes: Axes, solution: Solution, i: int, size: float) -> None:
             "color": "0.2",
             "zorder": 6,
         }
-        axes.annotate(word, spot, **words_at, **line).set_in_layout(False)
+        name = axes.annotate(word, spot, **words_at, **line)
+        name.set_path_effects([withStroke(linewidth=2.0, foreground="white")])
+        name.set_in_layout(False)
 
 
 def _lines(now: Solution) -> Iterator[Array]:
@@ -369,12 +384,11 @@ def _lines(now: Solution) -> Iterator[Array]:
             yield a + share * (b - a)
 
 
-def _labels(now: Solution, size: float) -> dict[tuple[float, float], list[str]]:
-    """The joints' and declared points' names by place, those at one place together."""
+def _labels(
+    now: Solution, spots: Mapping[str, Spot], size: float
+) -> dict[tuple[float, float], list[str]]:
+    """The names by place, those at one place together."""
     found: dict[tuple[float, float], list[str]] = {}
-    spots = {joint.name: joint.child for joint in joint_shapes(now.description)} | path_spots(
-        now.description
-    )
     for name, spot in spots.items():
         x, y = placed(now, spot)[0, :2].tolist()
         near = next(

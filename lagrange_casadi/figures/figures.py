@@ -101,7 +101,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         specs.append(UtilisationPlot("utilisation", links, joints))
     specs += [DeflectionPlot(f"deflection_{link}", link) for link in bending_of(solution)]
     overlay = (
-        () if solution.table is SPACE else (MechanismDrawing("postures", count=8, overlay=True),)
+        () if solution.table is SPACE else (MechanismDrawing("positions", count=8, overlay=True),)
     )
     return (*specs, *overlay, MechanismDrawing())
 

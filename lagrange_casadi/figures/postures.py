@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -20,6 +21,7 @@ from ..errors import AssemblyError, PostureError
 from ..instants.solution import Solution
 from ..shapes.pictures import one_at_a_time, save
 from ..shapes.places import drawn_spots, placed
+from ..shapes.shapes import named_spots
 from ..studies.evaluate import evaluate
 from .into import draw_into
 from .labels import NAMES_IN_ROW
@@ -31,6 +33,14 @@ each way is derived.
 
 _WIDE, _LINE, _ROW, _MARGIN = 46, 0.16, 0.06, 0.3
 """Letters in a line of the table; its height, the room between rows, and that at edges [inch]."""
+
+_ROUNDING = 1e-9
+"""Coordinates above the negative of this are not negative [m]."""
+
+_NAMED = 8
+"""Largest number of places that are all named in each picture."""
+
+_ENTRY = re.compile("'([^']+)':")
 
 _LETTER = 0.078
 """Width of a letter of the table [inch]."""
@@ -76,6 +86,10 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
         )
     note = [line for sentence in notes for line in textwrap.wrap(sentence, _WIDE + 4)]
     columns = min(math.ceil(math.sqrt(len(pictures))), 4)
+    spots = named_spots(found[0][1].description)
+    entries = {entry.partition(":")[0] for row in postures for entry in _ENTRY.findall(row)}
+    # In small pictures names hide each other, and bodies have their colours: those that choose.
+    named = spots if len(spots) <= _NAMED else entries
     side = 4.2 if columns <= 2 else 3.0
     level = 0.8 * side
     table = _LINE * (sum(map(len, rows)) + len(note) + 2) + _ROW * len(rows)
@@ -95,7 +109,7 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
         across, down = _MARGIN + k % columns * side, 2.0 * _MARGIN + (k // columns + 1) * level
         place = across / wide, 1.0 - down / high, 0.94 * side / wide, (level - 0.22) / high
         axes = figure.add_axes(place, anchor="NW")
-        draw_into(axes, found[numbers[0]][1])
+        draw_into(axes, found[numbers[0]][1], named)
         axes.set(title="", xticks=[], yticks=[], xlabel="", ylabel="")
         title = ", ".join(str(number + 1) for number in numbers)
         axes.set_title(title, fontsize=11, fontweight="bold", loc="left", pad=3.0)
@@ -129,7 +143,15 @@ def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
     found = list(itertools.islice(modes, 1))
     if found and len(found[0][1].description["bodies"]) > _LARGE:
         return [], 0
-    return [*found, *modes], possible
+    # What a builder can build comes first.
+    return sorted([*found, *modes], key=lambda one: _negative(one[1])), possible
+
+
+def _negative(solution: Solution) -> int:
+    """Count the slides at negative coordinates: no cylinder or rod has a negative length."""
+    kinds = coordinates_of(solution.description)
+    slides = (name for name, kind in kinds.items() if kind == "slide")
+    return sum(float(solution.array(f"motion:{name}")[0]) < -_ROUNDING for name in slides)
 
 
 def _apart(found: Sequence[Solution]) -> list[list[int]]:

@@ -12,7 +12,9 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..instants.solution import Solution
+from ..shapes.places import placed as spot_at
 from ..shapes.readable import Scale, scale_for
+from ..shapes.shapes import Spot, named_spots
 from ..shapes.solid import (
     BLOCK,
     MARKS,
@@ -25,7 +27,6 @@ from ..shapes.solid import (
     grounds_of,
     lines_of,
     marks_of,
-    paths_of,
     place_of,
     plates_of,
 )
@@ -105,7 +106,8 @@ def draw_in_space(
             )
         _draw_paths(axes, one, thin)
         if one is four[1]:
-            _label(axes, one, solution.during(slice(0, 1)), thin, size, box, 72.0 * sheet.scale)
+            named = named_spots(solution.description)
+            _label(axes, one, (solution, thin), named, size, box, 72.0 * sheet.scale)
     handles, names = [handle for _, handle in entries], [name for name, _ in entries]
     figure.legend(
         handles,
@@ -120,8 +122,10 @@ def draw_in_space(
     return figure
 
 
-def draw_into(axes: Axes, solution: Solution) -> None:
-    """The mechanism at its first instant, into axes of a figure, from one side."""
+def draw_into(axes: Axes, solution: Solution, named: Mapping[str, Spot]) -> None:
+    """The mechanism at its first instant, into axes of a figure, from one side, with the names of
+    some places.
+    """
     one = view(upright(solution.description["gravity"]), AZIMUTH, ELEVATION)
     now, cloud = solution.during(slice(0, 1)), cloud_of(solution)
     size, flat = _size(cloud), one.on_page(cloud)
@@ -138,13 +142,13 @@ def draw_into(axes: Axes, solution: Solution) -> None:
         figure: Any = axes.figure
         wide, high = axes.get_position().size * figure.get_size_inches()
     scale = 72.0 * min(wide / (box[1] - box[0]), high / (box[3] - box[2]))
-    _label(axes, one, now, solution, size, box, scale)
-    named = [
+    _label(axes, one, (solution, solution), named, size, box, scale)
+    bodies = [
         (name, handle)
         for name, handle in _entries(solution)
         if name in solution.description["bodies"]
     ]
-    label_bodies(axes.figure, [handle for _, handle in named], [name for name, _ in named])
+    label_bodies(axes.figure, [handle for _, handle in bodies], [name for name, _ in bodies])
 
 
 def _size(cloud: Array) -> float:
@@ -250,13 +254,20 @@ def _draw_paths(axes: Axes, one: View, thin: Solution) -> None:
 
 
 def _label(
-    axes: Axes, one: View, now: Solution, thin: Solution, size: float, box: Box, scale: float
+    axes: Axes,
+    one: View,
+    solutions: tuple[Solution, Solution],
+    named: Mapping[str, Spot],
+    size: float,
+    box: Box,
+    scale: float,
 ) -> None:
-    """The directions of the ground's axes, and the names of joints and declared points at a
-    solution's first instant.
+    """The directions of the ground's axes, and the ``named`` places at the first instant.
 
+    ``solutions`` are the solution, and that at fewer instants, along which nothing is to be hidden;
     ``box`` is what the picture shows [m], ``scale`` in points a metre [pt/m].
     """
+    now, thin = solutions[0].during(slice(0, 1)), solutions[1]
 
     def spots(points: Array) -> Array:
         found: Array = scale * (one.on_page(points) - [box[0], box[2]])
@@ -280,7 +291,7 @@ def _label(
     _draw_triad(axes, one, triad, box, scale)
     _name(
         axes,
-        {name: spots(places[0]) for name, places in paths_of(now).items()},
+        {name: spots(spot_at(now, spot)[0]) for name, spot in named.items()},
         things,
         edge,
         box,
@@ -335,6 +346,7 @@ def _name(
     """Write names beside their spots [pt], those at one spot together, with a line to it where it
     may be taken for another's.
     """
+    from matplotlib.patheffects import withStroke
     from matplotlib.textpath import TextPath
 
     at: list[Array] = []
@@ -367,6 +379,7 @@ def _name(
             color="0.15",
             zorder=30,
             va="bottom",
+            path_effects=[withStroke(linewidth=2.0, foreground="white")],
         )
         own = apart(low, size, spot)
         if own > 9.0 or sum(apart(low, size, other) < 2.0 * own for other in anchors) > 1:

@@ -20,7 +20,7 @@ from ..instants.ordering import error_of, ordered
 from ..instants.solution import Solution
 from ..instants.statistics import Extreme
 from ..shapes.places import require_poses
-from ..shapes.shapes import joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.shapes import joint_shapes, load_shapes, named_spots, path_spots, shapes
 from ..shapes.solid import COLOURS
 from ..shapes.views import upright
 from ..strength.parts import looked
@@ -97,6 +97,7 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
         "instants": _instants(solution, chosen, arrays),
         "bodies": list(_bodies(solution, chosen, arrays)),
         "joints": [asdict(joint) for joint in joint_shapes(description)],
+        "named": list(named_spots(description)),
         "loads": [asdict(load) for load in load_shapes(description)],
         "paths": [{"name": name} | asdict(spot) for name, spot in path_spots(description).items()],
         "series": [asdict(one) for one in series_of(solution, chosen, arrays)],

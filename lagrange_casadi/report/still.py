@@ -11,7 +11,7 @@ from ..base.arrays import Array
 from ..declare.description import in_space
 from ..instants.solution import Solution
 from ..shapes.places import drawn_spots, placed
-from ..shapes.shapes import Spot, joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.shapes import Spot, joint_shapes, load_shapes, named_spots, path_spots, shapes
 from ..shapes.solid import COLOURS, PATH
 from ..shapes.views import AZIMUTH, ELEVATION, upright, view
 
@@ -92,6 +92,7 @@ def _drawn(solution: Solution, on_sheet: Places) -> Iterator[str]:
         if load.kind == "spring":
             yield _line(first(load.spots), "currentColor", 1.4, dashed=True)
     names: dict[tuple[float, float], str] = {}
+    named = named_spots(description)
     for joint in joint_shapes(description):
         x, y = (float(value) for value in first([joint.child])[0])
         if "ground" in (joint.parent.body, joint.child.body) and joint.kind not in (
@@ -108,6 +109,8 @@ def _drawn(solution: Solution, on_sheet: Places) -> Iterator[str]:
             f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="#fff" stroke="#222"'
             ' stroke-width="1.4"/>'
         )
+        if joint.name not in named:
+            continue
         at = next(
             (other for other in names if abs(other[0] - x) + abs(other[1] - y) < _NEAR), (x, y)
         )

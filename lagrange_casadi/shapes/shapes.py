@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.arrays import Array
-from ..declare.description import Description, drives_of, in_space
+from ..declare.description import Description, bends_of, drives_of, in_space
 
 Place = tuple[float, float, float]
 
@@ -167,6 +167,16 @@ def load_shapes(description: Description) -> Iterator[LoadShape]:
 def path_spots(description: Description) -> dict[str, Spot]:
     """The declared points by name."""
     return {name: _spot(point) for name, point in description.get("paths", {}).items()}
+
+
+def named_spots(description: Description) -> dict[str, Spot]:
+    """The places beside which pictures write names: of joints, except the welds inside bent bars,
+    and of declared points.
+    """
+    inner = bends_of(description)
+    joints = {name: _spot(joint["child"]) for name, joint in description["joints"].items()}
+    named = {name: spot for name, spot in joints.items() if name not in inner}
+    return named | path_spots(description)
 
 
 def _spots(description: Description) -> Iterator[Spot]:

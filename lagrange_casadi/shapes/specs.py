@@ -132,7 +132,7 @@ class PolarPlots(_Drawn):
 @dataclass(frozen=True)
 class MechanismDrawing(_Drawn):
     """The mechanism at ``count`` instants, evenly spread over the motion until it repeats itself;
-    postures that are the same once.
+    positions that are the same once.
 
     With ``overlay`` they are in one picture, the first strong and the others faint. One in space is
     always drawn so: from above, from the front, from the right, and from ``azimuth`` and

@@ -222,17 +222,26 @@ function drawSection(paper, { section, ratio }, instant, pinned) {
   });
 }
 
-/** The names of joints and declared points, those at one place together, beside them where there is room. */
+/** Where a name may stand beside its point, from it: near ones first, then farther ones all around. */
+function placesOfName(r, wide) {
+  const near = [[r, -r], [-r - wide, -r], [r, r], [-r - wide, r], [r, 0], [-r - wide, 0], [-wide / 2, -2 * r], [-wide / 2, 2 * r]];
+  const around = [28, 44, 64, 90].flatMap((reach) =>
+    Array.from({ length: 12 }, (_, k) => [Math.cos((k * Math.PI) / 6), Math.sin((k * Math.PI) / 6)]).map(([c, s]) => [reach * c + ((c - 1) * wide) / 2, reach * s]),
+  );
+  return [...near.map((place) => [...place, 0]), ...around.map((place) => [...place, 1 + Math.hypot(place[0] + wide / 2, place[1]) / 60])];
+}
+
+/** The names of joints and declared points, those at one place together, beside them where there is room: farther off with a line to their point. */
 function drawNames(paper, instant) {
   const spots = [];
-  const pins = [];
-  for (const one of [...contents.joints.map((joint) => [joint.name, joint.child]), ...contents.paths.map((path) => [path.name, path])]) {
-    const [x, y] = paper.on(spotOf(one[1], instant));
-    const near = spots.find((spot) => Math.hypot(spot.x - x, spot.y - y) < 6);
-    if (near) near.words += `, ${one[0]}`;
-    else spots.push({ x, y, words: one[0] });
-    pins.push([x, y]);
+  const joints = contents.joints.filter((joint) => contents.named.includes(joint.name)).map((joint) => [joint.name, joint.child]);
+  for (const [name, spot] of [...joints, ...contents.paths.map((path) => [path.name, path])]) {
+    const [x, y] = paper.on(spotOf(spot, instant));
+    const near = spots.find((other) => Math.hypot(other.x - x, other.y - y) < 6);
+    if (near) near.words += `, ${name}`;
+    else spots.push({ x, y, words: name });
   }
+  const pins = contents.joints.map((joint) => paper.on(spotOf(joint.child, instant)));
   const taken = [];
   const r = pinSize(paper) + 7;
   paper.put(ORDER.names, 0, (context) => {
@@ -240,15 +249,20 @@ function drawNames(paper, instant) {
     context.textBaseline = "middle";
     for (const spot of spots) {
       const wide = context.measureText(spot.words).width + 4;
-      const boxes = [[r, -r], [-r - wide, -r], [r, r], [-r - wide, r], [r, 0], [-r - wide, 0], [-wide / 2, -2 * r], [-wide / 2, 2 * r]].map(
-        ([x, y]) => ({ x: spot.x + x, y: spot.y + y, wide }),
-      );
-      const cost = (box) =>
-        taken.filter((other) => Math.abs(other.y - box.y) < 14 && box.x < other.x + other.wide && other.x < box.x + box.wide).length * 4 +
-        pins.filter(([x, y]) => x > box.x - r + 4 && x < box.x + wide + r - 4 && Math.abs(y - box.y) < r - 2).length +
-        (box.x < 2 || box.x + wide > paper.width - 2 ? 3 : 0);
+      const cost = ({ x, y, far }) =>
+        far +
+        taken.filter((other) => Math.abs(other.y - y) < 14 && x < other.x + other.wide && other.x < x + wide).length * 40 +
+        pins.filter(([px, py]) => px > x - 4 && px < x + wide + 4 && Math.abs(py - y) < r - 2).length * (far ? 0.5 : 1) +
+        (x < 2 || x + wide > paper.width - 2 || y < 8 || y > paper.height - 8 ? 30 : 0);
+      const boxes = placesOfName(r, wide).map(([x, y, far]) => ({ x: spot.x + x, y: spot.y + y, far, wide }));
       const best = boxes.reduce((least, box) => (cost(box) < cost(least) ? box : least));
       taken.push(best);
+      if (best.far) {
+        context.strokeStyle = sheer(paper.inks.soft, 0.6);
+        context.lineWidth = 1;
+        lineThrough(context, [[spot.x, spot.y], [Math.max(best.x, Math.min(best.x + wide, spot.x)), best.y]]);
+        context.stroke();
+      }
       context.strokeStyle = sheer(paper.inks.sheet, 0.85);
       context.lineWidth = 3.5;
       context.strokeText(spot.words, best.x, best.y);
