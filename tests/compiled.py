@@ -34,14 +34,17 @@ def built(program, language, extra=(), precision="double"):
     return codegen.load(codegen.emit(program, stages), codegen.find_compiler(language), extra)
 
 
-def filled(library, program, t, threads=1, precision="double"):
-    """The columns by a library that is built."""
+def filled(library, program, t, threads=1, precision="double", out=None):
+    """The columns by a library that is built, in ``out`` where given."""
     p, dtype = program.data.defaults, DTYPES[precision]
     guess = np.array(program.newton.guess if program.newton else (), dtype)
     z, status = np.full((guess.size, t.size), np.nan, dtype), np.full(t.size, -1, dtype=np.int32)
-    out = np.full((len(program.columns), t.size), np.nan, dtype)
+    out = np.empty((len(program.columns), t.size), dtype) if out is None else out
+    out[...] = np.nan
     if precision == "single":
-        t, p = (np.array([dtype.type(x), x - dtype.type(x)], dtype) for x in (t, p))
+        p, whole = np.array([dtype.type(p), p - dtype.type(p)], dtype), t
+        t = np.empty((2, out.strides[0] // out.itemsize), dtype)[:, : t.size]
+        t[:] = dtype.type(whole), whole - dtype.type(whole)
     library.evaluate(t, p, guess, z, out, status, threads)
     assert np.all(status == 0)
     assert np.isfinite(out).all()

@@ -120,6 +120,17 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, method, monkey
         assert all(getattr(other, f).tobytes() == getattr(whole, f).tobytes() for f in FIELDS)
 
 
+@pytest.mark.parametrize("backend", ["lanes", "c"])
+def test_histories_that_go_past_the_caches_have_the_same_bits(backend):
+    """Many designs together fill lines of the cache that single ones write as they come."""
+    scene = declared(CASES / "slider_crank")
+    designs = DesignEngine.of(scene, t=(*scene.t[:2], 128), method=EvaluationMethod(backend))
+    p = around(scene, 1 + (5 << 20) // (len(designs.columns) * 128 * 8), spread=0.1)
+    whole = designs.evaluate(p, threads=1, histories=True).series
+    for k in range(0, len(p), 29):
+        assert designs.evaluate(p[k : k + 1], histories=True).series.tobytes() == whole[k].tobytes()
+
+
 def bare(designs, p):
     """What the C leaves in arrays that held NaN."""
     n, q, e = len(p), len(designs.quantities), len(designs.efforts)

@@ -8,7 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 from compiled import HEADER, SCENES, built, columns, filled
-from internals import PRECISIONS, ROUNDING, EvaluationMethod, library, run
+from internals import DTYPES, PRECISIONS, ROUNDING, EvaluationMethod, backends, library, run
 from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, derive, evaluate
@@ -64,6 +64,25 @@ def test_the_bytes_do_not_depend_on_the_threads(name, language, precision, monke
         assert (
             columns(program, t, language, threads, precision=precision).tobytes() == one.tobytes()
         )
+
+
+@both
+@pytest.mark.parametrize("language", ["c", "c++"])
+def test_columns_that_go_past_the_caches_have_the_same_bits(language, precision):
+    """Rows that begin with a line of the cache are streamed where they are large; what lies between
+    them stays.
+    """
+    program, real = derive(slider_crank()), DTYPES[precision]
+    n = (5 << 20) // (len(program.columns) * np.dtype(real).itemsize) + 13
+    library, t = built(program, language, precision=precision), np.linspace(0, 0.08, n)
+    lines = backends.rows(len(program.columns), n + 100, real)
+    lines[...] = np.nan
+    streamed = filled(library, program, t, precision=precision, out=lines[:, :n])
+    plain = filled(
+        library, program, t, precision=precision, out=backends.rows(len(lines), n + 1, real)[:, 1:]
+    )
+    assert streamed.tobytes() == plain.tobytes()
+    assert np.isnan(lines[:, n:]).all()
 
 
 @both

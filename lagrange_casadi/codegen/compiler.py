@@ -53,8 +53,10 @@ the whole process flush to zero what is subnormal."""
 LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
 """Place of ``lanes.h`` in an emitted file."""
 
-_START = f"""\
-{LANES_PLACE}#include <math.h>
+_START = (
+    LANES_PLACE
+    + """\
+#include <math.h>
 #include <string.h>
 #define casadi_int long long
 #ifndef casadi_real
@@ -78,6 +80,22 @@ _START = f"""\
 #define lanes_larger(x, y) ((x) < (y) ? (y) : (x))
 #define lanes_where_less(x, y) ((x) < (y))
 #define lanes_any_nan(x) ((x) != (x))
+#if defined(__clang__)
+#define lanes_stream(to, x) __builtin_nontemporal_store(x, to)
+#elif defined(__GNUC__) && defined(__x86_64__) && !defined(LANES_SINGLE)
+LANES_INLINE void lanes_stream(double* to, double x) {
+  long long bits;
+  memcpy(&bits, &x, sizeof bits);
+  __builtin_ia32_movnti64((long long*) to, bits);
+}
+#else
+#define lanes_stream(to, x) (*(to) = (x))
+#endif
+#endif
+#ifdef __SSE2__
+#define lanes_streamed() __builtin_ia32_sfence()
+#else
+#define lanes_streamed() ((void) 0)
 #endif
 #ifdef __GNUC__
 #define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C __attribute__((visibility("default")))
@@ -87,6 +105,7 @@ _START = f"""\
 #define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C
 #endif
 """
+)
 _SINGLE = "#define LANES_SINGLE\n#define casadi_real float\n"
 
 WIDE = """

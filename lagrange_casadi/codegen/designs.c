@@ -75,7 +75,10 @@ static int designs_asked(void* of, long long count, const double* t, unsigned lo
 
 /* All instants, as rows of curves, of their places along links, of what is checked, and of what is watched. */
 static void designs_sample(designs_now* now) {
-  casadi_real y[SCENE_COLUMNS], value[DESIGNS_CURVES], place[SCENE_SOME(DESIGNS_PLACES)], most[DESIGNS_CURVES];
+  const lagrange_casadi_instants* instants = &now->instants;
+  const int streams = scene_streams(instants, now->n*now->call->designs);
+  casadi_real block[SCENE_PACKS*SCENE_COLUMNS], *y = block;
+  casadi_real value[DESIGNS_CURVES], place[SCENE_SOME(DESIGNS_PLACES)], most[DESIGNS_CURVES];
   const casadi_int stride = now->stride;
   lanes_real* row;
   casadi_int i, j;
@@ -92,7 +95,15 @@ static void designs_sample(designs_now* now) {
     for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) scene_store(row, place[k]);
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) scene_store(row, y[designs_checked[k]]);
     for (k = 0; k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[SCENE_OUTPUTS + k]);
+    if (!instants->out) continue;
+    y += SCENE_COLUMNS;
+    if ((i + LANES)%SCENE_BLOCK != 0 && i + LANES < now->n) continue;
+    y = block;
+    j = i/SCENE_BLOCK*SCENE_BLOCK;
+    if (streams) scene_write(instants, j, now->n - j, y, 1);
+    else scene_write(instants, j, now->n - j, y, 0);
   }
+  if (streams) lanes_streamed();
   for (k = 0; k < DESIGNS_CURVES; ++k) {
     now->most[k] = 0;
     for (j = 0; j < LANES; ++j) now->most[k] = designs_lane(most + k, (int) j) > now->most[k] ? designs_lane(most + k, (int) j) : now->most[k];

@@ -156,6 +156,27 @@ LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return (lanes
 LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return lanes_pick(a.v < b.v, b, a); }
 #endif
 
+/* Store a pack past the caches, at a multiple of its size. A line of the cache that is filled so is not read from memory before. */
+LANES_INLINE void lanes_stream(lanes_real* to, lanes_pack x) {
+#if defined(__clang__)
+  __builtin_nontemporal_store(x.v, (lanes_vector*)to);
+#elif defined(__AVX512F__) && defined(LANES_SINGLE)
+  __builtin_ia32_movntps512(to, x.v);
+#elif defined(__AVX512F__)
+  __builtin_ia32_movntpd512(to, x.v);
+#elif defined(__AVX2__) && defined(LANES_SINGLE)
+  __builtin_ia32_movntps256(to, x.v);
+#elif defined(__AVX2__)
+  __builtin_ia32_movntpd256(to, x.v);
+#elif defined(__SSE2__) && defined(LANES_SINGLE)
+  __builtin_ia32_movntps(to, x.v);
+#elif defined(__SSE2__)
+  __builtin_ia32_movntpd(to, x.v);
+#else
+  memcpy(to, &x, sizeof x);
+#endif
+}
+
 #define LANES_EACH(name)                               \
   LANES_INLINE lanes_pack name(lanes_pack a) {         \
     lanes_vector r;                                    \

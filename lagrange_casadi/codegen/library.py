@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES
+from ..base.threads import in_threads
 from ..base.vocabulary import Precision
 from ..peak_search.intervals import Listed
 from .compiler import Compiler, broken, loaded, packed, statements
@@ -37,8 +37,8 @@ _LONGEST, _SLOWER = 128, 4
 is done by the instant.
 """
 _LINE, _DISTRIBUTED = 16, 8
-"""Values of a cache line of either precision; and into how many parts a thread's share of designs
-is cut, for they differ.
+"""Values of a cache line of either precision; and into how many parts a thread's share is cut, for
+parts differ, and threads begin one after another.
 """
 
 _CUT = 64
@@ -121,8 +121,9 @@ class Library:
         share = max(_CUT, self.share())
         shares = max(1, min(threads, n // share))
         # Between calls an interrupt comes through.
-        size = min(_LONGEST * share // _CUT * _CUT, -(-n // (shares * _CUT)) * _CUT)
-        _share(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
+        pieces = shares * _DISTRIBUTED if shares > 1 else 1
+        size = min(_LONGEST * share // _CUT * _CUT, -(-n // (pieces * _CUT)) * _CUT)
+        in_threads(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
 
     def _follow(self, call: ctypes.Structure, guess: Array, status: Status) -> None:
         if not guess.size:
@@ -160,7 +161,7 @@ class Library:
                 listed,
             )()
 
-        _share(run, range(0, n, size), shares)
+        in_threads(run, range(0, n, size), shares)
 
     def bound(
         self,
@@ -242,19 +243,6 @@ def _instants(
         apart=apart,
         status=status.ctypes.data,
     )
-
-
-def _share(run: Callable[[int], None], starts: Iterable[int], threads: int) -> None:
-    """Run what begins at each of the starts, by so many threads."""
-    if threads == 1:
-        for start in starts:
-            run(start)
-        return
-    pool = ThreadPoolExecutor(threads)
-    try:
-        list(pool.map(run, starts))
-    finally:
-        pool.shutdown(cancel_futures=True)
 
 
 def _enter(

@@ -4,6 +4,14 @@
    and sizes as macros. Where a file has one precision, so has all that is here. */
 #define SCENE_SOME(count) ((count) > 0 ? (count) : 1)
 
+/* Packs of columns that wait in cache for lines of their rows to be whole: 32 instants, of many columns a line's. */
+#define SCENE_BLOCK (SCENE_COLUMNS > 256 ? SCENE_LINE/(int) sizeof(lanes_real) : 32)
+#define SCENE_PACKS (SCENE_BLOCK/LANES)
+#define SCENE_LINE 64
+
+/* Bytes from which on columns are streamed past the caches. */
+#define SCENE_STREAMED (1u << 22)
+
 /* A rule of Newton's method: so many steps, or until a correction is below done. Above lost nothing is known; above rounding, and
    above rate times the correction before, it converges slowly. */
 typedef struct {
@@ -138,28 +146,49 @@ LANES_INLINE void scene_taken(const lagrange_casadi_instants* call, const lanes_
   }
 }
 
-/* The columns y of the pack of instants that begins at i, where iterated coordinates are z. Unless out is NULL, out[k*apart + i]
-   becomes column k at instant i. Where a value is not finite, and nothing else was to be said, status[i] tells so. */
+/* The columns y of the pack of instants that begins at i, where iterated coordinates are z. Where a value is not finite, and nothing
+   else was to be said, status[i] tells so. */
 LANES_INLINE void scene_pack(const scene_design* now, casadi_int i, casadi_real* y) {
   const lagrange_casadi_instants* call = now->call;
-  const casadi_int many = call->n - i < LANES ? call->n - i : LANES, apart = call->apart;
-  lanes_real *out = call->out ? call->out + i : 0, lanes[LANES];
+  const casadi_int many = call->n - i < LANES ? call->n - i : LANES;
+  lanes_real lanes[LANES];
   casadi_real at[SCENE_PLACE + SCENE_NZ], sum;
-  casadi_int j, k;
+  casadi_int j;
   scene_taken(call, call->t, SCENE_NT, i, at);
   scene_taken(call, call->z, SCENE_NZ, i, at + SCENE_PLACE);
   scene_columns(now, at, y);
-  if (out && many == LANES) {
-    for (k = 0; k < SCENE_OUTPUTS; ++k) scene_store(out + k*apart, y[k]);
-  } else if (out) {
-    for (k = 0; k < SCENE_OUTPUTS; ++k) memcpy(out + k*apart, y + k, (size_t) many*sizeof *out);
-  }
   sum = scene_sum(y, SCENE_OUTPUTS);
   sum = sum - sum;
   if (!lanes_any_nan(sum)) return;
   scene_store(lanes, sum);
   for (j = 0; j < many; ++j)
     if (lanes[j] != lanes[j] && call->status[i + j] == SCENE_OK) call->status[i + j] = SCENE_NOT_FINITE;
+}
+
+/* Whether the columns of so many instants are larger than caches, and lie so that whole lines of their rows can be streamed. */
+static int scene_streams(const lagrange_casadi_instants* call, casadi_int many) {
+  const size_t size = sizeof *call->out;
+  return SCENE_OUTPUTS*size*(size_t) many >= SCENE_STREAMED && ((size_t) call->out | (size_t) call->apart*size) % SCENE_LINE == 0;
+}
+
+/* Write the columns y of packs, one pack after another: out[k*apart + i] and on become column k at so many instants from i on. Where
+   told so, lines are streamed past the caches. */
+LANES_INLINE void scene_write(const lagrange_casadi_instants* call, casadi_int i, casadi_int many, const casadi_real* y,
+                              const int streams) {
+  lanes_real* to = call->out + i;
+  casadi_int j, k;
+  for (k = 0; k < SCENE_OUTPUTS; ++k, ++y, to += call->apart) {
+    if (many < SCENE_BLOCK) {
+      for (j = 0; j < many; j += LANES) {
+        memcpy(to + j, y + j/LANES*SCENE_COLUMNS, (size_t) (many - j < LANES ? many - j : LANES)*sizeof *to);
+      }
+    } else {
+      for (j = 0; j < SCENE_PACKS; ++j) {
+        if (streams) lanes_stream(to + j*LANES, y[j*SCENE_COLUMNS]);
+        else scene_store(to + j*LANES, y[j*SCENE_COLUMNS]);
+      }
+    }
+  }
 }
 
 #ifndef SCENE_REDUCED
@@ -170,10 +199,16 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_follow(const lagrange_casadi_instant
 }
 
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_evaluate(const lagrange_casadi_instants* call, long long first, long long last) {
-  casadi_real y[SCENE_SOME(SCENE_COLUMNS)];
+  const int streams = scene_streams(call, call->n);
+  casadi_real y[SCENE_PACKS*SCENE_SOME(SCENE_COLUMNS)];
   scene_design now;
-  casadi_int i;
+  casadi_int i, j;
   scene_begin(&now, call);
-  for (i = first; i < last; i += LANES) scene_pack(&now, i, y);
+  for (i = first; i < last; i += SCENE_BLOCK) {
+    for (j = 0; j < SCENE_PACKS && i + j*LANES < last; ++j) scene_pack(&now, i + j*LANES, y + j*SCENE_COLUMNS);
+    if (streams) scene_write(call, i, last - i, y, 1);
+    else scene_write(call, i, last - i, y, 0);
+  }
+  if (streams) lanes_streamed();
 }
 #endif

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..base.space import require
+from ..base.threads import in_threads
 from ..codegen import find_compiler
 from ..codegen.calls import Call
 from ..codegen.compiler import loaded
@@ -116,15 +117,7 @@ def fill(
             GRID.made(n=min(size, n - start), k=k, streams=int(out.nbytes >= _STREAMING), **here)
         )
 
-    if shares == 1:
-        run(0)
-        return
-    from concurrent.futures import ThreadPoolExecutor
-
-    with ThreadPoolExecutor(shares - 1) as pool:
-        others = pool.map(run, range(size, n, size))
-        run(0)
-        list(others)
+    in_threads(run, range(0, n, size), shares)
 
 
 def largest(

@@ -32,6 +32,7 @@ from ...errors import DeclarationError
 from ...instants.backends import begun, compiled, provenance
 from ...instants.determinacy import undetermined
 from ...instants.evaluation_method import EvaluationMethod, seconds
+from ...instants.grids import empty
 from ...instants.solution import Provenance
 from ...peak_search.intervals import TOPS, Listed
 from ...peak_search.sharpness import bent, with_watched
@@ -217,9 +218,7 @@ class DesignEngine:
         require(
             "the peaks of the designs", (n, 3 * len(self.kept.quantities) + 2 * len(self.efforts))
         )
-        if histories:
-            require("the histories of the designs", history)
-        columns = np.empty(history) if histories else None
+        columns = empty("the histories of the designs", history) if histories else None
         found, times = (
             self._results(n, columns),
             np.empty((n, self.count)) if histories and not self.shared else None,
