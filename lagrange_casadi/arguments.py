@@ -12,6 +12,7 @@ import types
 import typing
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, ParamSpec, TypeAlias, TypeVar
 
@@ -102,26 +103,61 @@ class _Kind(NamedTuple):
 _NONE: Any = object()
 
 
+@dataclass(frozen=True)
+class _Asked:
+    """Arguments that a function asks for: its ``signature``, the ``kinds`` that are known, and what
+    tells that a call fits.
+
+    ``positional`` are the names of arguments that may be given by their place; there are none if
+    some of its arguments are not of these two simple sorts.
+    """
+
+    signature: inspect.Signature
+    kinds: Mapping[str, _Kind]
+    positional: tuple[str, ...]
+    defaults: Mapping[str, object]
+    required: frozenset[str]
+
+    @classmethod
+    def of(cls, signature: inspect.Signature, kinds: Mapping[str, _Kind]) -> _Asked:
+        """Make them of a signature."""
+        each = signature.parameters.values()
+        by_place, by_name = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
+        simple = all(one.kind in (by_place, by_name) for one in each)
+        return cls(
+            signature,
+            kinds,
+            tuple(one.name for one in each if one.kind is by_place) if simple else (),
+            {one.name: one.default for one in each} if simple else {},
+            frozenset(one.name for one in each if one.default is one.empty),
+        )
+
+    def fits(self, given: Sequence[object], named: Mapping[str, object]) -> bool:
+        """Return whether arguments are all that a function needs, each once."""
+        if len(given) > len(self.positional) or not self.defaults:
+            return False
+        placed = self.positional[: len(given)]
+        return (
+            self.defaults.keys() >= named.keys()
+            and named.keys().isdisjoint(placed)
+            and self.required.difference(placed) <= named.keys()
+        )
+
+
 def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P, _Result]:
     """A function that looks at its arguments before it runs: whether they
     fit, and at their kinds.
     """
 
     @functools.cache
-    def asked() -> tuple[
-        inspect.Signature, dict[str, _Kind]
-    ]:  # a module's names are not all there when it is read
+    def asked() -> _Asked:  # a module's names are not all there when it is read
         signature = inspect.signature(function)
-        return signature, _kinds(function, signature) if kinds else {}
+        return _Asked.of(signature, _kinds(function, signature) if kinds else {})
 
     @functools.wraps(function)
     def called(*given: _P.args, **named: _P.kwargs) -> _Result:
-        signature, known = asked()
-        try:
-            bound = signature.bind(*given, **named)
-        except TypeError as wrong:
-            raise DeclarationError(_not_taken(function, signature, given, str(wrong))) from None
-        bound_arguments = bound.arguments
+        expected = asked()
+        signature, known = expected.signature, expected.kinds
 
         def read(kind: _Kind, name: str, value: object) -> Any:
             found = kind.read(value)
@@ -130,6 +166,23 @@ def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P
                 raise DeclarationError(f"{what}: expected {kind.words}, got {shown(value)}")
             return found
 
+        # Most calls fit, which is seen without binding them: that takes longer than all the rest.
+        if expected.fits(given, named):
+            for name, each in named.items():
+                if (kind := known.get(name)) and each is not expected.defaults[name]:
+                    named[name] = read(kind, name, each)
+            placed = [
+                read(kind, name, each)
+                if (kind := known.get(name)) and each is not expected.defaults[name]
+                else each
+                for name, each in zip(expected.positional, given, strict=False)
+            ]
+            return function(*typing.cast(Any, placed), **named)
+        try:
+            bound = signature.bind(*given, **named)
+        except TypeError as wrong:
+            raise DeclarationError(_not_taken(function, signature, given, str(wrong))) from None
+        bound_arguments = bound.arguments
         for name, kind in known.items():
             if (
                 name not in bound_arguments

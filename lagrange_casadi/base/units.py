@@ -149,6 +149,8 @@ def double(value: Any) -> float | None:
     """Number of Python; None for anything else, such as truth values, texts, arrays, dates and
     symbols.
     """
+    if type(value) is float:
+        return value
     if isinstance(value, ca.SX | ca.DM):
         return float(value) if value.is_scalar() and value.is_constant() else None
     value = value.item() if isinstance(value, np.ndarray) and not value.shape else value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping
 from fractions import Fraction
@@ -72,14 +73,20 @@ def points(even: EvenPoints, numbers: npt.NDArray[np.int64] | None = None) -> Ar
     if numbers is None:
         require(f"the points from {start:g} to {stop:g}", (_MADE_FROM, count))
     numbers = np.arange(count) if numbers is None else numbers
-    first, last = (Fraction(repr(float(end))) for end in (start, stop))
-    step = (last - first) / max(count - 1, 1)
-    whole = math.lcm(first.denominator, step.denominator)
-    base, by = int(first * whole), int(step * whole)
-    if max(abs(base), abs(int(last * whole)), whole) <= _EXACT:
+    base, by, whole = _whole(float(start), float(stop), count)
+    if max(abs(base), abs(base + by * (count - 1)), whole) <= _EXACT:
         return np.asarray((base + by * numbers) / whole)
     values = numbers * ((stop - start) / max(count - 1, 1)) + start
     return np.asarray(np.where(numbers == count - 1, float(stop), values))
+
+
+@functools.lru_cache(maxsize=256)
+def _whole(start: float, stop: float, count: int) -> tuple[int, int, int]:
+    """Whole numbers of even points: the first, the step, and that over which both are."""
+    first, last = (Fraction(repr(end)) for end in (start, stop))
+    step = (last - first) / max(count - 1, 1)
+    whole = math.lcm(first.denominator, step.denominator)
+    return int(first * whole), int(step * whole), whole
 
 
 def are_even(values: Array) -> bool:

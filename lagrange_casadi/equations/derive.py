@@ -92,9 +92,17 @@ def compile_scene(
     MobilityError, DeclarationError, AssemblyError
         If the loops cannot be solved.
     """
+    return compiled_for(scene, wanted, None if parameters is None else scene.values(parameters))
+
+
+@symbolic
+def compiled_for(
+    scene: Scene, wanted: Outputs | None, values: Mapping[str, float] | None
+) -> Program:
+    """Compile a scene as :func:`compile_scene` does, for ``values`` of all parameters, checked."""
     names = scene.wanted if wanted is None else wanted
-    if parameters is not None:
-        scene = assembled(scene, scene.values(parameters), names)
+    if values is not None:
+        scene = assembled(scene, values, names)
     listed = texts(names)
     want = Wanted.of(scene.mechanism, names) if listed is None else _wanted(scene, tuple(listed))
     try:

@@ -118,6 +118,7 @@ def bounds_of(program: Program) -> tuple[Bound, ...]:
     return tuple(found)
 
 
+@functools.lru_cache(maxsize=64)
 def rules_of(program: Program) -> tuple[Rule, ...]:
     """Return the rules of a program in the order in which they are told."""
     return tuple(rule for rule, _ in _tests(program))

@@ -66,9 +66,11 @@ def refusal(
     numbers = _first_broken(
         program, evaluated, most, _beside(program, evaluated.out, most, t, p, method)
     )
+    if not numbers.any() and not (evaluated.status == Status.NOT_FINITE).any():
+        return None
     statuses = np.array([Status.OK, *(rule.status for rule in program.rules)])[numbers]
     finite = (evaluated.status != Status.NOT_FINITE) | (statuses == Status.AT_REST)
-    bad = ~(finite & np.isin(statuses, (Status.OK, Status.AT_REST)))
+    bad = ~(finite & ((statuses == Status.OK) | (statuses == Status.AT_REST)))
     if not bad.any():
         return None
     i = int(np.argmax(bad))

@@ -19,7 +19,7 @@ from ..declare.laws import Laws
 from ..declare.scene import Scene
 from ..declare.times import Timing, instants_of, span_of
 from ..declare.wanted_names import by_parameters
-from ..equations.derive import compile_scene
+from ..equations.derive import compiled_for
 from ..equations.model_data import ModelData
 from ..equations.program import Program
 from ..errors import CertificateWarning, DeclarationError, warn
@@ -66,7 +66,7 @@ def solve(
             "elastic: a table cannot hold statically indeterminate forces; evaluate without a table"
         )
     names = scene.wanted if request.wanted is None else request.wanted
-    program = compile_scene(scene, names, parameters=values)
+    program = compiled_for(scene, names, values)
     method.check(program)
     checked_laws(program.data, checked_span(program.laws, timing, values), tuple(values.values()))
     require(
