@@ -8,7 +8,6 @@ import io
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 from tqdm import tqdm
 
@@ -48,7 +47,7 @@ def draw_with_progress(
         )
 
 
-def drawn_ways(error: PostureError, asked: Mapping[str, Any]) -> tuple[str, list[str]]:
+def drawn_ways(error: PostureError, asked: Mapping[str, object]) -> tuple[str, list[str]]:
     """Draw the ways in which an undecided loop can be assembled.
 
     The picture is named after the case's file, and lies beside what the command was ``asked`` to
@@ -61,7 +60,7 @@ def drawn_ways(error: PostureError, asked: Mapping[str, Any]) -> tuple[str, list
     if not isinstance(scene, Scene) or error.lacking:
         return "", []
     picture = io.BytesIO()
-    path = Path(asked.get("out") or ".").parent / f"{_name_of(scene, asked)}_postures.png"
+    path = Path(str(asked.get("out") or ".")).parent / f"{_name_of(scene, asked)}_postures.png"
     with suppress(LagrangeCasadiError):
         postures, complete = method("PostureError.drawn")(scene, picture)
         if postures:
@@ -79,10 +78,12 @@ def drawn_ways(error: PostureError, asked: Mapping[str, Any]) -> tuple[str, list
     return "", []
 
 
-def _name_of(scene: Scene, asked: Mapping[str, Any]) -> str:
+def _name_of(scene: Scene, asked: Mapping[str, object]) -> str:
     """The name of the case that a command was asked for, else that of its mechanism."""
-    targets = asked.get("targets") or [asked.get("case") or asked.get("target")]
-    if targets[0] is None:
+    targets = asked.get("targets")
+    first = targets[0] if isinstance(targets, tuple) and targets else None
+    target = first or asked.get("case") or asked.get("target")
+    if target is None:
         return scene.name
-    place = Path(targets[0]).resolve()
+    place = Path(str(target)).resolve()
     return place.parent.name if place.name == "case.py" else place.stem

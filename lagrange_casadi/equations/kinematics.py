@@ -265,7 +265,7 @@ class _Solver:
             if residual - least <= 1e-6 * (1.0 + least)
         ]
         if len(near) > 1:
-            # No cylinder or rod has a negative length: ways with one come last.
+            # No cylinder has a negative length: ways with one come last.
             near.sort(
                 key=lambda signs: any(
                     c.kind == "slide" and x < 0.0

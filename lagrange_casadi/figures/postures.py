@@ -148,7 +148,7 @@ def assemblies(scene: Scene) -> tuple[list[tuple[str, Solution]], int]:
 
 
 def _negative(solution: Solution) -> int:
-    """Count the slides at negative coordinates: no cylinder or rod has a negative length."""
+    """Count the slides at negative coordinates: no cylinder has a negative length."""
     kinds = coordinates_of(solution.description)
     slides = (name for name, kind in kinds.items() if kind == "slide")
     return sum(float(solution.array(f"motion:{name}")[0]) < -_ROUNDING for name in slides)
