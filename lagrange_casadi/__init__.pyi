@@ -28,6 +28,13 @@ from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .exports import export
 from .formats import read, save_model
+from .identification import (
+    Identification,
+    Measurements,
+    excite,
+    identify,
+    read_measurements,
+)
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
 from .load_cases import LoadCase, link_load_cases, write_load_cases
@@ -47,9 +54,11 @@ __all__ = [
     "Case",
     "Curve",
     "Front",
+    "Identification",
     "LagrangeCasadiError",
     "LagrangeSystem",
     "LoadCase",
+    "Measurements",
     "Mechanism",
     "Optimum",
     "Peak",
@@ -73,9 +82,11 @@ __all__ = [
     "elements",
     "errors",
     "evaluate",
+    "excite",
     "export",
     "figures",
     "holding",
+    "identify",
     "link_load_cases",
     "load",
     "load_case",
@@ -85,6 +96,7 @@ __all__ = [
     "prepare",
     "read",
     "read_designs",
+    "read_measurements",
     "refine",
     "save",
     "save_model",

@@ -58,6 +58,7 @@ ORDER = (
     "cluster",
     "formats",
     "load_cases",
+    "identification",
     "cli",
 )
 """A room imports only those before it, late imports too."""
@@ -67,7 +68,7 @@ DECLARED = ORDER[: ORDER.index("equations") + 1]
 
 LEAVES = (
     *("exports", "figures", "report", "animation", "actuators", "cluster"),
-    *("formats", "load_cases", "cli"),
+    *("formats", "load_cases", "identification", "cli"),
 )
 """What nothing but the command line imports."""
 
@@ -300,6 +301,7 @@ else:
     asked = {"animate": [out], "drive": [case], "export": [case, "--out", out + "_c"], "plot": [out, "--out", out + "_p"]}
     asked |= {"report": [out], "new": [out + "_new", "--from", "model.json"]}
     asked |= {"loads": [case, "--link", "crank", "--out", out + "_l"]}
+    asked |= {"identify": [case, "data.csv"]}
     for word in commands:
         assert main([word, *asked[word]]) == 1
 print(json.dumps([lost, refused]))
@@ -325,6 +327,11 @@ GOES = {
         ["cli.loads"],
         ["LoadCase", "link_load_cases", "write_load_cases"],
         ["loads"],
+    ),
+    "identification": (
+        ["cli.identify"],
+        ["Identification", "Measurements", "excite", "identify", "read_measurements"],
+        ["identify"],
     ),
     "cli": ([], [], []),
 }
