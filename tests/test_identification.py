@@ -1,6 +1,7 @@
 """Parameters from measurements are the true ones, as far as measurements tell them."""
 
 import casadi as ca
+import h5py
 import numpy as np
 import pytest
 
@@ -12,8 +13,10 @@ from lagrange_casadi import (
     evaluate,
     excite,
     identify,
+    load_case,
     read_measurements,
 )
+from lagrange_casadi.cli import main
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
 from lagrange_casadi.motion import expression, harmonic
 
@@ -437,3 +440,47 @@ def test_what_cannot_be_is_refused_by_name():
     far["d0"] = far["d0"] + np.linspace(0.0, 3.0, far["d0"].size)
     with pytest.raises(AssemblyError, match="cannot be closed at row"):
         identify(platform(), Measurements(np.linspace(0, 2, 201), far))
+
+
+def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "arm_case.py"
+    path.write_text(
+        "from math import sin\n"
+        "from lagrange_casadi import Mechanism, Scene\n"
+        "from lagrange_casadi.motion import harmonic\n"
+        "def scene():\n"
+        "    m = Mechanism('arm')\n"
+        "    w, c = m.parameter('w', 1.0, 'kg'), m.parameter('c', 0.1, 'N m s')\n"
+        "    j = m.revolute('O', m.ground, m.link('l', length=0.5, mass=w))\n"
+        "    m.torsion_spring('d', j, stiffness=0.0, damping=c)\n"
+        "    return Scene(m, {'O': harmonic(0.0, 1.0, 0.5)}, t=(0, 4, 201))\n"
+    )
+    solution = evaluate(load_case(path).scene, parameters={"w": 1.4, "c": 0.25})
+    noise = np.random.default_rng(0).normal(0.0, 0.02, solution.t.size)
+    heads = ["t [s]", "angle [deg]", "O_rate [deg/s]", "O_acceleration [rad/s^2]", "torque [N m]"]
+    columns = [np.degrees(solution.array(f"motion:O{end}")) for end in ("", "_rate")]
+    columns += [solution.array("motion:O_acceleration"), solution.array("effort:O") + noise]
+    rows = zip(solution.t, *columns, strict=True)
+    lines = [",".join(heads), *(",".join(f"{x:.12g}" for x in row) for row in rows)]
+    (tmp_path / "run.csv").write_text("\n".join(lines))
+    given = ["--column", "O=angle", "--column", "effort:O=torque", "--noise", "effort:O=0.02"]
+    given += ["--validate", "run.csv", "--figure", "fit.svg", "--out", "found.h5"]
+    assert main(["identify", str(path), "run.csv", *given]) == 0
+    said = capsys.readouterr().out
+    settings = dict(word.split("=") for word in said.split() if word[:2] in ("w=", "c="))
+    with h5py.File("found.h5") as file:
+        for name, true in (("w", 1.4), ("c", 0.25)):
+            item = file["parameters"][name]
+            assert float(settings[name]) == item[()]
+            assert abs(item[()] - true) < 4.0 * item.attrs["error"] < 0.02
+        assert file.attrs["complete"]
+        assert sorted(file["base"].attrs["words"]) == ["c", "w"]
+        both = file["record/effort:O"]
+        left = both["measured"][()] - both["model"][()]
+        assert np.sqrt(np.mean(left**2)) == pytest.approx(0.02, rel=0.2)
+        assert file["validation/effort:O"].attrs["relative"] == both.attrs["relative"]
+    assert (tmp_path / "fit.svg").read_text().startswith("<?xml")
+    before = (tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes()
+    assert main(["identify", str(path), "run.csv", *given]) == 0
+    assert before == ((tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes())

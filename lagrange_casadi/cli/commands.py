@@ -19,7 +19,17 @@ from ..base.vocabulary import (
     TIME_LIMIT,
     WIDTH,
 )
-from .design_commands import best, drive, optimise, size, sweep, table, tolerances, trade
+from .design_commands import (
+    best,
+    drive,
+    identify,
+    optimise,
+    size,
+    sweep,
+    table,
+    tolerances,
+    trade,
+)
 from .echo import say_step
 from .help import command
 from .options import (
@@ -426,6 +436,7 @@ GROUPS = {
     "Run": (run, info, check, cases, new),
     "Many designs": (sweep, best, table),
     "Design": (optimise, size, drive, tolerances, trade),
+    "Measurements": (identify,),
     "Other programs": (export, loads),
     "Look": (plot, report, animate),
     "Cache": (cache,),

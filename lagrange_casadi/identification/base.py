@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +19,7 @@ _RANK = 1e-10
 """Least distance of a column from those before it, relative to its norm, that is not rounding."""
 
 _WORSE = 100.0
-"""Factor by which the condition may be worse with the parameters that are declared first."""
+"""Factor by which the condition may be worse with the parameters that rank first."""
 
 _FAINT = 1e-8
 """Least share of a parameter in a combination, in columns of norm 1, that is not rounding."""
@@ -54,23 +55,38 @@ class Base:
         return tuple(found)
 
 
+class Ranking(NamedTuple):
+    """Usual sizes of parameters (k,), and the order in which they may stand for combinations."""
+
+    scales: Array
+    order: tuple[int, ...]
+
+    @classmethod
+    def of(cls, values: Array, units: Sequence[str]) -> Ranking:
+        """Rank parameters as they are declared, masses last: those are parts of the moments of the
+        links that carry them.
+        """
+        order = sorted(range(len(units)), key=lambda k: units[k] == "kg")
+        return cls(np.where(values == 0.0, 1.0, np.abs(values)), tuple(order))
+
+
 def triangle(columns: Array) -> Array:
     """Return the triangular factor of columns (n, k), which have their norms and products."""
     return np.asarray(np.linalg.qr(columns, mode="r"))
 
 
-def base_of(columns: Array, scales: Array) -> Base:
-    """Return the base of the columns (n, k) of parameters whose usual sizes are ``scales`` (k,).
+def base_of(columns: Array, ranking: Ranking) -> Base:
+    """Return the base of the columns (n, k) of parameters.
 
-    A column that is rounding beside the others, each times its scale, is absent. Parameters that
-    are declared first stand for combinations, unless others make a far better condition.
+    A column that is rounding beside the others, each times its scale, is absent. The first of the
+    ranking stand for combinations, unless others make a far better condition.
     """
     norms = np.linalg.norm(columns, axis=0)
-    sizes = norms * scales
+    sizes = norms * ranking.scales
     present = np.flatnonzero(sizes > _RANK * sizes.max(initial=0.0))
     left = triangle(columns[:, present] / norms[present])
     order = _pivoted(left)
-    plain = _as_declared(left)
+    plain = _ranked(left, np.argsort(np.argsort(ranking.order)[present]).tolist())
     conditions = [float(np.linalg.cond(left[:, some])) if some else 1.0 for some in (order, plain)]
     if len(plain) == len(order) and conditions[1] <= _WORSE * conditions[0]:
         order = plain
@@ -105,10 +121,10 @@ def _pivoted(columns: Array) -> list[int]:
     return order
 
 
-def _as_declared(columns: Array) -> list[int]:
-    """Return the columns of norm 1 that do not depend on those before them."""
+def _ranked(columns: Array, ranks: Sequence[int]) -> list[int]:
+    """Return the columns of norm 1 that do not depend on those before them in an order."""
     rest, order = columns.copy(), []
-    for k in range(columns.shape[1]):
+    for k in ranks:
         far = float(np.linalg.norm(rest[:, k]))
         if far > _RANK:
             order.append(k)

@@ -28,8 +28,8 @@ _PULL, _OPEN = 0.1, 1e-9
 largest measured column; singular values below that share of the largest are left open.
 """
 
-_LOW, _HIGH = 25.0, 10.0
-"""Farthest a logarithm goes from where a step begins."""
+_LOW, _HIGH = 7.0, 10.0
+"""Farthest a logarithm goes from where a step begins: masses and axes to a thousandth."""
 
 _LEAST = 1e-6
 """Least mass, and least part of an inertia, over its first value or the largest one."""
@@ -183,6 +183,6 @@ def _second_moments(inertia: Expression) -> ca.SX:
     return ca.SX(ca.trace(matrix) / 2 * ca.SX.eye(3) - matrix)
 
 
-def _lower(matrix: Any) -> list[Any]:
+def _lower(matrix: Expression) -> list[Expression]:
     """Return the entries of a symmetric matrix on and below its diagonal, row by row."""
     return [matrix[i, j] for i in range(matrix.size1()) for j in range(i + 1)]

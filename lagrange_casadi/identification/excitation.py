@@ -22,7 +22,7 @@ from ..declare.motion import Motion, expression
 from ..declare.scene import Scene
 from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..instants.evaluation_method import EvaluationMethod
-from .base import Base, base_of
+from .base import Base, Ranking, base_of
 from .regressor import DrivenMotion, Regressor
 
 _SAMPLES = 64
@@ -230,8 +230,8 @@ class _Search:
         if len(slopes) < len(self.names):
             raise AssemblyError("the motion leaves the reach of the mechanism")
         numbers = [list(self.regressor.program.data.parameters).index(name) for name in self.names]
-        sizes = np.abs(self.p[numbers])
-        return base_of(slopes, np.where(sizes == 0.0, 1.0, sizes))
+        units = [self.regressor.program.data.parameters[name].unit for name in self.names]
+        return base_of(slopes, Ranking.of(self.p[numbers], units))
 
 
 def _first(pair: tuple[tuple[int, float], int]) -> tuple[int, float]:

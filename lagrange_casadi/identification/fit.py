@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..errors import AccuracyError, DeclarationError
-from .base import Base, base_of, triangle
+from .base import Base, Ranking, base_of, triangle
 from .consistency import Consistency
 from .measurements import Filter
 from .regressor import DrivenMotion, Regressor
@@ -24,8 +24,10 @@ noise (Huber, *Robust Statistics*, 1981).
 """
 _MEDIAN = 1.4826
 _ROUNDS, _HALVINGS = 100, 30
-_STILL, _SETTLED = 1e-12, 1e-6
-"""Relative change of the model, and of noise and residuals, that is none."""
+_STILL, _SETTLED, _ROUGH = 1e-12, 1e-6, 1e-2
+"""Relative change of the model, and of noise and residuals, that is none; and of noise where steps
+are those of an iteration themselves.
+"""
 
 _SURE = 1e-5
 """Change of all the model, over its noise, that is none."""
@@ -33,8 +35,10 @@ _SURE = 1e-5
 _DETERMINED = 1e-11
 """Least singular value of what is determined, in columns of norm 1."""
 
-_FLOOR = 1e-12
-"""Least noise of a quantity, over its root mean square."""
+_FLOOR, _COARSE = 1e-12, 1e-6
+"""Least noise of a quantity, over its root mean square; with consistency, whose steps are those of
+an iteration.
+"""
 
 _LOOKED, _MOVED, _LINEAR, _SLIGHT = 24, 0.15, 1e-9, 1e-3
 """Instants at which linearity is checked; relative change of a parameter there; largest change of a
@@ -206,7 +210,7 @@ class Loss:
         return bool(np.isfinite(self.spread).any()) or self.consistency is not None
 
 
-def fit(data: Data, z: Array, loss: Loss, scales: Array) -> Fit:
+def fit(data: Data, z: Array, loss: Loss, ranking: Ranking) -> Fit:
     """Solve by Gauss and Newton's method, with exact derivatives; what is linear takes one step.
 
     Raises :class:`.DeclarationError` where nothing measured depends on the unknown parameters, and
@@ -217,21 +221,22 @@ def fit(data: Data, z: Array, loss: Loss, scales: Array) -> Fit:
     size = np.array([_rms(data.measured[:, k]) for k in range(data.measured.shape[1])])
     size[size == 0.0] = 1.0
     noise, weights = np.array([loss.noise.get(k, s) for k, s in enumerate(size)]), np.ones(1)
+    free = loss.consistency is None
+    rough, still = (_SETTLED, _STILL) if free else (_ROUGH, _ROUGH**2)
     for count in range(1, _ROUNDS + 1):
         total = float(np.sqrt(np.nansum((data.measured / noise) ** 2)))
         weights = _weights(rows.raw / noise[rows.quantity], robust=loss.robust and count > 1)
         root = np.sqrt(weights) / noise[rows.quantity]
         columns, right = rows.columns * root[:, None], rows.residual * root
-        base = base_of(columns, scales)
+        base = base_of(columns, ranking)
         if not base.chosen:
             raise DeclarationError("nothing that is measured depends on the unknown parameters")
         step = _step(columns, right, base, theta, loss)
         theta, z, rows, step = _taken(data, (theta, z, rows), step, root, loss, total)
         moved = float(np.linalg.norm(columns @ step))
         last, noise = noise, _noise(rows, size, loss, len(base.chosen))
-        if moved <= max(_SURE, _STILL * total) and np.allclose(
-            noise, last, rtol=_SETTLED, atol=0.0
-        ):
+        same = bool(np.allclose(noise, last, rtol=rough, atol=0.0))
+        if same and moved <= max(_SURE, still * total):
             break
     else:
         raise AccuracyError(
@@ -241,7 +246,7 @@ def fit(data: Data, z: Array, loss: Loss, scales: Array) -> Fit:
     scaled = rows.columns / noise[rows.quantity][:, None]
     weights = _weights(rows.raw / noise[rows.quantity], robust=loss.robust)
     prior = np.diag(1.0 / loss.spread)[np.isfinite(loss.spread)]
-    sure = base_of(np.vstack([triangle(scaled), prior]), scales)
+    sure = base_of(np.vstack([triangle(scaled), prior]), ranking)
     covariance = _covariance(data, rows, noise, prior, loss)
     return Fit(theta, z, base, sure, covariance, noise, weights, rows, count)
 
@@ -260,7 +265,8 @@ def _weights(scaled: Array, robust: bool) -> Array:
 
 def _noise(rows: Rows, size: Array, loss: Loss, count: int) -> Array:
     """Return standard deviations of quantities; those that are not given are of the residuals."""
-    found, free = size * _FLOOR, max(1.0 - count / rows.raw.size, 1.0 / rows.raw.size)
+    floor = _FLOOR if loss.consistency is None else _COARSE
+    found, free = size * floor, max(1.0 - count / rows.raw.size, 1.0 / rows.raw.size)
     for k in range(size.size):
         own = rows.raw[rows.quantity == k]
         if own.size:
@@ -283,7 +289,7 @@ def _step(columns: Array, right: Array, base: Base, theta: Array, loss: Loss) ->
             return loss.consistency.step(whole[:, :-1], whole[:, -1], theta)
         scale = np.linalg.norm(columns, axis=0)
         scale[scale == 0.0] = 1.0
-        return np.linalg.lstsq(columns / scale, right, rcond=1e-13)[0] / scale
+        return np.asarray(np.linalg.lstsq(columns / scale, right, rcond=1e-13)[0] / scale)
     chosen = list(base.chosen)
     scale = np.linalg.norm(columns[:, chosen], axis=0)
     step[chosen] = np.linalg.lstsq(columns[:, chosen] / scale, right, rcond=None)[0] / scale

@@ -15,7 +15,7 @@ from ..case import Case, scene_of
 from ..declare.scene import Scene
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.evaluation_method import EvaluationMethod
-from .base import base_of, triangle
+from .base import Ranking, base_of, triangle
 from .consistency import Consistency
 from .fit import Data, Fit, Loss, fit, nonlinear
 from .measurements import Filter, Measurements
@@ -47,7 +47,7 @@ class BaseParameter:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """What is measured beside the model of it, by quantity, each (t,); NaN where one is missing."""
+    """Measured quantities beside the model of them, each (t,); NaN where one is missing."""
 
     t: Array
     measured: Mapping[str, Array]
@@ -61,7 +61,7 @@ class Comparison:
 
     @property
     def relative(self) -> dict[str, float]:
-        """The same over the root mean square of what is measured."""
+        """Residuals over the root mean square of what is measured."""
         found = {}
         for name, residual in self.residual.items():
             both = np.where(np.isfinite(self.model[name]), self.measured[name], np.nan)
@@ -75,9 +75,9 @@ class Comparison:
 class Identification:
     """Parameters that were found, and how sure they are.
 
-    ``values`` and ``errors`` are those of the unknown parameters, standard errors infinite for one
-    that the measurements tell only as a part of a combination. ``base`` are the combinations that
-    they tell. ``untold`` are combinations that they do not tell, but that other speeds and
+    ``name`` is that of the mechanism. ``values`` and ``errors`` are those of the unknown
+    parameters; the standard error is infinite for one that is told only within a combination. ``base`` are
+    the combinations that are told. ``untold`` are combinations that they do not tell, but that other speeds and
     accelerations at the same places do; ``absent`` are parameters on which nothing measured
     depends. ``nonlinear`` are the parameters that forces are not linear in while the others are
     unknown too, and with which each goes; their base is that at the values found. ``condition`` is
@@ -87,7 +87,7 @@ class Identification:
     ``covariance`` is that of the base parameters.
     """
 
-    scene: str
+    name: str
     measurements: str
     values: Mapping[str, float]
     errors: Mapping[str, float]
@@ -109,8 +109,8 @@ class Identification:
 
     @property
     def setting(self) -> str:
-        """The values as the command line takes them: ``--set m=1.2 --set k=300``."""
-        return " ".join(f"--set {name}={value:.17g}" for name, value in self.values.items())
+        """The values with all digits, as ``m=1.2 k=300``."""
+        return " ".join(f"{name}={value:.17g}" for name, value in self.values.items())
 
     def validate(self, measurements: Measurements, trim: NotNegative = 0.0) -> Comparison:
         """Compare another record with the model.
@@ -223,7 +223,7 @@ def identify(
     low_pass = None if cutoff is None else Filter(measurements.t, cutoff)
     data = Data(regressor, motion, _measured(measurements, quantities), p, numbers, low_pass)
     z = regressor.follow(motion, p)
-    scales = np.where(data.theta == 0.0, 1.0, np.abs(data.theta))
+    ranking = Ranking.of(data.theta, [scene.parameters[name].unit for name in names])
     spread = np.array([(prior or {}).get(name, math.inf) for name in names])
     given = {
         k: measurements.noise[name]
@@ -236,11 +236,11 @@ def identify(
         )
     consistency = None
     if consistent:
-        consistency = Consistency.of(regressor.program, p, numbers, scales)
+        consistency = Consistency.of(regressor.program, p, numbers, ranking.scales)
     loss = Loss(given, robust, data.theta, spread, consistency)
-    curved = nonlinear(data, z, names, scales)
-    found = fit(data, z, loss, scales)
-    return _told(scene, measurements, data, found, (names, curved, scales), cutoff)
+    curved = nonlinear(data, z, names, ranking.scales)
+    found = fit(data, z, loss, ranking)
+    return _told(scene, measurements, data, found, (names, curved, ranking), cutoff)
 
 
 def _measured(measurements: Measurements, quantities: Sequence[str]) -> Array:
@@ -273,11 +273,11 @@ def _told(
     measurements: Measurements,
     data: Data,
     found: Fit,
-    unknown: tuple[Sequence[str], Mapping[str, tuple[str, ...]], Array],
+    unknown: tuple[Sequence[str], Mapping[str, tuple[str, ...]], Ranking],
     cutoff: float | None,
 ) -> Identification:
     """Return the result of a fit."""
-    names, curved, scales = unknown
+    names, curved, ranking = unknown
     regressor, base = data.regressor, found.base
     units = {name: scene.parameters[name].unit for name in names}
     combined = np.zeros((len(base.chosen), len(names)))
@@ -300,7 +300,7 @@ def _told(
     }
     p = data.parameters(found.theta)
     return Identification(
-        scene=regressor.program.data.name,
+        name=regressor.program.data.name,
         measurements=measurements.name,
         values=dict(zip(names, found.theta.tolist(), strict=True)),
         errors={n: single[k] if k in alone else math.inf for k, n in enumerate(names)},
@@ -309,7 +309,7 @@ def _told(
             BaseParameter(names[k], words, units[names[k]], value, error)
             for k, words, value, error in every
         ),
-        untold=_untold(data, found, scales, names),
+        untold=_untold(data, found, ranking, names),
         absent=tuple(names[k] for k in base.absent),
         nonlinear=curved,
         condition=base.condition,
@@ -325,9 +325,9 @@ def _told(
     )
 
 
-def _untold(data: Data, found: Fit, scales: Array, names: Sequence[str]) -> tuple[str, ...]:
+def _untold(data: Data, found: Fit, ranking: Ranking, names: Sequence[str]) -> tuple[str, ...]:
     """Return combinations that other rates and accelerations at the measured places would tell."""
-    generator, motion = np.random.default_rng(0), data.motion
+    generator, motion, scales = np.random.default_rng(0), data.motion, ranking.scales
     known = np.flatnonzero(np.isfinite(motion.acceleration).all(axis=1))
     sizes = [
         np.sqrt(np.mean(part[known] ** 2)) + 1.0 for part in (motion.rate, motion.acceleration)
@@ -349,4 +349,4 @@ def _untold(data: Data, found: Fit, scales: Array, names: Sequence[str]) -> tupl
     if not np.linalg.norm(more) > _TOLD * np.linalg.norm(rows):
         return ()
     more[:, np.linalg.norm(more, axis=0) <= _TOLD * np.linalg.norm(rows)] = 0.0
-    return base_of(more / size / scales, scales).words(names)
+    return base_of(more / size / scales, ranking).words(names)

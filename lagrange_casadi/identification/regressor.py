@@ -222,7 +222,7 @@ def _rows(program: Program, quantities: Sequence[str]) -> list[Output]:
 
 
 def _quantity(
-    program: Program, name: str, columns: Mapping[Column, Any], p: ca.SX
+    program: Program, name: str, columns: Mapping[Column, Expression], p: ca.SX
 ) -> tuple[Expression, str]:
     """Return a quantity as an expression of columns and parameters, and its unit."""
     place, data = along(name), program.data
