@@ -92,8 +92,8 @@ def methods(scene):
 
 
 def looked_at(scene, method):
-    """Estimates over true errors of a scene by one method; none where it is refused: steps may be too
-    few for any solution.
+    """Estimates over true errors of a scene by one method; none where it is refused: steps may be
+    too few for any solution.
     """
     if method not in methods(scene):
         return []
@@ -119,7 +119,9 @@ def main():
     parser.add_argument(
         "scenes", nargs="?", type=int, help="random scenes of every kind, in place of the cases"
     )
-    parser.add_argument("--method", choices=METHODS, action="append", help="only these; default: all")
+    parser.add_argument(
+        "--method", choices=METHODS, action="append", help="only these; default: all"
+    )
     parser.add_argument("--kind", action="append", help="only these; default: all")
     told = parser.parse_args()
     print(

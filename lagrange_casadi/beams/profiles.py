@@ -51,7 +51,8 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
     unit as ``height [mm]``.
 
     Where there is no such file, the name of a standard table is one: IPE, HEA and HEB of EN 10365,
-    CHS for tubes, flat and round. Each says in its first lines where its sizes are from.
+    CHS for round tubes, SHS and RHS for square and rectangular ones (SHS_cold and RHS_cold if cold
+    formed), flat and round. Each says in its first lines where its sizes are from.
 
     Cells are parted as :func:`.read_rows` says; lines that begin with ``#`` are passed over.
 

@@ -153,6 +153,22 @@ def box(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> S
 
 
 @public
+def hollow_section(
+    height: Symbolic,
+    width: Symbolic,
+    wall: Symbolic,
+    outer_radius: Symbolic,
+    inner_radius: Symbolic,
+) -> Shape:
+    """A rectangular tube with rounded corners, by its outer height and width, its wall, and the
+    outer and inner radius of its corners.
+    """
+    names = _NAMES["hollow_section"]
+    values = (height, width, wall, outer_radius, inner_radius)
+    return Shape("hollow_section", dict(zip(names, values, strict=True)))
+
+
+@public
 def polygon(places: Sequence[tuple[Operand, Operand]]) -> Shape:
     """A polygon by its corners (y, z), counter-clockwise from y to z; its centroid comes to lie on
     the link's axis.
@@ -332,6 +348,7 @@ _NAMES = {
     "t_section": _THIN,
     "c_section": _THIN,
     "box": _THIN,
+    "hollow_section": ("height", "width", "wall", "outer_radius", "inner_radius"),
 }
 
 
@@ -367,6 +384,7 @@ _FORMS: dict[str, Callable[[dict[str, Any], bool], Properties]] = {
     "t_section": lambda d, _: walls.t_section(**d),
     "c_section": lambda d, _: walls.c_section(**d),
     "box": lambda d, _: walls.box(**d),
+    "hollow_section": lambda d, space: walls.hollow_section(**d, space=space),
     "polygon": lambda d, _: solid.polygon(_corners(d)),
     "given": _given,
 }
@@ -385,6 +403,7 @@ _AREAS: dict[str, Callable[[dict[str, Any]], Any]] = {
         2 * d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"]
     ),
     "box": lambda d: 2 * (d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"]),
+    "hollow_section": lambda d: walls.hollow_area(**d),
     "polygon": lambda d: solid.polygon_area(_corners(d)),
     "given": lambda d: d["area"],
 }
@@ -401,6 +420,11 @@ def _demands(kind: str, d: dict[str, Expression]) -> Iterator[Demand]:
         yield d["iy"] * d["iz"] - d["iyz"] ** 2, "iy iz - iyz^2"
     elif kind == "tube":
         yield d["diameter"] - 2 * d["wall"], "inner diameter"
+    elif kind == "hollow_section":
+        for side in ("height", "width"):
+            yield d[side] - 2 * d["outer_radius"], f"straight part of the {side}"
+            inside = d[side] - 2 * d["wall"] - 2 * d["inner_radius"]
+            yield inside, f"straight part of the inner {side}"
     elif kind in ("i_section", "c_section", "box"):
         yield d["height"] - 2 * d["flange"], "height between the flanges"
         yield (

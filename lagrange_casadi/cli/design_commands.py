@@ -287,7 +287,8 @@ def optimise(**given: Any) -> int:
     type=PATH,
     metavar="FILE.csv|NAME",
     help="Choose from this table: a column name, and one column per dimension [m]; or by name from"
-    " a standard one: IPE, HEA, HEB, CHS, flat, round. Default: profiles.csv next to the case.",
+    " a standard one: IPE, HEA, HEB, CHS, SHS, RHS, SHS_cold, RHS_cold, flat, round. Default:"
+    " profiles.csv next to the case.",
 )
 @click.option(
     "--safety",
