@@ -105,7 +105,7 @@ def failure(solution: Solution) -> str:
 
 
 _SAID = {"ends": "section ends"}
-_NOTHING = "nothing to check without outputs"
+_NOTHING = "not computed; it needs motion, efforts, reactions and loads"
 
 
 def summary(residuals: Mapping[str, Array]) -> str:
