@@ -102,52 +102,191 @@ def _length(what: str, value: Operand | str) -> Operand:
 
 @public
 def rectangle(height: Symbolic, width: Symbolic) -> Shape:
-    """A rectangle."""
+    """Return a rectangle.
+
+    Parameters
+    ----------
+    height, width
+        Sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("rectangle", {"height": height, "width": width})
 
 
 @public
 def round_bar(diameter: Symbolic) -> Shape:
-    """A round bar."""
+    """Return a round bar.
+
+    Parameters
+    ----------
+    diameter
+        Diameter [m], numbers, texts such as ``"30 mm"``, or expressions of parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("round_bar", {"diameter": diameter})
 
 
 @public
 def tube(diameter: Symbolic, wall: Symbolic) -> Shape:
-    """A round tube, by its outer diameter and its wall."""
+    """Return a round tube.
+
+    Parameters
+    ----------
+    diameter, wall
+        Outer diameter and wall [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("tube", {"diameter": diameter, "wall": wall})
 
 
 @public
 def ellipse(height: Symbolic, width: Symbolic) -> Shape:
-    """An ellipse, by its two diameters."""
+    """Return an ellipse.
+
+    Parameters
+    ----------
+    height, width
+        Diameters along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("ellipse", {"height": height, "width": width})
 
 
 @public
 def i_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """An I, by its height, the width of its flanges, and the thickness of its web and of its
-    flanges.
+    """Return an I section without fillets.
+
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    web, flange
+        Thickness of the web, and of each flange [m].
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
     """
     return Shape("i_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
 def t_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """A T, its flange on the side of +y."""
+    """Return a T section without fillets, with its flange on the side of +y.
+
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    web, flange
+        Thickness of web and flange [m].
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("t_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
 def c_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """A C, its web on the side of -z."""
+    """Return a C section without fillets, with its web on the side of -z.
+
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    web, flange
+        Thickness of the web, and of each flange [m].
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("c_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
 def box(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """A box, by its outer height and width, and the thickness of its two webs and of its two
-    flanges.
+    """Return a box with sharp corners, two webs along y and two flanges along z.
+
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    web, flange
+        Thickness of each web, and of each flange [m].
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
     """
     return Shape("box", {"height": height, "width": width, "web": web, "flange": flange})
 
@@ -160,8 +299,27 @@ def hollow_section(
     outer_radius: Symbolic,
     inner_radius: Symbolic,
 ) -> Shape:
-    """A rectangular tube with rounded corners, by its outer height and width, its wall, and the
-    outer and inner radius of its corners.
+    """Return a square or rectangular tube with rounded corners.
+
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    wall
+        Thickness of the wall [m].
+    outer_radius, inner_radius
+        Radii of the corners [m]; EN 10210-2 takes 1.5 and 1 times the wall.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
     """
     names = _NAMES["hollow_section"]
     values = (height, width, wall, outer_radius, inner_radius)
@@ -170,10 +328,22 @@ def hollow_section(
 
 @public
 def polygon(places: Sequence[tuple[Operand, Operand]]) -> Shape:
-    """A polygon by its corners (y, z), counter-clockwise from y to z; its centroid comes to lie on
-    the link's axis.
+    """Return a polygon without holes, moved so that its centroid lies on the link's axis.
 
-    Raises :class:`.DeclarationError` for less than three corners.
+    Parameters
+    ----------
+    places
+        Corners (y, z) [m], counter-clockwise from y to z, numbers or expressions of parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section; its torsion is not known, use :func:`analysed` for it.
+
+    Raises
+    ------
+    DeclarationError
+        For fewer than three corners.
     """
     try:
         corners = [(y, z) for y, z in places]
@@ -206,13 +376,35 @@ def given(
     shear_y: Symbolic | None = None,
     shear_z: Symbolic | None = None,
 ) -> Shape:
-    """A cross-section by its properties, as tables of standards have them.
+    """Return a cross-section by its properties, as tables of standards have them.
 
-    ``iz`` is the integral of y^2 [m^4], ``top`` and ``bottom`` the distances of the outermost
-    fibres from the centroid along +y and -y [m], ``side`` that along z. ``torsion`` is
-    Saint-Venant's constant, ``torsion_modulus`` [m^3] what a torsional moment is divided by for its
-    largest shear stress; ``shear_y`` and ``shear_z`` [m^2] what shear forces are divided by for
-    theirs, by default two thirds of the area.
+    Parameters
+    ----------
+    area, iz, iy
+        Area [m^2], and second moments, the integrals of y^2 and of z^2 [m^4].
+    top, bottom
+        Distances of the outermost fibres from the centroid along +y and -y [m]; ``bottom`` is by
+        default as ``top``.
+    side
+        Distance of the outermost fibres along z [m].
+    iyz
+        Integral of y z [m^4].
+    torsion, torsion_modulus
+        Saint-Venant's constant [m^4], and the ratio of a torsional moment to its largest shear
+        stress [m^3]; both or none.
+    shear_y, shear_z
+        Ratios of shear forces to their largest shear stresses [m^2]; by default two thirds of the
+        area.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        If only one of the two numbers of torsion is given.
     """
     words = {
         "area": area,
@@ -236,11 +428,24 @@ def given(
 
 @public
 def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
-    """Shapes of one kind at ratios xi/l from 0 to 1, dimensions linear between; where a ratio comes
-    twice there is a step.
+    """Return cross-sections along a link, linear in their dimensions between given ratios.
 
-    Raises :class:`.DeclarationError` for ratios that fall or do not reach from 0 to 1, and for
-    shapes that do not fit together.
+    Parameters
+    ----------
+    ratios
+        Ratios xi/l from 0 to 1, in order; a ratio that is given twice makes a step.
+    shapes
+        A cross-section for each ratio, all of one kind.
+
+    Returns
+    -------
+    Course
+        The cross-sections along the link.
+
+    Raises
+    ------
+    DeclarationError
+        For ratios that fall or do not reach from 0 to 1, and for shapes that do not fit together.
     """
     for given in (ratios, shapes):
         check_kind("along", given, "ratios, and as many cross-sections", Sequence)
@@ -279,14 +484,46 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
 
 @public
 def tapered(base: Shape, tip: Shape) -> Course:
-    """A cross-section whose dimensions are linear from those at the base to those at the tip."""
+    """Return a cross-section whose dimensions change linearly from base to tip.
+
+    Parameters
+    ----------
+    base, tip
+        Cross-sections of one kind at the two ends.
+
+    Returns
+    -------
+    Course
+        The cross-sections along the link.
+
+    Raises
+    ------
+    DeclarationError
+        For shapes of different kinds.
+    """
     return along([0.0, 1.0], [base, tip])
 
 
 @public
 def stepped(steps: Sequence[float], shapes: Sequence[Shape]) -> Course:
-    """Constant cross-sections with steps between them, at ratios xi/l: one
-    step fewer than shapes.
+    """Return constant cross-sections with steps between them.
+
+    Parameters
+    ----------
+    steps
+        Ratios xi/l of the steps, in order.
+    shapes
+        Cross-sections, one more than steps.
+
+    Returns
+    -------
+    Course
+        The cross-sections along the link.
+
+    Raises
+    ------
+    DeclarationError
+        For numbers that do not fit each other.
     """
     for given in (steps, shapes):
         check_kind("stepped", given, "a row of steps, and one cross-section more", Sequence)
