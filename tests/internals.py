@@ -2,7 +2,7 @@
 
 # ruff: noqa: F401
 
-from lagrange_casadi.actuators.warmth import warmest
+from lagrange_casadi.actuators.choice import warmest
 from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.animation.drawn import Line
 from lagrange_casadi.animation.film import picture_of
@@ -68,7 +68,6 @@ from lagrange_casadi.declare.description import (
     describe,
     drives_of,
     kinds_of_described,
-    measured_of,
     motions_of,
     shape_of,
 )

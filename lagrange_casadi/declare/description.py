@@ -179,17 +179,6 @@ def kinds_of_described(description: Description) -> Kinds:
     return Kinds(coordinates, frictions, description.get("outputs", {}))
 
 
-def measured_of(description: Description) -> list[str]:
-    """The coordinates whose motion is told: all but the angles of joints with three turns that
-    close loops.
-    """
-    return [
-        name
-        for name in coordinates_of(description)
-        if name not in description.get("unmeasured", ())
-    ]
-
-
 def _driven(description: Description) -> list[str]:
     joints = description["joints"].items()
     if not in_space(description):
