@@ -338,8 +338,8 @@ class _History:
         if self.link in solution.links_with_sections:
             for section in solution.table.forces:
                 name = f"section:{self.link}:{section}"
-                turns = solution.unit(name) == "N m"
-                yield name, solution.extremes(name)[0], moment if turns else force
+                is_moment = solution.unit(name) == "N m"
+                yield name, solution.extremes(name)[0], moment if is_moment else force
         for name, (_, forces, moments) in self.loads.items():
             if name.startswith("reaction:"):
                 yield f"{name}:resultant", _sizes(forces), force
