@@ -27,6 +27,7 @@ from .options import (
     EVEN_POINTS,
     PATH,
     arithmetic,
+    at_values,
     even_points,
     instants,
     method,
@@ -41,9 +42,7 @@ from .options import (
 
 @command()
 @click.argument("case", type=CASE)
-@settings_by()
-@instants()
-@over
+@at_values
 @click.option(
     "--xi",
     type=even_points,
@@ -394,9 +393,7 @@ def cache(**given: Any) -> None:
     help="Write the load cases of this link, rigid body or point mass; repeatable.",
 )
 @click.option("--out", type=PATH, required=True, metavar="DIR", help="Write into this folder.")
-@settings_by()
-@instants()
-@over
+@at_values
 @click.option(
     "--every",
     is_flag=True,

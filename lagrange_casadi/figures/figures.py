@@ -294,14 +294,6 @@ def _mechanism(spec: MechanismDrawing, solution: Solution, si: bool) -> Figure:
     return draw_mechanism(solution, spec.count, spec.overlay, si)
 
 
-def _diagrams(spec: SectionDiagrams, solution: Solution, si: bool) -> Figure:
-    return draw_section_diagrams(solution, spec.links, si)
-
-
-def _polar(spec: PolarPlots, solution: Solution, si: bool) -> Figure:
-    return draw_polar(solution, spec.joints, si)
-
-
 def _strength(spec: StrengthPlot, solution: Solution, si: bool) -> Figure:
     from .strength_plot import draw_strength
 
@@ -324,8 +316,8 @@ _FIGURES: dict[type[Spec], Callable[[Any, Solution, bool], Figure]] = {
     TimePlot: _time,
     SpanPlot: _span,
     SectionMaps: _maps,
-    SectionDiagrams: _diagrams,
-    PolarPlots: _polar,
+    SectionDiagrams: lambda spec, *drawn: draw_section_diagrams(drawn[0], spec.links, drawn[1]),
+    PolarPlots: lambda spec, *drawn: draw_polar(drawn[0], spec.joints, drawn[1]),
     MechanismDrawing: _mechanism,
     StrengthPlot: _strength,
     UtilisationPlot: _utilisation,
