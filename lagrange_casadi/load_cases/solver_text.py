@@ -68,11 +68,13 @@ def nastran(case: LoadCase, number: int, nodes: Mapping[str, str]) -> Iterator[s
         yield from _card("RFORCE", used[-1], 0, 0, 1.0 / math.tau, *case.omega)
     if any(case.alpha):
         used.append(next(sets))
-        yield "$ angular acceleration, in turns; Nastran's force is along it, inertia against it"
-        negative = [-x for x in case.alpha]
+        yield "$ angular acceleration, in turns, negative: the force of RACC is m (alpha x r)"
+        negative = [0.0 - x for x in case.alpha]
         yield from _card("RFORCE", used[-1], 0, 0, 0.0, *negative, "", 1.0 / math.tau)
-    pairs = (field for one in used for field in (1.0, one))
-    yield from _card("LOAD", number, 1.0, *pairs)
+    pairs = "".join(f"{1.0:>8}{one:>8}" for one in used)
+    yield f"LOAD    {number:>8}{1.0:>8}{pairs[:48]}"
+    if pairs[48:]:
+        yield f"        {pairs[48:]}"
 
 
 def _head(case: LoadCase, mark: str, use: str) -> Iterator[str]:

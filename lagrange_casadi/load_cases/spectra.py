@@ -6,7 +6,7 @@ import csv
 import io
 import math
 import os
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from pathlib import Path
@@ -127,24 +127,30 @@ def write_spectrum(
         raise DeclarationError(f"spectrum of '{name}': it is indeterminate at some instants")
     number = count("spectrum: classes", classes, 0)
     cycles = [cycle for cycle in counted(history, repeating=repeating) if cycle.size > 0.0]
-    found: Counter[tuple[float, ...]] = Counter()
+    found: dict[tuple[float, ...], float] = defaultdict(float)
     widest, lowest = float(np.ptp(history)), float(history.min())
     for cycle in cycles:
-        exact = (cycle.size, cycle.mean)
-        if not number:
-            found[(*exact, *(x for x in exact for _ in range(2)))] += cycle.times
-            continue
-        bounds: list[float] = []
-        for value, start in zip(exact, (0.0, lowest), strict=True):
-            k = min(int((value - start) / widest * number), number - 1)
-            bounds += [start + widest * k / number, start + widest * (k + 1) / number]
-        middle = (bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2
-        found[(*middle, *bounds)] += cycle.times
+        size, mean = cycle.size, cycle.mean
+        if number:
+            ranges, means = (
+                _class_of(value, start, widest, number)
+                for value, start in ((size, 0.0), (mean, lowest))
+            )
+            key = (sum(ranges) / 2, sum(means) / 2, *ranges, *means)
+        else:
+            key = (size, mean, size, size, mean, mean)
+        found[key] += cycle.times
     rows = [(*key[:2], times, *key[2:]) for key, times in sorted(found.items())]
     seconds = float(np.ptp(solution.t))
     again = "which repeat" if repeating else "once"
     text = f"# {name} [{unit}], counted over {seconds:.9g} s, {again}\n"
     _write(Path(path), text, [_HEADS, *rows])
+
+
+def _class_of(value: float, start: float, width: float, count: int) -> tuple[float, float]:
+    """Return the ends of the class that a value is in."""
+    k = min(int((value - start) / width * count), count - 1)
+    return start + width * k / count, start + width * (k + 1) / count
 
 
 def _history(solution: Solution, name: str) -> tuple[Array, str]:
