@@ -136,6 +136,22 @@ def run(**given: Any) -> None:
     ),
 )
 @click.option(
+    "--fmu-by",
+    metavar="time|COORDINATE",
+    help="With --fmu, put the case's motion inside: the input is the time, or the place of this"
+    " coordinate, as a crank's angle.",
+)
+@click.option(
+    "--control",
+    is_flag=True,
+    help="Also write DIR/CASE_control.hpp, a class of C++ for controllers as ros2_control's.",
+)
+@click.option(
+    "--structured-text",
+    is_flag=True,
+    help="Also write DIR/CASE.st, function blocks of IEC 61131-3 for PLCs.",
+)
+@click.option(
     "--wasm",
     is_flag=True,
     help="Also write DIR/CASE.wasm for web pages, with a wrapper in JavaScript; needs ziglang.",
