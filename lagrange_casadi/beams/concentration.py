@@ -189,8 +189,8 @@ def hole(
         raise DeclarationError(
             f"hole: diameter must be less than height, got {diameter:g} and {height:g} m"
         )
-    left = 1.0 - share
-    tension = 0.284 + 2.0 / left - 0.600 * left + 1.32 * left**2
+    remaining = 1.0 - share
+    tension = 0.284 + 2.0 / remaining - 0.600 * remaining + 1.32 * remaining**2
     return Notch(at, tension, max(1.0, 2.0 * share) / (1.0 - share**3), shear, sensitivity)
 
 

@@ -320,7 +320,7 @@ class Template(Graphs):
         """The template of what :func:`describe` gives."""
         content, asked = numbered(mechanism, driven)
         if mechanism.outputs:
-            content["outputs"] = {name: own.unit for name, own in mechanism.outputs.items()}
+            content["outputs"] = {name: output.unit for name, output in mechanism.outputs.items()}
         if mechanism.rounded:
             content["rounded"] = {name: list(by) for name, by in mechanism.rounded.items()}
         if mechanism.snapped:

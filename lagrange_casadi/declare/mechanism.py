@@ -507,7 +507,7 @@ class Mechanism(Graphs):
         """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in
         parameters.
         """
-        self.own.open("set gravity")
+        self.own.refuse_frozen("set gravity")
         self.gravity = (self.own.expression("gravity", x), self.own.expression("gravity", y), 0.0)
 
     def freeze(self) -> None:

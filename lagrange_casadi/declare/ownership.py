@@ -132,7 +132,7 @@ class Ownership:
     def free(self, kind: str, name: str, table: Mapping[str, Part]) -> None:
         """Raise for a name that is taken, and where nothing can be added any more."""
         m = self.mechanism
-        self.open(f"add {kind} '{name}'")
+        self.refuse_frozen(f"add {kind} '{name}'")
         # Files and scenes know joints, loads, constraints, rows and paths by their names alone,
         # beside those of links.
         acting: tuple[Mapping[str, Part], ...] = (m.joints, m.loads, m.constraints, m.rows, m.paths)
@@ -143,7 +143,7 @@ class Ownership:
             (m.bodies, *acting) if any(table is other for other in acting) else (table,),
         )
 
-    def open(self, what: str) -> None:
+    def refuse_frozen(self, what: str) -> None:
         """Raise where nothing can be changed any more."""
         if self.mechanism.frozen:
             raise DeclarationError(

@@ -51,8 +51,8 @@ class Touch:
     """A mesh as numbers: the bodies' names, places in the carrier's axes, and forces and couples
     for units of lambda and of s.
 
-    Of its friction, ``loss`` are the arm and the lean, and ``turns`` the coordinates whose rates it
-    follows, with their signs.
+    Of its friction, ``loss`` are the arm and the lean, and ``rotations`` the coordinates whose
+    rates it follows, with their signs.
     """
 
     first: str
@@ -65,7 +65,7 @@ class Touch:
     braking: tuple[Triple, Triple]
     slack: float
     loss: tuple[float, float]
-    turns: tuple[tuple[int, str], ...]
+    rotations: tuple[tuple[int, str], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +134,7 @@ class EquationGraph(Graphs):
     values: ca.Function
     slopes: ca.Function
     meshes: tuple[tuple[str, str, str], ...]
-    turns: tuple[tuple[int, str], ...]
+    rotations: tuple[tuple[int, str], ...]
     wrenches: ca.Function
 
     @classmethod
@@ -184,7 +184,7 @@ class EquationGraph(Graphs):
             *(_numbers(transmission, mesh) for mesh in meshes if transmission),
         )
         rotations = (
-            transmission.loss.turns
+            transmission.loss.rotations
             if transmission is not None and transmission.loss is not None
             else ()
         )
@@ -199,7 +199,7 @@ class EquationGraph(Graphs):
             meshes=tuple(
                 (mesh.first.body.name, mesh.second.body.name, mesh.carrier.name) for mesh in meshes
             ),
-            turns=tuple((sign, joint.name) for sign, joint in rotations),
+            rotations=tuple((sign, joint.name) for sign, joint in rotations),
             wrenches=ca.Function("wrenches", [p], [ca.densify(wrenches)]),
         )
 
@@ -216,7 +216,7 @@ class EquationGraph(Graphs):
     def words(self) -> list[Json]:
         """Return the graph for JSON; functions as the text in which CasADi writes them."""
         functions = [function.serialize() for function in (self.values, self.slopes, self.wrenches)]
-        return [self.name, self.row, self.entries.words(), self.meshes, self.turns, *functions]
+        return [self.name, self.row, self.entries.words(), self.meshes, self.rotations, *functions]
 
     @classmethod
     def loads(cls, words: Sequence[Any]) -> EquationGraph:
@@ -234,7 +234,9 @@ class EquationGraph(Graphs):
         )
         along, apart, braking = ((parts[k], parts[k + 1]) for k in (0, 2, 4))
         slack, arm, lean = row[3 * _WRENCHES :]
-        return Touch(*names, centre, reach, along, apart, braking, slack, (arm, lean), self.turns)
+        return Touch(
+            *names, centre, reach, along, apart, braking, slack, (arm, lean), self.rotations
+        )
 
 
 @dataclass(frozen=True, eq=False)

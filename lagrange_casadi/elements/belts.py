@@ -146,9 +146,9 @@ def belt(
         fits += share(what, value)
         sideways = times((r1 - r2 if crossed else r1 + r2) / distance, cross(u, e))
         mesh = replace(mesh, braking=Wrench(sideways, times(r1, u)))
-        loss = Loss(f"{name}:loss", (1 - value) / (1 + value), 0.0, one.turns)
+        loss = Loss(f"{name}:loss", (1 - value) / (1 + value), 0.0, one.rotations)
     constraint = mechanism.constraint(
-        name, r1 * one.way(mechanism) + other * two.way(mechanism) - ahead
+        name, r1 * one.displacement(mechanism) + other * two.displacement(mechanism) - ahead
     )
     fits += [fit for course in (one, two) for fit in fits_of("its centre", course)]
     varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
@@ -161,6 +161,6 @@ def belt(
     mechanism.output(f"{name}_tight", (whole + force) / 2, unit="N")
     mechanism.output(f"{name}_slack", (whole - force) / 2, unit="N")
     if loss is not None:
-        rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.turns), ca.SX(0))
+        rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.rotations), ca.SX(0))
         mechanism.output(f"{name}_loss", 2 * r1 * loss.arm * force * ca.fabs(rate), unit="W")
     return Belt(constraint, -(r1 / other))

@@ -114,10 +114,10 @@ def _place(mechanism: Mechanism, what: str, corner: object, size: int) -> list[E
     return [mechanism.own.expression(what, number, "m") for number in corner]
 
 
-def _length(way: Sequence[Expression]) -> Expression:
-    if any(isinstance(x, ca.SX) for x in way):
-        return ca.sqrt(sum(x * x for x in way))
-    return math.hypot(*way)
+def _length(step: Sequence[Expression]) -> Expression:
+    if any(isinstance(x, ca.SX) for x in step):
+        return ca.sqrt(sum(x * x for x in step))
+    return math.hypot(*step)
 
 
 def _turn(y: Expression, x: Expression) -> Expression:

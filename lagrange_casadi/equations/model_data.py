@@ -268,7 +268,7 @@ class ModelData(Graphs):
         kinds = (
             ("joint", content["joints"]),
             ("path", content.get("paths", ())),
-            ("bar", content["bodies"]),
+            ("two-force link", content["bodies"]),
         )
         return f"{next((kind for kind, parts in kinds if part in parts), 'constraint')} '{part}'"
 

@@ -125,10 +125,10 @@ class Description:
             numberOfEventIndicators="0",
         )
         for kind, able in _KINDS.items():
-            way = _add(
+            element = _add(
                 root, kind, modelIdentifier=c.prefix, **{able: "true"}, canGetAndSetFMUstate="true"
             )
-            files = _add(way, "SourceFiles")
+            files = _add(element, "SourceFiles")
             for file in self.sources:
                 _add(files, "File", name=file)
         members = (*c.settings, *self.inputs, *c.outputs)

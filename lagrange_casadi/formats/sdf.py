@@ -53,7 +53,7 @@ def read(path: Path, text: str) -> Model:
         model.gravity = (float(x), float(y), float(z))
     line = needed(model, world or root, "model")
     others = [one for one in (world or root).all("model") if one is not line]
-    model.notes += [f"Model {shown(one.given.get('name'))} of line {one.line} is not read."
+    model.notes += [f"Model {shown(one.given.get('name'))} of line {one.line} is ignored."
                     for one in others]  # fmt: skip
     model.name = model.name_of("mechanism", attribute(model, line, "name"), line.where, {})
     return _Reader(model, line).read()
@@ -93,9 +93,11 @@ class _Reader:
             self.model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
         for one in self.line.inside:
             if one.name in ("model", "include"):
-                raise self.model.refuse(one.where, "is not read: put its links into the model")
+                raise self.model.refuse(
+                    one.where, "is not supported; put its links into the model itself"
+                )
             if one.name not in _IGNORED:
-                self.model.notes.append(f"<{one.name}> of line {one.line} is not read.")
+                self.model.notes.append(f"<{one.name}> of line {one.line} is ignored.")
         return self.model
 
     def body(self, link: Element) -> None:
@@ -142,8 +144,8 @@ class _Reader:
             kind,
             parent,
             child,
-            model.frame_of(parent).seen(near),
-            model.frame_of(child).seen(far),
+            model.frame_of(parent).relative(near),
+            model.frame_of(child).relative(far),
             lead,
             line.where,
         )
@@ -179,7 +181,7 @@ class _Reader:
         self.coupling(line, data, (ends[0], ends[1]), -ratio, 0.0)
 
     def coupling(
-        self, line: Element, told: str, joints: tuple[str, str], ratio: float, offset: float
+        self, line: Element, stated: str, joints: tuple[str, str], ratio: float, offset: float
     ) -> None:
         """Declare second = ratio first + offset."""
         model = self.model
@@ -187,7 +189,7 @@ class _Reader:
             if joint not in self.joints:
                 words = f"unknown joint {shown(joint)}; valid: {', '.join(self.joints)}"
                 raise model.refuse(line.where, words)
-        name = model.name_of("coupling", told, line.where, model.couplings)
+        name = model.name_of("coupling", stated, line.where, model.couplings)
         first, second = (self.joints[joint] for joint in joints)
         model.couplings[name] = Coupling(name, first, second, ratio, offset, line.where)
 

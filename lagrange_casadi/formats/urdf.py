@@ -147,7 +147,7 @@ class _Robot:
             given = line.first("parent_axis", "axis")
             if given is not None and given.given.get("frame") == "parent":
                 # The axis is told on the parent alone: the child's is where it is at zero.
-                known = placed[child].seen(placed[parent].then(near))
+                known = placed[child].relative(placed[parent].then(near))
                 far = Frame(far.place, rotation(self.model, line.where, known.axes))
             else:
                 far = far.then(self.axes(line, kind, "parent_axis", "axis"))
@@ -186,7 +186,9 @@ class _Robot:
             if link not in above:
                 raise model.refuse(line.where, f"link {shown(link)} has no joint")
         if len({self.side(above[link], _ONE)[0] for link in links}) > 1:
-            raise model.refuse(line.where, "is not read if its links hang on two different links")
+            raise model.refuse(
+                line.where, "is supported only if both its links have the same parent"
+            )
         first, second = (self.joint(above[link], "name") for link in links)
         value = attribute(model, needed(model, line, "ratio"), "value")
         ratio = number(model, line.where, value, "ratio")
@@ -222,12 +224,12 @@ class _Robot:
             self.model.notes.append(f"Frames without mass are left out: {', '.join(frames)}.")
         for one in self.root.inside:
             if one.name not in (*_KNOWN, *_LOOPS):
-                self.model.notes.append(f"<{one.name}> of line {one.line} is not read.")
+                self.model.notes.append(f"<{one.name}> of line {one.line} is ignored.")
 
-    def body(self, told: str, frame: Frame) -> str:
+    def body(self, stated: str, frame: Frame) -> str:
         """Declare a link as a body."""
-        model, link = self.model, self.links[told]
-        name = model.name_of("body", told, link.where, model.bodies)
+        model, link = self.model, self.links[stated]
+        name = model.name_of("body", stated, link.where, model.bodies)
         inertial = link.first("inertial")
         if inertial is None:
             none = np.zeros(3)
@@ -236,8 +238,8 @@ class _Robot:
         line = needed(model, inertial, "mass")
         mass = number(model, line.where, attribute(model, line, "value"), "mass")
         origin, inertia = self.origin(inertial.first("origin")), None
-        if (told_inertia := inertial.first("inertia")) is not None:
-            where, given = told_inertia.where, told_inertia.given
+        if (stated_inertia := inertial.first("inertia")) is not None:
+            where, given = stated_inertia.where, stated_inertia.given
             six = [number(model, where, given.get(key, "0"), key) for key in MOMENTS]
             inertia = inertia_of(six, origin.axes)
         model.bodies[name] = Body(name, mass, origin.place, inertia, frame, where=link.where)

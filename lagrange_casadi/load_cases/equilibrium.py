@@ -303,8 +303,8 @@ class _History:
         if self.link in solution.links_with_sections:
             for section in solution.table.forces:
                 name = f"section:{self.link}:{section}"
-                turns = solution.unit(name) == "N m"
-                yield name, solution.extremes(name)[0], moment if turns else force
+                is_moment = solution.unit(name) == "N m"
+                yield name, solution.extremes(name)[0], moment if is_moment else force
             if "beam" in solution.description["bodies"][self.link]:
                 for kind in ("normal", "shear", "von_mises"):
                     stress = solution.stress(self.link).largest(kind).value

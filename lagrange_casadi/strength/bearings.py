@@ -91,7 +91,7 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
     across, along = reaction_sizes(solution, joint)
     rate, slide = (joint_rate(solution, joint, kind) for kind in ("angle", "slide"))
     verdicts: list[Verdict] = []
-    left: list[str] = []
+    unknown: list[str] = []
     if parts is None:
         parts = list(parts_from_numbers(fitted).values())
     for part in parts:
@@ -101,12 +101,12 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
         elif isinstance(part, Plain):
             found, missing = _plain(part, across, rate, slide, solution.t)
             verdicts += found
-            left += missing
+            unknown += missing
         elif rate is None:
-            left.append(f"rolling bearing: the motion of joint '{joint}' is not evaluated")
+            unknown.append(f"rolling bearing: the motion of joint '{joint}' is not evaluated")
         else:
             verdicts += _rolling(part, across, along, rate, solution.t)
-    return Safety(joint, tuple(verdicts), tuple(left))
+    return Safety(joint, tuple(verdicts), tuple(unknown))
 
 
 def reaction_sizes(solution: Solution, joint: str) -> tuple[Array, Array]:
@@ -152,7 +152,7 @@ def joint_rate(solution: Solution, joint: str, kind: str) -> Array | None:
     """The rate at which a joint turns or slides; None if it is not told, or there is none."""
     entry = solution.description["joints"][joint]
     kinds = entry.get("coordinates") or {joint: entry.get("coordinate")}
-    name = next((name for name, own in kinds.items() if own == kind), None)
+    name = next((name for name, moves in kinds.items() if moves == kind), None)
     if kind == "angle":
         name = entry.get("turning", name)
     return None if name is None else solution.outputs.get(Output("motion", name, "rate"))
