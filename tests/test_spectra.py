@@ -13,6 +13,7 @@ from lagrange_casadi import (
     bearing_loads,
     errors,
     evaluate,
+    link_load_cases,
     load_case,
     write_spectrum,
 )
@@ -24,6 +25,14 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 @pytest.fixture(scope="module")
 def engine():
     return evaluate(load_case("connecting_rod").scene, wanted=["all"], t=(0, 0.07, 141))
+
+
+def test_instants_of_the_largest_stresses_govern(engine):
+    cases = link_load_cases(engine, "rod")
+    found = {name: case.t for case in cases for name in case.governs if name.startswith("stress")}
+    assert set(found) == {f"stress:rod:{kind}" for kind in ("normal", "shear", "von_mises")}
+    for name, t in found.items():
+        assert t == engine.stress("rod").peak(name.split(":")[-1]).t
 
 
 def rows(path):
