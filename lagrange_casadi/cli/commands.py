@@ -32,6 +32,7 @@ from .options import (
     instants,
     method,
     over,
+    pair,
     place,
     setting,
     settings_by,
@@ -132,6 +133,22 @@ def run(**given: Any) -> None:
         "Also write DIR/CASE.fmu, a unit of FMI 2.0 for simulation tools; needs FMPy and a C"
         " compiler."
     ),
+)
+@click.option(
+    "--fmu-by",
+    metavar="time|COORDINATE",
+    help="With --fmu, put the case's motion inside: the input is the time, or the place of this"
+    " coordinate, as a crank's angle.",
+)
+@click.option(
+    "--control",
+    is_flag=True,
+    help="Also write DIR/CASE_control.hpp, a class of C++ for controllers as ros2_control's.",
+)
+@click.option(
+    "--structured-text",
+    is_flag=True,
+    help="Also write DIR/CASE.st, function blocks of IEC 61131-3 for PLCs.",
 )
 @click.option(
     "--wasm",
@@ -388,7 +405,6 @@ def cache(**given: Any) -> None:
     "--link",
     "links",
     multiple=True,
-    required=True,
     metavar="NAME",
     help="Write the load cases of this link, rigid body or point mass; repeatable.",
 )
@@ -397,19 +413,58 @@ def cache(**given: Any) -> None:
 @click.option(
     "--every",
     is_flag=True,
-    help="Write a load case for every instant; default: for those at which a section force of the"
-    " link, or a reaction on it, is largest.",
+    help="Write a load case for every instant; default: for those at which a section force or a"
+    " stress of the link, or a reaction on it, is largest.",
 )
 @click.option(
     "--format",
     "formats",
     type=click.Choice(LOAD_FORMATS),
     multiple=True,
-    help="Write this format; repeatable. inp is included by input files of CalculiX and Abaqus."
-    " Default: all.",
+    help="Write this format; repeatable. inp is included by input files of CalculiX and Abaqus, nas"
+    " by Nastran's; beam is a model that CalculiX runs. Default: all.",
+)
+@click.option(
+    "--node",
+    "nodes",
+    type=pair,
+    multiple=True,
+    metavar="JOINT=NAME",
+    help="Name the node set, or the number, of the node in your mesh that takes a joint's load;"
+    " LINK=NAME names the element set; repeatable.",
+)
+@click.option(
+    "--spectrum",
+    "spectra",
+    multiple=True,
+    metavar="NAME",
+    help="Write the rainflow matrix of a quantity, as reaction:A:fx, section:rod:bending@0.5 or"
+    " stress:rod@0.5; repeatable.",
+)
+@click.option(
+    "--classes",
+    type=click.IntRange(0),
+    metavar="N",
+    default=64,
+    help="Set the classes of --spectrum, 0 for every cycle as it is; default: 64.",
+)
+@click.option(
+    "--bearing",
+    "bearings",
+    multiple=True,
+    metavar="JOINT",
+    help="Write equivalent loads and the speed of this joint for catalogues of bearings;"
+    " repeatable.",
+)
+@click.option(
+    "--exponent",
+    type=float,
+    metavar="P",
+    default=3.0,
+    help="Set the exponent of --bearing: 3 for balls, 10/3 for rollers; default: 3.",
 )
 def loads(**given: Any) -> None:
-    """Write loads on links of CASE for finite elements.
+    """Write loads on links of CASE for finite elements, and load spectra.
 
     Each load case has the forces and moments on the link, its acceleration and gravity, on the
     link's own axes. These are in equilibrium.

@@ -145,6 +145,14 @@ def setting(text: str) -> tuple[str, float | str]:
     )
 
 
+def pair(text: str) -> tuple[str, str]:
+    """NAME=NAME."""
+    name, _, other = (word.strip() for word in text.partition("="))
+    if not name or not other:
+        raise click.BadParameter(f"expected NAME=NAME, got '{text}'")
+    return name, other
+
+
 def place(text: str) -> tuple[str, float | str]:
     """NAME=VALUE, the value finite."""
     name, value = setting(text)
