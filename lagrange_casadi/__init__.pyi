@@ -11,6 +11,7 @@ from . import (
     elements,
     errors,
     figures,
+    forward,
     motion,
     peaks,
     strength,
@@ -28,6 +29,7 @@ from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .exports import export
 from .formats import read, save_model
+from .forward import flywheel, free
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
 from .load_cases import LoadCase, link_load_cases, write_load_cases
@@ -75,6 +77,9 @@ __all__ = [
     "evaluate",
     "export",
     "figures",
+    "flywheel",
+    "forward",
+    "free",
     "holding",
     "link_load_cases",
     "load",

@@ -58,6 +58,7 @@ ORDER = (
     "cluster",
     "formats",
     "load_cases",
+    "forward",
     "cli",
 )
 """A room imports only those before it, late imports too."""
@@ -67,14 +68,14 @@ DECLARED = ORDER[: ORDER.index("equations") + 1]
 
 LEAVES = (
     *("exports", "figures", "report", "animation", "actuators", "cluster"),
-    *("formats", "load_cases", "cli"),
+    *("formats", "load_cases", "forward", "cli"),
 )
 """What nothing but the command line imports."""
 
 MOST_ANY = 94
 """Parameters and results whose type is ``Any``, as what users give that is yet to be checked."""
 
-PUBLIC = "actuators beams bearings case cli density elements errors motion peaks version".split()  # noqa: SIM905
+PUBLIC = "actuators beams bearings case cli density elements errors forward motion peaks version".split()  # noqa: SIM905
 """What users import from, and tests as well."""
 
 

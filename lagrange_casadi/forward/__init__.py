@@ -1,8 +1,16 @@
-"""A machine left to itself: the motion it makes by itself, its steady cycle, and its flywheel."""
+"""A machine left to itself: its motion under a drive's law, its steady cycle, and its flywheel."""
 
-from .cycle import Cycle, Flywheel, flywheel, steady
-from .laws import Law, dc_motor, expression, induction_motor, power, torque, torque_curve
-from .motion import Event, FreeMotion, free
+from ..declare.torques import (
+    Law,
+    dc_motor,
+    expression,
+    induction_motor,
+    power,
+    torque,
+    torque_curve,
+)
+from .motion import Cycle, Event, FreeMotion
+from .running import Flywheel, flywheel, free
 
 __all__ = [
     "Cycle",
@@ -16,7 +24,6 @@ __all__ = [
     "free",
     "induction_motor",
     "power",
-    "steady",
     "torque",
     "torque_curve",
 ]

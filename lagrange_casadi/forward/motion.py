@@ -3,31 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from ..arguments import NotNegative, Outputs, public
+from ..arguments import Outputs, public
 from ..arithmetic import lookups
-from ..base.arrays import Array
-from ..base.packages import check_installed
+from ..base.arrays import Array, Expression
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
-from ..case import Case, scene_of
-from ..declare.even_points import EvenPoints, checked, points
+from ..declare.description import coordinates_of
+from ..declare.even_points import EvenPoints, points
 from ..declare.motion import Motion
 from ..declare.scene import Scene
-from ..declare.times import even_of
 from ..equations.derive import compiled_for
 from ..errors import CertificateWarning, DeclarationError, LagrangeCasadiError, warn
 from ..instants.solution import Solution
 from ..studies.request import Request
 from ..studies.solving import solve
-from ..verification.certificate import failure, tolerance
-from .laws import Law, law_of
+from ..verification.certificate import failure
 from .machine import ROW, Machine
 
 ACCURACY = 1e-12
@@ -37,14 +33,24 @@ _MOST_EVALUATIONS, _MOST_STOPS = 4_000_000, 1000
 _LEAST = 1e-9
 """Share of the whole time by which a run must go on after a stop."""
 
+DEAD, _NEAR = 1e-4, 0.05
+"""Sine of a loop's transmission angle at which the loop is at a dead centre; and that below which a
+run that cannot go on is at one.
+"""
+
+_RATES = [ROW[name] for name in ("acceleration", "drive", "load", "taken")]
+
+_SLOW = 1e-9
+"""Rate at which friction has its direction, and of a machine that is nearly at rest."""
+
 STATES = ("angle", "speed", "work_drive", "work_load", "work_taken")
 
 
 @dataclass(frozen=True)
 class Event:
-    """What happens to a free machine at time ``t`` [s], at an ``angle`` [rad or m] and a ``speed``
-    [rad/s or m/s]: it comes to ``rest`` and turns back or goes on, it is ``held`` at rest by
-    friction, or it comes to a ``dead centre``. The last two end the run.
+    """An event of a free machine at time ``t`` [s], at an ``angle`` [rad or m] and a ``speed``
+    [rad/s or m/s]: it is at ``rest``, and turns back or goes on; it is ``held`` at rest by
+    friction, or at a ``dead centre``, which ends the run.
     """
 
     kind: str
@@ -54,6 +60,34 @@ class Event:
 
     def __str__(self) -> str:
         return f"{self.kind} at t = {self.t:.6g} s, coordinate {self.angle:.6g}"
+
+
+@public
+@dataclass(frozen=True)
+class Cycle:
+    """Numbers of a steady cycle of a machine.
+
+    ``mean_speed`` is the cycle's angle over its ``period`` [s], ``least`` and ``largest`` are the
+    smallest and the greatest speed [rad/s], between the instants too. ``torque`` [N m] is the
+    constant one that keeps the mean speed where no drive was given, else zero. ``power`` [W] is the
+    mean that the drive gives; the load takes ``load``, and the scene ``taken``, of which its
+    frictions take ``lost``, by its instants.
+    """
+
+    period: float
+    mean_speed: float
+    least: float
+    largest: float
+    torque: float
+    power: float
+    load: float
+    taken: float
+    lost: float
+
+    @property
+    def fluctuation(self) -> float:
+        """Coefficient of fluctuation: largest less least speed, over the mean speed."""
+        return abs((self.largest - self.least) / self.mean_speed)
 
 
 @public
@@ -68,7 +102,8 @@ class FreeMotion:
     energy [J], that of the flywheel's ``inertia`` [kg m^2 or kg] too. ``energy`` is what is missing
     in their balance, over the largest of them: a residual of the certificate of ``solution``, which
     has all forces. ``scene`` is the scene with this motion. ``events`` are what happened on the
-    way; ``ended`` is the one that ended the run early, or None.
+    way; ``ended`` is the one that ended the run early, or None. ``cycle`` has the numbers of a
+    steady cycle, where one was asked for.
     """
 
     joint: str
@@ -86,6 +121,7 @@ class FreeMotion:
     events: tuple[Event, ...]
     scene: Scene
     solution: Solution
+    cycle: Cycle | None = None
 
     def __repr__(self) -> str:
         return (
@@ -116,70 +152,10 @@ class Start:
     speed: float
 
 
-@public
-def free(
-    scene: Scene | Case,
-    *,
-    drive: Law | float | None = None,
-    load: Law | float | None = None,
-    inertia: NotNegative = 0.0,
-    start: Sequence[float] | None = None,
-    t: EvenPoints | None = None,
-    parameters: Mapping[str, float] | None = None,
-    wanted: Outputs | None = None,
-    accuracy: float = ACCURACY,
-) -> FreeMotion:
-    """Let a machine of one degree of freedom go: its motion, and all forces along it.
-
-    Parameters
-    ----------
-    scene
-        The scene, in which the motion of one joint is given. Its law says where the machine
-        starts, unless ``start`` does, and no more.
-    drive, load
-        What drives the joint, and what resists on it beside the loads of the scene: laws of
-        :mod:`.forward`, or constant torques [N m], forces [N] of a joint that slides. Default:
-        none. The joint's effort is the drive's less the load's and what turns the flywheel.
-    inertia
-        Inertia of a flywheel, or of a motor's rotor, that turns with the joint and is no part of
-        the scene [kg m^2; kg where it slides]. Its weight is on nothing.
-    start
-        Coordinate and rate of the joint at the start [rad and rad/s; m and m/s].
-    t
-        Start, stop and count of the instants [s]; default: the scene's.
-    parameters, wanted
-        As of :func:`.evaluate`.
-    accuracy
-        Relative error of a step of the integrator, 1e-13 to 1e-3.
-
-    Returns
-    -------
-    FreeMotion
-        The motion, the balance of energy, the events, and a :class:`.Solution`. It ends early where
-        friction holds the machine, and at a dead centre.
-
-    Raises
-    ------
-    DeclarationError
-        For a scene of more than one degree of freedom, and for laws that are no expressions.
-    LagrangeCasadiError
-        Without SciPy; if a motor stalls or friction holds the machine before the second instant; if
-        the motion cannot be followed, as where the drive's power is without bound at rest.
-    """
-    scene = scene_of(scene)
-    values = scene.values(parameters)
-    scene.checked(values)
-    even = checked("t", even_of(scene.timing(), values) if t is None and scene.over is None else t)
-    laws = law_of(drive, "drive"), law_of(load, "load")
-    machine = Machine.of(scene, *laws, inertia, values)
-    return follow(machine, begun_at(machine, start, even[0]), even, wanted, accuracy)
-
-
 def begun_at(machine: Machine, start: Sequence[float] | None, t: float) -> Start:
     """Return the state at the start: as given, or as the law of the scene has it."""
     if start is None:
-        found = machine.program.motion(t, list(machine.values.values()))
-        return Start(float(found[0]), float(found[1]))
+        return Start(*machine.law(t))
     try:
         angle, speed = (float(x) for x in start)
     except (TypeError, ValueError):
@@ -190,6 +166,7 @@ def begun_at(machine: Machine, start: Sequence[float] | None, t: float) -> Start
 
 
 def follow(
+    scene: Scene,
     machine: Machine,
     start: Start,
     even: EvenPoints,
@@ -197,38 +174,38 @@ def follow(
     accuracy: float,
 ) -> FreeMotion:
     """Integrate a machine over instants, and evaluate the scene along the motion found."""
-    check_installed("scipy", "a free machine", "free")
-    if not 1e-13 <= accuracy <= 1e-3:
-        raise DeclarationError(f"accuracy: expected a number from 1e-13 to 1e-3, got {accuracy!r}")
     times = points(even)
     if times.size < 2:
         raise DeclarationError("t: a free machine needs two instants or more")
     if not machine.begin(float(times[0]), start.angle):
         raise DeclarationError(
-            f"start: the loops of '{machine.scene.name}' do not close at {start.angle:.6g}"
+            f"start: the loops of '{machine.name}' do not close at {start.angle:.6g}"
         )
     y, events = _integrated(machine, start, times, accuracy)
     times = times[: y.shape[1]]
     if times.size < 2:
         raise LagrangeCasadiError(
-            f"free machine '{machine.scene.name}': {events[-1]}, before the second instant"
+            f"free machine '{machine.name}': {events[-1]}, before the second instant"
         )
     machine.begin(float(times[0]), start.angle)
-    rows = np.array(
-        [machine.at(now, *state).copy() for now, state in zip(times, y[:2].T, strict=True)]
-    ).T
+    posture = {**scene.posture, **_posture(scene, machine, float(times[0]), start)}
+    ways = np.append(y[1, 1:], y[1, -1])  # at rest with friction, that of the next
+    slow = machine.sticks & (np.abs(y[1]) < _SLOW)
+    seen = np.where(slow, np.copysign(_SLOW, ways), y[1])
+    states = zip(times, y[0], seen, strict=True)
+    rows = np.array([machine.at(*state).copy() for state in states]).T
     flywheel = float(machine.added[1])
     law = hermite(times, y[0], y[1], rows[ROW["acceleration"]])
     moved = replace(
-        machine.scene,
-        motion={machine.joint: law},
+        scene,
+        motion={machine.equation.joint: law},
         t=(float(times[0]), float(times[-1]), times.size),
         over=None,
-        posture={**machine.scene.posture, **_posture(machine, float(times[0]), start)},
+        posture=posture,
     )
     solution = solve(moved, Request(machine.values, None, None, None, wanted))
     found = FreeMotion(
-        machine.joint,
+        machine.equation.joint,
         times,
         *(y[0], y[1], rows[ROW["acceleration"]], rows[ROW["drive"]], rows[ROW["load"]]),
         *(y[2], y[3], y[4]),
@@ -238,47 +215,47 @@ def follow(
         scene=moved,
         solution=solution,
     )
-    return replace(found, solution=_certified(found))
+    turning = rows[ROW["inertia"]] * rows[ROW["acceleration"]]
+    return replace(found, solution=_certified(found, float(np.abs(turning).max())))
 
 
-def _certified(found: FreeMotion) -> Solution:
-    """The solution with the residuals of energy and of the drive's law in its certificate."""
+def _certified(found: FreeMotion, turning: float) -> Solution:
+    """The solution with the residuals of energy and of the drive's law in its certificate;
+    ``turning`` is the largest torque of inertia [N m].
+    """
     solution = found.solution
     residuals = {"energy": found.energy}
     effort = Output("effort", found.joint)
     if effort in solution.outputs:
         given = found.drive - found.load - found.inertia * found.acceleration
-        largest = max(
-            float(np.nanmax(np.abs(x), initial=0.0))
-            for x in (given, found.drive, found.load, solution.outputs[effort])
-        )
+        torques = (given, found.drive, found.load)
+        largest = max(turning, *(float(np.abs(x).max()) for x in torques))
         missing = np.abs(np.nan_to_num(solution.outputs[effort] - given))
-        scale = max(largest, float(np.abs(found.kinetic).max()), 1e-300)
-        residuals["drive"] = missing / scale
+        residuals["drive"] = missing / (largest or 1.0)
     solution = replace(solution, certificate={**solution.certificate, **residuals})
     if solution.failed and any(name in solution.failed for name in residuals):
         warn(f"{failure(solution)}; the solution is not certified", CertificateWarning)
     return solution
 
 
-def _posture(machine: Machine, t: float, start: Start) -> dict[str, float]:
-    """Coordinates of the joints at the start, from which the loops are assembled there."""
-    program = compiled_for(machine.scene, ["motion"], machine.values)
-    p = list(machine.values.values())
-    z = machine.posture() if program.newton is not None else []
-    machine.begin(t, start.angle)
-    out = program.instant(t, start.angle, 0.0, 0.0, z, p).full().ravel()
-    found = {
-        output.part: float(out[row])
-        for output, row in program.outputs.items()
-        if output.group == "motion" and not output.member and np.isfinite(out[row])
-    }
-    kinds = machine.scene.mechanism.coordinates
-    return {
-        name: value if kinds[name][1].kind == "slide" else math.remainder(value, math.tau)
-        for name, value in found.items()
-        if name in kinds and name != machine.joint
-    }
+def _posture(scene: Scene, machine: Machine, t: float, start: Start) -> dict[str, float]:
+    """Coordinates of the joints at the start, from which the loops are assembled there; none where
+    it is that of the scene.
+    """
+    if start.angle == machine.law(t)[0]:
+        return {}
+    program, p = (
+        compiled_for(scene, ["motion"], machine.values),
+        np.array([*machine.values.values()]),
+    )
+    out = program.instant(t, start.angle, 0.0, 0.0, machine.z, p).full().ravel()
+    found = {}
+    for name, kind in coordinates_of(program.data.at(p)).items():
+        row = program.outputs.get(Output("motion", name))
+        if row is not None and name != machine.equation.joint:
+            value = float(out[row])
+            found[name] = math.remainder(value, math.tau) if kind == "angle" else value
+    return found
 
 
 @symbolic
@@ -299,9 +276,9 @@ def hermite(t: Array, value: Array, rate: Array, acceleration: Array) -> Motion:
         (6.0 * rise - 3.0 * h * faster + h**2 * change / 2.0) / h**5,
     )
 
-    def graph(time: Any) -> Any:
+    def graph(time: Expression) -> Expression:
         if t.size == 2:
-            u, c = time - t[0], [float(cell[0]) for cell in cells]
+            u, c = time - t[0], [ca.SX(float(cell[0])) for cell in cells]
         else:
             number = lookups.cell(t.tolist(), time, ends=False)
             u = time - lookups.entries(t[:-1].tolist(), number)
@@ -333,31 +310,30 @@ def _integrated(
     t, end, done, events = float(times[0]), float(times[-1]), list[Array](), list[Event]()
     done.append(state[:, None])
     for _ in range(_MOST_STOPS):
-        machine.lean[0] = 0.0
-        if machine.rubs and state[1] == 0.0:
-            way = _breaks_loose(machine, t, float(state[0]))
+        way = math.copysign(1.0, state[1])
+        if machine.sticks and state[1] == 0.0:
+            way = _first_way(machine, t, float(state[0]))
             if way == 0.0:
                 events.append(Event("held", t, float(state[0]), 0.0))
                 break
-            machine.lean[0] = way
         ahead = times[(times > t) & (times <= end)]
+        rates = _Rates(machine, way, (t, *state[:2].tolist()))
         run = solve_ivp(
-            _rates(machine),
+            rates,
             (t, end),
             state,
             method="DOP853",
             rtol=max(accuracy, 2.3e-14),
             atol=scales,
             t_eval=ahead,
-            events=_watched(machine),
+            events=_watched(machine, way),
             first_step=(end - t) * 1e-6,
         )
+        reached = np.reshape(run.y, (state.size, -1))  # SciPy's is a list where it is empty
+        done.append(reached)
         if run.status == -1:
-            last = (float(run.t[-1]), run.y[:, -1]) if run.t.size else (t, state)
-            events.append(_why_lost(machine, *last))
-            done.append(run.y)
+            events.append(_why_lost(machine, *rates.last))
             break
-        done.append(run.y)
         rests, dead = run.t_events
         states = run.y_events[0]
         events += [
@@ -376,69 +352,77 @@ def _integrated(
             break
         t, state = float(rests[0]), states[0].copy()
         state[1] = 0.0
-    return np.concatenate([part for part in done if part.size], axis=1), events
+    return np.concatenate(done, axis=1), events
 
 
-def _rates(machine: Machine) -> Callable[[float, Array], list[float]]:
-    """The right-hand side of :data:`STATES`."""
-    a, drive, load, taken = (ROW[name] for name in ("acceleration", "drive", "load", "taken"))
+@dataclass
+class _Rates:
+    """The right-hand side of :data:`STATES` for a machine that moves one ``way``: a friction keeps
+    its direction up to where the machine is at rest and beyond, so that the rate does not jump
+    before rest is found. ``last`` is the last time, coordinate and rate at which it was finite.
+    """
 
-    def rates(t: float, y: Array) -> list[float]:
+    machine: Machine
+    way: float
+    last: tuple[float, float, float]
+
+    def __call__(self, t: float, y: Array) -> list[float]:
+        machine, angle, speed = self.machine, float(y[0]), float(y[1])
         if machine.evaluations > _MOST_EVALUATIONS:
             raise LagrangeCasadiError(
-                f"free machine '{machine.scene.name}': after {_MOST_EVALUATIONS} evaluations the"
-                f" run is at t = {t:.6g} s alone; expected a shorter time or a coarser accuracy"
+                f"free machine '{machine.name}': after {_MOST_EVALUATIONS} evaluations the run is"
+                f" at t = {t:.6g} s alone; expected a shorter time or a coarser accuracy"
             )
-        speed = float(y[1])
-        rows = machine.at(t, float(y[0]), speed)
-        return [speed, rows[a], rows[drive] * speed, rows[load] * speed, rows[taken]]
+        slow = machine.sticks and self.way * speed < _SLOW
+        a, drive, load, taken = machine.at(t, angle, self.way * _SLOW if slow else speed)[_RATES]
+        if math.isfinite(a):
+            self.last = t, angle, speed
+        return [speed, a, drive * speed, load * speed, taken]
 
-    return rates
 
-
-def _watched(machine: Machine) -> list[Any]:
-    """Functions of the state that are zero at rest, and at a dead centre."""
+def _watched(machine: Machine, way: float) -> list[Callable[[float, Array], float]]:
+    """Functions of the state that are zero at rest, and at a dead centre, for a machine that moves
+    one ``way``.
+    """
 
     def rest(_t: float, y: Array) -> float:
         return float(y[1])
 
     def dead(t: float, y: Array) -> float:
-        margin = float(machine.at(t, float(y[0]), float(y[1]))[ROW["margin"]])
-        return min(margin, 2.0) - 1.0 if math.isfinite(margin) else 1.0
+        sine = float(machine.at(t, float(y[0]), float(y[1]))[ROW["sine"]])
+        return sine - DEAD if math.isfinite(sine) else 1.0
 
-    rest.terminal, dead.terminal = machine.rubs, True  # type: ignore[attr-defined]
+    vars(rest).update(terminal=machine.sticks, direction=-way if machine.sticks else 0.0)
+    vars(dead).update(terminal=True)
     return [rest, dead]
 
 
-def _breaks_loose(machine: Machine, t: float, angle: float) -> float:
+def _first_way(machine: Machine, t: float, angle: float) -> float:
     """The way in which a machine at rest begins to move against its friction: 1 or -1, or 0 where
     friction holds it.
     """
-    for way in (1.0, -1.0):
-        machine.lean[0] = way
-        a = float(machine.at(t, angle, 0.0)[ROW["acceleration"]])
-        if math.isfinite(a) and a * way > 0.0:
-            return way
+    try:
+        for way in (1.0, -1.0):
+            machine.lean[0] = way
+            a = float(machine.at(t, angle, 0.0)[ROW["acceleration"]])
+            if math.isfinite(a) and a * way > 0.0:
+                return way
+    finally:
+        machine.lean[0] = 0.0
     return 0.0
 
 
-def _why_lost(machine: Machine, t: float, y: Array) -> Event:
+def _why_lost(machine: Machine, t: float, angle: float, speed: float) -> Event:
     """The event at which the integrator can go no further.
 
     Raises :class:`.LagrangeCasadiError` where it is no dead centre.
     """
-    rows = machine.at(t, float(y[0]), float(y[1]))
-    margin = rows[ROW["margin"]]
-    if not np.isfinite(margin) or margin < _NEAR_DEAD:
-        return Event("dead centre", t, float(y[0]), float(y[1]))
+    rows = machine.at(t, angle, speed)
+    if not rows[ROW["sine"]] >= _NEAR:
+        return Event("dead centre", t, angle, speed)
     raise LagrangeCasadiError(
-        f"free machine '{machine.scene.name}': its motion cannot be followed beyond t = {t:.6g} s,"
-        f" coordinate {y[0]:.6g}, rate {y[1]:.6g}: acceleration {rows[ROW['acceleration']]:.3g},"
-        f" drive {rows[ROW['drive']]:.3g}; a law is without bound or jumps back and forth there"
+        f"free machine '{machine.name}': its motion cannot be followed beyond t = {t:.6g} s,"
+        f" coordinate {angle:.6g}, rate {speed:.6g}: acceleration"
+        f" {rows[ROW['acceleration']]:.3g}, drive {rows[ROW['drive']]:.3g}; a law is without bound"
+        " or jumps back and forth there"
     )
-
-
-_NEAR_DEAD = 1e6
-"""Margin below which a run that cannot go on is at a dead centre."""
-
-

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 
 from ..arguments import Symbolic, public
+from ..base.arrays import Expression
 from ..base.symbolic import symbolic
-from ..declare import curves
-from ..declare.expressions import error_text, scalar, symbols_of
 from ..errors import DeclarationError
+from . import curves
+from .expressions import error_text, scalar, symbols_of
 
 _ARGUMENTS = ("t", "angle", "speed")
 
@@ -24,7 +24,7 @@ class Law:
     in words what it is.
     """
 
-    graph: Callable[[Any, Any, Any], Any]
+    graph: Callable[[Expression, Expression, Expression], Expression]
     name: str = "expression"
 
     @public
@@ -126,7 +126,7 @@ def induction_motor(
     at = _number("induction_motor: breakdown_slip", breakdown_slip, "1")
     field = _number("induction_motor: synchronous_speed", synchronous_speed, "rad/s")
 
-    def graph(_t: Any, _angle: Any, speed: Any) -> Any:
+    def graph(_t: Expression, _angle: Expression, speed: Expression) -> Expression:
         slip = 1.0 - speed / field
         return 2.0 * most * at * slip / (slip * slip + at * at)
 
@@ -134,7 +134,7 @@ def induction_motor(
 
 
 @public
-def expression(law: Callable[[Any, Any, Any], Any]) -> Law:
+def expression(law: Callable[[Expression, Expression, Expression], Expression]) -> Law:
     """Any law: a function of the symbols t [s], angle [rad or m] and speed [rad/s or m/s] that
     returns a ``casadi.SX`` expression of them and of parameters [N m or N].
 
@@ -147,5 +147,5 @@ def expression(law: Callable[[Any, Any, Any], Any]) -> Law:
     return Law(law)
 
 
-def _number(what: str, value: object, unit: str) -> Any:
+def _number(what: str, value: object, unit: str) -> Expression:
     return scalar(what, value, symbols_of(value), "parameter", unit)
