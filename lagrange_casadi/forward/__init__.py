@@ -10,6 +10,7 @@ from ..declare.torques import (
     torque_curve,
 )
 from .motion import Cycle, Event, FreeMotion
+from .plot import plot_cycle
 from .running import Flywheel, flywheel, free
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "flywheel",
     "free",
     "induction_motor",
+    "plot_cycle",
     "power",
     "torque",
     "torque_curve",

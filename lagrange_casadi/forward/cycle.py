@@ -10,8 +10,8 @@ keeps a fluctuation.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -93,7 +93,7 @@ def sought(machine: Machine, begin: Start, goal: Goal, accuracy: float) -> Found
             f"machine '{name}' stalls: it does not get round from {begin.angle:.6g} rad, at"
             f" speeds from {begin.speed:.6g} to {speed:.6g} rad/s"
         )
-    signs = set[float]()
+    signs, close = set[float](), False
     for number in range(_STEPS):
         residuals, slopes = _residuals(turn, speed, goal)
         signs.add(math.copysign(1.0, residuals[0]))
@@ -103,8 +103,8 @@ def sought(machine: Machine, begin: Start, goal: Goal, accuracy: float) -> Found
                 " turn adds as much energy as the one before"
             )
         step = np.asarray(-np.linalg.lstsq(slopes, residuals)[0], float)
-        close = np.abs(residuals).max() < _DONE * max(1.0, accuracy / ACCURACY)
-        if close and abs(step[0]) < _SAME * abs(speed):
+        before, close = close, np.abs(residuals).max() < _DONE * max(1.0, accuracy / ACCURACY)
+        if before and close and abs(step[0]) < _SAME * abs(speed):  # one more step than it takes
             least, largest = sorted((turn.least[_SPEED], turn.largest[_SPEED]), key=abs)
             return Found(
                 *(begin.angle, speed, float(machine.added[0]), float(machine.added[1])),
@@ -190,13 +190,11 @@ def _turned(machine: Machine, begin: Start, span: float, accuracy: float) -> _Tu
 
     state = np.zeros(8)
     state[_SPEED], state[_BY] = begin.speed, (1.0, 0.0, 0.0)
-    run = _over(rates, (begin.angle, begin.angle + span), state, accuracy, even)
-    if run is None:
+    states = _over(rates, (begin.angle, begin.angle + span), state, accuracy, even)
+    if states is None:
         return None
-    states = np.concatenate([run.y[:, [0, -1]].T, run.y_events[0].reshape(-1, 8)])
     order = np.argsort(states[:, _SPEED])
-    least, largest = states[order[0]], states[order[-1]]
-    return _Turn(run.y[:, -1], least, largest)
+    return _Turn(states[1], states[order[0]], states[order[-1]])
 
 
 def swing(machine: Machine, begin: Start, span: float, accuracy: float) -> tuple[float, float]:
@@ -207,49 +205,49 @@ def swing(machine: Machine, begin: Start, span: float, accuracy: float) -> tuple
     """
     effort, load = ROW["effort"], ROW["load"]
 
-    def over(mean: float) -> Any:
+    def over(mean: float) -> Array:
         def rates(angle: float, _y: Array) -> list[float]:
             rows = machine.at(0.0, angle, begin.speed)
             return [float(rows[effort] + rows[load]) - mean]
 
         machine.begin(0.0, begin.angle)
-        run = _over(
-            rates,
-            (begin.angle, begin.angle + span),
-            np.zeros(1),
-            accuracy,
-            lambda angle, y: rates(angle, y)[0],
-        )
-        if run is None:
+        ends = begin.angle, begin.angle + span
+        energies = _over(rates, ends, np.zeros(1), accuracy, lambda x, y: rates(x, y)[0])
+        if energies is None:
             raise LagrangeCasadiError(
-                f"machine '{machine.name}': its torque at the even speed {begin.speed:.6g}"
-                " rad/s is not finite all the way round"
+                f"machine '{machine.name}': its torque at the even speed {begin.speed:.6g} rad/s"
+                " is not finite all the way round"
             )
-        return run
+        return energies
 
     with machine.evenly(begin.angle, begin.speed):
-        mean = float(over(0.0).y[0, -1]) / span
-        run = over(mean)
-    return float(np.ptp(np.concatenate([run.y[0, [0, -1]], run.y_events[0].ravel()]))), mean
+        mean = float(over(0.0)[1, 0]) / span
+        return float(np.ptp(over(mean))), mean
 
 
 def _over(
-    rates: Any, span: tuple[float, float], state: Array, accuracy: float, even: Any
-) -> Any | None:
-    """A run over the angle, with ends and extremes; None where it does not come to its end."""
+    rates: Callable[[float, Array], Sequence[float] | Array],
+    span: tuple[float, float],
+    state: Array,
+    accuracy: float,
+    even: Callable[[float, Array], float],
+) -> Array | None:
+    """States over the angle, one a row: at the start, at the end, and where ``even`` is zero; None
+    where the machine does not come to the end.
+    """
     from scipy.integrate import solve_ivp
 
     with np.errstate(invalid="ignore"):
         run = solve_ivp(
-            rates,
-            span,
-            state,
+            *(rates, span, state),
             method="DOP853",
             rtol=max(accuracy, 2.3e-14),
             atol=accuracy * 1e-3,
             events=even,
         )
-    return run if run.status == 0 else None
+    if run.status != 0:
+        return None
+    return np.concatenate([run.y[:, [0, -1]].T, np.reshape(run.y_events[0], (-1, state.size))])
 
 
 def _check_repeats(machine: Machine, begin: Start, span: float) -> None:

@@ -96,8 +96,9 @@ class FreeMotion:
     """The motion that a machine makes by itself, over its instants ``t`` [s].
 
     ``angle``, ``speed`` and ``acceleration`` are those of the drive's ``joint`` [rad or m, and per
-    s and s^2], ``drive`` and ``load`` the torques of the laws [N m or N], each (t,). Since the
-    first instant the drive has done ``work_drive`` [J], the load has taken ``work_load``, and the
+    s and s^2], ``drive`` and ``load`` the torques of the laws [N m or N], and ``reflected`` is the
+    inertia that the drive feels, without the flywheel's [kg m^2 or kg], each (t,). Since the first
+    instant the drive has done ``work_drive`` [J], the load has taken ``work_load``, and the
     scene's own loads, springs, weights and frictions ``work_taken``; ``kinetic`` is the kinetic
     energy [J], that of the flywheel's ``inertia`` [kg m^2 or kg] too. ``energy`` is what is missing
     in their balance, over the largest of them: a residual of the certificate of ``solution``, which
@@ -113,6 +114,7 @@ class FreeMotion:
     acceleration: Array
     drive: Array
     load: Array
+    reflected: Array
     work_drive: Array
     work_load: Array
     work_taken: Array
@@ -134,6 +136,14 @@ class FreeMotion:
         """The event that ended the run before its time."""
         last = self.events[-1] if self.events else None
         return last if last is not None and last.kind in ("held", "dead centre") else None
+
+    @property
+    def resisting(self) -> Array:
+        """Torque [N m] that the load and the scene's loads, springs, weights and frictions take at
+        the speed of the machine, with what its varying inertia does, (t,): without the flywheel
+        the drive needs as much to turn evenly.
+        """
+        return np.asarray(self.drive - (self.reflected + self.inertia) * self.acceleration)
 
     @property
     def energy(self) -> Array:
@@ -208,7 +218,7 @@ def follow(
         machine.equation.joint,
         times,
         *(y[0], y[1], rows[ROW["acceleration"]], rows[ROW["drive"]], rows[ROW["load"]]),
-        *(y[2], y[3], y[4]),
+        *(rows[ROW["inertia"]] - flywheel, y[2], y[3], y[4]),
         kinetic=rows[ROW["kinetic"]] + flywheel * y[1] ** 2 / 2.0,
         inertia=flywheel,
         events=tuple(events),
