@@ -14,44 +14,39 @@ from ..errors import DeclarationError
 from . import curves
 from .expressions import error_text, scalar, symbols_of
 
-_ARGUMENTS = ("t", "angle", "speed")
-
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """A torque [N m], or force [N] of a drive that slides, over the time [s], the coordinate
-    [rad or m] and the rate [rad/s or m/s] of the drive: ``graph(t, angle, speed)``. ``name`` says
-    in words what it is.
+    """A torque [N m], or force [N] of a drive that slides, over the time [s], the coordinate [rad
+    or m] and the rate [rad/s or m/s] of the drive: ``graph(t, angle, speed)``.
     """
 
     graph: Callable[[Expression, Expression, Expression], Expression]
-    name: str = "expression"
 
     @public
     def geared(self, ratio: Symbolic) -> Law:
         """Return the law of a motor that turns ``ratio`` times as fast as the drive, without
         losses.
         """
-        times = scalar("geared: ratio", ratio, symbols_of(ratio), "parameter")
-        return Law(
-            lambda t, angle, speed: times * self.graph(t, times * angle, times * speed), self.name
-        )
+        times = _number("geared: ratio", ratio, "1")
+        return Law(lambda t, angle, speed: times * self.graph(t, times * angle, times * speed))
 
-    @symbolic
-    def of(self, what: str, arguments: Sequence[ca.SX], parameters: ca.SX) -> ca.SX:
-        """Return its expression of symbols for time, angle and speed, and of parameters.
 
-        Raises :class:`.DeclarationError`, saying ``what`` it is, for what is no such expression.
-        """
-        try:
-            value = self.graph(*arguments)
-        except Exception as error:
-            raise DeclarationError(
-                f"{what} cannot be made as an expression of {', '.join(_ARGUMENTS)} (CasADi's"
-                f" functions, numbers without units): {error_text(error)[:240]}"
-            ) from None
-        symbols = [*arguments, *(ca.vertsplit(parameters) if parameters.numel() else [])]
-        return ca.SX(scalar(what, value, symbols, "parameter", "N*m"))
+@symbolic
+def torque_of(law: Law, what: str, arguments: Sequence[ca.SX], parameters: ca.SX) -> ca.SX:
+    """Return a law as an expression of symbols for time, angle and speed, and of parameters.
+
+    Raises :class:`.DeclarationError`, saying ``what`` it is, for what is no such expression.
+    """
+    try:
+        value = law.graph(*arguments)
+    except Exception as error:
+        raise DeclarationError(
+            f"{what} cannot be made as an expression of t, angle and speed (CasADi's functions,"
+            f" numbers without units): {error_text(error)[:240]}"
+        ) from None
+    symbols = [*arguments, *(ca.vertsplit(parameters) if parameters.numel() else [])]
+    return ca.SX(scalar(what, value, symbols, "parameter", "N*m"))
 
 
 def law_of(given: Law | float | None, what: str) -> Law:
@@ -70,14 +65,14 @@ def law_of(given: Law | float | None, what: str) -> Law:
 def torque(value: Symbolic) -> Law:
     """A constant torque [N m], or force [N] of a drive that slides."""
     constant = _number("torque", value, "N*m")
-    return Law(lambda t, angle, speed: constant, "constant torque")
+    return Law(lambda t, angle, speed: constant)
 
 
 @public
 def power(value: Symbolic) -> Law:
     """A constant power [W]: the torque is power over speed, without bound at rest."""
     constant = _number("power", value, "W")
-    return Law(lambda t, angle, speed: constant / speed, "constant power")
+    return Law(lambda t, angle, speed: constant / speed)
 
 
 @public
@@ -88,7 +83,7 @@ def torque_curve(speeds: Sequence[float], torques: Sequence[float]) -> Law:
     Raises :class:`.DeclarationError` for speeds that do not increase.
     """
     curves.rows("torque_curve", speeds, torques, 2)
-    return Law(lambda t, angle, speed: curves.table(speed, speeds, torques), "torque curve")
+    return Law(lambda t, angle, speed: curves.table(speed, speeds, torques))
 
 
 @public
@@ -98,7 +93,7 @@ def dc_motor(stall_torque: Symbolic, no_load_speed: Symbolic) -> Law:
     """
     stall = _number("dc_motor: stall_torque", stall_torque, "N*m")
     free = _number("dc_motor: no_load_speed", no_load_speed, "rad/s")
-    return Law(lambda t, angle, speed: stall * (1.0 - speed / free), "DC motor")
+    return Law(lambda t, angle, speed: stall * (1.0 - speed / free))
 
 
 @public
@@ -130,7 +125,7 @@ def induction_motor(
         slip = 1.0 - speed / field
         return 2.0 * most * at * slip / (slip * slip + at * at)
 
-    return Law(graph, "induction motor")
+    return Law(graph)
 
 
 @public

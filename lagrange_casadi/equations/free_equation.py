@@ -20,7 +20,7 @@ import casadi as ca
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..declare.scene import Scene
-from ..declare.torques import Law
+from ..declare.torques import Law, torque_of
 from ..errors import DeclarationError
 from .checks import Check
 from .derive import compiled_for
@@ -47,11 +47,10 @@ least of all loops' sines of the transmission angle.
 
 @dataclass(frozen=True, eq=False)
 class FreeEquation(Graphs):
-    """The equation of motion of a machine: ``state(t, angle, speed, z, added, lean, p)``, a row for
+    """The equation of motion of a machine: ``state(t, angle, speed, z, added, p)``, a row for
     each of :data:`COLUMNS`, and ``loops(z, t, angle, p)``, Newton's correction of z and its size.
 
-    ``added`` are a torque and the flywheel's inertia on the drive's ``joint``; ``lean`` is an
-    acceleration of the way in which the machine begins to move, where it is at rest. ``timed``
+    ``added`` are a torque and the flywheel's inertia on the drive's ``joint``. ``timed``
     tells whether anything depends on the time, ``affine`` whether the effort is affine in the
     acceleration, ``slides`` whether the coordinate is a length.
     """
@@ -78,10 +77,12 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     t, d, rate, acceleration, z, p = program.instant.sx_in()
     symbols = scene.mechanism.symbols
     pushed, resisting = (
-        ca.substitute(law.of(f"{what}= of the free machine", (t, d, rate), symbols), symbols, p)
+        ca.substitute(
+            torque_of(law, f"{what}= of the free machine", (t, d, rate), symbols), symbols, p
+        )
         for what, law in (("drive", drive), ("load", load))
     )
-    added, lean = ca.SX.sym("added", 2), ca.SX.sym("lean")
+    added = ca.SX.sym("added", 2)
     out = program.instant(t, d, rate, acceleration, z, p)
     effort = out[program.outputs[Output("effort", joint)]]
     missing = pushed + added[0] - resisting - effort - added[1] * acceleration
@@ -92,7 +93,7 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     there = ca.Function(
         "there", inputs, [effort, slope, ca.jacobian(missing, rate), _sine(program, out)]
     )
-    found = lean
+    found = ca.SX(0)
     for _ in range(1 if affine else STEPS):
         gap, by = newton(found, *inputs[1:])
         found = found - gap / by
@@ -104,9 +105,9 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     all_rows = ca.densify(ca.vertcat(*rows))
     state = ca.Function(
         "state",
-        [t, d, rate, z, added, lean, p],
+        [t, d, rate, z, added, p],
         [all_rows],
-        ["t", "angle", "speed", "z", "added", "lean", "p"],
+        ["t", "angle", "speed", "z", "added", "p"],
         ["out"],
         {"cse": True},
     )

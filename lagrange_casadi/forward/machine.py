@@ -98,11 +98,6 @@ class Machine:
         """The mechanism's name, for messages."""
         return self.equation.program.data.name
 
-    @property
-    def sticks(self) -> bool:
-        """True if friction may hold it at rest."""
-        return bool(self.equation.program.checks("rest"))
-
     def law(self, t: float) -> tuple[float, float]:
         """Coordinate and rate of the drive as the scene has them."""
         found = self.equation.program.motion(t, list(self.values.values()))
@@ -124,11 +119,6 @@ class Machine:
             yield
         finally:
             self.added[:] = before
-
-    @property
-    def lean(self) -> Array:
-        """Way in which it begins to move, to be set."""
-        return self.state.given["lean"]
 
     def begin(self, t: float, angle: float) -> bool:
         """Follow the loops from the scene's own start to an angle; return whether they close."""

@@ -29,7 +29,7 @@ from .machine import ROW, Machine
 ACCURACY = 1e-12
 """Relative error of a step of integration."""
 
-_MOST_EVALUATIONS, _MOST_STOPS = 4_000_000, 1000
+_MOST_EVALUATIONS = 4_000_000
 _LEAST = 1e-9
 """Share of the whole time by which a run must go on after a stop."""
 
@@ -199,8 +199,8 @@ def follow(
         )
     machine.begin(float(times[0]), start.angle)
     posture = {**scene.posture, **_posture(scene, machine, float(times[0]), start)}
-    ways = np.append(y[1, 1:], y[1, -1])  # at rest with friction, that of the next
-    slow = machine.sticks & (np.abs(y[1]) < _SLOW)
+    ways = np.append(y[1, 1:], y[1, -1])  # at rest, that of the next
+    slow = np.abs(y[1]) < _SLOW
     seen = np.where(slow, np.copysign(_SLOW, ways), y[1])
     states = zip(times, y[0], seen, strict=True)
     rows = np.array([machine.at(*state).copy() for state in states]).T
@@ -312,64 +312,55 @@ def _integrated(
     """States (STATES, t) at the instants that are reached, and the events."""
     from scipy.integrate import solve_ivp
 
-    first = machine.at(float(times[0]), start.angle, start.speed).copy()
+    t, end = float(times[0]), float(times[-1])
+    first = machine.at(t, start.angle, start.speed or _SLOW).copy()
     energy = abs(first[ROW["kinetic"]]) + machine.added[1] * start.speed**2 / 2.0
     energy = max(energy, *(abs(first[ROW[name]]) for name in ("drive", "load", "inertia")), 1e-12)
     scales = accuracy * np.array([1.0, max(abs(start.speed), 1.0), energy, energy, energy])
     state = np.array([start.angle, start.speed, 0.0, 0.0, 0.0])
-    t, end, done, events = float(times[0]), float(times[-1]), list[Array](), list[Event]()
-    done.append(state[:, None])
-    for _ in range(_MOST_STOPS):
-        way = math.copysign(1.0, state[1])
-        if machine.sticks and state[1] == 0.0:
-            way = _first_way(machine, t, float(state[0]))
-            if way == 0.0:
-                events.append(Event("held", t, float(state[0]), 0.0))
-                break
-        ahead = times[(times > t) & (times <= end)]
-        rates = _Rates(machine, way, (t, *state[:2].tolist()))
+    done, events = [state[:, None]], list[Event]()
+    while True:
+        way = math.copysign(1.0, state[1]) if state[1] else _first_way(machine, t, float(state[0]))
+        if way == 0.0:
+            events.append(Event("held", t, float(state[0]), 0.0))
+            break
+        rates = _Rates(machine, way, (t, float(state[0]), float(state[1])))
         run = solve_ivp(
-            rates,
-            (t, end),
-            state,
+            *(rates, (t, end), state),
             method="DOP853",
             rtol=max(accuracy, 2.3e-14),
             atol=scales,
-            t_eval=ahead,
+            t_eval=times[(times > t) & (times <= end)],
             events=_watched(machine, way),
             first_step=(end - t) * 1e-6,
         )
-        reached = np.reshape(run.y, (state.size, -1))  # SciPy's is a list where it is empty
-        done.append(reached)
+        done.append(np.reshape(run.y, (state.size, -1)))  # SciPy's is a list where it is empty
         if run.status == -1:
             events.append(_why_lost(machine, *rates.last))
             break
-        rests, dead = run.t_events
-        states = run.y_events[0]
-        events += [
-            Event("rest", float(when), float(at[0]), 0.0)
-            for when, at in zip(rests, states, strict=True)
-            if when > t
-        ]
-        if dead.size:
-            at = run.y_events[1][0]
-            events.append(Event("dead centre", float(dead[0]), float(at[0]), float(at[1])))
-            break
         if run.status == 0:
             break
-        if rests[0] - t < _LEAST * (end - times[0]):
-            events.append(Event("held", float(rests[0]), float(states[0][0]), 0.0))
+        (rests, dead), (states, dead_states) = run.t_events, run.y_events
+        if dead.size:
+            at = dead_states[0]
+            events.append(Event("dead centre", float(dead[0]), float(at[0]), float(at[1])))
             break
-        t, state = float(rests[0]), states[0].copy()
-        state[1] = 0.0
+        before, t, state = t, float(rests[0]), states[0] * (1.0, 0.0, 1.0, 1.0, 1.0)
+        if t - before < _LEAST * (end - times[0]):
+            events.append(Event("held", t, float(state[0]), 0.0))
+            break
+        events.append(Event("rest", t, float(state[0]), 0.0))
+        if t >= end:
+            break
     return np.concatenate(done, axis=1), events
 
 
 @dataclass
 class _Rates:
-    """The right-hand side of :data:`STATES` for a machine that moves one ``way``: a friction keeps
-    its direction up to where the machine is at rest and beyond, so that the rate does not jump
-    before rest is found. ``last`` is the last time, coordinate and rate at which it was finite.
+    """The right-hand side of :data:`STATES` for a machine that moves one ``way``: what depends on
+    that, as a friction, stays as it is up to where the machine is at rest and beyond, so that
+    nothing jumps before rest is found. ``last`` is the last time, coordinate and rate at which it
+    was finite.
     """
 
     machine: Machine
@@ -383,7 +374,7 @@ class _Rates:
                 f"free machine '{machine.name}': after {_MOST_EVALUATIONS} evaluations the run is"
                 f" at t = {t:.6g} s alone; expected a shorter time or a coarser accuracy"
             )
-        slow = machine.sticks and self.way * speed < _SLOW
+        slow = self.way * speed < _SLOW
         a, drive, load, taken = machine.at(t, angle, self.way * _SLOW if slow else speed)[_RATES]
         if math.isfinite(a):
             self.last = t, angle, speed
@@ -399,27 +390,22 @@ def _watched(machine: Machine, way: float) -> list[Callable[[float, Array], floa
         return float(y[1])
 
     def dead(t: float, y: Array) -> float:
-        sine = float(machine.at(t, float(y[0]), float(y[1]))[ROW["sine"]])
+        sine = float(machine.at(t, float(y[0]), float(y[1]) or way * _SLOW)[ROW["sine"]])
         return sine - DEAD if math.isfinite(sine) else 1.0
 
-    vars(rest).update(terminal=machine.sticks, direction=-way if machine.sticks else 0.0)
+    vars(rest).update(terminal=True, direction=-way)
     vars(dead).update(terminal=True)
     return [rest, dead]
 
 
 def _first_way(machine: Machine, t: float, angle: float) -> float:
-    """The way in which a machine at rest begins to move against its friction: 1 or -1, or 0 where
-    friction holds it.
-    """
-    try:
-        for way in (1.0, -1.0):
-            machine.lean[0] = way
-            a = float(machine.at(t, angle, 0.0)[ROW["acceleration"]])
-            if math.isfinite(a) and a * way > 0.0:
-                return way
-    finally:
-        machine.lean[0] = 0.0
-    return 0.0
+    """The way in which a machine at rest begins to move: 1 or -1, or 0 where friction holds it."""
+    ahead, back = (
+        float(machine.at(t, angle, way * _SLOW)[ROW["acceleration"]]) for way in (1.0, -1.0)
+    )
+    if ahead > 0.0 or ahead == back == 0.0:
+        return 1.0
+    return -1.0 if back < 0.0 else 0.0
 
 
 def _why_lost(machine: Machine, t: float, angle: float, speed: float) -> Event:
