@@ -23,8 +23,11 @@ from ..errors import DeclarationError, LagrangeCasadiError
 from .machine import ROW, Machine
 from .motion import ACCURACY, Cycle, FreeMotion, Start, follow
 
-_STEPS, _TRIES, _FASTER = 40, 24, 1.4
+_STEPS, _TRIES, _FASTER = 25, 12, 1.4
 _SAME, _FLAT = 1e-6, 1e-9
+_SLOWEST = 1e-2
+"""Share of the speed at the start below which a machine is said not to get round."""
+
 _DONE = 1e-10
 """Relative residual at which a cycle is steady."""
 
@@ -175,7 +178,7 @@ def _turned(machine: Machine, begin: Start, span: float, accuracy: float) -> _Tu
     def rates(angle: float, y: Array) -> Array:
         speed = y[_SPEED]
         found = np.full(8, np.nan)
-        if speed * span <= 0.0:
+        if not speed / begin.speed > _SLOWEST:
             return found
         rows = machine.at(0.0, angle, speed)
         found[_SPEED], found[_TIME] = rows[a] / speed, 1.0 / speed

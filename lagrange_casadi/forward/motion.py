@@ -199,11 +199,12 @@ def follow(
         )
     machine.begin(float(times[0]), start.angle)
     posture = {**scene.posture, **_posture(scene, machine, float(times[0]), start)}
-    ways = np.append(y[1, 1:], y[1, -1])  # at rest, that of the next
-    slow = np.abs(y[1]) < _SLOW
-    seen = np.where(slow, np.copysign(_SLOW, ways), y[1])
-    states = zip(times, y[0], seen, strict=True)
-    rows = np.array([machine.at(*state).copy() for state in states]).T
+    ways = np.append(y[1, 1:], y[1, -1])  # at rest, where something depends on that, the next one
+    rows = np.empty((len(ROW), times.size))
+    for i, (now, angle, speed) in enumerate(zip(times, y[0], y[1], strict=True)):
+        rows[:, i] = machine.at(now, angle, speed)
+        if not math.isfinite(rows[ROW["acceleration"], i]):
+            rows[:, i] = machine.at(now, angle, math.copysign(_SLOW, ways[i]))
     flywheel = float(machine.added[1])
     law = hermite(times, y[0], y[1], rows[ROW["acceleration"]])
     moved = replace(
@@ -313,6 +314,13 @@ def _integrated(
     from scipy.integrate import solve_ivp
 
     t, end = float(times[0]), float(times[-1])
+    first = machine.at(t, start.angle, start.speed).copy()
+    for name in ("drive", "load"):
+        if not math.isfinite(first[ROW[name]]):
+            raise LagrangeCasadiError(
+                f"free machine '{machine.name}': its {name} is without bound at the start, at the"
+                f" rate {start.speed:g}"
+            )
     first = machine.at(t, start.angle, start.speed or _SLOW).copy()
     energy = abs(first[ROW["kinetic"]]) + machine.added[1] * start.speed**2 / 2.0
     energy = max(energy, *(abs(first[ROW[name]]) for name in ("drive", "load", "inertia")), 1e-12)
