@@ -27,10 +27,11 @@ def scene() -> Scene:
     height = 1000 * (r + l - m.coordinate(guide))
     m.force("sheet", ram, y=punching * table(height, HEIGHTS, SHARES) * (m.rate(guide) > 0))
     m.output("height", height / 1000, unit="m")
-    # From the top; the motion that a flywheel without end would give it.
+    # From the top, evenly, as a flywheel without end would turn it.
     return Scene(
         m,
         {"main": polynomial(pi / 2, 2 * pi / 60 * strokes)},
-        t=(0, 60 / strokes, 721),
+        t=(0, 1, 721),
+        over=("main", "90 deg", "450 deg", 721),
         posture={"rod": -pi / 2},
     )
