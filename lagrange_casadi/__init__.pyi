@@ -29,7 +29,7 @@ from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .exports import export
 from .formats import read, save_model
-from .forward import flywheel, free
+from .forward.running import flywheel, free
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
 from .load_cases import LoadCase, link_load_cases, write_load_cases

@@ -19,6 +19,7 @@ from lagrange_casadi import (
     evaluate,
     figures,
     forward,
+    free,
     prepare,
     save,
     sensitivities,
@@ -62,7 +63,7 @@ def solved() -> SimpleNamespace:
     return SimpleNamespace(
         scene=scene,
         solution=solution,
-        gone=forward.free(scene, wanted=["effort", "motion"]),
+        gone=free(scene, wanted=["effort", "motion"]),
         duty=duty,
         motor=motor,
         stress=solution.stress("arm"),

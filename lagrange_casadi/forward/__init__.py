@@ -11,7 +11,7 @@ from ..declare.torques import (
 )
 from .motion import Cycle, Event, FreeMotion
 from .plot import plot_cycle
-from .running import Flywheel, flywheel, free
+from .running import Flywheel
 
 __all__ = [
     "Cycle",
@@ -21,8 +21,6 @@ __all__ = [
     "Law",
     "dc_motor",
     "expression",
-    "flywheel",
-    "free",
     "induction_motor",
     "plot_cycle",
     "power",
