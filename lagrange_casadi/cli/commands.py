@@ -19,7 +19,7 @@ from ..base.vocabulary import (
     TIME_LIMIT,
     WIDTH,
 )
-from .design_commands import best, drive, optimise, size, sweep, table, tolerances, trade
+from .design_commands import best, drive, free, optimise, size, sweep, table, tolerances, trade
 from .echo import say_step
 from .help import command
 from .options import (
@@ -477,7 +477,7 @@ def loads(**given: Any) -> None:
 GROUPS = {
     "Run": (run, info, check, cases, new),
     "Many designs": (sweep, best, table),
-    "Design": (optimise, size, drive, tolerances, trade),
+    "Design": (optimise, size, drive, free, tolerances, trade),
     "Other programs": (export, loads),
     "Look": (plot, report, animate),
     "Cache": (cache,),

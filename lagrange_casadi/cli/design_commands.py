@@ -319,6 +319,85 @@ def size(**given: Any) -> None:
     size_command(**given)
 
 
+@command("free")
+@click.argument("case", type=CASE)
+@click.option(
+    "--drive",
+    metavar="LAW=NUMBER,...",
+    help="Drive it by torque=TORQUE [N m], power=POWER [W], dc=STALL_TORQUE,NO_LOAD_SPEED or"
+    " induction=BREAKDOWN_TORQUE,BREAKDOWN_SLIP,SYNCHRONOUS_SPEED [rad/s]. Default: nothing; of a"
+    " steady cycle the torque that keeps the mean speed.",
+)
+@click.option(
+    "--geared",
+    type=float,
+    default=1.0,
+    show_default=True,
+    metavar="NUMBER",
+    help="Let the motor turn so many times as fast as the drive.",
+)
+@click.option(
+    "--load", type=float, default=0.0, metavar="NUMBER", help="Let this torque resist [N m]."
+)
+@click.option(
+    "--inertia",
+    type=float,
+    default=0.0,
+    metavar="NUMBER",
+    help="Put a flywheel of this inertia on the drive [kg m^2].",
+)
+@click.option(
+    "--start",
+    metavar="COORDINATE,RATE",
+    help="Start there [rad, rad/s or m, m/s]; default: where the motion of the case starts.",
+)
+@click.option("--steady", is_flag=True, help="Find the steady cycle, and go round once.")
+@click.option(
+    "--fluctuation",
+    type=float,
+    metavar="NUMBER",
+    help="Find the flywheel with which the steady cycle has this coefficient of fluctuation.",
+)
+@click.option(
+    "--cycle",
+    type=float,
+    default=1.0,
+    show_default=True,
+    metavar="TURNS",
+    help="Say after how many turns the machine repeats.",
+)
+@click.option(
+    "--count",
+    type=int,
+    default=721,
+    show_default=True,
+    metavar="NUMBER",
+    help="Take so many instants of a steady cycle.",
+)
+@settings_by()
+@instants()
+@wanted()
+@click.option("--out", type=PATH, help="Write the run to this HDF5 file; default: <case>_free.h5.")
+@click.option(
+    "--plot",
+    type=PATH,
+    metavar="FILE.png",
+    help="Draw torque and speed over the drive's coordinate into this file, .png, .pdf or .svg.",
+)
+def free(**given: Any) -> None:
+    """Let the machine CASE go: its motion under a motor, a load and its own weight.
+
+    Each force is that of the true motion. CASE has one degree of freedom; its own motion says
+    where it starts, and no more.
+
+    \b
+    lagrange-casadi free punch_press --drive induction=200,0.2,157 --geared 15 --fluctuation 0.05
+    """
+    from .free import free_command
+
+    free_command(**given)
+
+
 @command("drive")
 @click.argument("case", type=CASE)
 @click.option(
