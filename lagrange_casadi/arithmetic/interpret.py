@@ -226,6 +226,7 @@ def operation_name(operation: int) -> str:
     )
 
 
+@functools.cache
 def numpy_arithmetic() -> Arithmetic:
     """NumPy's arithmetic on doubles and arrays of them."""
     known = _ROUNDED | _FUNCTIONS | _EXACT | {ca.OP_CALL: lambda lookup, x: lookup.at(x)}
@@ -260,7 +261,7 @@ _EXACT: dict[int, Callable[..., Any]] = {
     ca.OP_FMAX: np.fmax,
     ca.OP_FMOD: np.fmod,
     ca.OP_COPYSIGN: np.copysign,
-    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, np.zeros_like(y)),
+    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, 0.0),
     ca.OP_REMAINDER: _remainder,
 }
 _TRUTHS: dict[int, Callable[..., Any]] = {
