@@ -36,6 +36,7 @@ from .options import (
     place,
     setting,
     settings_by,
+    svg,
     table_file,
     wanted,
 )
@@ -71,6 +72,7 @@ from .options import (
     "--figures", type=PATH, help="Draw the figures into this folder; default: <case>_figures here."
 )
 @click.option("--no-figures", is_flag=True, help="Draw no figures.")
+@svg
 @table_file("Also write the results as CSV, one row per instant.")
 @click.option(
     "--grids/--no-grids",
@@ -199,6 +201,7 @@ def export(**given: Any) -> None:
     is_flag=True,
     help="Draw axes in SI units without prefixes, in place of kN and mm.",
 )
+@svg
 def plot(**given: Any) -> None:
     """Draw the figures of the run or sweep FILE.h5.
 

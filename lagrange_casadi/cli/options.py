@@ -412,3 +412,6 @@ untabled_method = _together(backend(), _PRECISION, _NEWTON, _FLAGS)
 
 arithmetic = _together(_PRECISION, _NEWTON, _TABLE)
 """Options that do not concern the compiler."""
+
+
+svg = click.option("--svg", is_flag=True, help="Draw figures as SVG, in place of PNG.")

@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from ..base.arrays import Expression, Json
 from ..base.quantities import Kinds
@@ -255,7 +256,7 @@ class Template(Graphs):
 
     def filled(self, values: Mapping[str, float]) -> Description:
         """The description for values of all parameters."""
-        numbers = self.numbers(list(values.values())).full().ravel().tolist()
+        numbers = self.numbers(np.array([*values.values()], float)).full().ravel().tolist()
         blank, places = self._blank
         found: Description = marshal.loads(blank)
         for place, (*path, last) in places:

@@ -83,11 +83,10 @@ class ParameterConstraints:
         """Raise :class:`ParameterError` for parameters at which a part is impossible, by the first
         demand that is not met.
         """
-        values = self.function(list(p)).full().ravel()
-        strict = np.array([demand.positive for demand in self.each], bool)
-        refused = ~(np.isfinite(values) & (values >= 0.0) & ((values > 0.0) | ~strict))
-        if refused.any():
-            raise ParameterError(self.each[int(np.argmax(refused))].refusal(number))
+        values = self.function(np.array(p, float)).full().ravel().tolist()
+        for demand, value in zip(self.each, values, strict=True):
+            if not (value > 0.0 if demand.positive else value >= 0.0) or value == math.inf:
+                raise ParameterError(demand.refusal(number))
 
 
 @dataclass(frozen=True, eq=False)

@@ -184,7 +184,7 @@ class Program(Graphs):
         """Return whether the loops of a closure are iterated."""
         return self.newton is not None and closure in self.newton.names
 
-    @property
+    @cached_property
     def instructions(self) -> dict[str, int]:
         """Instructions of each function."""
         functions = {"motion": self.motion, "instant": self.instant} | (
