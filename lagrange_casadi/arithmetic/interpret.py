@@ -267,7 +267,7 @@ _EXACT: dict[int, Callable[..., Any]] = {
     ca.OP_FMAX: np.fmax,
     ca.OP_FMOD: np.fmod,
     ca.OP_COPYSIGN: np.copysign,
-    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, np.zeros_like(y)),
+    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, 0.0),
     ca.OP_REMAINDER: _remainder,
 }
 _TRUTHS: dict[int, Callable[..., Any]] = {
