@@ -32,7 +32,14 @@ from .formats import read, save_model
 from .forward.running import flywheel, free
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
-from .load_cases import LoadCase, link_load_cases, write_load_cases
+from .load_cases import (
+    BearingLoads,
+    LoadCase,
+    bearing_loads,
+    link_load_cases,
+    write_load_cases,
+    write_spectrum,
+)
 from .store.runs import check, load, save
 from .studies.designs.prepared import Prepared, prepare
 from .studies.evaluate import evaluate
@@ -46,6 +53,7 @@ from .studies.tool import tool_deflection
 from .version import __version__
 
 __all__ = [
+    "BearingLoads",
     "Case",
     "Curve",
     "Front",
@@ -65,6 +73,7 @@ __all__ = [
     "actuators",
     "animation",
     "beams",
+    "bearing_loads",
     "bearings",
     "best",
     "check",
@@ -104,4 +113,5 @@ __all__ = [
     "tool_deflection",
     "vibration",
     "write_load_cases",
+    "write_spectrum",
 ]

@@ -115,6 +115,8 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         "save_model": {"scene": scene, "path": "model.json"},
         "link_load_cases": {"solution": solution, "link": "arm"},
         "write_load_cases": {"cases": [], "folder": "load_cases"},
+        "write_spectrum": {"solution": solution, "name": "effort:O", "path": "spectrum.csv"},
+        "bearing_loads": {"solution": solution, "joint": "O"},
         "export": {"scene": scene, "out": "exported", "wanted": ["effort"], "force": True},
         "free": {"scene": scene, "wanted": ["effort"]},
         "flywheel": {"scene": scene, "start": (0.0, 30.0), "count": 5, "wanted": ["effort"]},

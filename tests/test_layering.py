@@ -328,7 +328,10 @@ GOES = {
     "formats": ([], ["read", "save_model"], ["new"]),
     "load_cases": (
         ["cli.loads"],
-        ["LoadCase", "link_load_cases", "write_load_cases"],
+        [
+            *("BearingLoads", "LoadCase", "bearing_loads", "link_load_cases"),
+            *("write_load_cases", "write_spectrum"),
+        ],
         ["loads"],
     ),
     "forward": (["cli.free"], ["flywheel", "forward", "free"], ["free"]),

@@ -24,14 +24,17 @@ from .options import (
     CASE,
     EVEN_POINTS,
     PATH,
+    at_values,
     axis,
     backend,
     bounds,
+    conditions,
     even_points,
     instants,
     length,
     over,
     ratios,
+    resumable,
     settings_by,
     share,
     table_file,
@@ -90,12 +93,7 @@ from .options import (
     metavar="ADDRESS",
     help="Evaluate on the cluster of this Dask scheduler, as tcp://HOST:8786.",
 )
-@click.option(
-    "--resume",
-    is_flag=True,
-    help="Continue a sweep that was stopped; start it if there is none.",
-)
-@click.option("--force", is_flag=True, help="Start anew and replace the file.")
+@resumable("sweep")
 @click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option(
@@ -127,12 +125,7 @@ def sweep(**given: Any) -> None:
     help="Minimise this column; of two objectives, list their Pareto front.",
 )
 @click.option("--maximise", multiple=True, metavar="COLUMN", help="Maximise this column.")
-@click.option(
-    "--where",
-    multiple=True,
-    metavar="NAME<NUMBER",
-    help="Choose only designs that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
-)
+@conditions("designs")
 @click.option(
     "--count",
     type=click.IntRange(1),
@@ -155,12 +148,7 @@ def best(**given: Any) -> None:
 
 @command()
 @click.argument("file", metavar="FILE.h5", type=PATH)
-@click.option(
-    "--where",
-    multiple=True,
-    metavar="NAME<NUMBER",
-    help="Choose only rows that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
-)
+@conditions("rows")
 @click.option(
     "--column",
     "columns",
@@ -254,12 +242,7 @@ def table(**given: Any) -> None:
     metavar="ADDRESS",
     help="Search on the cluster of this Dask scheduler, as tcp://HOST:8786.",
 )
-@click.option(
-    "--resume",
-    is_flag=True,
-    help="Continue a search that was stopped; start it if there is none.",
-)
-@click.option("--force", is_flag=True, help="Start anew and replace the file.")
+@resumable("search")
 @click.option(
     "--out",
     type=PATH,
@@ -287,7 +270,8 @@ def optimise(**given: Any) -> int:
     type=PATH,
     metavar="FILE.csv|NAME",
     help="Choose from this table: a column name, and one column per dimension [m]; or by name from"
-    " a standard one: IPE, HEA, HEB, CHS, flat, round. Default: profiles.csv next to the case.",
+    " a standard one: IPE, HEA, HEB, CHS, SHS, RHS, SHS_cold, RHS_cold, flat, round. Default:"
+    " profiles.csv next to the case.",
 )
 @click.option(
     "--safety",
@@ -324,9 +308,7 @@ def optimise(**given: Any) -> int:
     show_default=True,
     help="Compare this equivalent stress with the yield strength.",
 )
-@settings_by()
-@instants()
-@over
+@at_values
 def size(**given: Any) -> None:
     """Choose the lightest safe profile for each link of CASE.
 
@@ -496,9 +478,7 @@ def drive(**given: Any) -> None:
     help="Set the tolerance of a parameter, plus or minus this value [SI unit, unit or %];"
     " repeatable.",
 )
-@settings_by()
-@instants()
-@over
+@at_values
 @wanted("Compute these outputs, as in run; repeatable. Default: those of the case.")
 @click.option(
     "--samples",
@@ -522,9 +502,7 @@ def tolerances(**given: Any) -> None:
 
 @command()
 @click.argument("case", type=CASE)
-@settings_by()
-@instants()
-@over
+@at_values
 @wanted()
 @click.option(
     "--accuracy",
