@@ -11,6 +11,7 @@ from . import (
     elements,
     errors,
     figures,
+    forward,
     motion,
     peaks,
     strength,
@@ -28,6 +29,7 @@ from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .exports import export
 from .formats import read, save_model
+from .forward.running import flywheel, free
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
 from .load_cases import (
@@ -84,6 +86,9 @@ __all__ = [
     "evaluate",
     "export",
     "figures",
+    "flywheel",
+    "forward",
+    "free",
     "holding",
     "link_load_cases",
     "load",

@@ -19,7 +19,7 @@ from ..base.vocabulary import (
     TIME_LIMIT,
     WIDTH,
 )
-from .design_commands import best, drive, optimise, size, sweep, table, tolerances, trade
+from .design_commands import best, drive, free, optimise, size, sweep, table, tolerances, trade
 from .echo import say_step
 from .help import command
 from .options import (
@@ -27,6 +27,7 @@ from .options import (
     EVEN_POINTS,
     PATH,
     arithmetic,
+    at_values,
     even_points,
     instants,
     method,
@@ -35,6 +36,7 @@ from .options import (
     place,
     setting,
     settings_by,
+    svg,
     table_file,
     wanted,
 )
@@ -42,9 +44,7 @@ from .options import (
 
 @command()
 @click.argument("case", type=CASE)
-@settings_by()
-@instants()
-@over
+@at_values
 @click.option(
     "--xi",
     type=even_points,
@@ -72,6 +72,7 @@ from .options import (
     "--figures", type=PATH, help="Draw the figures into this folder; default: <case>_figures here."
 )
 @click.option("--no-figures", is_flag=True, help="Draw no figures.")
+@svg
 @table_file("Also write the results as CSV, one row per instant.")
 @click.option(
     "--grids/--no-grids",
@@ -200,6 +201,7 @@ def export(**given: Any) -> None:
     is_flag=True,
     help="Draw axes in SI units without prefixes, in place of kN and mm.",
 )
+@svg
 def plot(**given: Any) -> None:
     """Draw the figures of the run or sweep FILE.h5.
 
@@ -410,9 +412,7 @@ def cache(**given: Any) -> None:
     help="Write the load cases of this link, rigid body or point mass; repeatable.",
 )
 @click.option("--out", type=PATH, required=True, metavar="DIR", help="Write into this folder.")
-@settings_by()
-@instants()
-@over
+@at_values
 @click.option(
     "--every",
     is_flag=True,
@@ -480,7 +480,7 @@ def loads(**given: Any) -> None:
 GROUPS = {
     "Run": (run, info, check, cases, new),
     "Many designs": (sweep, best, table),
-    "Design": (optimise, size, drive, tolerances, trade),
+    "Design": (optimise, size, drive, free, tolerances, trade),
     "Other programs": (export, loads),
     "Look": (plot, report, animate),
     "Cache": (cache,),

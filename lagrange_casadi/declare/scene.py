@@ -55,7 +55,7 @@ class Wanted:
     loads: tuple[str, ...]
     frictions: tuple[str, ...]
     sections: tuple[str, ...]
-    user_outputs: tuple[str, ...]
+    own: tuple[str, ...]
     stressed: tuple[str, ...] = ()
     used: tuple[str, ...] = ()
     bent: tuple[str, ...] = ()

@@ -61,7 +61,7 @@ class Moving:
             scene.laws,
             needed,
             pushed(scene.needs_drives, scene.weights),
-            want.user_outputs,
+            want.own,
         )
         laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
         motion = laws.motion
