@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Json
 from ..base.numerals import readable
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.vocabulary import Precision
@@ -103,15 +102,6 @@ class Margins(Graphs):
         """Return expressions in the parameters: those that must be positive, and the others."""
         values = ca.vertsplit(self.function(symbols)) if self.function.numel_out(0) else []
         return values[: self.positive], values[self.positive :]
-
-    def words(self) -> list[Json]:
-        """Write them for JSON."""
-        return [self.function.serialize(), self.positive]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> Margins:
-        """Read what :meth:`words` wrote."""
-        return cls(ca.Function.deserialize(words[0]), words[1])
 
 
 @symbolic

@@ -18,7 +18,7 @@ from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import PLANE, SPACE
-from ..declare.description import parts_of, shaft_bearings_of
+from ..declare.description import bends_of, parts_of, shaft_bearings_of
 from ..errors import DeclarationError, PathError, UnknownNameError, shown
 from ..instants.ordering import vanishes
 from ..instants.solution import Peak, Solution
@@ -51,8 +51,9 @@ _FILE = re.compile(r"[A-Za-z0-9_-]+")
 
 @public
 def default_figures(solution: Solution) -> tuple[Spec, ...]:
-    """The usual drawings of whatever a solution holds."""
+    """The usual drawings of whatever a solution holds, but for the welds inside bent bars."""
     specs: list[Spec] = []
+    internal = bends_of(solution.description)
     groups: dict[tuple[str, str], list[str]] = {}
     for output, values in solution.outputs.items():
         drawn = output.group in (
@@ -63,6 +64,8 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
             "friction",
             "output",
         ) or output == Output("motion", output.part)
+        if output.part in internal:
+            continue
         if drawn and solution.determined(output) and np.any(values):
             suffix = "_own" if output.member.endswith(("u", "v", "w")) else ""
             if suffix and all(solution.determined(other) for other in _in_ground_axes(output)):
@@ -296,14 +299,6 @@ def _mechanism(spec: MechanismDrawing, solution: Solution, si: bool) -> Figure:
     return draw_mechanism(solution, spec.count, spec.overlay, si)
 
 
-def _diagrams(spec: SectionDiagrams, solution: Solution, si: bool) -> Figure:
-    return draw_section_diagrams(solution, spec.links, si)
-
-
-def _polar(spec: PolarPlots, solution: Solution, si: bool) -> Figure:
-    return draw_polar(solution, spec.joints, si)
-
-
 def _strength(spec: StrengthPlot, solution: Solution, si: bool) -> Figure:
     from .strength_plot import draw_strength
 
@@ -326,8 +321,8 @@ _FIGURES: dict[type[Spec], Callable[[Any, Solution, bool], Figure]] = {
     TimePlot: _time,
     SpanPlot: _span,
     SectionMaps: _maps,
-    SectionDiagrams: _diagrams,
-    PolarPlots: _polar,
+    SectionDiagrams: lambda spec, *drawn: draw_section_diagrams(drawn[0], spec.links, drawn[1]),
+    PolarPlots: lambda spec, *drawn: draw_polar(drawn[0], spec.joints, drawn[1]),
     MechanismDrawing: _mechanism,
     StrengthPlot: _strength,
     UtilisationPlot: _utilisation,

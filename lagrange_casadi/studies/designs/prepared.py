@@ -162,7 +162,7 @@ class _Answers(threading.local):
         places = {
             name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(KEPT)
         }
-        self.seen = Peaks(*(places[name][0] for name in KEPT))
+        self.kept_peaks = Peaks(*(places[name][0] for name in KEPT))
         self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
         # Where nothing but the values changes from call to call, all that remains is the call
         # itself.
@@ -337,7 +337,7 @@ class Prepared:
             )
         fill[1]()
         self._refuse(self._watched(answers.instants[0], answers.even), p)
-        return answers.seen
+        return answers.kept_peaks
 
     def _kept_peaks(
         self, values: Sequence[_Values], named: Mapping[str, Number]
