@@ -73,10 +73,11 @@ static int designs_asked(void* of, long long count, const double* t, unsigned lo
   return 0;
 }
 
-/* All instants, as rows of curves, of their places along links, of what is checked, and of what is watched. */
+/* All instants, as rows of curves, of their places along links, of what is checked, and of what is watched; only checks need rows
+   where no peaks are sought. */
 static void designs_sample(designs_now* now) {
   const lagrange_casadi_instants* instants = &now->instants;
-  const int streams = scene_streams(instants, now->n*now->call->designs);
+  const int streams = scene_streams(instants, now->n*now->call->designs), peaks = now->call->value != 0;
   casadi_real block[SCENE_PACKS*SCENE_COLUMNS], *y = block;
   casadi_real value[DESIGNS_CURVES], place[SCENE_SOME(DESIGNS_PLACES)], most[DESIGNS_CURVES];
   const casadi_int stride = now->stride;
@@ -86,15 +87,18 @@ static void designs_sample(designs_now* now) {
   for (k = 0; k < DESIGNS_CURVES; ++k) most[k] = 0;
   for (i = 0; i < now->n; i += LANES) {
     scene_pack(&now->scene, i, y);
-    designs_curves(y, now->matter, ~0ull, value, place);
     row = now->rows + LANES + i;
-    for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
-      scene_store(row, value[k]);
-      most[k] = designs_larger(most[k], designs_size(value[k]));
+    if (peaks) {
+      designs_curves(y, now->matter, ~0ull, value, place);
+      for (k = 0; k < DESIGNS_CURVES; ++k) {
+        scene_store(row + k*stride, value[k]);
+        most[k] = designs_larger(most[k], designs_size(value[k]));
+      }
+      for (k = 0; k < DESIGNS_PLACES; ++k) scene_store(row + (DESIGNS_CURVES + k)*stride, place[k]);
     }
-    for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) scene_store(row, place[k]);
+    row += DESIGNS_CHECKED*stride;
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) scene_store(row, y[designs_checked[k]]);
-    for (k = 0; k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[SCENE_OUTPUTS + k]);
+    for (k = 0; peaks && k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[SCENE_OUTPUTS + k]);
     if (!instants->out) continue;
     y += SCENE_COLUMNS;
     if ((i + LANES)%SCENE_BLOCK != 0 && i + LANES < now->n) continue;
