@@ -12,7 +12,7 @@ typedef struct {
   double half;
   int rests;
   const signed char* bent;
-  double* tops;
+  double *tops, *error;
   casadi_real matter[DESIGNS_MATTER], terms[SCENE_SOME(DESIGNS_BOUNDS)];
 } designs_now;
 
@@ -297,6 +297,7 @@ static int designs_peaks(designs_now* now, double* value, double* t, double* xi)
   search.way = now->call->way;
   search.share = now->call->share;
   search.tops = now->tops;
+  search.error = now->error;
   search.hiding = now->call->hiding;
   search.at = designs_asked;
   search.of = now;
@@ -364,7 +365,8 @@ static void designs_timed(designs_now* now, const double* t) {
 /* So many designs, rows of parameters p, over n instants t, those of a design t_apart values beyond those of the one before, or the
    same; iterated loops begin from the guess. value, peak_t and xi become rows of quantities, mean and rms of efforts, all of them or
    none where value is NULL; these ask for instants in equal steps. tops, unless it is NULL, becomes the local peaks of quantities that
-   way and share ask of the search. history, unless it is NULL, becomes outputs by instants, iterated likewise iterated coordinates; a
+   way and share ask of the search. Where error is not NULL, peaks are
+   those at the instants, and error becomes how much larger each may be between them. history, unless it is NULL, becomes outputs by instants, iterated likewise iterated coordinates; a
    design without a result leaves its status, and NaN. bent tells after which instants the motion bends more than they show, its rows
    are bent_apart values apart. The room is rows of stride values, of times, iterated coordinates, curves, their places, what is
    checked and what is watched, all zero; of the status stride integers that are zero, and of hiding twice as many. find searches for
@@ -399,6 +401,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     if (d == 0 || call->t_apart) designs_timed(&now, call->t + d*call->t_apart);
     now.bent = call->bent + d*call->bent_apart;
     now.tops = call->tops ? call->tops + d*4*DESIGNS_TOPS*DESIGNS_QUANTITIES : 0;
+    now.error = call->error ? call->error + d*DESIGNS_QUANTITIES : 0;
     for (k = 0; now.tops && k < 4*DESIGNS_TOPS*DESIGNS_QUANTITIES; ++k) now.tops[k] = NAN;
     instants->out = whole;
     why = designs_begin(&now, call->p + d*SCENE_NP);
@@ -411,6 +414,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     for (i = 0; closed && i < SCENE_NZ*n; ++i) closed[i] = why == SCENE_OK ? instants->z[i/n*stride + i%n] : (lanes_real) NAN;
     if (why == SCENE_OK) continue;
     for (k = 0; values && k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
+    for (k = 0; now.error && k < DESIGNS_QUANTITIES; ++k) now.error[k] = NAN;
     for (k = 0; values && k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;
     for (i = 0; whole && i < SCENE_OUTPUTS*n; ++i) whole[i] = NAN;
   }

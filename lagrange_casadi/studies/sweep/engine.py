@@ -23,6 +23,10 @@ class Engine(Protocol):
         """Full names of the efforts."""
 
     @property
+    def sampled(self) -> bool:
+        """True if peaks are those of the instants, with an error."""
+
+    @property
     def indeterminate(self) -> tuple[str, ...]:
         """Full names of quantities, and of what histories hold, that equilibrium may leave open for
         some designs: NaN there.
