@@ -99,9 +99,22 @@ class Material:
 
 @public
 def material(name: str) -> Material:
-    """One of a small table: least values of standards for thin parts.
+    """Return a material of a small table, with the least values of standards for thin parts.
 
-    Raises :class:`.UnknownNameError` for any other.
+    Parameters
+    ----------
+    name
+        Name such as ``"S355"`` or ``"C45+QT"``.
+
+    Returns
+    -------
+    Material
+        The material; :meth:`.Material.but` changes some of its numbers.
+
+    Raises
+    ------
+    UnknownNameError
+        For any other name; the message lists all.
     """
     if name not in TABLE:
         raise UnknownNameError("material", name, TABLE)

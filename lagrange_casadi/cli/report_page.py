@@ -122,7 +122,7 @@ def _of_two(
             given = parameters(asked.settings) | parameters(more)
             solutions.append(_evaluated(load_case(target), asked, given))
         elif is_sweep(target):
-            raise click.UsageError(f"{target} is a sweep, whose page is of itself alone")
+            raise click.UsageError(f"{target} is a sweep: its page cannot be combined with another")
         else:
             solutions.append(load(target))
     names = [[target.stem for target in targets], [str(target) for target in targets]]
@@ -164,7 +164,9 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
         check_zig("the mechanism of a design in motion")
         scene = found.scene
         if case is None and not is_of(sweep, scene):
-            raise DeclarationError(f"the case '{reference(found, Path())}' is not as it was swept")
+            raise DeclarationError(
+                f"the case '{reference(found, Path())}' has changed since the sweep"
+            )
     except LagrangeCasadiError as error:
         if case is not None:
             raise

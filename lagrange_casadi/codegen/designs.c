@@ -277,10 +277,10 @@ static double designs_mean(const designs_now* now, int k, int squared) {
   return n > 1 ? (whole - (first + last)/2)/(double) (n - 1) : first;
 }
 
-/* The peak of every quantity, its time and its place; whether all are told. */
+/* The peak of every quantity, its time and its place; whether all are located. */
 static int designs_peaks(designs_now* now, double* value, double* t, double* xi) {
   lagrange_casadi_search_call search = *now->call->search;
-  signed char open[DESIGNS_QUANTITIES], told[DESIGNS_QUANTITIES];
+  signed char open[DESIGNS_QUANTITIES], located[DESIGNS_QUANTITIES];
   int all = 1, k;
   memset(open, 0, sizeof open);
   for (k = 0; k < DESIGNS_DOUBTS; ++k) open[designs_doubtful[k]] |= (signed char) designs_is_open(now, designs_doubted[k]);
@@ -304,9 +304,9 @@ static int designs_peaks(designs_now* now, double* value, double* t, double* xi)
   search.value = value;
   search.peak_t = t;
   search.xi = xi;
-  search.told = told;
+  search.located = located;
   now->call->find(&search);
-  for (k = 0; k < DESIGNS_QUANTITIES; ++k) all &= told[k];
+  for (k = 0; k < DESIGNS_QUANTITIES; ++k) all &= located[k];
   return all;
 }
 
@@ -341,7 +341,7 @@ static int designs_finish(designs_now* now, double* value, double* t, double* xi
     mean[k] = designs_mean(now, designs_effort[k], 0);
     rms[k] = sqrt(designs_mean(now, designs_effort[k], 1));
   }
-  if (!designs_peaks(now, value, t, xi)) return SCENE_PEAK_NOT_TOLD;
+  if (!designs_peaks(now, value, t, xi)) return SCENE_PEAK_NOT_LOCATED;
   for (k = 0; k < DESIGNS_EFFORTS; ++k) {
     if (value[designs_effort[k]] != value[designs_effort[k]]) mean[k] = rms[k] = NAN;
   }

@@ -206,7 +206,9 @@ class Library:
             if (array := arrays.get(name)) is not None and array.dtype != dtype
         }
         rounded = [
-            (array, own) for name, own in single.items() if (array := arrays[name]) is not None
+            (array, converted)
+            for name, converted in single.items()
+            if (array := arrays[name]) is not None
         ]
         arrays |= single
         search, within = many.search.call(many.tables, _CUT)
@@ -218,7 +220,7 @@ class Library:
             stride=stride,
             t_apart=n if len(t) > 1 else 0,
             bent_apart=stride if len(bent) > 1 else 0,
-            way=listed.way if listed else 0,
+            way=listed.sign if listed else 0,
             share=listed.share if listed else 0.0,
             **{
                 name: None if array is None else array.ctypes.data for name, array in arrays.items()
@@ -255,8 +257,8 @@ def _enter(
 ) -> None:
     """Call, with what must live as long as the call's addresses; then widen what was rounded."""
     entry(call)
-    for array, own in rounded:
-        array[...] = own
+    for array, converted in rounded:
+        array[...] = converted
 
 
 def load(

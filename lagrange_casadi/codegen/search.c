@@ -41,7 +41,7 @@ static void search_end(search_now* now, const search_panel* panel, int curve, lo
   peak->sign = row[endless] < 0 ? -1 : 1;
 }
 
-/* Search a step that a curve leaves open, or, of no curve's number, all may, once. Without panels that are left it is not told. */
+/* Search one step of a curve, or of all curves if its number is negative. If no panels are left, its peak is not located. */
 static void search_enter(search_now* now, const search_panel* panel, int curve, long long step, int depth) {
   int k;
   if (panel->hiding[step] & SEARCH_DONE || now->stopped) return;
@@ -56,9 +56,9 @@ static void search_enter(search_now* now, const search_panel* panel, int curve, 
     --now->left;
     search_inside(now, panel, step, depth);
   } else if (curve >= 0) {
-    now->peaks[now->quantity[curve]].untold = 1;
+    now->peaks[now->quantity[curve]].unlocated = 1;
   } else {
-    for (k = 0; k < now->curves->quantities; ++k) now->peaks[k].untold = 1;
+    for (k = 0; k < now->curves->quantities; ++k) now->peaks[k].unlocated = 1;
   }
 }
 
@@ -87,7 +87,7 @@ static void search_flush(search_now* now, const search_panel* panel, search_list
 }
 
 /* Whether a curve is, all around a step, what others of its quantity are: as one that turns only beyond its link's end. */
-static int search_told_before(const search_now* now, const search_panel* panel, int curve, long long step) {
+static int search_located_before(const search_now* now, const search_panel* panel, int curve, long long step) {
   const search_real *row = search_row(panel, curve), rounding = now->peaks[now->quantity[curve]].rounding, *other;
   long long i;
   int k, same = 1;
@@ -125,7 +125,7 @@ static void search_list_step(search_now* now, const search_panel* panel, int cur
   search_real size[4];
   long long i;
   int k, topped = 0;
-  if (search_told_before(now, panel, curve, step) || search_list_stretch(now, panel, curve, step, list)) return;
+  if (search_located_before(now, panel, curve, step) || search_list_stretch(now, panel, curve, step, list)) return;
   for (k = 0; k < 4; ++k) {
     i = step - 1 + k;
     size[k] = i < 0 || i >= panel->n ? -1 : row[i] < 0 ? -row[i] : row[i];
@@ -304,7 +304,7 @@ static void search_largest(search_now* now) {
     peak->place = (search_real) NAN;
     peak->sign = 1;
     peak->going = 0;
-    peak->untold = 0;
+    peak->unlocated = 0;
     peak->open = now->call->open && now->call->open[q];
     for (j = now->call->rests, k = curves->first[q]; k < curves->first[q + 1]; ++k) {
       j &= now->none[k];
@@ -478,8 +478,8 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search_room(lagrange_casadi_search_c
 }
 
 /* The peak of every quantity of n instants t in equal steps: its value, its time and its place, NaN for what is open, and whether it is
-   told. Where way is 1 or -1, the peak of a quantity is the largest of its values times that, else of its size. Where error is not NULL, peaks are
-   those at the instants, and it becomes how much larger quantities may be between them. tops, unless it is NULL,
+   located. Where way is 1 or -1, the peak of a quantity is the largest of its values times that, else of its size. Where error is not
+   NULL, peaks are those at the instants, and it becomes how much larger quantities may be between them. tops, unless it is NULL,
    becomes for each quantity SEARCH_TOPS local peaks down to a share of the largest: the number of the curve among the quantity's own,
    which is NAN where there are no more, time, ratio and value. rows are those of curves, of their places and, at watched, of what is watched, stride values apart; most
    are the largest sizes of curves at the instants. What rests is NaN in rows. scales, unless it is NULL, tells how large others are of each unit, hiding in which
@@ -489,7 +489,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   const lagrange_casadi_curves* curves = call->curves;
   search_now now;
   search_peak* peak;
-  int q, told;
+  int q, located;
   search_lay(&now, call);
   now.call = call;
   now.curves = curves;
@@ -514,14 +514,14 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   else if (call->n > 1) search_panel_of(&now, &now.all, 0);
   for (q = 0; q < curves->quantities; ++q) {
     peak = now.peaks + q;
-    call->told[q] = 1;
+    call->located[q] = 1;
     if (peak->open) {
       call->value[q] = call->peak_t[q] = call->xi[q] = NAN;
       continue;
     }
     if (peak->best - peak->best == 0) {
-      told = !(peak->untold || now.stopped || peak->going > peak->best/2);
-      call->told[q] = (signed char) told;
+      located = !(peak->unlocated || now.stopped || peak->going > peak->best/2);
+      call->located[q] = (signed char) located;
       search_sampled(&now, q);
     }
     call->value[q] = call->way ? call->way*(peak->sign*peak->best + peak->base) : peak->sign*peak->best;

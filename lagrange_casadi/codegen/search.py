@@ -95,7 +95,7 @@ CALL = Call(
         "value": "double*",
         "peak_t": "double*",
         "xi": "double*",
-        "told": "signed char*",
+        "located": "signed char*",
     },
 )
 """Arguments of the search; the C says which members it reads and writes."""
@@ -328,7 +328,7 @@ class Search:
             most=most.ctypes.data,
             scales=scales.ctypes.data,
             rests=int(np.isnan(values).any()),
-            way=listed.way if listed else 0,
+            way=listed.sign if listed else 0,
             share=listed.share if listed else 0.0,
             tops=None if tops is None else tops.ctypes.data,
             error=None if error is None else error.ctypes.data,
@@ -337,7 +337,7 @@ class Search:
             value=found[0].ctypes.data,
             peak_t=found[1].ctypes.data,
             xi=found[2].ctypes.data,
-            told=located.ctypes.data,
+            located=located.ctypes.data,
         )
         self.entry(call)
         del room  # until here the call has used it

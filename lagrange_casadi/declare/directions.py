@@ -73,7 +73,7 @@ class Reference:
         u, v, w = (_settled(self.rotation.resolve(one)) for one in triad)
         return u, v, w
 
-    def seen(self, other: Reference) -> tuple[Vector, Vector]:
+    def directions_of(self, other: Reference) -> tuple[Vector, Vector]:
         """The directions of another body's x and y axes on this one's."""
         return self.rotation.resolve(other.rotation.x), self.rotation.resolve(other.rotation.y)
 

@@ -120,9 +120,9 @@ class Moving:
         body, solved = self.body, self.solved
         columns = _beyond(body, _seeing(body, self.want))
         measured = (
-            (loop.name, ca.vertsplit(loop.seen))
+            (loop.name, ca.vertsplit(loop.counted))
             for loop in body.loop_equations
-            if loop.seen is not None
+            if loop.counted is not None
         )
         columns |= {
             Check("seen", f"{name}:{k}"): value
@@ -197,7 +197,7 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:
         f"row '{program.row.name}'": ca.vertcat(program.residual, program.size)
         for program in body.rows
     }
-    found |= {f"output '{name}'": expression for name, expression in body.own.items()}
+    found |= {f"output '{name}'": expression for name, expression in body.user_outputs.items()}
     for part in parts:
         kind = (
             "load"

@@ -68,13 +68,13 @@ class Peaks:
 class Listed(NamedTuple):
     """Local peaks that are listed: those down to a ``share`` of the largest.
 
-    Where ``way`` is 1 or -1, peaks are those of values times that, not of sizes. These are counted
+    Where ``sign`` is 1 or -1, peaks are those of values times that, not of sizes. These are counted
     from so far below the least at the instants that a share of little more than a half takes all
     there are between that and the largest.
     """
 
     share: float
-    way: int = 0
+    sign: int = 0
 
 
 class Samples(NamedTuple):

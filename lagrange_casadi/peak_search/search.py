@@ -114,7 +114,7 @@ def peaks(
     rest leaves it, has no peak. ``listed`` says which local peaks are told too. ``sampled`` peaks
     are those at the instants, with an error.
     """
-    base, direction = np.zeros(len(curves.units)), listed.way if listed else 0
+    base, direction = np.zeros(len(curves.units)), listed.sign if listed else 0
     if direction:
         base = base_of(np.array(curves.quantities), direction * samples.values, base.size)
         source = Counted(source, direction, base[list(curves.quantities), None])
@@ -171,7 +171,7 @@ class _Search:
         self.resolved, self.going = np.ones(self.best.size, bool), np.zeros(self.best.size)
         self.samples, self.hidden = samples.values, 0
         self.step = float(t[-1] - t[0]) / max(t.size - 1, 1)
-        self.left = INTERVALS + 4 * t.size
+        self.budget = INTERVALS + 4 * t.size
         self.tops = Tops(self.quantity, self.best.size, self.step)
 
     @property
@@ -289,9 +289,9 @@ class _Search:
             self.hidden += np.count_nonzero(hiding) if depth == 0 else 0
             self.stretches(interval, bound, hiding | kinked)
             self.settle(interval, bound)
-            open_ = (bound > self.limit[:, None]).any(axis=1)
+            unsettled = (bound > self.limit[:, None]).any(axis=1)
             bound[
-                [curve for curve in np.flatnonzero(open_).tolist() if self.rounded(curve)]
+                [curve for curve in np.flatnonzero(unsettled).tolist() if self.rounded(curve)]
             ] = -np.inf
         size = np.fmax(self.best, np.finfo(float).tiny)[self.quantity]
         while True:
@@ -302,8 +302,8 @@ class _Search:
             risen = bound[:, step] > self.limit
             if depth == DEEPEST or interval.step <= SPACING * np.abs(interval.t).max():
                 self.end(interval, step, risen, depth == DEEPEST)
-            elif self.left > 0:
-                self.left -= 1
+            elif self.budget > 0:
+                self.budget -= 1
                 self.inside(interval, step, depth)
             else:
                 self.resolved[self.quantity[risen | hiding[step]]] = False
@@ -327,7 +327,7 @@ class _Search:
         for j, time in enumerate(t):
             for curve in range(samples.values.shape[0]):
                 self.note(curve, samples.values[curve, j], time, samples.places[curve, j])
-        self.left -= 1
+        self.budget -= 1
         if t[0] - start > 2 * beside:
             self.part(start, t[0], first, samples.some(slice(0, 1)), depth)
         if stop - t[1] > 2 * beside:

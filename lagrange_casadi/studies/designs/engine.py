@@ -396,25 +396,27 @@ class DesignEngine:
         chosen = np.arange(value.size, dtype=np.intc)
         return self.moving(p).gradient(chosen, (value, t, xi), self._faint(value))
 
-    def curvature(self, p: Array, value: Array, t: Array, xi: Array, own: PeakSlopes) -> Array:
+    def curvature(
+        self, p: Array, value: Array, t: Array, xi: Array, first_order: PeakSlopes
+    ) -> Array:
         """The second derivatives (q, parameters, parameters) of the peaks of a design, whose
-        gradient is ``own``.
+        gradient is ``first_order``.
         """
         chosen = np.arange(value.size, dtype=np.intc)
-        return self.moving(p).curvature(chosen, (value, t, xi), own, self._faint(value))
+        return self.moving(p).curvature(chosen, (value, t, xi), first_order, self._faint(value))
 
     def _not_sampled(self) -> None:
         """Raise :class:`DeclarationError` where peaks are those of the instants."""
         if self.sampled:
             raise DeclarationError("peaks: 'sampled' ones have no derivatives; expected 'exact'")
 
-    def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
-        """Return which of the peaks (q,) of a design, whose gradient is ``own``, tie with another
-        one: see :meth:`.MovingPeaks.ties`.
+    def tied(self, p: Array, value: Array, first_order: PeakSlopes) -> npt.NDArray[np.bool_]:
+        """Return which of the peaks (q,) of a design, whose gradient is ``first_order``, tie with
+        another one: see :meth:`.MovingPeaks.ties`.
         """
         others = self.history(p, Listed(1.0 - AS_LARGE[self.method.precision])).tops
         chosen = np.arange(value.size, dtype=np.intc)
-        return self.moving(p).ties(chosen, value, own, others) & ~self._faint(value)
+        return self.moving(p).ties(chosen, value, first_order, others) & ~self._faint(value)
 
     def _faint(self, value: Array) -> npt.NDArray[np.bool_]:
         """Return which peaks are zero within rounding, relative to the largest of their unit."""

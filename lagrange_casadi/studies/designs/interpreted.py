@@ -79,7 +79,7 @@ class InterpretedDesigns:
         if not peaks:
             return Status.OK, series
         kept = self._reduced(t, p, evaluated, method, listed)
-        return (Status.PEAK_NOT_TOLD, None) if kept is None else (Status.OK, series | kept)
+        return (Status.PEAK_NOT_LOCATED, None) if kept is None else (Status.OK, series | kept)
 
     def _parts(self, t: Array, p: Array) -> Status:
         """Return ``OK`` where there are such parts and instants, or why not."""
@@ -102,14 +102,14 @@ class InterpretedDesigns:
     ) -> dict[str, Array] | None:
         """Peaks and means of a design that has a result; None where a peak cannot be told."""
         program, reduction = self.program, self.kept.reduction
-        left_open = {
+        indeterminate = {
             program.indeterminate[output]
             for output in undetermined(program, evaluated.out, p, method)
         }
         doubted = {
             quantity
             for check, quantity in reduction.indeterminate_checks
-            if reduction.checks[check][0] in left_open
+            if reduction.checks[check][0] in indeterminate
         }
         determined = [k for k in range(len(reduction.units)) if k not in doubted]
         efforts = evaluated.out[[program.outputs[effort] for effort in self.kept.efforts]]

@@ -167,7 +167,7 @@ class _Answers(threading.local):
         }
         if engine.sampled:
             places["error"] = np.empty((1, quantities))
-        self.seen = Peaks(*(array[0] for array in places.values()))
+        self.kept_peaks = Peaks(*(array[0] for array in places.values()))
         self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
         # Where nothing but the values changes from call to call, all that remains is the call
         # itself.
@@ -343,7 +343,7 @@ class Prepared:
             return Peaks(value, at, xi, mean, rms, error)
         fill[1]()
         self._refuse(self._watched(answers.instants[0], answers.even), p)
-        return answers.seen
+        return answers.kept_peaks
 
     def _kept_peaks(
         self, values: Sequence[_Values], named: Mapping[str, Number]
