@@ -112,6 +112,7 @@ _EXPORTED = "from benchmarks.exported import report; print(report('{0}'))"
 _SWEPT = "from benchmarks.sweeps import report; print(report({0}, {1}, {2}))"
 _OPTIMUM = "from benchmarks.optimum import report; print(report(5))"
 _GRADIENTS = "from benchmarks.gradients import report; print(report(20))"
+_STEADY = "from benchmarks.steady import report; print(report(5))"
 _LARGE = "from benchmarks.large import report; print(report({0}))"
 
 PROGRAMS = (
@@ -155,6 +156,8 @@ PROGRAMS = (
         _OPTIMUM, repeat=1, reports=True),
     Program("gradients", "the gradient of all peaks by all parameters, of the peaks alone",
         _GRADIENTS, repeat=1, reports=True),
+    Program("steady", "the steady cycle of the punch press, of an evaluation of it",
+        _STEADY, repeat=1, reports=True),
     *(
         Program(f"large-{n}", f"an open chain of {n} links, everything", _LARGE.format(n),
             cold=True, repeat=1, reports=True)

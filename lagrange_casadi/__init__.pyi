@@ -11,6 +11,7 @@ from . import (
     elements,
     errors,
     figures,
+    forward,
     motion,
     peaks,
     strength,
@@ -28,9 +29,17 @@ from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .exports import export
 from .formats import read, save_model
+from .forward.running import flywheel, free
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
-from .load_cases import LoadCase, link_load_cases, write_load_cases
+from .load_cases import (
+    BearingLoads,
+    LoadCase,
+    bearing_loads,
+    link_load_cases,
+    write_load_cases,
+    write_spectrum,
+)
 from .store.runs import check, load, save
 from .studies.designs.prepared import Prepared, prepare
 from .studies.evaluate import evaluate
@@ -44,6 +53,7 @@ from .studies.tool import tool_deflection
 from .version import __version__
 
 __all__ = [
+    "BearingLoads",
     "Case",
     "Curve",
     "Front",
@@ -63,6 +73,7 @@ __all__ = [
     "actuators",
     "animation",
     "beams",
+    "bearing_loads",
     "bearings",
     "best",
     "check",
@@ -75,6 +86,9 @@ __all__ = [
     "evaluate",
     "export",
     "figures",
+    "flywheel",
+    "forward",
+    "free",
     "holding",
     "link_load_cases",
     "load",
@@ -99,4 +113,5 @@ __all__ = [
     "tool_deflection",
     "vibration",
     "write_load_cases",
+    "write_spectrum",
 ]

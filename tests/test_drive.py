@@ -222,7 +222,7 @@ def test_a_winding_warms_and_cools_as_its_law_says():
     """
     t = np.array([0.0, 2.0, 2.0 + 1e-9, 8.0])
     torque = np.array([3.0, 3.0, 0.0, 0.0])
-    assert warmest(t, torque) == pytest.approx(3.0 * math.sqrt(2.0 / 8.0), rel=1e-8)
+    assert warmest(t, torque, math.inf) == pytest.approx(3.0 * math.sqrt(2.0 / 8.0), rel=1e-8)
     for tau in (0.1, 1.0, 5.0, 100.0):
         peak = math.expm1(-2.0 / tau) / math.expm1(-8.0 / tau)
         assert warmest(t, torque, tau) == pytest.approx(3.0 * math.sqrt(peak), rel=1e-8)
@@ -235,7 +235,7 @@ def test_a_winding_warms_and_cools_as_its_law_says():
 )
 def test_the_warmest_instant_is_between_the_mean_and_the_peak(pulls, tau, more):
     torque, t = np.array(pulls), np.cumsum(np.linspace(0.1, 0.5, len(pulls)))
-    least, slow, quick = warmest(t, torque), warmest(t, torque, tau * more), warmest(t, torque, tau)
+    least, slow, quick = (warmest(t, torque, tau) for tau in (math.inf, tau * more, tau))
     assert least * (1 - 1e-9) <= slow <= quick * (1 + 1e-9)
     assert quick <= torque.max() * (1 + 1e-9)
     assert warmest(t, torque, 1e9) == pytest.approx(least, rel=1e-6, abs=1e-12)

@@ -35,5 +35,5 @@ TIME_LIMIT = 60.0
 SIMPLE = "four_bar"
 """The case that another one begins as."""
 
-LOAD_FORMATS = ("json", "csv", "inp")
+LOAD_FORMATS = ("json", "csv", "inp", "nas", "beam")
 """Formats of load cases for finite elements."""

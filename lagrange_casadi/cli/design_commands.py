@@ -24,14 +24,17 @@ from .options import (
     CASE,
     EVEN_POINTS,
     PATH,
+    at_values,
     axis,
     backend,
     bounds,
+    conditions,
     even_points,
     instants,
     length,
     over,
     ratios,
+    resumable,
     settings_by,
     share,
     table_file,
@@ -90,12 +93,7 @@ from .options import (
     metavar="ADDRESS",
     help="Evaluate on the cluster of this Dask scheduler, as tcp://HOST:8786.",
 )
-@click.option(
-    "--resume",
-    is_flag=True,
-    help="Continue a sweep that was stopped; start it if there is none.",
-)
-@click.option("--force", is_flag=True, help="Start anew and replace the file.")
+@resumable("sweep")
 @click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option(
@@ -127,12 +125,7 @@ def sweep(**given: Any) -> None:
     help="Minimise this column; of two objectives, list their Pareto front.",
 )
 @click.option("--maximise", multiple=True, metavar="COLUMN", help="Maximise this column.")
-@click.option(
-    "--where",
-    multiple=True,
-    metavar="NAME<NUMBER",
-    help="Choose only designs that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
-)
+@conditions("designs")
 @click.option(
     "--count",
     type=click.IntRange(1),
@@ -155,12 +148,7 @@ def best(**given: Any) -> None:
 
 @command()
 @click.argument("file", metavar="FILE.h5", type=PATH)
-@click.option(
-    "--where",
-    multiple=True,
-    metavar="NAME<NUMBER",
-    help="Choose only rows that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
-)
+@conditions("rows")
 @click.option(
     "--column",
     "columns",
@@ -254,12 +242,7 @@ def table(**given: Any) -> None:
     metavar="ADDRESS",
     help="Search on the cluster of this Dask scheduler, as tcp://HOST:8786.",
 )
-@click.option(
-    "--resume",
-    is_flag=True,
-    help="Continue a search that was stopped; start it if there is none.",
-)
-@click.option("--force", is_flag=True, help="Start anew and replace the file.")
+@resumable("search")
 @click.option(
     "--out",
     type=PATH,
@@ -325,9 +308,7 @@ def optimise(**given: Any) -> int:
     show_default=True,
     help="Compare this equivalent stress with the yield strength.",
 )
-@settings_by()
-@instants()
-@over
+@at_values
 def size(**given: Any) -> None:
     """Choose the lightest safe profile for each link of CASE.
 
@@ -336,6 +317,85 @@ def size(**given: Any) -> None:
     from .size import size_command
 
     size_command(**given)
+
+
+@command("free")
+@click.argument("case", type=CASE)
+@click.option(
+    "--drive",
+    metavar="LAW=NUMBER,...",
+    help="Drive it by torque=TORQUE [N m], power=POWER [W], dc=STALL_TORQUE,NO_LOAD_SPEED or"
+    " induction=BREAKDOWN_TORQUE,BREAKDOWN_SLIP,SYNCHRONOUS_SPEED [rad/s]. Default: nothing; of a"
+    " steady cycle the torque that keeps the mean speed.",
+)
+@click.option(
+    "--geared",
+    type=float,
+    default=1.0,
+    show_default=True,
+    metavar="NUMBER",
+    help="Let the motor turn so many times as fast as the drive.",
+)
+@click.option(
+    "--load", type=float, default=0.0, metavar="NUMBER", help="Let this torque resist [N m]."
+)
+@click.option(
+    "--inertia",
+    type=float,
+    default=0.0,
+    metavar="NUMBER",
+    help="Put a flywheel of this inertia on the drive [kg m^2].",
+)
+@click.option(
+    "--start",
+    metavar="COORDINATE,RATE",
+    help="Start there [rad, rad/s or m, m/s]; default: where the motion of the case starts.",
+)
+@click.option("--steady", is_flag=True, help="Find the steady cycle, and go round once.")
+@click.option(
+    "--fluctuation",
+    type=float,
+    metavar="NUMBER",
+    help="Find the flywheel with which the steady cycle has this coefficient of fluctuation.",
+)
+@click.option(
+    "--cycle",
+    type=float,
+    default=1.0,
+    show_default=True,
+    metavar="TURNS",
+    help="Say after how many turns the machine repeats.",
+)
+@click.option(
+    "--count",
+    type=int,
+    default=721,
+    show_default=True,
+    metavar="NUMBER",
+    help="Take so many instants of a steady cycle.",
+)
+@settings_by()
+@instants()
+@wanted()
+@click.option("--out", type=PATH, help="Write the run to this HDF5 file; default: <case>_free.h5.")
+@click.option(
+    "--plot",
+    type=PATH,
+    metavar="FILE.png",
+    help="Draw torque and speed over the drive's coordinate into this file, .png, .pdf or .svg.",
+)
+def free(**given: Any) -> None:
+    """Let the machine CASE go: its motion under a motor, a load and its own weight.
+
+    Each force is that of the true motion. CASE has one degree of freedom; its own motion says
+    where it starts, and no more.
+
+    \b
+    lagrange-casadi free punch_press --drive induction=200,0.2,157 --geared 15 --fluctuation 0.05
+    """
+    from .free import free_command
+
+    free_command(**given)
 
 
 @command("drive")
@@ -418,9 +478,7 @@ def drive(**given: Any) -> None:
     help="Set the tolerance of a parameter, plus or minus this value [SI unit, unit or %];"
     " repeatable.",
 )
-@settings_by()
-@instants()
-@over
+@at_values
 @wanted("Compute these outputs, as in run; repeatable. Default: those of the case.")
 @click.option(
     "--samples",
@@ -444,9 +502,7 @@ def tolerances(**given: Any) -> None:
 
 @command()
 @click.argument("case", type=CASE)
-@settings_by()
-@instants()
-@over
+@at_values
 @wanted()
 @click.option(
     "--accuracy",

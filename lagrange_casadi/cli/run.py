@@ -63,6 +63,7 @@ def run(
     out: Path | None,
     figures: Path | None,
     no_figures: bool,
+    svg: bool,
     csv: TableFile | None,
     grids: bool | None,
     refine_peaks: bool,
@@ -73,6 +74,8 @@ def run(
     """See :func:`.commands.run`."""
     if figures and no_figures:
         raise click.UsageError("--figures and --no-figures exclude each other")
+    if svg and no_figures:
+        raise click.UsageError("--svg and --no-figures exclude each other")
     if out and out.suffix not in (".h5", ".hdf5"):
         raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     loaded = load_case(case)
@@ -107,7 +110,7 @@ def run(
     )
     with written, MANIFEST.filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
-            draw_with_progress(solution, loaded.figures, draft)
+            draw_with_progress(solution, loaded.figures, draft, svg=svg)
             drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures), grids=_grids(solution, grids, want))
     say = partial(echo, err=csv is not None and is_standard_output(csv.path))

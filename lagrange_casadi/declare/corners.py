@@ -9,13 +9,12 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array, Json
+from ..base.arrays import Array
 from ..base.symbolic import Graphs, symbolic
 from .kinks import Smooth
 from .mechanism import Mechanism
@@ -58,22 +57,6 @@ class Corners(Graphs):
         return cls(
             laws, {name: smooth for name, smooth in found.items() if smooth is not None}, cams
         )
-
-    def words(self) -> list[Json]:
-        """Write them for JSON."""
-        laws, constraints = (
-            {name: smooth.words() for name, smooth in of.items()}
-            for of in (self.laws, self.constraints)
-        )
-        return [laws, constraints, list(self.cams)]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> Corners:
-        """Read what :meth:`words` wrote."""
-        laws, constraints = (
-            {name: Smooth.loads(smooth) for name, smooth in of.items()} for of in words[:2]
-        )
-        return cls(laws, constraints, words[2])
 
     def refuse_isolated_laws(self, t: Array, p: Sequence[float], *, between: bool = False) -> None:
         """Raise :class:`.DeclarationError` for a motion that is other at an instant ``t`` (t,) than

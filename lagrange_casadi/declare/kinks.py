@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
-from ..base.arrays import Array, Expression, Json
+from ..base.arrays import Array, Expression
 from ..base.symbolic import symbolic_property
 from .broken_curves import Isolated, Kink
 from .clearance import Clearance
@@ -121,28 +121,6 @@ class Smooth:
                 else [],
                 bool,
             ),
-        )
-
-    def words(self) -> list[Json]:
-        """Write it for JSON; functions as the text in which CasADi writes them."""
-        functions = [f.serialize() for f in (self.marks, self.turns, self.slopes)]
-        flags = [symbols.tolist() for symbols in (self.whole, self.open, self.uses)]
-        return [[symbol.name() for symbol in self.symbols], *functions, *flags]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> Smooth:
-        """Read what :meth:`words` wrote."""
-        names, *functions, whole, crossing, uses = words
-        marks, reversals, slopes = map(ca.Function.deserialize, functions)
-        symbols = tuple(map(ca.SX.sym, names))
-        return cls(
-            symbols,
-            marks,
-            reversals,
-            slopes,
-            np.array(whole, bool),
-            np.array(crossing, bool),
-            np.array(uses, bool),
         )
 
     def kink(self, path: Array, values: Sequence[float]) -> Kink | None:
@@ -323,12 +301,12 @@ class Smooth:
         passed = []
         for _ in range(_ROUNDS):
             rest = Steps.joined(waiting)
-            ends = [self._states(self._marks(rest, x)) for x in (rest.low, rest.high)]
+            ends = [self._state(rest, x) for x in (rest.low, rest.high)]
             rest = rest.some((ends[0] != ends[1]).any(axis=0))
             if not rest.owner.size:
                 break
             found = rest.halved(partial(self._state, rest))
-            ends = [self._states(self._marks(found, x)) for x in (found.low, found.high)]
+            ends = [self._state(found, x) for x in (found.low, found.high)]
             changes, crossing = ends[0] != ends[1], self.open[:, None]
             passed.append(found.some((changes & ~crossing).any(axis=0)))
             touched.append(found.some((changes & crossing).any(axis=0)))

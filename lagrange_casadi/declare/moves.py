@@ -180,7 +180,8 @@ def moves(
         place = after
     times = _filled(each, [row[2] for row in found], period, demands)
     for number, (part, time) in enumerate(zip(each, times, strict=True)):
-        _demand_time(_what(part, number), time, demands)
+        what = f"{_what(part, number)}: its time"
+        demands.add(Demand(time, True, _not_positive(what, time, " s")))
     first = _expression("moves: begin", begin, "s")
     total = _Sum(first)
     seams = [first, *(total.then(time) for time in times)]
@@ -477,10 +478,6 @@ def _filled(
         )
     )
     return [remaining if time is None else time for time in known]
-
-
-def _demand_time(what: str, time: Expression, demands: _Demanded) -> None:
-    demands.add(Demand(time, True, _not_positive(f"{what}: its time", time, " s")))
 
 
 def _not_positive(what: str, value: Expression, unit: str = "") -> Callable[[Evaluator], str]:

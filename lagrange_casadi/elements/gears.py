@@ -31,7 +31,7 @@ from ..declare.mechanism import Mechanism
 from ..declare.meshes import Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
-from ..geometry.vectors import Vector, cross, dot, minus
+from ..geometry.vectors import cross, dot, minus, plus
 from .courses import Course, Numbers, along, courses_on, fits_of, length
 from .pitch import Pitch, Teeth, pitch_of
 from .ranges import LEAST, at_least, positive, share, whole, within
@@ -239,16 +239,12 @@ def _mesh(
         assert two.axis is not None
         gone = tuple(direction * x for x in two.axis)
         back = two.seen.resolve(
-            minus(minus(_sum(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2]))
+            minus(minus(plus(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2]))
         )
-        x, y, z = _sum(second.place, back)
+        x, y, z = plus(second.place, back)
         second = Point(second.body, x, y, z=z)
     wrenches = (Wrench(force, cross(pitch.arm, force)) for force in (pitch.force, pitch.apart))
     return Mesh(first, second, one.carrier, one.place, pitch.reach, *wrenches)
-
-
-def _sum(a: Vector, b: Vector) -> Vector:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 def _outputs(mechanism: Mechanism, name: str, constraint: Constraint, pitch: Pitch) -> None:

@@ -85,23 +85,18 @@ def wheel(
         )
     link = mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0), inertia=polar)
     teeth = None if teeth is None else count(f"{what}: teeth", teeth)
-    edges = [
+    outside, hole = (
         _edge(size, teeth if inward == internal else None, turned, inward=inward)
         for size, inward in ((outer, False), (inner, True))
-    ]
-    link = replace(link, outline=_outline(*edges))
+    )
+    # Along a line inward, round the hole, and back.
+    round_hole = [outside[0], hole[0], *reversed(hole)] if hole else []
+    link = replace(link, outline=(*outside, *round_hole))
     mechanism.bodies[name] = link
     return link
 
 
 _Corners = list[tuple[Expression, Expression]]
-
-
-def _outline(outer: _Corners, inner: _Corners) -> tuple[tuple[Expression, Expression], ...]:
-    """The outer edge, and the inner one where there is one: along a
-    line inward, round, and back.
-    """
-    return (*outer, *([outer[0], inner[0], *reversed(inner)] if inner else ()))
 
 
 def _edge(radius: Expression, teeth: int | None, turned: float, *, inward: bool) -> _Corners:

@@ -214,15 +214,14 @@ class _Solver:
             closure = self.found.put_into(closure)
         for coordinate, value in zip(form.unknown, variables, strict=True):
             if coordinate.axis.move == "screw" and form.branches:
-                value, deviation = wound_angles(coordinate, value, self._counting(), self.numbers)
+                counting = [
+                    c for c in self.known if c.kind == "angle" and c.name not in self.wrapped
+                ]
+                value, deviation = wound_angles(coordinate, value, counting, self.numbers)
                 self.deviations[coordinate.name] = self.found.put_into(deviation)
             self.numbers.note(coordinate.variables, self.numbers.of(value))
             self._know(coordinate, self.found.put_into(value))
         return closure
-
-    def _counting(self) -> list[Coordinate]:
-        """The coordinates known so far whose angles count turns."""
-        return [c for c in self.known if c.kind == "angle" and c.name not in self.wrapped]
 
     def _note_closure(self, block: Block, closure: ca.SX) -> None:
         """Note how far a block is from a dead centre: of blocks that one joint closes, the one that

@@ -18,7 +18,6 @@ Schmidt's method makes their strains orthogonal, one way after another, at every
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -155,18 +154,6 @@ class Completion:
         )
         found += [why for _, why in loaded if why != _NO_BEAM]
         return (*found, "some do not deform any link") if idle else tuple(found)
-
-    def dumps(self) -> str:
-        """Write it as text."""
-        return json.dumps(
-            [list(map(str, self.doubted)), dict(self.firm), self.function.serialize()]
-        )
-
-    @classmethod
-    def loads(cls, text: str) -> Completion:
-        """Read the text that :meth:`dumps` wrote."""
-        doubted, firm, function = json.loads(text)
-        return cls(tuple(map(Output.of, doubted)), firm, ca.Function.deserialize(function))
 
 
 def least_energy(

@@ -236,7 +236,9 @@ def _section_law(
         if place[0] is None:
             tip += acting
             continue
-        members = (*_by_plane(acting, space), place[0] / link.length)
+        force, couple = acting.force, acting.couple
+        acts = (*force, *couple) if space else (*force[:2], couple[2])
+        members = (*acts, place[0] / link.length)
         load_points |= {
             Output("station", name, member, source): value
             for member, value in zip(load_point_members(space), members, strict=True)
@@ -266,11 +268,6 @@ def _section_law(
         | distributed_loads(multibody, link)
         | rotary(multibody, link, frame.rate, frame.angular)
     )
-
-
-def _by_plane(acting: Action, space: bool) -> tuple[Expression, ...]:
-    """The numbers of a station: what acts along and across the link's axis, and about it."""
-    return (*acting.force, *acting.couple) if space else (*acting.force[:2], acting.couple[2])
 
 
 def _between_pins(multibody: Multibody, link: Link, drives: Expression) -> bool:

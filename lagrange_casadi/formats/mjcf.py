@@ -54,10 +54,10 @@ def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -
             continue
         there = (base / data).resolve()
         if Path(data).is_absolute() or not there.is_relative_to(folder):
-            raise model.refuse(line.where, f"{key} {shown(data)} leads out of its folder")
+            raise line.refuse(f"{key} {shown(data)} leads out of its folder")
         if line.name == "include" and there.is_file():
             if depth > _DEEPEST:
-                raise model.refuse(line.where, "includes are too deep")
+                raise line.refuse("includes are too deep")
             included = there.read_text(encoding="utf-8", errors="replace")
             _inside(model, folder, parsed(model, included, ""), there.parent, depth + 1)
     for one in line.inside:

@@ -44,8 +44,11 @@ def completed(
     """Report what least strain energy determined at instants ``t``, why some are ``indeterminate``,
     and its residual for a certificate.
     """
-    completion, known = program.completion, np.isfinite(found.out).all(axis=0)
-    if completion is None or not known.any():
+    completion = program.completion
+    if completion is None:
+        return Elasticity(), {}
+    known = np.isfinite(found.out).all(axis=0)
+    if not known.any():
         return Elasticity(), {}
     driven, iterated = (
         program.motion(t[None, known], p),

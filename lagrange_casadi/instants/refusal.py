@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -100,10 +100,24 @@ def _first_broken(
     program: Program, evaluated: Evaluated, most: Sequence[float], beside: Array
 ) -> npt.NDArray[np.intp]:
     """The number of the first rule that each instant breaks (t,), or zero."""
-    checks = [np.asarray(evaluated.out[bound.column], float) for bound in program.bounds]
-    given = [checks, [*map(np.float64, most)], [*beside], [evaluated.status.astype(float)]]
-    (found,) = interpret(program.status, given, numpy_arithmetic())
-    return np.broadcast_to(found[0], evaluated.status.shape).astype(np.intp)
+    checks = [evaluated.out[bound.column] for bound in program.bounds]
+    shares = [*map(np.float64, most)]
+
+    def numbers(
+        checks: Iterable[Array], beside: Iterable[Array], status: Array
+    ) -> npt.NDArray[np.intp]:
+        given = [[np.asarray(row, float) for row in checks], shares, [*beside], [status]]
+        (found,) = interpret(program.status, given, numpy_arithmetic())
+        return np.broadcast_to(found[0], status.shape).astype(np.intp)
+
+    if not evaluated.status.any():
+        # A rule is kept within an interval: if the least and the largest keep it, all do.
+        few, near = (
+            [np.array([row.min(), row.max()]) for row in rows] for rows in (checks, [*beside])
+        )
+        if not (np.isnan([*few, *near]).any() or numbers(few, near, np.zeros(2)).any()):
+            return np.zeros(evaluated.status.shape, np.intp)
+    return numbers(checks, beside, evaluated.status.astype(float))
 
 
 def _beside(

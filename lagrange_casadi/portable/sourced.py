@@ -99,11 +99,5 @@ def sourced(
     slopes = exported_slopes(compiled, agreed, by, p, exact.t, vectors.times) if by else None
     if slopes is not None:
         emitted = replace(emitted, functions={**emitted.functions, FUNCTION: slopes.function})
-    return Source(
-        agreed, emitted, _hash(declared, values), guess, method.options, values, vectors, slopes
-    )
-
-
-def _hash(declared: str, values: Mapping[str, float]) -> str:
-    """The hash of what is declared, wanted and set."""
-    return hashlib.sha256("\0".join([declared, json.dumps(values)]).encode()).hexdigest()[:32]
+    declared_hash = hashlib.sha256(f"{declared}\0{json.dumps(values)}".encode()).hexdigest()[:32]
+    return Source(agreed, emitted, declared_hash, guess, method.options, values, vectors, slopes)

@@ -42,9 +42,8 @@ class Batch:
     @classmethod
     def of(cls, function: ca.Function, method: EvaluationMethod) -> Batch:
         """Compile it by the compiler of a method; always in doubles."""
-        found = compiled(
-            method, lambda compiler: codegen.load_batch(function, compiler, _flags(method))
-        )
+        flags = tuple(shlex.split(method.flags))
+        found = compiled(method, lambda compiler: codegen.load_batch(function, compiler, flags))
         return cls(function, None if found is None else found[1])
 
     def at(self, n: int, given: Mapping[str, tuple[npt.NDArray[np.generic], int]]) -> Array:
@@ -248,7 +247,3 @@ def _given(
         "moving": (known.astype(float)[:, None], 1),
         codegen.CHOSEN: (np.asarray(chosen, np.intc), 1),
     }
-
-
-def _flags(method: EvaluationMethod) -> tuple[str, ...]:
-    return tuple(shlex.split(method.flags))

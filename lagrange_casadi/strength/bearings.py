@@ -88,27 +88,8 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
             f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
             f" {having or 'none'}"
         )
-    if joint not in joints:
-        raise UnknownNameError("joint", joint, joints)
-    members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
-    if not members:
-        raise DeclarationError(
-            f"the reaction of joint '{joint}' was not evaluated; add reaction:{joint} too"
-        )
-    if any(not solution.determined(member) for member in members):
-        raise DeclarationError(
-            f"the reaction of joint '{joint}' is statically indeterminate, so its strength is not"
-            " evaluated"
-        )
-    across, along = _forces(solution, joint)
-    if not (counts := counted(np.stack([across, along]))).any():
-        raise DeclarationError(
-            f"joint '{joint}': friction is at rest at all instants, so its strength is"
-            " indeterminate"
-        )
-    # What does not count is no load: it is below every peak, and loads a bearing over no way.
-    across, along = (np.where(counts, force, 0.0) for force in (across, along))
-    rate, slide = (_rate(solution, joint, kind) for kind in ("angle", "slide"))
+    across, along = reaction_sizes(solution, joint)
+    rate, slide = (joint_rate(solution, joint, kind) for kind in ("angle", "slide"))
     verdicts: list[Verdict] = []
     unknown: list[str] = []
     if parts is None:
@@ -128,6 +109,36 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
     return Safety(joint, tuple(verdicts), tuple(unknown))
 
 
+def reaction_sizes(solution: Solution, joint: str) -> tuple[Array, Array]:
+    """Return the sizes of a reaction across its joint's axis, and along it, each (t,); zero where
+    friction at rest leaves it indeterminate.
+
+    Raises :class:`.DeclarationError` for a joint that there is not, and a reaction that was not
+    evaluated, or is indeterminate at all instants.
+    """
+    joints = solution.description["joints"]
+    if joint not in joints:
+        raise UnknownNameError("joint", joint, joints)
+    members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
+    if not members:
+        raise DeclarationError(
+            f"the reaction of joint '{joint}' was not evaluated; add reaction:{joint} too"
+        )
+    if any(not solution.determined(member) for member in members):
+        raise DeclarationError(
+            f"the reaction of joint '{joint}' is statically indeterminate, so its strength is not"
+            " evaluated"
+        )
+    across, along = _forces(solution, joint)
+    if not (counts := counted(np.stack([across, along]))).any():
+        raise DeclarationError(
+            f"joint '{joint}': friction is at rest at all instants, so its strength is"
+            " indeterminate"
+        )
+    # What does not count is no load: it is below every peak, and loads a bearing over no way.
+    return np.where(counts, across, 0.0), np.where(counts, along, 0.0)
+
+
 def _check(joint: str, part: Fitted) -> None:
     kind = type(part).__name__.lower()
     for name, value in vars(part).items():
@@ -137,7 +148,7 @@ def _check(joint: str, part: Fitted) -> None:
             )
 
 
-def _rate(solution: Solution, joint: str, kind: str) -> Array | None:
+def joint_rate(solution: Solution, joint: str, kind: str) -> Array | None:
     """The rate at which a joint turns or slides; None if it was not evaluated, or there is none."""
     entry = solution.description["joints"][joint]
     kinds = entry.get("coordinates") or {joint: entry.get("coordinate")}
@@ -203,7 +214,7 @@ def _plain(
     if bearing.speed is not None:
         found.append(_verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s"))
     if bearing.heating is not None:
-        weights = _weights(t)
+        weights = time_weights(t)
         mean = float(pressure * speed @ weights / weights.sum())
         factor = bearing.heating / mean if mean else math.inf
         found.append(Verdict("heating", factor, f"p v {mean / 1e6:.4g} MPa m/s in the mean"))
@@ -214,7 +225,7 @@ def _rolling(
     bearing: Rolling, across: Array, along: Array, rate: Array, t: Array
 ) -> Iterator[Verdict]:
     load = bearing.radial * across + bearing.axial * along
-    weights = _weights(t)
+    weights = time_weights(t)
     shares = np.abs(rate) * weights
     rpm = float(shares.sum() / weights.sum()) * 60 / math.tau
     even = equivalent_load(load, shares, bearing.exponent)
@@ -226,7 +237,7 @@ def _rolling(
         yield _verdict("static load", bearing.static, load, t, "load", "N")
 
 
-def _weights(t: Array) -> Array:
+def time_weights(t: Array) -> Array:
     """Weight of each instant, by trapezia [s]; a single one has the weight of a second."""
     steps = np.diff(t) / 2
     return np.append(steps, 0.0) + np.append(0.0, steps) if t.size > 1 else np.ones(1)

@@ -23,10 +23,10 @@ from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...errors import DeclarationError, UnknownNameError
 from ...instants.statistics import of_counted
+from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
 from .chunks import encoded
 from .column import MISSING, Column
-from .engine import Engine
 from .instant_axis import InstantAxis
 from .link_properties import LinkProperties
 from .meanings import LEAST, LIFE, MASS, STATUS, TIMES, Meanings
@@ -77,7 +77,7 @@ class Harvest:
     derivatives of peaks are kept too.
     """
 
-    engine: Engine
+    engine: DesignEngine
     data: ModelData
     whole: Program
     keep: Keep

@@ -36,7 +36,6 @@ from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
 from .column import Column
 from .columns import Harvest, check_keep
-from .engine import Engine
 from .instant_axis import InstantAxis
 
 SCHEMA = "lagrange-casadi-sweep"
@@ -134,7 +133,7 @@ class Task:
         )
 
 
-def compiled(program: Program, timing: Timing, method: EvaluationMethod) -> Engine:
+def compiled(program: Program, timing: Timing, method: EvaluationMethod) -> DesignEngine:
     """The engine of a graph."""
     return DesignEngine.compiled(program, timing, method)
 
