@@ -66,7 +66,7 @@ class Peak:
     """The value of a quantity that is largest in size, with its sign, in ``unit``, and where it is.
 
     ``t`` is its time [s]; ``xi`` the ratio xi/l of a section force, None of other quantities.
-    ``value`` is NaN where the peak between the instants cannot be told; ``least`` is then the
+    ``value`` is NaN where the peak between the instants cannot be determined; ``least`` is then the
     largest size that was found. ``over`` is the coordinate [rad or m] of the drive by which
     instants were asked for, None where they were not.
     """

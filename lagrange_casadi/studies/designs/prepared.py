@@ -273,9 +273,9 @@ class Prepared:
         """Peaks and means for values of parameters; this thread's next evaluation overwrites the
         arrays.
 
-        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be told. Where a
-        joint that rubs is at rest, instants do not count for what depends on its friction; what is
-        open at all of them is NaN.
+        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be located.
+        Where a joint that rubs is at rest, instants do not count for what depends on its friction;
+        what is open at all of them is NaN.
         """
         return self._peaks(self._set(values, named))
 
@@ -311,7 +311,7 @@ class Prepared:
 
         They are exact, by automatic differentiation, as peaks move in time and along links. The
         first call derives and compiles them, in doubles. Raises what :meth:`gradient` does, and
-        :class:`DeclarationError` for a motion by samples that does not tell its knots.
+        :class:`DeclarationError` for a motion by samples whose knots are not known.
         """
         p, value, t, xi = self._kept_peaks(values, named)
         gradient = self._engine.gradient(p, value, t, xi)
