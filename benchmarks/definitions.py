@@ -112,6 +112,7 @@ _EXPORTED = "from benchmarks.exported import report; print(report('{0}'))"
 _SWEPT = "from benchmarks.sweeps import report; print(report({0}, {1}, {2}))"
 _OPTIMUM = "from benchmarks.optimum import report; print(report(5))"
 _GRADIENTS = "from benchmarks.gradients import report; print(report(20))"
+_STEADY = "from benchmarks.steady import report; print(report(5))"
 _LARGE = "from benchmarks.large import report; print(report({0}))"
 
 PROGRAMS = (
@@ -155,6 +156,8 @@ PROGRAMS = (
         _OPTIMUM, repeat=1, reports=True),
     Program("gradients", "the gradient of all peaks by all parameters, of the peaks alone",
         _GRADIENTS, repeat=1, reports=True),
+    Program("steady", "the steady cycle of the punch press, of an evaluation of it",
+        _STEADY, repeat=1, reports=True),
     *(
         Program(f"large-{n}", f"an open chain of {n} links, everything", _LARGE.format(n),
             cold=True, repeat=1, reports=True)
@@ -214,6 +217,16 @@ METHODS = {
         largest=3e6,
     ),
     "rnea": Method("Pinocchio's rneaInParallel, one thread", "peers.pinocchio_arm", largest=3e6),
+    "pinocchio native": Method(
+        "Pinocchio's rnea by its headers, built with -O3 -march=native",
+        "peers.compiled_chains",
+        {"library": "pinocchio"},
+    ),
+    "dynibo": Method(
+        "dynibo's inverse dynamics, built by Rust for this machine",
+        "peers.compiled_chains",
+        {"library": "dynibo"},
+    ),
     "pinocchio casadi": Method(
         "Pinocchio's rnea as a graph of CasADi, in its virtual machine", "peers.pinocchio_casadi"
     ),
@@ -247,7 +260,8 @@ COMPARISONS = (
     ),
     Comparison("arm-efforts", "efforts of an arm in space of six slender links, 10 000 instants",
         "arm_efforts",
-               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea"), "rnea", "ns/instant",
+               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea", "pinocchio native",
+                   "dynibo"), "rnea", "ns/instant",
                    t=10_000),
     Comparison("arm-sections",
         "six section forces of its second link: the law and its grids, 32 ratios", "arm_sections",
@@ -265,7 +279,8 @@ COMPARISONS = (
                ("lanes", "c", "vm", *_HAND), "by hand", "ns/instant", t=128, designs=1000),
     *(
         Comparison(f"chain-{n}", f"efforts of an open chain of {n} links, 1000 instants", "efforts",
-                   (*_ENGINE, "pinocchio rnea", "pinocchio casadi"), "pinocchio rnea", "ns/instant",
+                   (*_ENGINE, "pinocchio rnea", "pinocchio native", "dynibo", "pinocchio casadi"),
+                   "pinocchio rnea", "ns/instant",
                        t=1000, links=n)
         for n in CHAINS
     ),

@@ -143,8 +143,8 @@ html_theme_options = {
 
 
 def gallery(_app):
-    """Write a page for each case: its picture, its README, its code; and a card with the first line
-    of its code for each.
+    """Write a page for each case: its picture, a link to its report, its README and its code; and a
+    card with the first line of its code for each.
     """
     folder = HERE / "gallery" / "generated"
     folder.mkdir(exist_ok=True)
@@ -152,17 +152,34 @@ def gallery(_app):
     for case in sorted(CASES.glob("*/case.py")):
         name, code = case.parent.name, case.read_text()
         picture = f"![{name} in motion](../{name}.svg)"
+        link = (
+            f'<a href="../reports/{name}.html">Open its report</a>: the mechanism with its forces,'
+        )
+        about = f"{link} charts, tables and the diagrams of each link."
         title, rest = case.with_name("README.md").read_text().split("\n", 1)
         write(
             folder / f"{name}.md",
-            f"{title}\n\n{picture}\n{rest}\n## The case\n\n```python\n{code}```\n",
+            f"{title}\n\n{picture}\n\n{about}\n{rest}\n## The case\n\n```python\n{code}```\n",
         )
         purpose = ast.get_docstring(ast.parse(code)).split("\n\n")[0]
         cards.append(
-            f":::{{grid-item-card}} {name}\n:link: generated/{name}\n:link-type: doc\n:img-bottom:"
+            f":::{{grid-item-card}} {name}\n:link: generated/{name}\n:link-type: doc\n:img-top:"
             f" {name}.svg\n\n{purpose}\n:::\n"
         )
     write(folder / "cards.txt", f"::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{''.join(cards)}::::\n")
+
+
+def reports(app, error):
+    """Write the report of each case beside the gallery of a site, without a compiler."""
+    if error is not None or app.builder.format != "html":
+        return
+    folder = Path(app.outdir) / "gallery" / "reports"
+    folder.mkdir(exist_ok=True)
+    for case in sorted(CASES.glob("*/case.py")):
+        scene = lagrange_casadi.load_case(case.parent).scene
+        wanted = [*scene.wanted, "motion"]
+        solution = lagrange_casadi.evaluate(scene, wanted=wanted, backend="vm")
+        solution.report(folder / f"{case.parent.name}.html")
 
 
 def write(path, text):
@@ -258,6 +275,7 @@ def out_of_the_pages(app, tree):
 def setup(app):
     """Connect what is above."""
     app.connect("builder-inited", gallery)
+    app.connect("build-finished", reports)
     app.connect("source-read", offer_a_notebook)
     app.connect("autodoc-before-process-signature", without_marks)
     app.connect("autodoc-process-signature", short_arrays)

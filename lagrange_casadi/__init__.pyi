@@ -11,6 +11,7 @@ from . import (
     elements,
     errors,
     figures,
+    forward,
     motion,
     peaks,
     strength,
@@ -28,6 +29,7 @@ from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .exports import export
 from .formats import read, save_model
+from .forward.running import flywheel, free
 from .identification import (
     Identification,
     Measurements,
@@ -37,7 +39,14 @@ from .identification import (
 )
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
-from .load_cases import LoadCase, link_load_cases, write_load_cases
+from .load_cases import (
+    BearingLoads,
+    LoadCase,
+    bearing_loads,
+    link_load_cases,
+    write_load_cases,
+    write_spectrum,
+)
 from .store.runs import check, load, save
 from .studies.designs.prepared import Prepared, prepare
 from .studies.evaluate import evaluate
@@ -51,6 +60,7 @@ from .studies.tool import tool_deflection
 from .version import __version__
 
 __all__ = [
+    "BearingLoads",
     "Case",
     "Curve",
     "Front",
@@ -72,6 +82,7 @@ __all__ = [
     "actuators",
     "animation",
     "beams",
+    "bearing_loads",
     "bearings",
     "best",
     "check",
@@ -85,6 +96,9 @@ __all__ = [
     "excite",
     "export",
     "figures",
+    "flywheel",
+    "forward",
+    "free",
     "holding",
     "identify",
     "link_load_cases",
@@ -111,4 +125,5 @@ __all__ = [
     "tool_deflection",
     "vibration",
     "write_load_cases",
+    "write_spectrum",
 ]

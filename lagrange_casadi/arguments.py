@@ -280,16 +280,13 @@ def _kind(hint: Any) -> _Kind | None:
     ours = isinstance(origin, type) and origin.__module__.startswith("lagrange_casadi")
     if not ours or origin.__name__ in _OWN or getattr(origin, "_is_protocol", False):
         return None
-    return _if(_with_article(origin.__name__), lambda value: isinstance(value, origin))
+    article = "an" if origin.__name__[0] in "AEIO" else "a"
+    return _if(f"{article} {origin.__name__}", lambda value: isinstance(value, origin))
 
 
 def _if(words: str, admits: Callable[[object], bool]) -> _Kind:
     """A kind of which values are taken as they are."""
     return _Kind(words, lambda value: value if admits(value) else _NONE)
-
-
-def _with_article(name: str) -> str:
-    return f"a{'n' if name[0] in 'AEIO' else ''} {name}"
 
 
 def _one_of(hints: tuple[object, ...]) -> _Kind | None:

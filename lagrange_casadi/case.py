@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from . import case_modules
 from .arguments import public
@@ -138,7 +138,7 @@ def _file(given: Path) -> Path:
     raise CaseError(f"case {given}: no such file; {expected}{names}")
 
 
-def _call(given: Path, file: Path, module: ModuleType, name: str) -> Any:
+def _call(given: Path, file: Path, module: ModuleType, name: str) -> object:
     function = getattr(module, name, None)
     if not callable(function):
         raise CaseError(f"case {given}: has no function {name}()")

@@ -122,34 +122,27 @@ def _quick_return(arithmetic, values):
     return {"loads": [cut]}
 
 
-HEIGHTS, SHARES = (0, 5, 15, 30, 39, 40), (0.55, 0.7, 0.95, 1.0, 0.6, 0.0)
-
-
-def _servo_press(arithmetic, values):
-    """The part's force on the ram on its way down, by a table of the height; and the
-    counterbalance.
+def _pressed(heights, shares, force, held=""):
+    """A force on the ram on its way down, by a table of the height; and a counterbalance of a mass
+    that is ``held``.
     """
-    number = arithmetic.number
-    heights, shares = ([number(x) for x in row] for row in (HEIGHTS, SHARES))
 
-    def part(place):
-        _, y, _ = place(("ram", 0, 0))
-        height = 1000 * (number(values["r"]) + number(values["l"]) + y.v)
-        i = min(max(bisect.bisect_right(heights, height), 1), len(heights) - 1)
-        share = shares[i - 1] + (shares[i] - shares[i - 1]) / (heights[i] - heights[i - 1]) * (
-            height - heights[i - 1]
-        )
-        borne = share if y.d < 0 and height < heights[-1] else number(0)
-        return [
-            (
-                ("ram", 0, 0),
-                0,
-                number(values["drawing"]) * borne + number(values["mass"]) * number(9.81),
-                0,
-            )
-        ]
+    def beside(arithmetic, values):
+        number = arithmetic.number
+        at, of = ([number(x) for x in row] for row in (heights, shares))
 
-    return {"loads": [part]}
+        def part(place):
+            _, y, _ = place(("ram", 0, 0))
+            height = 1000 * (number(values["r"]) + number(values["l"]) + y.v)
+            i = min(max(bisect.bisect_right(at, height), 1), len(at) - 1)
+            share = of[i - 1] + (of[i] - of[i - 1]) / (at[i] - at[i - 1]) * (height - at[i - 1])
+            acts = share if y.d < 0 and height < at[-1] else number(0)
+            weight = number(values[held]) * number(9.81) if held else number(0)
+            return [(("ram", 0, 0), 0, number(values[force]) * acts + weight, 0)]
+
+        return {"loads": [part]}
+
+    return beside
 
 
 def _andrews_squeezer(arithmetic, values):
@@ -340,5 +333,8 @@ _CASES = {
     "beam_pump": _beam_pump,
     "scara": _scara,
     "roller_cam": _roller_cam,
-    "servo_press": _servo_press,
+    "servo_press": _pressed(
+        (0, 5, 15, 30, 39, 40), (0.55, 0.7, 0.95, 1.0, 0.6, 0.0), "drawing", "mass"
+    ),
+    "punch_press": _pressed((0, 7, 9.5, 10, 100), (0, 0, 1, 0, 0), "punching"),
 }

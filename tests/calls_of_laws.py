@@ -80,6 +80,7 @@ def laws() -> Iterator[tuple[str, Call]]:
         "t_section": walls,
         "c_section": walls,
         "box": walls,
+        "hollow_section": {**flat, "wall": 2e-3, "outer_radius": 3e-3, "inner_radius": 2e-3},
         "polygon": {"places": [(0.0, 0.0), (0.1, 0.0), (0.1, 0.1)]},
         "given": {"area": 1e-4, "iz": 1e-9, "iy": 1e-9, "top": 0.01, "side": 0.01},
         "along": {"ratios": [0.0, 1.0], "shapes": [BAR, wide]},

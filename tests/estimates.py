@@ -84,7 +84,7 @@ def assert_near(found):
 
 
 def methods(scene):
-    """The rungs of a scene, steps of Newton's method where its loops are iterated."""
+    """The evaluation methods of a scene, steps of Newton's method where its loops are iterated."""
     closed = derive(scene).newton is None
     return {
         method: words for method, words in METHODS.items() if not (closed and "newton" in words)
@@ -92,8 +92,8 @@ def methods(scene):
 
 
 def looked_at(scene, method):
-    """Estimates over true errors of a scene on a rung; none where it is refused: steps may be too
-    few for any solution.
+    """Estimates over true errors of a scene by one method; none where it is refused: steps may be
+    too few for any solution.
     """
     if method not in methods(scene):
         return []
@@ -119,7 +119,9 @@ def main():
     parser.add_argument(
         "scenes", nargs="?", type=int, help="random scenes of every kind, in place of the cases"
     )
-    parser.add_argument("--rung", choices=METHODS, action="append", help="only these; default: all")
+    parser.add_argument(
+        "--method", choices=METHODS, action="append", help="only these; default: all"
+    )
     parser.add_argument("--kind", action="append", help="only these; default: all")
     told = parser.parse_args()
     print(

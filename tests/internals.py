@@ -2,7 +2,7 @@
 
 # ruff: noqa: F401
 
-from lagrange_casadi.actuators.warmth import warmest
+from lagrange_casadi.actuators.choice import warmest
 from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.animation.drawn import Line
 from lagrange_casadi.animation.film import picture_of
@@ -27,6 +27,8 @@ from lagrange_casadi.arithmetic.lookups import cell, entries, is_entry, lookup
 from lagrange_casadi.base import cache, space, symbolic, vocabulary
 from lagrange_casadi.base import seal as base_seal
 from lagrange_casadi.base.csv_rows import Row, read_rows
+from lagrange_casadi.base.graph_text import dumps as graph_dumps
+from lagrange_casadi.base.graph_text import loads as graph_loads
 from lagrange_casadi.base.interrupts import interrupts
 from lagrange_casadi.base.numerals import readable as numerals_readable
 from lagrange_casadi.base.numerals import real, whole
@@ -46,7 +48,7 @@ from lagrange_casadi.beams.profiles import Profile, read_profiles
 from lagrange_casadi.cli.report import peak_line, shown
 from lagrange_casadi.cli.report import readable as report_readable
 from lagrange_casadi.cli.slope_lines import slope_lines
-from lagrange_casadi.cli.strength_lines import strength_lines, untold_lines
+from lagrange_casadi.cli.strength_lines import not_evaluated_lines, strength_lines
 from lagrange_casadi.cluster import sweeps
 from lagrange_casadi.cluster.sweeps import Cluster
 from lagrange_casadi.codegen import compiler, find_compiler, library, printer, programs
@@ -68,7 +70,6 @@ from lagrange_casadi.declare.description import (
     describe,
     drives_of,
     kinds_of_described,
-    measured_of,
     motions_of,
     shape_of,
 )

@@ -18,6 +18,8 @@ from lagrange_casadi import (
     bearings,
     evaluate,
     figures,
+    forward,
+    free,
     prepare,
     save,
     sensitivities,
@@ -39,6 +41,7 @@ DOORS = (
             "density",
             "elements",
             "figures",
+            "forward",
             "motion",
             "studies.optimise",
             "peaks",
@@ -60,6 +63,7 @@ def solved() -> SimpleNamespace:
     return SimpleNamespace(
         scene=scene,
         solution=solution,
+        gone=free(scene, wanted=["effort", "motion"]),
         duty=duty,
         motor=motor,
         stress=solution.stress("arm"),
@@ -127,7 +131,11 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
             "steps": 1,
             "backend": "vm",
         },
+        "write_spectrum": {"solution": solution, "name": "effort:O", "path": "spectrum.csv"},
+        "bearing_loads": {"solution": solution, "joint": "O"},
         "export": {"scene": scene, "out": "exported", "wanted": ["effort"], "force": True},
+        "free": {"scene": scene, "wanted": ["effort"]},
+        "flywheel": {"scene": scene, "start": (0.0, 30.0), "count": 5, "wanted": ["effort"]},
     }.items():
         yield name, (getattr(root, name), given)
     for name, given in {
@@ -243,6 +251,21 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         },
     }.items():
         yield name, (getattr(actuators, name), given)
+    for name, given in {
+        "torque": {"value": 1.0},
+        "power": {"value": 1.0},
+        "torque_curve": {"speeds": [0.0, 1.0], "torques": [1.0, 0.0]},
+        "dc_motor": {"stall_torque": 1.0, "no_load_speed": 10.0},
+        "induction_motor": {
+            "breakdown_torque": 1.0,
+            "breakdown_slip": 0.2,
+            "synchronous_speed": 10.0,
+        },
+        "expression": {"law": lambda t, angle, speed: -speed},
+        "plot_cycle": {"motion": of.gone, "path": "cycle.png"},
+    }.items():
+        yield f"forward.{name}", (getattr(forward, name), given)
+    yield "Law.geared", (forward.torque(1.0).geared, {"ratio": 2.0})
     chosen = {**held, "bearings": bearings.deep_groove("62"), "hours": 10.0}
     yield "select_bearing", (bearings.select_bearing, chosen)
     yield "Motor.short_time_torque", (of.motor.short_time_torque, {"speed": 10.0})

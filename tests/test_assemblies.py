@@ -271,17 +271,23 @@ def refusal(told, *replaced):
 MISUSE = {
     "another file": (("OndselSolver", "solid"), "line 1: expected the first line of an assembly"),
     "no parts": (("ConstantGravity", "Gravity"), "line 2, Assembly: lacks ConstantGravity"),
-    "unknown joint": (("RevoluteJoint", "CurveCurveContact"), "CurveCurveContact O: is not read"),
+    "unknown joint": (
+        ("RevoluteJoint", "CurveCurveContact"),
+        "CurveCurveContact O: is not supported",
+    ),
     "unknown marker": (
         ("/Press/Part1/Marker2", "/Press/Part9/M"),
         "unknown marker '/Press/Part9/M'",
     ),
-    "unknown motion": (("RotationalMotion", "GeneralMotion"), "GeneralMotion drive: is not read"),
+    "unknown motion": (
+        ("RotationalMotion", "GeneralMotion"),
+        "GeneralMotion drive: is not supported",
+    ),
     "motion of none": (
         ("/Press/O\n", "/Press/Z\n"),
         "RotationalMotion drive: unknown joint '/Press/Z'",
     ),
-    "law": (("2.0d*pi*time", "spline(time)"), "'spline(time)' is not read; valid: numbers"),
+    "law": (("2.0d*pi*time", "spline(time)"), "'spline(time)' is not supported; valid: numbers"),
     "rotation": (
         ("0.0\t1.0\t0.0", "0.0\t1.0\t0.5"),
         "RotationMatrix: axes: expected three directions",
@@ -308,7 +314,7 @@ def test_misuse_names_line_and_element(what, tmp_path):
 def test_what_is_not_read_is_said(tmp_path):
     path = tmp_path / "press.asmt"
     path.write_text(refusal(FOUR_BAR, ("\tForceTorques", "\tForceTorques\n\t\tForceTorqueInLine")))
-    assert re.search(r"# ForceTorqueInLine of line \d+ is not read\.", case_of(path))
+    assert re.search(r"# ForceTorqueInLine of line \d+ is ignored\.", case_of(path))
 
 
 def test_markers_that_a_drawing_has_rounded(tmp_path):

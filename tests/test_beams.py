@@ -61,6 +61,7 @@ def shapes():
         "t_section": beams.t_section(H, B, TW, TF),
         "c_section": beams.c_section(H, B, TW, TF),
         "box": beams.box(H, B, TW, TF),
+        "hollow_section": beams.hollow_section(H, B, TW, 1.5 * TW, TW),
         "rectangle": beams.rectangle(H, B),
         "ellipse": beams.ellipse(H, B),
         "tube": beams.tube(H, TW),
@@ -84,6 +85,60 @@ def test_walls_are_the_polygon_of_their_outline(kind):
         assert max(f.along_y[0] for f in found.fibres) == pytest.approx(
             outline.fibres[-1].along_y[0], rel=1e-12
         )
+
+
+def rounded_outline(height, width, radius):
+    """The corners of a rectangle with rounded corners, counter-clockwise."""
+    angles = np.linspace(0.0, np.pi / 2, 721)
+    corners = []
+    for k, (i, j) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
+        turned = angles + k * np.pi / 2
+        y = i * (height / 2 - radius) + radius * np.cos(turned)
+        z = j * (width / 2 - radius) + radius * np.sin(turned)
+        corners += [*zip(y.tolist(), z.tolist(), strict=True)]
+    return corners
+
+
+def test_a_hollow_section_is_the_difference_of_its_outlines():
+    found = shapes()["hollow_section"].properties()
+    outer, inner = (
+        beams.polygon(rounded_outline(*sizes)).properties()
+        for sizes in ((H, B, 1.5 * TW), (H - 2 * TW, B - 2 * TW, TW))
+    )
+    for name in ("area", "iy", "iz"):
+        whole = getattr(outer, name) - getattr(inner, name)
+        assert getattr(found, name) == pytest.approx(whole, rel=2e-7), name
+    # Q / (I b) of each solid outline is at its centroid: Q and the force that the flow carries.
+    q = [p.fibres[-1].along_y[0] * p.iz * width for p, width in ((outer, B), (inner, B - 2 * TW))]
+    (side,) = (f for f in found.fibres if f.name == "side +z")
+    assert side.along_y[0] == pytest.approx((q[0] - q[1]) / (found.iz * 2 * TW), rel=1e-6)
+    # Each fibre lies on the outline.
+    places = np.array(rounded_outline(H, B, 1.5 * TW))
+    for fibre in found.fibres:
+        if fibre.name.startswith("corner"):
+            assert np.hypot(*(places - [fibre.y, fibre.z]).T).min() < 1e-8, fibre.name
+
+
+def test_shear_flows_of_a_thin_hollow_section_carry_the_force_and_the_torsion():
+    """The flow goes along the wall, and its sum along y is the force."""
+    t, radius = 2e-4, 6e-3
+    shape = beams.hollow_section(H, B, t, radius + t / 2, radius - t / 2)
+    fibres = {fibre.name: fibre for fibre in shape.properties().fibres}
+    corner = [fibres[f"corner +y +z, {angle:g} deg"] for angle in np.arange(5) * 22.5]
+    at = np.radians(np.arange(5) * 22.5)
+    flows = np.array([fibre.along_y[:1] + fibre.along_z[:1] for fibre in corner])
+    size = np.hypot(*flows.T)
+    along = np.column_stack([np.sin(at), -np.cos(at)])
+    assert flows == pytest.approx(size[:, None] * along, rel=1e-12, abs=1e-12 * size.max())
+    # Both by rules that are exact for cubics: straight sides, and corners by their five fibres.
+    side = fibres["side +z"].along_y
+    web = (H - t - 2 * radius) * (2 * size[-1] + 4 * side[0]) / 6
+    arc = radius * np.pi / 24 * ([1, 4, 2, 4, 1] * size * np.sin(at)).sum()
+    assert (2 * web + 4 * arc) * t == pytest.approx(1.0, rel=1e-3)
+    inside = (H - t) * (B - t) - (4 - math.pi) * radius**2
+    # Bredt's stress, and that of the wall's own twist, G t theta.
+    length = 2 * (H + B - 2 * t) - 2 * (4 - math.pi) * radius
+    assert 2 * inside * t * -side[2] == pytest.approx(1 + t * length / (2 * inside), rel=1e-3)
 
 
 @pytest.mark.parametrize("kind", ["rectangle", "ellipse", "tube"])

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from xml.etree import ElementTree
 
 import h5py
 import numpy as np
@@ -44,6 +45,25 @@ def test_run_writes_the_file_and_the_figures(here, capsys):
     (row,) = (line for line in out.splitlines() if line.startswith("  section:rod:bending"))
     assert row.split()[1:] == ["0.941724", "N", "m", "0.0692", "0.4527", "-0.896639", "0.941724"]
     assert " +- " not in out
+
+
+def test_figures_may_be_svg(here):
+    """The same ones as PNG, with a page that shows them; the bytes are the same each time."""
+    run = ["run", str(CASE), "--t", "0:0.08:41", "--want", "section:rod", "--no-figures"]
+    assert main(run) == 0
+    for folder, options in (("png", []), ("svg", ["--svg"]), ("again", ["--svg"])):
+        assert main(["plot", "slider_crank.h5", "--out", folder, *options]) == 0
+    drawn = sorted((here / "svg").glob("*.svg"))
+    assert drawn
+    assert [path.stem for path in drawn] == sorted(
+        path.stem for path in (here / "png").glob("*.png")
+    )
+    assert not [*(here / "svg").glob("*.png")]
+    index = (here / "svg" / "index.html").read_text()
+    assert sorted(re.findall(r'<img src="([\w.]+)"', index)) == [path.name for path in drawn]
+    for path in drawn:
+        assert ElementTree.parse(path).getroot().tag == "{http://www.w3.org/2000/svg}svg"
+        assert path.read_bytes() == (here / "again" / path.name).read_bytes()
 
 
 def test_run_refines_peaks(here, capsys):

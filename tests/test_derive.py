@@ -3,6 +3,7 @@ come back.
 """
 
 import hashlib
+import math
 import os
 import pickle
 import subprocess
@@ -13,7 +14,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from compiled import SCENES
-from internals import Program, Wanted, fingerprint, sources
+from internals import Output, Program, Wanted, fingerprint, graph_dumps, graph_loads, sources
 from mechanisms import four_bar, slider_crank
 from outside import doubled
 
@@ -27,6 +28,23 @@ pytestmark = pytest.mark.quick
 
 def name_of(scene):
     return fingerprint(scene, Wanted.of(scene.mechanism, scene.wanted))
+
+
+def test_a_text_keeps_types_and_makes_only_what_its_reader_lists():
+    value = {
+        Output("effort", "O"): (1, -2.5, math.inf, None, True),
+        "inner": [("a",), {}, {"tuple": [1]}, [()]],
+    }
+    text = graph_dumps(value)
+    assert graph_loads(text, (Output,)) == value
+    assert [type(x) for x in graph_loads(text, (Output,))["inner"][2]["tuple"]] == [int]
+    flags = graph_loads(graph_dumps(np.array([True, False])), ())
+    assert flags.dtype == bool
+    assert flags.tolist() == [True, False]
+    with pytest.raises(KeyError, match="Output"):
+        graph_loads(text, ())
+    with pytest.raises(TypeError, match="complex cannot be written"):
+        graph_dumps([1j])
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -18,7 +18,7 @@ from internals import (
 )
 from mechanisms import truss_platform
 
-from lagrange_casadi import Mechanism, Scene, derive
+from lagrange_casadi import Mechanism, Scene, curve, derive
 from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.quick
@@ -149,6 +149,21 @@ def test_the_side_that_a_result_took_is_found(jump, load):
     changes, columns = of_load(scene, change=lambda out, row: turned(out, row, 7, load))
     assert columns[7] == load
     assert np.max(np.abs(changes)) < 1e-9
+
+
+def test_sides_that_no_instant_changes():
+    """A curve of what stands still: nothing but rounding tells in which of its cells that is."""
+    m = Mechanism("arm")
+    link, body = m.link("arm", length=1.0, mass=1.0), m.point_mass("body", 0.1)
+    m.revolute("J", m.ground, link)
+    m.weld("W", m.ground.at(0.1, 0.0), body)
+    knots = curve([0.0, 0.1, 0.5, 0.8], [0.2, 0.8, -0.9, 0.2], periodic=True)
+    m.torque("t", link, 1e3 * knots(m.place(body)[0]))
+    scene = Scene(m, {"J": harmonic(0.3, 1.0, 1.0)}, ["effort", "load:t"], t=(0.0, 1.0, 41))
+    changes, columns = of_load(scene, "single", lambda out, row: turned(out, row, 7, 700.0))
+    assert columns == pytest.approx(800.0, rel=1e-6)
+    assert changes[TRIALS, 7] == pytest.approx(-100.0, rel=1e-3)
+    assert np.max(np.abs(changes[:TRIALS])) < 1e-2
 
 
 def test_what_is_on_no_side_of_a_jump_is_an_error():

@@ -3,12 +3,14 @@
 import ast
 import inspect
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 import lagrange_casadi
+from lagrange_casadi import beams, elements, motion
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
 FIRST = {"What", "Whether", "Of", "Those", "How", "Where", "Why", "Which", "Its", "Their", "Theirs"}
@@ -58,3 +60,26 @@ def test_a_function_of_the_facade_says_what_it_takes_gives_and_raises(name):
     assert found.keys() == needed
     described = re.findall(r"^(\w.*)$", found["Parameters"], flags=re.MULTILINE)
     assert {one for line in described for one in line.split(", ")} == {*signature.parameters}
+
+
+def functions(*doors: ModuleType) -> Iterator[Callable[..., object]]:
+    """Public functions of modules that users import from."""
+    for door in doors:
+        for name in door.__all__:
+            if inspect.isfunction(thing := getattr(door, name)):
+                yield thing
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    "function", [*functions(beams, elements, motion)], ids=lambda one: one.__name__
+)
+def test_a_function_that_declares_says_what_it_takes_and_gives(function):
+    text = inspect.getdoc(function)
+    sections = re.split(r"^(\w+)\n-+$", text, flags=re.MULTILINE)
+    found = dict(zip(sections[1::2], sections[2::2], strict=True))
+    assert {"Parameters", "Returns"} <= found.keys() <= {"Parameters", "Returns", "Raises"}
+    described = re.findall(r"^(\S.*)$", found["Parameters"], flags=re.MULTILINE)
+    named = [line.partition(" : ")[0] for line in described]
+    given = {one.lstrip("*") for line in named for one in line.split(", ")}
+    assert given == {*inspect.signature(function).parameters}

@@ -13,7 +13,7 @@ from machines import elsewhere
 from mechanisms import sampled_cam
 from mechanisms import slider_crank as free
 
-from lagrange_casadi import derive, evaluate, load_case
+from lagrange_casadi import derive, errors, evaluate, load_case
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 fmi2 = pytest.importorskip("fmpy.fmi2")
@@ -50,7 +50,7 @@ def unit(tmp_path_factory):
             scene = (SCENES | GUIDED)[name]()
             made[key] = (
                 scene,
-                folder / f"{export(scene, folder, name=name, fmu=True, **how).prefix}.fmu",
+                folder / f"{export(scene, folder, name=name, **{'fmu': True, **how}).prefix}.fmu",
             )
         return made[key]
 
@@ -411,3 +411,49 @@ def test_a_unit_of_another_description_is_not_made(unit, tmp_path):
     )
     with pytest.raises(Exception, match="instantiate"):
         fmu.instantiate(callbacks=callbacks)
+
+
+@pytest.mark.parametrize("name", ["slider_crank", "windy", "free"])
+def test_the_motion_is_inside_by_time(unit, name):
+    scene, path = unit(name, fmu="time")
+    solution = evaluate(scene)
+    described = fmpy.read_model_description(str(path))
+    assert [v.name for v in described.modelVariables if v.causality == "input"] == []
+    found = fmpy.simulate_fmu(
+        str(path),
+        start_time=solution.t[0],
+        stop_time=solution.t[-1],
+        output_interval=solution.t[1] - solution.t[0],
+        fmi_type="ModelExchange",
+        output=outputs(path),
+    )
+    assert found["time"].shape == solution.t.shape
+    assert_alike(found, solution, outputs(path))
+
+
+def test_the_motion_is_inside_by_the_angle_of_a_crank(unit, tmp_path):
+    """Rates and accelerations follow from the angle alone, of turns before and after the scene's
+    too.
+    """
+    scene, path = unit("slider_crank", fmu="O")
+    described = fmpy.read_model_description(str(path))
+    given = [v.name for v in described.modelVariables if v.causality == "input"]
+    assert given == ["motion/O"]
+    names = [name for name in outputs(path) if name.startswith(("effort", "reaction"))]
+    for span in ((0.0, 0.08), (-0.3, -0.1), (1.0, 1.1)):
+        solution = evaluate(scene, wanted=["all"], t=(*span, 41))
+        table = np.zeros(solution.t.size, [("time", float), ("motion/O", float)])
+        table["time"], table["motion/O"] = np.arange(41.0), solution.series["motion:O"]
+        steps = {"start_time": 0.0, "stop_time": 40.0, "output_interval": 1.0}
+        found = fmpy.simulate_fmu(
+            str(path), **steps, input=table, fmi_type="ModelExchange", output=names
+        )
+        assert_alike(found, solution, names)
+
+
+def test_a_coordinate_that_turns_back_says_no_time(tmp_path):
+    scene = load_case("arm6").scene
+    with pytest.raises(errors.DeclarationError, match="'turn': this coordinate stands still or"):
+        export(scene, tmp_path / "a", fmu="turn", wanted=["effort"])
+    with pytest.raises(errors.UnknownNameError, match="unknown coordinate 'twist'; valid: time"):
+        export(scene, tmp_path / "a", fmu="twist", wanted=["effort"])

@@ -139,7 +139,7 @@ MISUSE = {
     "unknown motion": (changed(motions={"knee": "t"}), "unknown coordinate 'knee'; valid: hinge"),
     "code": (
         changed(motions={"hinge": "__import__('os')"}),
-        "motions.hinge: motion of 'hinge': '__import__('os')' is not read; valid: numbers, pi, t",
+        "motion of 'hinge': '__import__('os')' is not supported; valid: numbers, pi, t",
     ),
 }
 

@@ -200,7 +200,7 @@ def test_base_parameters_of_a_planar_arm_are_those_of_the_textbook():
     np.testing.assert_allclose(values, combined(result, ARM), rtol=1e-9)
     assert result.absent == ("m1",)
     assert not result.nonlinear
-    assert not result.untold
+    assert not result.unexcited
     assert np.isinf([result.errors[name] for name in ("m2", "h1", "J1")]).all()
     assert max(result.comparison.relative.values()) < 1e-12
 
@@ -215,9 +215,9 @@ def test_what_the_motion_does_not_tell_is_said():
     )
     result = identify(still, record(still, ARM, "effort:A"))
     assert len(result.base) < 4
-    assert len(result.base) + len(result.untold) == 4
-    told = identify(scene, record(scene, ARM, "effort:A"))
-    assert not told.untold
+    assert len(result.base) + len(result.unexcited) == 4
+    other = identify(scene, record(scene, ARM, "effort:A"))
+    assert not other.unexcited
 
 
 @pytest.mark.parametrize(
@@ -322,8 +322,8 @@ def test_prior_values_are_one_more_measurement():
     prior = identify(scene, given, parameters={"m2": 1.75}, prior={"m2": 0.1})
     assert prior.values["m2"] == pytest.approx(1.75, rel=1e-9)
     assert prior.errors["m2"] == pytest.approx(0.1, rel=1e-9)
-    told = free.base[0].value - 0.5 * 1.75
-    assert prior.values["h1"] == pytest.approx(told, rel=1e-6)
+    first = free.base[0].value - 0.5 * 1.75
+    assert prior.values["h1"] == pytest.approx(first, rel=1e-6)
     assert np.isfinite(prior.errors["J1"])
     assert np.isinf(prior.errors["m1"])
 

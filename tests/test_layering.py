@@ -59,6 +59,7 @@ ORDER = (
     "formats",
     "load_cases",
     "identification",
+    "forward",
     "cli",
 )
 """A room imports only those before it, late imports too."""
@@ -68,14 +69,17 @@ DECLARED = ORDER[: ORDER.index("equations") + 1]
 
 LEAVES = (
     *("exports", "figures", "report", "animation", "actuators", "cluster"),
-    *("formats", "load_cases", "identification", "cli"),
+    *("formats", "load_cases", "identification", "forward", "cli"),
 )
 """What nothing but the command line imports."""
 
 MOST_ANY = 94
 """Parameters and results whose type is ``Any``, as what users give that is yet to be checked."""
 
-PUBLIC = "actuators beams bearings case cli density elements errors motion peaks version".split()  # noqa: SIM905
+PUBLIC = (
+    *("actuators", "beams", "bearings", "case", "cli", "density", "elements", "errors"),
+    *("forward", "motion", "peaks", "version"),
+)
 """What users import from, and tests as well."""
 
 
@@ -300,6 +304,7 @@ else:
     assert main(["run", case, "--no-figures", "--backend", "vm", "--t", "0:0.1:5", "--out", out]) == 0
     asked = {"animate": [out], "drive": [case], "export": [case, "--out", out + "_c"], "plot": [out, "--out", out + "_p"]}
     asked |= {"report": [out], "new": [out + "_new", "--from", "model.json"]}
+    asked |= {"free": [case]}
     asked |= {"loads": [case, "--link", "crank", "--out", out + "_l"]}
     asked |= {"identify": [case, "data.csv"]}
     for word in commands:
@@ -325,7 +330,10 @@ GOES = {
     "formats": ([], ["read", "save_model"], ["new"]),
     "load_cases": (
         ["cli.loads"],
-        ["LoadCase", "link_load_cases", "write_load_cases"],
+        [
+            *("BearingLoads", "LoadCase", "bearing_loads", "link_load_cases"),
+            *("write_load_cases", "write_spectrum"),
+        ],
         ["loads"],
     ),
     "identification": (
@@ -333,6 +341,7 @@ GOES = {
         ["Identification", "Measurements", "excite", "identify", "read_measurements"],
         ["identify"],
     ),
+    "forward": (["cli.free"], ["flywheel", "forward", "free"], ["free"]),
     "cli": ([], [], []),
 }
 """What goes with each leaf: commands' modules, methods and public names, and commands that then say

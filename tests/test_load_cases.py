@@ -3,6 +3,7 @@
 import csv
 import dataclasses
 import json
+import math
 import shutil
 import subprocess
 
@@ -165,7 +166,9 @@ def test_files_hold_the_load_cases(crank_rod, tmp_path):
     files = write_load_cases(cases, tmp_path / "loads", ["json", "csv", "inp"])
     assert sorted(files) == sorted(path.name for path in (tmp_path / "loads").iterdir())
     kept = json.loads((tmp_path / "loads" / "rod.json").read_text())
-    assert kept["cases"] == json.loads(json.dumps([dataclasses.asdict(case) for case in cases]))
+    expected = [dataclasses.asdict(case) for case in cases]
+    assert all(case.pop("rod") is None for case in expected)
+    assert kept["cases"] == json.loads(json.dumps(expected))
     with (tmp_path / "loads" / "rod.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [float(row["fx [N]"]) for row in rows] == [x.force[0] for c in cases for x in c.loads]
@@ -175,8 +178,77 @@ def test_files_hold_the_load_cases(crank_rod, tmp_path):
     text = (tmp_path / "loads" / "rod_1.inp").read_text()
     assert "\n*CLOAD\nA, 1, " in text
     assert "\nrod, CENTRIF, " in text
-    with pytest.raises(errors.UnknownNameError, match="unknown format 'nas'; valid: json"):
-        write_load_cases(cases, tmp_path / "loads", ["nas"])
+    with pytest.raises(errors.UnknownNameError, match="unknown format 'k'; valid: json"):
+        write_load_cases(cases, tmp_path / "loads", ["k"])
+
+
+def entries(text):
+    """Bulk data in fields of 16 and of 8 characters: word and fields."""
+    found = []
+    for line in text.splitlines():
+        wide = 16 if "*" in line[:8] else 8
+        fields = [line[k : k + wide].strip() for k in range(8, len(line), wide)]
+        if line[:1] == "$":
+            continue
+        if line[:8].strip(" *"):
+            found.append((line[:8].strip(" *"), []))
+        found[-1][1].extend(float(x) if x else None for x in fields)
+    return found
+
+
+def test_bulk_data_of_nastran_is_in_equilibrium(tmp_path):
+    """The force of RACC is along the angular acceleration that is given, that of A outward."""
+    solution = evaluate(load_case("arm6").scene, wanted=["all"], backend="vm")
+    case = link_load_cases(solution, "link2")[0]
+    write_load_cases([case], tmp_path, ["nas"], {"shoulder": "700"})
+    force, moment, inertia = np.zeros(3), np.zeros(3), []
+    places = {700: case.loads[0].at}
+    assert [load.name for load in case.loads] == [
+        *("reaction:shoulder", "effort:shoulder", "reaction:elbow", "effort:elbow")
+    ]
+    places[1] = case.loads[2].at
+    known = entries((tmp_path / "link2_1.nas").read_text())
+    sets = [fields[0] for word, fields in known if word != "LOAD"]
+    word, combined = known[-1]
+    assert (word, combined[:2]) == ("LOAD", [10.0, 1.0])
+    assert dict(zip(combined[3::2], combined[2::2], strict=True)) == dict.fromkeys(sets, 1.0)
+    for word, fields in known[:-1]:
+        vector = np.array(fields[4:7] if word != "GRAV" else fields[3:6])
+        if word == "GRAV":
+            inertia.append((fields[2] * vector, 0.0 * vector, 0.0 * vector))
+        elif word == "RFORCE":
+            turns = fields[3], (fields[7:9] or [0.0])[-1]
+            inertia.append((0.0 * vector, *(math.tau * turn * vector for turn in turns)))
+        elif word == "FORCE":
+            force += fields[3] * vector
+            arm = np.subtract(places[fields[1]], case.centre)
+            moment += np.cross(arm, fields[3] * vector)
+        else:
+            moment += fields[3] * vector
+    assert len(inertia) == 3
+    gravity, omega, alpha = map(sum, zip(*inertia, strict=True))
+    nodes, weights = np.polynomial.legendre.leggauss(3)
+    largest = max(np.linalg.norm(load.force) for load in case.loads)
+    for node, weight in zip(nodes, weights, strict=True):
+        at = np.array([(1 + node) * case.centre[0], 0.0, 0.0])
+        outward = -np.cross(omega, np.cross(omega, at))
+        push = case.mass * weight / 2 * (gravity + outward + np.cross(alpha, at))
+        force, moment = force + push, moment + np.cross(at - case.centre, push)
+    assert np.abs([force, moment]).max() < 1e-8 * largest
+
+
+def test_nodes_have_names_of_the_mesh(crank_rod, tmp_path):
+    cases = link_load_cases(crank_rod, "rod")[:1]
+    write_load_cases(cases, tmp_path, ["inp", "nas"], {"A": "PIN", "B": "7", "rod": "ALL"})
+    text = (tmp_path / "rod_1.inp").read_text()
+    assert "\n*CLOAD\nPIN, 1, " in text
+    assert "\n7, 1, " in text
+    assert "\nALL, GRAV, " in text
+    assert "$   1: A at 0, 0, 0 m\n$   7: B at" in (tmp_path / "rod_1.nas").read_text()
+    with pytest.raises(errors.UnknownNameError, match=r"unknown load 'C'; valid: A, B, rod"):
+        write_load_cases(cases, tmp_path, ["inp"], {"C": "PIN"})
+    with pytest.raises(errors.DeclarationError, match="format 'beam' needs a link with a beam"):
+        write_load_cases(cases, tmp_path, ["beam"])
 
 
 def test_the_command_writes_load_cases(tmp_path, monkeypatch, capfd):
@@ -188,6 +260,12 @@ def test_the_command_writes_load_cases(tmp_path, monkeypatch, capfd):
     assert "wrote loads: 5 load cases in 2 files" in printed
     assert main([*asked[:3], "rood", *asked[4:]]) == 2
     assert "unknown link 'rood'" in capfd.readouterr().err
+    asked = ["loads", "slider_crank", "--spectrum", "section:rod:bending@0.5", "--bearing", "A"]
+    assert main([*asked, "--out", "spectra"]) == 0
+    found = sorted(path.name for path in (tmp_path / "spectra").iterdir())
+    assert found == ["bearings.csv", "section_rod_bending_0.5.csv"]
+    assert main(["loads", "slider_crank", "--out", "none"]) == 2
+    assert "expected --link, --spectrum or --bearing" in capfd.readouterr().err
 
 
 BEAM = """*NODE, NSET=all

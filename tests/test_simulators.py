@@ -170,7 +170,7 @@ SDF_MISUSE = {
         ),
         "its two axes are not at right angles",
     ),
-    "nested": (model(link("a"), "<include><uri>b</uri></include>"), "<include>: is not read: put"),
+    "nested": (model(link("a"), "<include><uri>b</uri></include>"), "<include>: is not supported"),
     "mimic of none": (
         model(link("a"), joint("J", "revolute", "world", "a",
               "<axis><xyz>0 0 1</xyz><mimic joint='K'/></axis>")),
@@ -281,7 +281,7 @@ MJCF_MISUSE = {
     ),
     "distance": (
         mjcf(LINKS, '<equality><joint joint1="C" joint2="O" polycoef="0 0 1 0 0"/></equality>'),
-        "is not read: its polynomial is not linear",
+        "is not supported: its polynomial is not linear",
     ),
 }
 

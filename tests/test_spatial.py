@@ -323,7 +323,7 @@ def test_a_bar_that_does_not_reach_is_named():
     m.slot("G", m.ground.at(0, 2.0, 0), slider, axis=(1, 0, 0))
     with pytest.raises(
         AssemblyError,
-        match="the loop closed by bar 'rod' cannot be closed at the start of the motion",
+        match="the loop closed by two-force link 'rod' cannot be closed at the start of the motion",
     ):
         derive(Scene(m, {"O": polynomial(0, 1)}, posture={"G:slide": 0.3}))
 

@@ -249,7 +249,7 @@ def platform(aside, *, bars):
 @pytest.mark.parametrize(
     ("bars", "says"),
     [
-        (True, r"the loop closed by bar 'rod3' cannot be closed at t = 0\.1 s"),
+        (True, r"the loop closed by two-force link 'rod3' cannot be closed at t = 0\.1 s"),
         (
             False,
             (

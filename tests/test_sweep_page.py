@@ -295,4 +295,4 @@ def test_the_page_takes_the_case_that_was_swept(tmp_path, capsys, monkeypatch):
         assert found["frame"] is not None
     (tmp_path / "mine.py").write_text((CASES / "quick_return" / "case.py").read_text())
     assert main(["report", str(tmp_path / "made" / "s.h5"), "--out", str(out)]) == 0
-    assert "the case '../mine.py' is not as it was swept" in capsys.readouterr().err
+    assert "the case '../mine.py' has changed since the sweep" in capsys.readouterr().err

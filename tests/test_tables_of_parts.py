@@ -44,8 +44,38 @@ def test_sections_have_the_mass_that_the_standard_publishes(series):
         assert area > 0.92 * whole
 
 
+# Area [cm^2], second moment [cm^4] and modulus [cm^3] about the axis of the greater one, then about
+# the other, torsion constant [cm^4] and modulus [cm^3]: EN 10210-2 and EN 10219-2.
+HOLLOW = {
+    "SHS 50x50x5": "8.73 28.9 11.6 28.9 11.6 47.6 16.7",
+    "SHS 100x100x5": "18.7 279 55.9 279 55.9 439 81.8",
+    "SHS 100x100x10": "34.9 462 92.4 462 92.4 761 133",
+    "SHS 200x200x10": "74.9 4471 447 4471 447 7031 655",
+    "RHS 100x50x5": "13.7 167 33.3 54.3 21.7 135 36.9",
+    "SHS cold 50x50x3": "5.41 19.5 7.79 19.5 7.79 32.1 11.8",
+    "SHS cold 100x100x4": "14.9 226 45.3 226 45.3 362 68.1",
+    "RHS cold 200x100x8": "43.2 2091 209 705 141 1811 250",
+}
+
+
+@pytest.mark.parametrize("name", HOLLOW)
+def test_hollow_sections_have_the_properties_that_the_standards_publish(name):
+    """To the last digit of each row."""
+    rows = beams.read_profiles(name.rpartition(" ")[0].replace(" ", "_"))
+    (profile,) = (row for row in rows if row.name == name)
+    found = profile.shape("hollow_section").properties()
+    twist = max(abs(fibre.along_z[2]) for fibre in found.fibres)
+    numbers = (1e4 * found.area, 1e8 * found.iz, 1e6 * found.wz, 1e8 * found.iy, 1e6 * found.wy)
+    for value, text in zip(
+        (*numbers, 1e8 * found.torsion, 1e6 / twist), HOLLOW[name].split(), strict=True
+    ):
+        last = 10.0 ** -len(text.partition(".")[2])
+        assert abs(value - float(text)) <= 0.51 * last, (value, text)
+
+
 def test_every_table_says_where_it_is_from_and_fits_a_shape():
-    kinds = {"CHS": "tube", "flat": "rectangle", "round": "round_bar"}
+    hollow = dict.fromkeys(("SHS", "RHS", "SHS_cold", "RHS_cold"), "hollow_section")
+    kinds = {"CHS": "tube", "flat": "rectangle", "round": "round_bar"} | hollow
     tables = {path.stem: path for path in (Path(beams.__file__).parent / "tables").iterdir()}
     assert set(tables) == {*PUBLISHED, *kinds}
     for name, path in tables.items():
@@ -71,7 +101,7 @@ def test_a_file_of_the_same_name_comes_first(tmp_path, monkeypatch):
 
 
 def test_a_name_of_no_table_lists_those_there_are(here):
-    tables = "tables: CHS, HEA, HEB, IPE, flat, round"
+    tables = "tables: CHS, HEA, HEB, IPE, RHS, RHS_cold, SHS, SHS_cold, flat, round"
     for read, listed in (
         (beams.read_profiles, tables),
         (actuators.read_motors, "classes: servo, induction"),

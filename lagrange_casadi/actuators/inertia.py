@@ -63,9 +63,9 @@ def inertia_at(
     return _alone(reflected, np.asarray(found.out, float), reflected.drives.index(joint))
 
 
-def _alone(seen: ReflectedInertia, out: Array, drive: int) -> Array:
+def _alone(reflected: ReflectedInertia, out: Array, drive: int) -> Array:
     """Inertia at one drive alone, from the columns M and R (columns, t)."""
-    count = len(seen.motions)
+    count = len(reflected.motions)
     matrix, by_rate = (
         part.reshape(-1, count, out.shape[1]).transpose(2, 0, 1)
         for part in (out[: count * count], out[count**2 :])

@@ -138,7 +138,7 @@ def rim(motion: Motion, shape: Shape) -> Array | None:
     axis = np.array([0.0, 0.0, 1.0])
     body_axes = np.stack(
         [
-            motion.way(shape.name, direction)
+            motion.direction(shape.name, direction)
             for direction in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
         ],
         axis=1,
@@ -146,7 +146,7 @@ def rim(motion: Motion, shape: Shape) -> Array | None:
     if not np.isfinite(body_axes).all():
         return None
     if turning is not None and in_space(motion.solution.description):
-        axis = body_axes[0] @ motion.way(turning.parent.body, turning.axes[0])[0]
+        axis = body_axes[0] @ motion.direction(turning.parent.body, turning.axes[0])[0]
     least = np.eye(3)[np.argmin(np.abs(axis))]
     first = np.cross(axis, least) / np.linalg.norm(np.cross(axis, least))
     second = np.cross(axis, first) / np.linalg.norm(axis)
@@ -158,14 +158,16 @@ def rim(motion: Motion, shape: Shape) -> Array | None:
 
 def _slide(motion: Motion, stage: Stage, joint: JointShape) -> Array:
     """The directions along which a joint slides, on the sheet (frames, 2) and of length 1."""
-    return along(stage.ways(motion.way(joint.parent.body, joint.axes[0], joint.parent.at)))
+    return along(
+        stage.projected(motion.direction(joint.parent.body, joint.axes[0], joint.parent.at))
+    )
 
 
 def _guide(motion: Motion, stage: Stage, joint: JointShape) -> Line:
     """A line along which a joint slides, as far as it ever does."""
     start, direction = (
         motion.place(joint.parent),
-        motion.way(joint.parent.body, joint.axes[0], joint.parent.at),
+        motion.direction(joint.parent.body, joint.axes[0], joint.parent.at),
     )
     reach = np.einsum("fc,fc->f", motion.place(joint.child) - start, direction)
     pad = 26.0 * stage.unit / stage.scale

@@ -71,13 +71,13 @@ class Picture:
     things: tuple[Thing, ...]
 
 
-def along(ways: Array) -> Array:
+def along(directions: Array) -> Array:
     """Directions (..., 2) of length 1; of nothing, nothing."""
-    size = np.hypot(ways[..., 0], ways[..., 1])[..., None]
-    found: Array = ways / np.where(size > 0.0, size, 1.0)
+    size = np.hypot(directions[..., 0], directions[..., 1])[..., None]
+    found: Array = directions / np.where(size > 0.0, size, 1.0)
     return found
 
 
-def across(ways: Array) -> Array:
+def across(directions: Array) -> Array:
     """Directions (..., 2) a quarter of a turn on."""
-    return np.stack([ways[..., 1], -ways[..., 0]], axis=-1)
+    return np.stack([directions[..., 1], -directions[..., 0]], axis=-1)

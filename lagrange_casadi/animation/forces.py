@@ -253,7 +253,7 @@ def _pushes(motion: Motion) -> Iterator[Action]:
             yield Action("reaction", joint.name, motion.place(joint.child), direction)
         for (name, kind), axis in zip(joint.coordinates, joint.axes, strict=False):
             if kind == "slide" and (effort := _effort(motion, name)) is not None:
-                along_axis = motion.way(joint.parent.body, axis, joint.parent.at)
+                along_axis = motion.direction(joint.parent.body, axis, joint.parent.at)
                 yield Action("effort", name, motion.place(joint.child), effort * along_axis)
     for load in load_shapes(solution.description):
         if (direction := _vector(motion, "load", load.name)) is not None:
@@ -268,7 +268,7 @@ def _turns(motion: Motion) -> Iterator[Action]:
                 direction = (
                     np.array([axis])
                     if not in_space(motion.solution.description)
-                    else motion.way(joint.parent.body, axis)
+                    else motion.direction(joint.parent.body, axis)
                 )
                 yield Action(
                     "effort", name, motion.place(joint.child), effort * direction, moment=True
@@ -319,7 +319,7 @@ def _ribbon(motion: Motion, link: str, force: str, scale: float) -> Ribbon:
     law, xi = motion.solution.section(link).law, np.linspace(0.0, 1.0, _RATIOS)
     base, tip = (motion.place(Spot(link, (at, 0.0, 0.0)))[:, None] for at in (0.0, law.length))
     axis = base + xi[:, None] * (tip - base)
-    side = motion.way(
+    side = motion.direction(
         link, (0.0, 0.0, 1.0) if force in ("shear_z", "bending_y") else (0.0, 1.0, 0.0)
     )[:, None]
     values = scale * motion.at(law.on_grid(force, xi))[..., None]

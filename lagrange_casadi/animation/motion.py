@@ -43,7 +43,7 @@ class Motion:
         """Return the coordinates of a place, (frames, 3) in ground axes [m]."""
         return self.at(placed(self.solution, spot))
 
-    def way(self, body: str, direction: Place, at: Place = (0.0, 0.0, 0.0)) -> Array:
+    def direction(self, body: str, direction: Place, at: Place = (0.0, 0.0, 0.0)) -> Array:
         """A direction that a body carries, (frames, 3) in ground axes."""
         x, y, z = np.add(at, direction).tolist()
         return self.place(Spot(body, (x, y, z))) - self.place(Spot(body, at))

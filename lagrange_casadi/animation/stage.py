@@ -46,10 +46,12 @@ class Stage:
 
     def on_sheet(self, places: Array) -> Array:
         """Places (..., 3) [m] on the sheet (..., 2) [pixels]."""
-        found: Array = self.centre + (self.ways(places) - self.scale * self.middle * [1.0, -1.0])
+        found: Array = self.centre + (
+            self.projected(places) - self.scale * self.middle * [1.0, -1.0]
+        )
         return found
 
-    def ways(self, directions: Array) -> Array:
+    def projected(self, directions: Array) -> Array:
         """Directions (..., 3) on the sheet (..., 2), whose y is downward."""
         found: Array = self.scale * (directions @ np.column_stack([self.right, -self.up]))
         return found

@@ -105,7 +105,7 @@ def replay(
     the step has several results.
     """
     work: dict[int, Any] = {}
-    outputs: list[list[Any]] = [[None] * function.nnz_out(i) for i in range(function.n_out())]
+    outputs: list[list[Any]] = [[None] * size for size in _sizes(function)]
     for k, step in enumerate(steps(function)):
         if step.operation == ca.OP_INPUT:
             work[step.results[0]] = inputs[step.arguments[0]][step.arguments[1]]
@@ -118,6 +118,12 @@ def replay(
             else:
                 work |= zip(step.results, value, strict=True)
     return outputs
+
+
+@functools.lru_cache(maxsize=64)
+def _sizes(function: ca.Function) -> tuple[int, ...]:
+    """The number of nonzeros of each output."""
+    return tuple(function.nnz_out(i) for i in range(function.n_out()))
 
 
 def interpret(
@@ -226,6 +232,7 @@ def operation_name(operation: int) -> str:
     )
 
 
+@functools.cache
 def numpy_arithmetic() -> Arithmetic:
     """NumPy's arithmetic on doubles and arrays of them."""
     known = _ROUNDED | _FUNCTIONS | _EXACT | {ca.OP_CALL: lambda lookup, x: lookup.at(x)}
@@ -260,7 +267,7 @@ _EXACT: dict[int, Callable[..., Any]] = {
     ca.OP_FMAX: np.fmax,
     ca.OP_FMOD: np.fmod,
     ca.OP_COPYSIGN: np.copysign,
-    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, np.zeros_like(y)),
+    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, 0.0),
     ca.OP_REMAINDER: _remainder,
 }
 _TRUTHS: dict[int, Callable[..., Any]] = {

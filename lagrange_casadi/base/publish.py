@@ -21,16 +21,12 @@ from typing import TYPE_CHECKING, BinaryIO
 
 from ..errors import BusyError, PathError, StoreError, one_line
 from .interrupts import interrupts
+from .locks import lock
 from .seal import SIGNATURE, is_held
 from .streams import SOCKET, open_stream, stream_word
 
 if TYPE_CHECKING:
     from typing_extensions import Buffer
-
-try:
-    import fcntl
-except ImportError:  # where there is none, drafts that a kill has left stay
-    fcntl = None  # type: ignore[assignment]
 
 
 def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) -> None:
@@ -284,13 +280,12 @@ def _lock(folder: Path, locks: ExitStack, *, wait: bool) -> bool:
 
     It is not where another process holds it, or nothing can.
     """
-    if fcntl is None:
+    if not hasattr(os, "O_DIRECTORY"):  # nor are there locks
         return False
     try:
         number = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
         locks.callback(os.close, number)
-        fcntl.flock(number, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-        return os.path.samestat(os.fstat(number), os.stat(folder))
+        return lock(number, wait=wait) and os.path.samestat(os.fstat(number), os.stat(folder))
     except OSError:
         return False
 

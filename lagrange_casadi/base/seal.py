@@ -20,13 +20,9 @@ from io import FileIO
 from pathlib import Path
 
 from ..errors import PathError, StoreError, check_kind, one_line
+from .locks import lock
 from .space import cores
 from .streams import check_regular
-
-try:
-    import fcntl
-except ImportError:  # where there is none, nobody says what is open
-    fcntl = None  # type: ignore[assignment]
 
 SIZE = 256
 """Bytes of a seal."""
@@ -150,11 +146,9 @@ def verify(path: str | os.PathLike[str]) -> VerifiedFile:
 
 def is_held(path: str | os.PathLike[str]) -> bool:
     """Return whether another program has a file open to write, as HDF5 shows by a lock."""
-    if fcntl is None:
-        return False
     try:
         with open(path, "rb") as file:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            lock(file.fileno(), shared=True)
     except BlockingIOError:
         return True
     except OSError:  # what cannot be read, or has no locks

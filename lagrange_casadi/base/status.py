@@ -23,7 +23,7 @@ class Status(enum.IntEnum):
     NOT_CLOSED = 12
     UNCERTIFIED = 13
     TURNED = 14
-    PEAK_NOT_TOLD = 15
+    PEAK_NOT_LOCATED = 15
     BEYOND_ENDS = 16
     NO_INSTANTS = 17
     JAMS = 18
@@ -50,8 +50,9 @@ _MEANINGS = {
         " beside= direction, or the drives cannot produce the motion: forces are indeterminate"
     ),
     Status.PASSES_DEAD_CENTRE: (
-        "between two instants a loop passes a dead centre, a joint gimbal lock, a two-force link"
-        " its beside= direction, or the drives such a position"
+        "between two instants a loop passes through a dead centre, a joint through gimbal lock, a"
+        " two-force link through its beside= direction, or the drives through a position in which"
+        " they cannot produce the motion"
     ),
     Status.MISFIT: "the loops are over-constrained and do not fit",
     Status.ROW_VIOLATED: "the motion violates a non-holonomic constraint",
@@ -67,7 +68,7 @@ _MEANINGS = {
     Status.TURNED: (
         "a load depends on the number of revolutions of an angle, which cannot be determined"
     ),
-    Status.PEAK_NOT_TOLD: (
+    Status.PEAK_NOT_LOCATED: (
         "a peak cannot be located: the quantity may be larger between the instants; take more"
         " instants"
     ),

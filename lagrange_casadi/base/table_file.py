@@ -90,11 +90,11 @@ class TableFile:
     ) -> int:
         text = TextIOWrapper(file, encoding="utf-8", newline="")
         writer = csv.writer(text, delimiter=";" if self.decimal_comma else ",", lineterminator="\n")
-        written = _with_comma if self.decimal_comma else _with_point
+        point = "," if self.decimal_comma else "."
         writer.writerow(heads)
         count = 0
         for row in rows:
-            writer.writerow(map(written, row))
+            writer.writerow(x if isinstance(x, str) else repr(x).replace(".", point) for x in row)
             count += 1
         text.detach()
         file.flush()
@@ -134,14 +134,6 @@ class TableFile:
             book.save(draft)
             _copy_without_times(draft, file)
         return count
-
-
-def _with_point(cell: Cell) -> str:
-    return cell if isinstance(cell, str) else repr(cell)
-
-
-def _with_comma(cell: Cell) -> str:
-    return cell if isinstance(cell, str) else repr(cell).replace(".", ",")
 
 
 def _cell_maker(sheet: Any, cell_of: Callable[..., Any]) -> Callable[[Cell], Any]:

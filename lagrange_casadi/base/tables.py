@@ -201,6 +201,20 @@ _OTHERS = (
     ),
     Quantity(
         "certificate",
+        "energy",
+        ("t",),
+        "1",
+        "balance of energy of a free machine since the first instant, over the largest energy",
+    ),
+    Quantity(
+        "certificate",
+        "drive",
+        ("t",),
+        "1",
+        "effort of a free machine less that of its drive, over the largest torque",
+    ),
+    Quantity(
+        "certificate",
         "condition",
         ("t",),
         "1",

@@ -14,6 +14,10 @@ Keep = Literal["peaks", "laws", "histories"]
 KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
 """Results of each design that a sweep can keep."""
 
+PeakSearch = Literal["exact", "sampled"]
+PEAK_SEARCHES: tuple[PeakSearch, ...] = ("exact", "sampled")
+"""Peaks of designs: sought between the instants, or those at them, with an error."""
+
 CRITERIA = ("goodman", "gerber", "soderberg", "morrow", "findley")
 """Treatments of a mean stress in fatigue."""
 
@@ -35,5 +39,5 @@ TIME_LIMIT = 60.0
 SIMPLE = "four_bar"
 """The case that another one begins as."""
 
-LOAD_FORMATS = ("json", "csv", "inp")
+LOAD_FORMATS = ("json", "csv", "inp", "nas", "beam")
 """Formats of load cases for finite elements."""

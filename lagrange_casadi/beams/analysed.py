@@ -26,14 +26,29 @@ _NEEDS = (
 
 @public
 def analysed(section: Any, mesh: float | None = None) -> Shape:
-    """A cross-section by its properties, as sectionproperties tells them: torsion and the largest
-    shear stresses too.
+    """Return a cross-section of any outline, by finite elements of the package sectionproperties,
+    with torsion and shear stresses.
 
-    ``section`` is a polygon whose corners are numbers, or a ``Section`` of sectionproperties, in
-    metres: its y is the beam's y, its x the beam's z. ``mesh`` is the largest area of a triangle in
-    a polygon [m^2]. Where an outline has a corner that points inward, shear stress there has no
-    end, and what is told is that of the triangles. Raises :class:`.LagrangeCasadiError` where
-    sectionproperties is not installed, and :class:`.DeclarationError` for what is none of these.
+    Parameters
+    ----------
+    section
+        A polygon whose corners are numbers, or a ``Section`` of sectionproperties in metres: its
+        y is the beam's y, its x the beam's z.
+    mesh
+        Largest area of a triangle in a polygon [m^2]. At a corner that points inward the shear
+        stress has no limit: the value there depends on the mesh.
+
+    Returns
+    -------
+    Shape
+        The cross-section by its properties.
+
+    Raises
+    ------
+    LagrangeCasadiError
+        If sectionproperties is not installed.
+    DeclarationError
+        For any other object.
     """
     found = _meshed(section, mesh) if isinstance(section, Shape) else section
     if not hasattr(found, "calculate_warping_properties"):

@@ -146,15 +146,33 @@ def shoulder(
     shear: float | None = None,
     sensitivity: float = 1.0,
 ) -> Notch:
-    """A step of a round bar from a ``wide`` diameter to a ``narrow`` one, with a fillet of a
-    ``radius`` [m], at a ratio xi/l.
+    """Return the notch of a step of a bar with a fillet.
 
-    ``flat`` is a flat bar whose height has the step, its wide part six times as long as it is high,
-    or longer. The factor on shear stress is that of torsion of round bars; for flat bars it is 1
-    unless ``shear`` says another.
+    Parameters
+    ----------
+    at
+        Ratio xi/l of the step.
+    wide, narrow
+        Diameters of a round bar, or heights of a flat one, on both sides [m, or a text].
+    radius
+        Radius of the fillet [m, or a text].
+    flat
+        True for a flat bar, whose wide part is at least six times as long as high.
+    shear
+        Factor on shear stress; by default that of torsion for round bars, and 1 for flat ones.
+    sensitivity
+        Notch sensitivity for fatigue, from 0 to 1.
 
-    Raises :class:`.DeclarationError` for what is no step, and where the fits do not hold: the
-    step's depth t over the radius must be from 0.1 to 20, for torsion from 0.25 to 4.
+    Returns
+    -------
+    Notch
+        The notch.
+
+    Raises
+    ------
+    DeclarationError
+        If there is no step, and outside the range of the fits: the depth of the step over the
+        radius must be 0.1 to 20, for torsion 0.25 to 4.
     """
     wide, narrow, radius = _lengths("shoulder", wide=wide, narrow=narrow, radius=radius)
     if not wide > narrow:
@@ -177,11 +195,30 @@ def hole(
     shear: float = 1.0,
     sensitivity: float = 1.0,
 ) -> Notch:
-    """A hole through the middle of a flat bar of a ``height``, along z, so that the bar bends in
-    the hole's own plane [m].
+    """Return the notch of a hole through the middle of a flat bar, along z, for bending in the
+    plane of the hole.
 
-    In bending the factor is that of the outermost fibre, or of the hole's edge where that has more.
-    Raises :class:`.DeclarationError` for a hole that does not fit.
+    Parameters
+    ----------
+    at
+        Ratio xi/l of its place.
+    height, diameter
+        Height of the bar and diameter of the hole [m, or a text].
+    shear
+        Factor on shear stress.
+    sensitivity
+        Notch sensitivity for fatigue, from 0 to 1.
+
+    Returns
+    -------
+    Notch
+        The notch. In bending the factor is that of the outermost fibre, or of the edge of the
+        hole if that is larger.
+
+    Raises
+    ------
+    DeclarationError
+        For a hole that does not fit.
     """
     height, diameter = _lengths("hole", height=height, diameter=diameter)
     share = diameter / height
@@ -189,25 +226,51 @@ def hole(
         raise DeclarationError(
             f"hole: diameter must be less than height, got {diameter:g} and {height:g} m"
         )
-    left = 1.0 - share
-    tension = 0.284 + 2.0 / left - 0.600 * left + 1.32 * left**2
+    remaining = 1.0 - share
+    tension = 0.284 + 2.0 / remaining - 0.600 * remaining + 1.32 * remaining**2
     return Notch(at, tension, max(1.0, 2.0 * share) / (1.0 - share**3), shear, sensitivity)
 
 
 @public
 def keyway(at: float, *, sensitivity: float = 1.0) -> Notch:
-    """The end of an end-milled keyway of a shaft; its corners have a radius of a fiftieth of the
-    diameter, as in standards.
+    """Return the notch at the end of an end-milled keyway, whose corners have a radius of a
+    fiftieth of the diameter, as in standards.
+
+    Parameters
+    ----------
+    at
+        Ratio xi/l of its place.
+    sensitivity
+        Notch sensitivity for fatigue, from 0 to 1.
+
+    Returns
+    -------
+    Notch
+        The notch.
     """
     return Notch(at, 1.0, 2.14, 3.0, sensitivity)
 
 
 @public
 def sensitivity(radius: float | str, ultimate: float) -> float:
-    """Notch sensitivity, from 0 to 1, of a ``radius`` [m] in steel of an ``ultimate`` strength
-    [Pa].
+    """Return the notch sensitivity of steel, by Neuber's constant.
 
-    Raises :class:`.DeclarationError` for a strength for which it is not known.
+    Parameters
+    ----------
+    radius
+        Radius of the notch [m, or a text].
+    ultimate
+        Ultimate strength [Pa].
+
+    Returns
+    -------
+    float
+        Notch sensitivity, from 0 to 1.
+
+    Raises
+    ------
+    DeclarationError
+        For a strength for which it is not known.
     """
     (radius,) = _lengths("sensitivity", radius=radius)
     strength = ultimate / _KSI

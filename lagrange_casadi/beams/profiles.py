@@ -47,16 +47,28 @@ class Profile:
 
 @public
 def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
-    """Profiles of a CSV file: a column ``name``, and one for each dimension, in metres or with a
-    unit as ``height [mm]``.
+    """Read a table of profiles.
 
-    Where there is no such file, the name of a standard table is one: IPE, HEA and HEB of EN 10365,
-    CHS for tubes, flat and round. Each says in its first lines where its sizes are from.
+    Parameters
+    ----------
+    path
+        CSV file with a column ``name``, and one for each dimension, in metres or with a unit as
+        ``height [mm]``; lines that begin with ``#`` are skipped. If there is no such file, the
+        name of a standard table: IPE, HEA and HEB of EN 10365, CHS for round tubes, SHS and RHS
+        for square and rectangular ones (SHS_cold and RHS_cold if cold formed), flat and round.
+        Each table says in its first lines where its sizes are from.
 
-    Cells are parted as :func:`.read_rows` says; lines that begin with ``#`` are passed over.
+    Returns
+    -------
+    tuple of Profile
+        The profiles, in the order of the table.
 
-    Raises :class:`.PathError` for a file that cannot be read, and :class:`.DeclarationError` that
-    names the line which is wrong.
+    Raises
+    ------
+    PathError
+        For a file that cannot be read.
+    DeclarationError
+        For a wrong line, which it names.
     """
     table = str(path) if str(path) in STANDARD and not Path(path).exists() else ""
     if table:

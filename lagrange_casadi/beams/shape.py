@@ -102,62 +102,248 @@ def _length(what: str, value: Operand | str) -> Operand:
 
 @public
 def rectangle(height: Symbolic, width: Symbolic) -> Shape:
-    """A rectangle."""
+    """Return a rectangle.
+
+    Parameters
+    ----------
+    height, width
+        Sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("rectangle", {"height": height, "width": width})
 
 
 @public
 def round_bar(diameter: Symbolic) -> Shape:
-    """A round bar."""
+    """Return a round bar.
+
+    Parameters
+    ----------
+    diameter
+        Diameter [m], numbers, texts such as ``"30 mm"``, or expressions of parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("round_bar", {"diameter": diameter})
 
 
 @public
 def tube(diameter: Symbolic, wall: Symbolic) -> Shape:
-    """A round tube, by its outer diameter and its wall."""
+    """Return a round tube.
+
+    Parameters
+    ----------
+    diameter, wall
+        Outer diameter and wall [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("tube", {"diameter": diameter, "wall": wall})
 
 
 @public
 def ellipse(height: Symbolic, width: Symbolic) -> Shape:
-    """An ellipse, by its two diameters."""
+    """Return an ellipse.
+
+    Parameters
+    ----------
+    height, width
+        Diameters along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("ellipse", {"height": height, "width": width})
 
 
 @public
 def i_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """An I, by its height, the width of its flanges, and the thickness of its web and of its
-    flanges.
+    """Return an I section without fillets.
+
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    web, flange
+        Thickness of the web, and of each flange [m].
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
     """
     return Shape("i_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
 def t_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """A T, its flange on the side of +y."""
+    """Return a T section without fillets, with its flange on the side of +y.
+
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    web, flange
+        Thickness of web and flange [m].
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("t_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
 def c_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """A C, its web on the side of -z."""
+    """Return a C section without fillets, with its web on the side of -z.
+
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    web, flange
+        Thickness of the web, and of each flange [m].
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
     return Shape("c_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
 def box(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """A box, by its outer height and width, and the thickness of its two webs and of its two
-    flanges.
+    """Return a box with sharp corners, two webs along y and two flanges along z.
+
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    web, flange
+        Thickness of each web, and of each flange [m].
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
     """
     return Shape("box", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
-def polygon(places: Sequence[tuple[Operand, Operand]]) -> Shape:
-    """A polygon by its corners (y, z), counter-clockwise from y to z; its centroid comes to lie on
-    the link's axis.
+def hollow_section(
+    height: Symbolic,
+    width: Symbolic,
+    wall: Symbolic,
+    outer_radius: Symbolic,
+    inner_radius: Symbolic,
+) -> Shape:
+    """Return a square or rectangular tube with rounded corners.
 
-    Raises :class:`.DeclarationError` for less than three corners.
+    Parameters
+    ----------
+    height, width
+        Outer sizes along y and along z [m], numbers, texts such as ``"30 mm"``, or expressions of
+        parameters.
+    wall
+        Thickness of the wall [m].
+    outer_radius, inner_radius
+        Radii of the corners [m]; EN 10210-2 takes 1.5 and 1 times the wall.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        For a text that is no length.
+    """
+    names = _NAMES["hollow_section"]
+    values = (height, width, wall, outer_radius, inner_radius)
+    return Shape("hollow_section", dict(zip(names, values, strict=True)))
+
+
+@public
+def polygon(places: Sequence[tuple[Operand, Operand]]) -> Shape:
+    """Return a polygon without holes, moved so that its centroid lies on the link's axis.
+
+    Parameters
+    ----------
+    places
+        Corners (y, z) [m], counter-clockwise from y to z, numbers or expressions of parameters.
+
+    Returns
+    -------
+    Shape
+        The cross-section; its torsion is not known, use :func:`analysed` for it.
+
+    Raises
+    ------
+    DeclarationError
+        For fewer than three corners.
     """
     try:
         corners = [(y, z) for y, z in places]
@@ -190,13 +376,35 @@ def given(
     shear_y: Symbolic | None = None,
     shear_z: Symbolic | None = None,
 ) -> Shape:
-    """A cross-section by its properties, as tables of standards have them.
+    """Return a cross-section by its properties, as tables of standards have them.
 
-    ``iz`` is the integral of y^2 [m^4], ``top`` and ``bottom`` the distances of the outermost
-    fibres from the centroid along +y and -y [m], ``side`` that along z. ``torsion`` is
-    Saint-Venant's constant, ``torsion_modulus`` [m^3] what a torsional moment is divided by for its
-    largest shear stress; ``shear_y`` and ``shear_z`` [m^2] what shear forces are divided by for
-    theirs, by default two thirds of the area.
+    Parameters
+    ----------
+    area, iz, iy
+        Area [m^2], and second moments, the integrals of y^2 and of z^2 [m^4].
+    top, bottom
+        Distances of the outermost fibres from the centroid along +y and -y [m]; ``bottom`` is by
+        default as ``top``.
+    side
+        Distance of the outermost fibres along z [m].
+    iyz
+        Integral of y z [m^4].
+    torsion, torsion_modulus
+        Saint-Venant's constant [m^4], and the ratio of a torsional moment to its largest shear
+        stress [m^3]; both or none.
+    shear_y, shear_z
+        Ratios of shear forces to their largest shear stresses [m^2]; by default two thirds of the
+        area.
+
+    Returns
+    -------
+    Shape
+        The cross-section.
+
+    Raises
+    ------
+    DeclarationError
+        If only one of the two numbers of torsion is given.
     """
     words = {
         "area": area,
@@ -220,11 +428,24 @@ def given(
 
 @public
 def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
-    """Shapes of one kind at ratios xi/l from 0 to 1, dimensions linear between; where a ratio comes
-    twice there is a step.
+    """Return cross-sections along a link, linear in their dimensions between given ratios.
 
-    Raises :class:`.DeclarationError` for ratios that fall or do not reach from 0 to 1, and for
-    shapes that do not fit together.
+    Parameters
+    ----------
+    ratios
+        Ratios xi/l from 0 to 1, in order; a ratio that is given twice makes a step.
+    shapes
+        A cross-section for each ratio, all of one kind.
+
+    Returns
+    -------
+    Course
+        The cross-sections along the link.
+
+    Raises
+    ------
+    DeclarationError
+        For ratios that fall or do not reach from 0 to 1, and for shapes that do not fit together.
     """
     for given in (ratios, shapes):
         check_kind("along", given, "ratios, and as many cross-sections", Sequence)
@@ -263,14 +484,46 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
 
 @public
 def tapered(base: Shape, tip: Shape) -> Course:
-    """A cross-section whose dimensions are linear from those at the base to those at the tip."""
+    """Return a cross-section whose dimensions change linearly from base to tip.
+
+    Parameters
+    ----------
+    base, tip
+        Cross-sections of one kind at the two ends.
+
+    Returns
+    -------
+    Course
+        The cross-sections along the link.
+
+    Raises
+    ------
+    DeclarationError
+        For shapes of different kinds.
+    """
     return along([0.0, 1.0], [base, tip])
 
 
 @public
 def stepped(steps: Sequence[float], shapes: Sequence[Shape]) -> Course:
-    """Constant cross-sections with steps between them, at ratios xi/l: one
-    step fewer than shapes.
+    """Return constant cross-sections with steps between them.
+
+    Parameters
+    ----------
+    steps
+        Ratios xi/l of the steps, in order.
+    shapes
+        Cross-sections, one more than steps.
+
+    Returns
+    -------
+    Course
+        The cross-sections along the link.
+
+    Raises
+    ------
+    DeclarationError
+        For numbers that do not fit each other.
     """
     for given in (steps, shapes):
         check_kind("stepped", given, "a row of steps, and one cross-section more", Sequence)
@@ -332,6 +585,7 @@ _NAMES = {
     "t_section": _THIN,
     "c_section": _THIN,
     "box": _THIN,
+    "hollow_section": ("height", "width", "wall", "outer_radius", "inner_radius"),
 }
 
 
@@ -367,6 +621,7 @@ _FORMS: dict[str, Callable[[dict[str, Any], bool], Properties]] = {
     "t_section": lambda d, _: walls.t_section(**d),
     "c_section": lambda d, _: walls.c_section(**d),
     "box": lambda d, _: walls.box(**d),
+    "hollow_section": lambda d, space: walls.hollow_section(**d, space=space),
     "polygon": lambda d, _: solid.polygon(_corners(d)),
     "given": _given,
 }
@@ -385,6 +640,7 @@ _AREAS: dict[str, Callable[[dict[str, Any]], Any]] = {
         2 * d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"]
     ),
     "box": lambda d: 2 * (d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"]),
+    "hollow_section": lambda d: walls.hollow_area(**d),
     "polygon": lambda d: solid.polygon_area(_corners(d)),
     "given": lambda d: d["area"],
 }
@@ -401,6 +657,11 @@ def _demands(kind: str, d: dict[str, Expression]) -> Iterator[Demand]:
         yield d["iy"] * d["iz"] - d["iyz"] ** 2, "iy iz - iyz^2"
     elif kind == "tube":
         yield d["diameter"] - 2 * d["wall"], "inner diameter"
+    elif kind == "hollow_section":
+        for side in ("height", "width"):
+            yield d[side] - 2 * d["outer_radius"], f"straight part of the {side}"
+            inside = d[side] - 2 * d["wall"] - 2 * d["inner_radius"]
+            yield inside, f"straight part of the inner {side}"
     elif kind in ("i_section", "c_section", "box"):
         yield d["height"] - 2 * d["flange"], "height between the flanges"
         yield (

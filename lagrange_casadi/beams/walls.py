@@ -1,15 +1,17 @@
-"""Cross-sections of thin walls: I, T, C and box.
+"""Cross-sections of thin walls: I, T, C, box, and hollow sections with rounded corners.
 
 Second moments are exact for their rectangles, without fillets. Torsion of open ones is the sum of
 their rectangles', of a box Bredt's; shear stresses are the flows of thin walls, V Q / (I t), and of
 torsion T t / It in open walls, T / (2 A_m t) in closed ones (Young and Budynas, *Roark's Formulas
 for Stress and Strain*, chapters 8 to 10). Warping that is held adds nothing. Shear areas are those
-of the walls along the force.
+of the walls along the force. Hollow sections have the formulas of EN 10210-2 and EN 10219-2: exact
+second moments of the rounded outlines, and torsion by the middle line.
 """
 
 from __future__ import annotations
 
 import itertools
+from math import cos, pi, sin
 
 from ..base.arrays import Operand
 from .properties import Fibre, Properties, smaller
@@ -195,6 +197,90 @@ def box(height: Operand, width: Operand, web: Operand, flange: Operand) -> Prope
     return Properties(
         area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1]
     )
+
+
+def hollow_section(
+    height: Operand,
+    width: Operand,
+    wall: Operand,
+    outer_radius: Operand,
+    inner_radius: Operand,
+    *,
+    space: bool,
+) -> Properties:
+    """A rectangular hollow section; in space fibres are every 22.5 degrees around its corners, in
+    the plane at the ends of the sides.
+    """
+    h, b, t, middle = height, width, wall, (outer_radius + inner_radius) / 2
+    outlines = [(h, b, outer_radius, 1), (h - 2 * t, b - 2 * t, inner_radius, -1)]
+    area, iz, iy, half_y, half_z = (
+        sum(sign * rounded(x, y, r)[k] for x, y, r, sign in outlines) for k in range(5)
+    )
+    high, wide, lost = h - t, b - t, (4 - pi) * middle
+    length, inside = 2 * (high + wide) - 2 * lost, high * wide - lost * middle
+    ring = 2 * inside * t / length
+    torsion = t**3 * length / 3 + 2 * ring * inside
+    twist = (t + ring / t) / torsion
+    fibres = []
+    for i, j in itertools.product(_SIGNS, repeat=2):
+        for angle in (0.0, 22.5, 45.0, 67.5, 90.0) if space else (0.0, 90.0):
+            c, s = (round(f(angle * pi / 180), 15) for f in (cos, sin))
+            by_y = _around_corner(high, wide, t, middle, s, angle) / (iz * t)
+            by_z = _around_corner(wide, high, t, middle, c, 90.0 - angle) / (iy * t)
+            fibres.append(
+                Fibre(
+                    f"corner {_side(i, 'y')} {_side(j, 'z')}, {angle:g} deg",
+                    i * (h / 2 - outer_radius * (1 - c)),
+                    j * (b / 2 - outer_radius * (1 - s)),
+                    (s * by_y, -i * j * s * by_z, -j * s * twist),
+                    (-i * j * c * by_y, c * by_z, i * c * twist),
+                )
+            )
+    for s in _SIGNS:
+        in_web, in_flange = half_y / (2 * iz * t), half_z / (2 * iy * t)
+        fibres.append(Fibre(f"side {_side(s, 'z')}", 0.0, s * b / 2, (in_web, 0.0, -s * twist)))
+        fibres.append(
+            Fibre(f"side {_side(s, 'y')}", s * h / 2, 0.0, along_z=(0.0, in_flange, s * twist))
+        )
+    return Properties(
+        area, iy, iz, tuple(fibres), torsion=torsion, shear_y=2 * high * t, shear_z=2 * wide * t
+    )
+
+
+def hollow_area(
+    height: Operand, width: Operand, wall: Operand, outer_radius: Operand, inner_radius: Operand
+) -> Operand:
+    """Area of a rectangular hollow section."""
+    inner = rounded(height - 2 * wall, width - 2 * wall, inner_radius)
+    return rounded(height, width, outer_radius)[0] - inner[0]
+
+
+def rounded(height: Operand, width: Operand, radius: Operand) -> tuple[Operand, ...]:
+    """A rectangle with rounded corners: its area, second moments about z and about y, and first
+    moments of its halves about z and about y.
+    """
+    # What a rounded corner lacks of a square: its area, its centroid from the sides, its moment.
+    lack, away = (1 - pi / 4) * radius**2, (10 - 3 * pi) / (12 - 3 * pi) * radius
+    own = (1 / 3 - pi / 16 - 1 / (36 - 9 * pi)) * radius**4
+    at_y, at_z = height / 2 - away, width / 2 - away
+    return (
+        height * width - 4 * lack,
+        width * height**3 / 12 - 4 * (own + lack * at_y**2),
+        height * width**3 / 12 - 4 * (own + lack * at_z**2),
+        width * height**2 / 8 - 2 * lack * at_y,
+        height * width**2 / 8 - 2 * lack * at_z,
+    )
+
+
+def _around_corner(
+    high: Operand, wide: Operand, wall: Operand, radius: Operand, s: float, angle: float
+) -> Operand:
+    """First moment of the wall from the middle of a side to a place on the rounded corner, by the
+    middle line, about the parallel axis; ``angle`` [deg] from the normal of the side, ``s`` its
+    sine.
+    """
+    side, centre = wide / 2 - radius, high / 2 - radius
+    return wall * (side * high / 2 + radius * (centre * (angle * pi / 180) + radius * s))
 
 
 def _corners(y: Operand, z: Operand) -> list[Fibre]:

@@ -22,6 +22,7 @@ from ..base.vocabulary import (
 from .design_commands import (
     best,
     drive,
+    free,
     identify,
     optimise,
     size,
@@ -37,13 +38,16 @@ from .options import (
     EVEN_POINTS,
     PATH,
     arithmetic,
+    at_values,
     even_points,
     instants,
     method,
     over,
+    pair,
     place,
     setting,
     settings_by,
+    svg,
     table_file,
     wanted,
 )
@@ -51,9 +55,7 @@ from .options import (
 
 @command()
 @click.argument("case", type=CASE)
-@settings_by()
-@instants()
-@over
+@at_values
 @click.option(
     "--xi",
     type=even_points,
@@ -81,6 +83,7 @@ from .options import (
     "--figures", type=PATH, help="Draw the figures into this folder; default: <case>_figures here."
 )
 @click.option("--no-figures", is_flag=True, help="Draw no figures.")
+@svg
 @table_file("Also write the results as CSV, one row per instant.")
 @click.option(
     "--grids/--no-grids",
@@ -145,6 +148,22 @@ def run(**given: Any) -> None:
     ),
 )
 @click.option(
+    "--fmu-by",
+    metavar="time|COORDINATE",
+    help="With --fmu, put the case's motion inside: the input is the time, or the place of this"
+    " coordinate, as a crank's angle.",
+)
+@click.option(
+    "--control",
+    is_flag=True,
+    help="Also write DIR/CASE_control.hpp, a class of C++ for controllers as ros2_control's.",
+)
+@click.option(
+    "--structured-text",
+    is_flag=True,
+    help="Also write DIR/CASE.st, function blocks of IEC 61131-3 for PLCs.",
+)
+@click.option(
     "--wasm",
     is_flag=True,
     help="Also write DIR/CASE.wasm for web pages, with a wrapper in JavaScript; needs ziglang.",
@@ -193,6 +212,7 @@ def export(**given: Any) -> None:
     is_flag=True,
     help="Draw axes in SI units without prefixes, in place of kN and mm.",
 )
+@svg
 def plot(**given: Any) -> None:
     """Draw the figures of the run or sweep FILE.h5.
 
@@ -399,30 +419,66 @@ def cache(**given: Any) -> None:
     "--link",
     "links",
     multiple=True,
-    required=True,
     metavar="NAME",
     help="Write the load cases of this link, rigid body or point mass; repeatable.",
 )
 @click.option("--out", type=PATH, required=True, metavar="DIR", help="Write into this folder.")
-@settings_by()
-@instants()
-@over
+@at_values
 @click.option(
     "--every",
     is_flag=True,
-    help="Write a load case for every instant; default: for those at which a section force of the"
-    " link, or a reaction on it, is largest.",
+    help="Write a load case for every instant; default: for those at which a section force or a"
+    " stress of the link, or a reaction on it, is largest.",
 )
 @click.option(
     "--format",
     "formats",
     type=click.Choice(LOAD_FORMATS),
     multiple=True,
-    help="Write this format; repeatable. inp is included by input files of CalculiX and Abaqus."
-    " Default: all.",
+    help="Write this format; repeatable. inp is included by input files of CalculiX and Abaqus, nas"
+    " by Nastran's; beam is a model that CalculiX runs. Default: all.",
+)
+@click.option(
+    "--node",
+    "nodes",
+    type=pair,
+    multiple=True,
+    metavar="JOINT=NAME",
+    help="Name the node set, or the number, of the node in your mesh that takes a joint's load;"
+    " LINK=NAME names the element set; repeatable.",
+)
+@click.option(
+    "--spectrum",
+    "spectra",
+    multiple=True,
+    metavar="NAME",
+    help="Write the rainflow matrix of a quantity, as reaction:A:fx, section:rod:bending@0.5 or"
+    " stress:rod@0.5; repeatable.",
+)
+@click.option(
+    "--classes",
+    type=click.IntRange(0),
+    metavar="N",
+    default=64,
+    help="Set the classes of --spectrum, 0 for every cycle as it is; default: 64.",
+)
+@click.option(
+    "--bearing",
+    "bearings",
+    multiple=True,
+    metavar="JOINT",
+    help="Write equivalent loads and the speed of this joint for catalogues of bearings;"
+    " repeatable.",
+)
+@click.option(
+    "--exponent",
+    type=float,
+    metavar="P",
+    default=3.0,
+    help="Set the exponent of --bearing: 3 for balls, 10/3 for rollers; default: 3.",
 )
 def loads(**given: Any) -> None:
-    """Write loads on links of CASE for finite elements.
+    """Write loads on links of CASE for finite elements, and load spectra.
 
     Each load case has the forces and moments on the link, its acceleration and gravity, on the
     link's own axes. These are in equilibrium.
@@ -435,7 +491,7 @@ def loads(**given: Any) -> None:
 GROUPS = {
     "Run": (run, info, check, cases, new),
     "Many designs": (sweep, best, table),
-    "Design": (optimise, size, drive, tolerances, trade),
+    "Design": (optimise, size, drive, free, tolerances, trade),
     "Measurements": (identify,),
     "Other programs": (export, loads),
     "Look": (plot, report, animate),

@@ -13,6 +13,7 @@ from ..base.space import MOST_THREADS
 from ..base.vocabulary import (
     CRITERIA,
     KEEPS,
+    PEAK_SEARCHES,
     POINTS,
     SAMPLES,
     YIELDING,
@@ -24,15 +25,18 @@ from .options import (
     CASE,
     EVEN_POINTS,
     PATH,
+    at_values,
     axis,
     backend,
     bounds,
+    conditions,
     even_points,
     instants,
     length,
     over,
     place,
     ratios,
+    resumable,
     settings_by,
     share,
     table_file,
@@ -79,6 +83,13 @@ from .options import (
     " as"
     " well.",
 )
+@click.option(
+    "--peaks",
+    type=click.Choice(PEAK_SEARCHES),
+    default="exact",
+    show_default=True,
+    help="Seek peaks between the instants, or take those of the instants, each with an error.",
+)
 @untabled_method
 @click.option(
     "--workers",
@@ -91,12 +102,7 @@ from .options import (
     metavar="ADDRESS",
     help="Evaluate on the cluster of this Dask scheduler, as tcp://HOST:8786.",
 )
-@click.option(
-    "--resume",
-    is_flag=True,
-    help="Continue a sweep that was stopped; start it if there is none.",
-)
-@click.option("--force", is_flag=True, help="Start anew and replace the file.")
+@resumable("sweep")
 @click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option(
@@ -128,12 +134,7 @@ def sweep(**given: Any) -> None:
     help="Minimise this column; of two objectives, list their Pareto front.",
 )
 @click.option("--maximise", multiple=True, metavar="COLUMN", help="Maximise this column.")
-@click.option(
-    "--where",
-    multiple=True,
-    metavar="NAME<NUMBER",
-    help="Choose only designs that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
-)
+@conditions("designs")
 @click.option(
     "--count",
     type=click.IntRange(1),
@@ -156,12 +157,7 @@ def best(**given: Any) -> None:
 
 @command()
 @click.argument("file", metavar="FILE.h5", type=PATH)
-@click.option(
-    "--where",
-    multiple=True,
-    metavar="NAME<NUMBER",
-    help="Choose only rows that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
-)
+@conditions("rows")
 @click.option(
     "--column",
     "columns",
@@ -255,12 +251,7 @@ def table(**given: Any) -> None:
     metavar="ADDRESS",
     help="Search on the cluster of this Dask scheduler, as tcp://HOST:8786.",
 )
-@click.option(
-    "--resume",
-    is_flag=True,
-    help="Continue a search that was stopped; start it if there is none.",
-)
-@click.option("--force", is_flag=True, help="Start anew and replace the file.")
+@resumable("search")
 @click.option(
     "--out",
     type=PATH,
@@ -288,7 +279,8 @@ def optimise(**given: Any) -> int:
     type=PATH,
     metavar="FILE.csv|NAME",
     help="Choose from this table: a column name, and one column per dimension [m]; or by name from"
-    " a standard one: IPE, HEA, HEB, CHS, flat, round. Default: profiles.csv next to the case.",
+    " a standard one: IPE, HEA, HEB, CHS, SHS, RHS, SHS_cold, RHS_cold, flat, round. Default:"
+    " profiles.csv next to the case.",
 )
 @click.option(
     "--safety",
@@ -325,9 +317,7 @@ def optimise(**given: Any) -> int:
     show_default=True,
     help="Compare this equivalent stress with the yield strength.",
 )
-@settings_by()
-@instants()
-@over
+@at_values
 def size(**given: Any) -> None:
     """Choose the lightest safe profile for each link of CASE.
 
@@ -336,6 +326,85 @@ def size(**given: Any) -> None:
     from .size import size_command
 
     size_command(**given)
+
+
+@command("free")
+@click.argument("case", type=CASE)
+@click.option(
+    "--drive",
+    metavar="LAW=NUMBER,...",
+    help="Drive it by torque=TORQUE [N m], power=POWER [W], dc=STALL_TORQUE,NO_LOAD_SPEED or"
+    " induction=BREAKDOWN_TORQUE,BREAKDOWN_SLIP,SYNCHRONOUS_SPEED [rad/s]. Default: nothing; of a"
+    " steady cycle the torque that keeps the mean speed.",
+)
+@click.option(
+    "--geared",
+    type=float,
+    default=1.0,
+    show_default=True,
+    metavar="NUMBER",
+    help="Let the motor turn so many times as fast as the drive.",
+)
+@click.option(
+    "--load", type=float, default=0.0, metavar="NUMBER", help="Let this torque resist [N m]."
+)
+@click.option(
+    "--inertia",
+    type=float,
+    default=0.0,
+    metavar="NUMBER",
+    help="Put a flywheel of this inertia on the drive [kg m^2].",
+)
+@click.option(
+    "--start",
+    metavar="COORDINATE,RATE",
+    help="Start there [rad, rad/s or m, m/s]; default: where the motion of the case starts.",
+)
+@click.option("--steady", is_flag=True, help="Find the steady cycle, and go round once.")
+@click.option(
+    "--fluctuation",
+    type=float,
+    metavar="NUMBER",
+    help="Find the flywheel with which the steady cycle has this coefficient of fluctuation.",
+)
+@click.option(
+    "--cycle",
+    type=float,
+    default=1.0,
+    show_default=True,
+    metavar="TURNS",
+    help="Say after how many turns the machine repeats.",
+)
+@click.option(
+    "--count",
+    type=int,
+    default=721,
+    show_default=True,
+    metavar="NUMBER",
+    help="Take so many instants of a steady cycle.",
+)
+@settings_by()
+@instants()
+@wanted()
+@click.option("--out", type=PATH, help="Write the run to this HDF5 file; default: <case>_free.h5.")
+@click.option(
+    "--plot",
+    type=PATH,
+    metavar="FILE.png",
+    help="Draw torque and speed over the drive's coordinate into this file, .png, .pdf or .svg.",
+)
+def free(**given: Any) -> None:
+    """Let the machine CASE go: its motion under a motor, a load and its own weight.
+
+    Each force is that of the true motion. CASE has one degree of freedom; its own motion says
+    where it starts, and no more.
+
+    \b
+    lagrange-casadi free punch_press --drive induction=200,0.2,157 --geared 15 --fluctuation 0.05
+    """
+    from .free import free_command
+
+    free_command(**given)
 
 
 @command("drive")
@@ -418,9 +487,7 @@ def drive(**given: Any) -> None:
     help="Set the tolerance of a parameter, plus or minus this value [SI unit, unit or %];"
     " repeatable.",
 )
-@settings_by()
-@instants()
-@over
+@at_values
 @wanted("Compute these outputs, as in run; repeatable. Default: those of the case.")
 @click.option(
     "--samples",
@@ -444,9 +511,7 @@ def tolerances(**given: Any) -> None:
 
 @command()
 @click.argument("case", type=CASE)
-@settings_by()
-@instants()
-@over
+@at_values
 @wanted()
 @click.option(
     "--accuracy",

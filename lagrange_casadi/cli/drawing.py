@@ -22,7 +22,7 @@ from .echo import echo
 
 
 def draw_with_progress(
-    solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False
+    solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False, svg: bool = False
 ) -> None:
     """Draw into a folder, with a page that shows all; what the solution lacks is said, the bar
     shows on a terminal only.
@@ -30,15 +30,18 @@ def draw_with_progress(
     default_figures, draw = method("figures.default_figures"), method("figures.draw")
     chosen = specs or default_figures(solution)
     skipped: list[str] = []
-    drawn: list[str] = []
+    drawn: list[Path] = []
     for spec, path in tqdm(
-        draw(solution, chosen, folder, si),
+        draw(solution, chosen, folder, si, svg),
         total=len(chosen),
         desc="figures",
         leave=False,
         disable=None,
     ):
-        (drawn if path else skipped).append(spec.name)
+        if path:
+            drawn.append(path)
+        else:
+            skipped.append(spec.name)
     write_index(solution.case, drawn, folder)
     if skipped:
         echo(

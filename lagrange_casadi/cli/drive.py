@@ -19,7 +19,7 @@ from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.scene import kinds
 from ..declare.times import Over
-from ..errors import CertificateError, LagrangeCasadiError, UnknownNameError
+from ..errors import CertificateError, NoDesignError, UnknownNameError
 from ..instants.solution import Solution
 from ..studies.evaluate import evaluate
 from ..verification.certificate import failure, summary
@@ -74,7 +74,7 @@ def drive_command(
             f" {solution.t[-1]:.5g} s"
         )
     ]
-    failed: LagrangeCasadiError | None = None
+    failed: list[str] = []
     for name in chosen:
         carried = inertia_at(scene, name, parameters=given, t=t, over=over)
         load = duty_of(solution, name, linear=slides(solution, name), carried=carried)
@@ -85,11 +85,8 @@ def drive_command(
                 found = _choose(
                     solution, name, catalogue, ratios, lead, efficiency, inertia, carried
                 )
-            except LagrangeCasadiError as error:
-                if error.exit_status == 2:
-                    raise
-                lines.append(f"  none is suitable: {error}")
-                failed = failed or error
+            except NoDesignError as error:
+                failed.append(f"drive '{name}': {error}")
                 continue
             lines += _choice_lines(found, len(catalogue))
         if plot is not None:
@@ -102,8 +99,8 @@ def drive_command(
         echo(line)
     if solution.failed:
         raise CertificateError(failure(solution))
-    if failed is not None:
-        raise failed
+    if failed:
+        raise NoDesignError("; ".join(failed))
 
 
 def _choose(
@@ -150,7 +147,7 @@ def _load_lines(load: Duty) -> Iterator[str]:
     if load.carried is not None:
         unit = "kg" if load.linear else "kg m^2"
         yield (
-            f"  it drives an inertia of {load.carried.min():.5g} to {load.carried.max():.5g} {unit}"
+            f"  inertia of what it drives: {_range(load.carried.min(), load.carried.max())} {unit}"
         )
     if load.coarse:
         yield (
@@ -181,8 +178,8 @@ def _choice_lines(choice: Choice, count: int) -> Iterator[str]:
     if duty.inertia > 0.0:
         ratio = duty.inertia_ratio
         yield (
-            f"    inertia of the load over the motor's: {ratio.least:.5g} to {ratio.largest:.5g},"
-            f" in the mean {ratio.mean:.5g}"
+            f"    inertia of the load over that of the motor:"
+            f" {_range(ratio.least, ratio.largest)}, mean {ratio.mean:.5g}"
         )
     yield from (f"    smaller: {why}" for why in choice.refused)
 
@@ -198,8 +195,14 @@ def _speed(duty: Duty) -> str:
 
 def _energy(duty: Duty) -> str:
     back = (
-        f", {duty.regenerated:.5g} J are regenerated, {duty.peak_return:.5g} W at most"
+        f"; regenerated {duty.regenerated:.5g} J, at most {duty.peak_return:.5g} W"
         if duty.peak_return > 0.0
         else ""
     )
-    return f"{duty.energy:.5g} J a cycle{back}"
+    return f"energy of a cycle {duty.energy:.5g} J{back}"
+
+
+def _range(least: float, largest: float) -> str:
+    """Write two numbers, or one if they are the same in the digits shown."""
+    ends = dict.fromkeys(f"{value:.5g}" for value in (least, largest))
+    return " to ".join(ends)

@@ -27,10 +27,15 @@ def export(
     table: float | None,
     largest: int | None,
     fmu: bool,
+    fmu_by: str | None,
+    control: bool,
+    structured_text: bool,
     wasm: bool,
     force: bool,
 ) -> None:
     """See :func:`.commands.export`."""
+    if fmu_by and not fmu:
+        raise click.UsageError("--fmu-by goes with --fmu")
     loaded = load_case(case)
     if model is not None:
         from ..formats import save_model
@@ -52,8 +57,10 @@ def export(
         table=table,
         largest=largest,
         force=force,
-        fmu=fmu,
+        fmu=(fmu_by or True) if fmu else False,
         wasm=wasm,
+        control=control,
+        structured_text=structured_text,
     )
     for original, called in made.mapped.items():
         echo(f"{original} is called {called} in C")
@@ -64,6 +71,10 @@ def export(
     )
     if fmu:
         echo(f"wrote {out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation")
+    if control:
+        echo(f"wrote {out / f'{p}_control.hpp'}: for controllers in C++, with {p}_control_test.cpp")
+    if structured_text:
+        echo(f"wrote {out / f'{p}.st'}: structured text of IEC 61131-3, with its test")
     if wasm:
         echo(f"wrote {out / f'{p}.wasm'} and {p}.js: README.wasm.md says how a web page uses them")
     echo(

@@ -80,7 +80,7 @@ def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:
         yield f"  forces are not linear in {name}, with {', '.join(others)}: found by iteration"
     if found.absent:
         yield f"  nothing measured depends on {', '.join(found.absent)}"
-    for words in found.untold:
+    for words in found.unexcited:
         yield f"  this motion does not tell {words}; other speeds and accelerations do"
     for drive, cutoff in found.cutoffs.items():
         if cutoff < math.inf:

@@ -1,9 +1,12 @@
-"""``lagrange-casadi loads``: load cases of links, for programs of finite elements."""
+"""``lagrange-casadi loads``: load cases of links, for programs of finite elements, and spectra."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
+
+import click
 
 from ..base.publish import check_writable
 from ..base.vocabulary import LOAD_FORMATS
@@ -12,7 +15,13 @@ from ..declare.even_points import EvenPoints
 from ..declare.scene import kinds
 from ..declare.times import Over
 from ..errors import CertificateError
-from ..load_cases import link_load_cases, write_load_cases
+from ..load_cases import (
+    bearing_loads,
+    link_load_cases,
+    write_bearing_loads,
+    write_load_cases,
+    write_spectrum,
+)
 from ..studies.evaluate import evaluate
 from ..verification.certificate import failure, summary
 from .echo import echo
@@ -30,12 +39,20 @@ def loads_command(
     over: Over | None,
     every: bool,
     formats: Sequence[str],
+    nodes: Sequence[tuple[str, str]],
+    spectra: Sequence[str],
+    classes: int,
+    bearings: Sequence[str],
+    exponent: float,
 ) -> None:
     """See :func:`.commands.loads`."""
+    if not (links or spectra or bearings):
+        raise click.UsageError("expected --link, --spectrum or --bearing")
     check_writable(out, folder=True)
     scene, chosen = load_case(case).scene, tuple(dict.fromkeys(links))
+    inside = {*chosen, *(re.split("[:@]", f"{name}:")[1] for name in spectra)}
     wanted = ["effort", "motion", *(kind for kind in kinds(scene.outputs) if kind in _FORCES)]
-    wanted += (name for name in scene.outputs if name in {f"section:{link}" for link in chosen})
+    wanted += (name for name in scene.outputs if name in {f"section:{link}" for link in inside})
     solution = evaluate(scene, parameters=parameters(settings), t=t, over=over, wanted=wanted)
     if solution.failed:
         raise CertificateError(failure(solution))
@@ -44,6 +61,18 @@ def loads_command(
     for one in cases:
         governs = f": {', '.join(one.governs)}" if one.governs else ""
         echo(f"{one.link} at t = {one.t:.6g} s, residual {max(one.residual):.1e}{governs}")
-    files = write_load_cases(cases, out, formats or LOAD_FORMATS)
-    echo(f"wrote {out}: {len(cases)} load cases in {len(files)} files")
+    if cases:
+        beams = all(case.rod is not None for case in cases)
+        known = [name for name in LOAD_FORMATS if beams or name != "beam"]
+        files = write_load_cases(cases, out, formats or known, dict(nodes))
+        echo(f"wrote {out}: {len(cases)} load cases in {len(files)} files")
+    out.mkdir(parents=True, exist_ok=True)
+    for name in spectra:
+        file = out / f"{re.sub('[^A-Za-z0-9_.-]', '_', name)}.csv"
+        write_spectrum(solution, name, file, classes=classes)
+        echo(f"wrote {file}")
+    if bearings:
+        file = out / "bearings.csv"
+        write_bearing_loads([bearing_loads(solution, one, exponent) for one in bearings], file)
+        echo(f"wrote {file}")
     echo(summary(solution.certificate))

@@ -145,6 +145,14 @@ def setting(text: str) -> tuple[str, float | str]:
     )
 
 
+def pair(text: str) -> tuple[str, str]:
+    """NAME=NAME."""
+    name, _, other = (word.strip() for word in text.partition("="))
+    if not name or not other:
+        raise click.BadParameter(f"expected NAME=NAME, got '{text}'")
+    return name, other
+
+
 def place(text: str) -> tuple[str, float | str]:
     """NAME=VALUE, the value finite."""
     name, value = setting(text)
@@ -369,6 +377,33 @@ over = click.option(
 )
 """Instants by a drive."""
 
+at_values = _together(settings_by(), instants(), over)
+"""Values of parameters, and instants by their times or by a drive."""
+
+
+def resumable(what: str) -> Option:
+    """Continuation of ``what`` may have been stopped, or a new start."""
+    return _together(
+        click.option(
+            "--resume",
+            is_flag=True,
+            help=f"Continue a {what} that was stopped; start it if there is none.",
+        ),
+        click.option("--force", is_flag=True, help="Start anew and replace the file."),
+    )
+
+
+def conditions(rows: str) -> Option:
+    """Conditions on ``rows``: ``where``."""
+    return click.option(
+        "--where",
+        multiple=True,
+        metavar="NAME<NUMBER",
+        help=f"Choose only {rows} that satisfy this: <, <=, >, >=, == or !=, in SI units;"
+        " repeatable.",
+    )
+
+
 method = _together(backend(), _PRECISION, _NEWTON, _TABLE, _FLAGS)
 """The options of a :class:`.EvaluationMethod`."""
 
@@ -377,3 +412,6 @@ untabled_method = _together(backend(), _PRECISION, _NEWTON, _FLAGS)
 
 arithmetic = _together(_PRECISION, _NEWTON, _TABLE)
 """Options that do not concern the compiler."""
+
+
+svg = click.option("--svg", is_flag=True, help="Draw figures as SVG, in place of PNG.")

@@ -20,7 +20,7 @@ from ..studies.sweep.default_figures import default_plots
 from ..studies.sweep.plots import Spec, draw_sweep
 from .drawing import draw_with_progress
 from .echo import echo
-from .strength_lines import untold_lines
+from .strength_lines import not_evaluated_lines
 
 _UNDRAWN = "cannot be drawn"
 
@@ -32,6 +32,7 @@ def plot(
     at: Sequence[tuple[str, float | str]],
     against: Sequence[tuple[str, str]],
     si: bool,
+    svg: bool,
 ) -> None:
     """See :func:`.commands.plot`."""
     check_writable(out, folder=True)
@@ -46,20 +47,20 @@ def plot(
             )
         sweep = Sweep.open(file)
         there = {name: _number(sweep, name, value) for name, value in stays.items()}
-        _draw(sweep, default_plots(sweep, over=over, at=there, against=against), out)
+        _draw(sweep, default_plots(sweep, over=over, at=there, against=against), out, svg)
     elif over or at or against:
         raise click.UsageError("--over, --at and --against go with a sweep's file")
     else:
         solution, drawn = load(file), parse_specs(figure_specs(file))
         with reported_as(_UNDRAWN, file), MANIFEST.filling(out) as draft:
-            draw_with_progress(solution, drawn, draft, si)
+            draw_with_progress(solution, drawn, draft, si, svg)
         if not drawn:
-            for line in untold_lines(solution):
+            for line in not_evaluated_lines(solution):
                 echo(line, err=True)
     echo(f"wrote the figures in {out}/; {out}/{NAME} shows all of them")
 
 
-def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
+def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path, svg: bool) -> None:
     """Draw a sweep; what shows nothing is said.
 
     Raises :class:`NoDesignError` where no figure shows anything.
@@ -67,7 +68,7 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
     skipped, drawn = [], []
     with reported_as(_UNDRAWN, sweep.path), MANIFEST.filling(out) as draft:
         for path, why in tqdm(
-            draw_sweep(sweep, specs, draft),
+            draw_sweep(sweep, specs, draft, svg),
             total=len(specs),
             desc="figures",
             leave=False,
@@ -76,7 +77,7 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
             if why:
                 skipped.append(f"{path.name}: {why}")
             else:
-                drawn.append(path.stem)
+                drawn.append(path)
         if len(skipped) == len(specs):
             raise NoDesignError(f"there is nothing to draw: {'; '.join(dict.fromkeys(skipped))}")
         write_index(sweep.case, drawn, draft)

@@ -14,9 +14,8 @@ def figures_in(folder: Path | None) -> set[str]:
     read.
     """
     with suppress(OSError):
-        return (
-            {path.name for path in folder.iterdir() if path.suffix == ".png"} if folder else set()
-        )
+        files = folder.iterdir() if folder else ()
+        return {path.name for path in files if path.suffix in (".png", ".svg")}
     return set()
 
 

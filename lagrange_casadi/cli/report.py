@@ -94,11 +94,11 @@ class Rows:
             ):
                 best[kind] = row
         order = list(dict.fromkeys(_CARDS.values()))
-        for words, unit in sorted(best, key=lambda kind: order.index(kind[0])):
-            row = best[words, unit]
-            if row.peak and not self._nothing(row):
-                line = peak_line(self.solution, row.peak, self._scales[unit])
-                yield card(words, line)
+        kinds = [kind for kind in best if not self._nothing(best[kind])]
+        width = max(28, *(len(str(best[kind].output)) for kind in kinds))
+        for words, unit in sorted(kinds, key=lambda kind: order.index(kind[0])):
+            if peak := best[words, unit].peak:
+                yield card(words, peak_line(self.solution, peak, self._scales[unit], width))
 
     def table(self, capacity: int | None = None) -> Iterator[str]:
         """Write a row for each quantity, or for the most important ones if ``capacity`` is for
@@ -234,7 +234,7 @@ def _matters(value: str, error: float) -> bool:
     return error >= 0.5 * last
 
 
-def peak_line(solution: Solution, peak: Peak, scale: float | None = None) -> str:
+def peak_line(solution: Solution, peak: Peak, scale: float | None = None, width: int = 28) -> str:
     """Write a peak with its name, its place, and how far it may be off if that shows."""
     where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {ratio(peak.xi)}")
     if peak.over is not None and solution.over:
@@ -246,7 +246,7 @@ def peak_line(solution: Solution, peak: Peak, scale: float | None = None) -> str
         if peak.least is None
         else ("; the peak between the instants was not found, use more instants")
     )
-    return f"  {peak.name:<28} {value:>12} {peak.unit:<4} at {where}{more}"
+    return f"  {peak.name:<{width}} {value:>12} {peak.unit:<4} at {where}{more}"
 
 
 def _row(solution: Solution, output: Output, peaks: Mapping[str, Peak]) -> Row:

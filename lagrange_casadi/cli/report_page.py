@@ -29,7 +29,7 @@ from ..studies.sweep.axes import grouped
 from ..verification.certificate import failure
 from .echo import echo, say_step
 from .options import parameters
-from .strength_lines import untold_lines
+from .strength_lines import not_evaluated_lines
 
 _FILES = (".h5", ".hdf5")
 _UNSHOWN = "cannot be shown"
@@ -122,7 +122,7 @@ def _of_two(
             given = parameters(asked.settings) | parameters(more)
             solutions.append(_evaluated(load_case(target), asked, given))
         elif is_sweep(target):
-            raise click.UsageError(f"{target} is a sweep, whose page is of itself alone")
+            raise click.UsageError(f"{target} is a sweep: its page cannot be combined with another")
         else:
             solutions.append(load(target))
     names = [[target.stem for target in targets], [str(target) for target in targets]]
@@ -132,7 +132,7 @@ def _of_two(
     if same_runs(*solutions):
         echo("note: both runs are the same: all their values are equal", err=True)
     for solution in solutions:
-        for line in untold_lines(solution):
+        for line in not_evaluated_lines(solution):
             echo(line, err=True)
     echo(f"wrote {out}: open it in a browser")
     for solution in solutions:
@@ -164,7 +164,9 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
         check_zig("the mechanism of a design in motion")
         scene = found.scene
         if case is None and not is_of(sweep, scene):
-            raise DeclarationError(f"the case '{reference(found, Path())}' is not as it was swept")
+            raise DeclarationError(
+                f"the case '{reference(found, Path())}' has changed since the sweep"
+            )
     except LagrangeCasadiError as error:
         if case is not None:
             raise
@@ -193,7 +195,7 @@ def _announce(solution: Solution, out: Path) -> None:
             " tables are of all",
             err=True,
         )
-    for line in untold_lines(solution):
+    for line in not_evaluated_lines(solution):
         echo(line, err=True)
     echo(f"wrote {out}: open it in a browser")
     if solution.failed:

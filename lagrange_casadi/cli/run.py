@@ -39,7 +39,7 @@ from .replaced import figures_in, replaced_lines
 from .report import Rows
 from .rows import rows_of
 from .slope_lines import slope_lines
-from .strength_lines import strength_cards, strength_lines, untold_lines
+from .strength_lines import not_evaluated_lines, strength_cards, strength_lines
 
 _SCREEN = 39
 """Lines of a screen, but for that of the next prompt."""
@@ -63,6 +63,7 @@ def run(
     out: Path | None,
     figures: Path | None,
     no_figures: bool,
+    svg: bool,
     csv: TableFile | None,
     grids: bool | None,
     refine_peaks: bool,
@@ -73,6 +74,8 @@ def run(
     """See :func:`.commands.run`."""
     if figures and no_figures:
         raise click.UsageError("--figures and --no-figures exclude each other")
+    if svg and no_figures:
+        raise click.UsageError("--svg and --no-figures exclude each other")
     if out and out.suffix not in (".h5", ".hdf5"):
         raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     loaded = load_case(case)
@@ -107,7 +110,7 @@ def run(
     )
     with written, MANIFEST.filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
-            draw_with_progress(solution, loaded.figures, draft)
+            draw_with_progress(solution, loaded.figures, draft, svg=svg)
             drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures), grids=_grids(solution, grids, want))
     say = partial(echo, err=csv is not None and is_standard_output(csv.path))
@@ -126,7 +129,7 @@ def run(
     rest += _notes(scene, solution, scene.timing(t, over))
     if folder and not loaded.figures:
         parts = [*beams_of(solution.description), *fitted_of(solution.description)]
-        rest += untold_lines(solution, among("safety", parts, asked))
+        rest += not_evaluated_lines(solution, among("safety", parts, asked))
     if not no_certificate:
         rest.append(summary(solution.certificate))
     rest += replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn)

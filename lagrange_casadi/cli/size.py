@@ -70,11 +70,10 @@ def size_command(
             ),
         ):
             echo(line)
+    solution = found.solution
+    verdict = "holds" if solution.certified else "fails" if solution.failed else "not computed"
     loads = f"{found.evaluations} evaluations of the loads"
-    echo(
-        f"together {found.mass:.6g} kg; {loads}; certificate:"
-        f" {'holds' if found.solution.certified else 'fails'}"
-    )
+    echo(f"together {found.mass:.6g} kg; {loads}; certificate: {verdict}")
     echo(" ".join(f"--set {name}={value!r}" for name, value in found.parameters.items()))
 
 

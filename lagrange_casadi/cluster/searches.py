@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from ..base.arrays import Json
 from ..errors import ClusterError, LagrangeCasadiError
 from ..studies.designs.engine import DesignEngine
-from ..studies.optimise.executors import Progress
 from ..studies.optimise.search_run import STOPPED, SearchRun
+from ..studies.optimise.searching import Progress
 from ..studies.optimise.solver import SearchTask, Solver
 from ..studies.sweep.blocks import Queue
 from ..studies.sweep.plan import difference

@@ -1,5 +1,5 @@
 /* What is searched: curves over time, by their values at equal steps, and at more times where these leave it open. What curves there
-   are, and how they are evaluated, is told by who calls: lagrange_casadi_curves and lagrange_casadi_search_call. */
+   are, and how they are evaluated, is passed in by the caller: lagrange_casadi_curves and lagrange_casadi_search_call. */
 /* Times inside a step that becomes a panel, and with its ends; values of a row of such a panel, two packs beside them. */
 #define SEARCH_WITHIN (SEARCH_INNER + 2)
 #define SEARCH_STRIDE 64
@@ -8,12 +8,12 @@ enum { SEARCH_AT_BASE = -1, SEARCH_AT_TIP = -2 };
 
 /* The largest size of a quantity that is known, and at the instants; and the first that is as large but for rounding: its size, with
    its sign, its time and its ratio xi/l. least is what a summit must reach that matters. going is its size where it grows on and no
-   end of that is found. base is what values are counted from. What is open is not searched, and untold what would take too many
+   end of that is found. base is what values are counted from. Open: not searched. unlocated: the search would take too many
    panels. */
 typedef struct {
   double t;
   search_real best, rounding, least, limit, sampled, size, place, sign, going, base;
-  int open, untold;
+  int open, unlocated;
 } search_peak;
 
 /* So many instants, or times inside a step, t, with a row for every curve, its place, and what is watched. hiding becomes, of each

@@ -178,8 +178,9 @@ class Library:
         t - 1) tells in which steps between them the motion bends more than they show; one row of
         either serves all designs. ``history`` may be None; or all but that and the status may be
         None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
-        ``tops``, of which ``listed`` tells, may be left out. The bytes of a row do not depend on
-        other rows.
+        ``tops``, of which ``listed`` tells, may be left out. With ``error`` peaks are those at the
+        instants: it becomes how much larger they may be between them. The bytes of a row do not
+        depend on other rows.
         """
         assert self.many is not None
         many, n = self.many, t.shape[1]
@@ -197,14 +198,17 @@ class Library:
             "guess": many.guess,
             "room": room,
         }
-        arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None, **results}
+        arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None}
+        arrays |= {"error": None, **results}
         single = {
             name: np.empty(array.shape, dtype)
             for name in ("history", "iterated")
             if (array := arrays.get(name)) is not None and array.dtype != dtype
         }
         rounded = [
-            (array, own) for name, own in single.items() if (array := arrays[name]) is not None
+            (array, converted)
+            for name, converted in single.items()
+            if (array := arrays[name]) is not None
         ]
         arrays |= single
         search, within = many.search.call(many.tables, _CUT)
@@ -216,7 +220,7 @@ class Library:
             stride=stride,
             t_apart=n if len(t) > 1 else 0,
             bent_apart=stride if len(bent) > 1 else 0,
-            way=listed.way if listed else 0,
+            way=listed.sign if listed else 0,
             share=listed.share if listed else 0.0,
             **{
                 name: None if array is None else array.ctypes.data for name, array in arrays.items()
@@ -253,8 +257,8 @@ def _enter(
 ) -> None:
     """Call, with what must live as long as the call's addresses; then widen what was rounded."""
     entry(call)
-    for array, own in rounded:
-        array[...] = own
+    for array, converted in rounded:
+        array[...] = converted
 
 
 def load(

@@ -21,6 +21,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from ..arithmetic.compensated import Pair, Pairs
 from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
@@ -193,8 +194,13 @@ def turns_many(program: Program, t: Array, p: Array) -> bool:
     )
     if not all(followable(function) for function in functions):
         return False
-    sampled = t[np.linspace(0, t.size - 1, min(t.size, _SAMPLES)).astype(int)]
-    return _largest(program, tuple(sampled), tuple(p)) > FEW_TURNS
+    return _largest(program, tuple(t[_sampled(t.size)].tolist()), tuple(p.tolist())) > FEW_TURNS
+
+
+@functools.lru_cache(maxsize=64)
+def _sampled(count: int) -> npt.NDArray[np.intp]:
+    """Numbers of some of so many instants, evenly apart."""
+    return np.linspace(0, count - 1, min(count, _SAMPLES)).astype(np.intp)
 
 
 @functools.lru_cache(maxsize=256)

@@ -43,8 +43,8 @@ class Clearance:
     A mark that does not change along the path makes no kink either.
     """
 
-    def __init__(self, marks: ca.Function, whole: Flags, open_: Flags) -> None:
-        self._marks, self._whole, self._open = marks, whole, open_
+    def __init__(self, marks: ca.Function, whole: Flags, crossing: Flags) -> None:
+        self._marks, self._whole, self._open = marks, whole, crossing
         self._kept = _Kept()
 
     @symbolic_property
@@ -57,7 +57,7 @@ class Clearance:
         symbols, rows, width = boxed(self._marks)
         beside = ca.SX.sym("most", len(rows))
         clear, sizes = ca.SX(width < np.inf), []
-        for (low, high), whole, open_, of in zip(
+        for (low, high), whole, crossing, of in zip(
             rows, self._whole, self._open, ca.vertsplit(beside), strict=True
         ):
             sizes.append(ca.fmax(of, ca.fmax(ca.fabs(low), ca.fabs(high))))
@@ -67,7 +67,7 @@ class Clearance:
                 if whole
                 else ca.logic_or(low > capacity, high < -capacity)
             )
-            clear = ca.logic_and(clear, off if open_ else ca.logic_or(off, low == high))
+            clear = ca.logic_and(clear, off if crossing else ca.logic_or(off, low == high))
         found = [1.0 - clear, ca.vertcat(*sizes)]
         return ca.Function(
             "near", [*symbols, beside], [ca.densify(one) for one in found], {"cse": True}

@@ -9,13 +9,12 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array, Json
+from ..base.arrays import Array
 from ..base.symbolic import Graphs, symbolic
 from .kinks import Smooth
 from .mechanism import Mechanism
@@ -59,22 +58,6 @@ class Corners(Graphs):
             laws, {name: smooth for name, smooth in found.items() if smooth is not None}, cams
         )
 
-    def words(self) -> list[Json]:
-        """Write them for JSON."""
-        laws, constraints = (
-            {name: smooth.words() for name, smooth in of.items()}
-            for of in (self.laws, self.constraints)
-        )
-        return [laws, constraints, list(self.cams)]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> Corners:
-        """Read what :meth:`words` wrote."""
-        laws, constraints = (
-            {name: Smooth.loads(smooth) for name, smooth in of.items()} for of in words[:2]
-        )
-        return cls(laws, constraints, words[2])
-
     def refuse_isolated_laws(self, t: Array, p: Sequence[float], *, between: bool = False) -> None:
         """Raise :class:`.DeclarationError` for a motion that is other at an instant ``t`` (t,) than
         on both sides of it.
@@ -96,16 +79,16 @@ class Corners(Graphs):
                 raise found.refused(f"the motion of joint '{joint}'")
 
     def refuse_constraints(
-        self, seen: Callable[[str], Array], p: Sequence[float], *, between: bool = False
+        self, arguments: Callable[[str], Array], p: Sequence[float], *, between: bool = False
     ) -> None:
         """Raise :class:`.DeclarationError` for a constraint with a kink, or isolated at an instant,
         for parameters ``p``.
 
-        ``seen`` gives what a constraint sees over the instants, (symbols, t); ``between`` is that
-        of motions.
+        ``arguments`` gives what a constraint sees over the instants, (symbols, t); ``between`` is
+        that of motions.
         """
         for name, smooth in self.constraints.items():
-            path = seen(name)
+            path = arguments(name)
             found = smooth.kink(path, p) or smooth.isolated(path, p, between=between)
             if found is not None:
                 raise found.refused(
@@ -135,13 +118,15 @@ class Corners(Graphs):
                 found[near] |= smooth.isolates(at, each[:, 2:], between=True)[number.ravel()]
         return found
 
-    def broken_constraints(self, seen: Callable[[str], Array], p: Array) -> npt.NDArray[np.bool_]:
-        """Return the designs in which a constraint has a kink, or is isolated; ``seen`` as above,
-        (d, symbols, t).
+    def broken_constraints(
+        self, arguments: Callable[[str], Array], p: Array
+    ) -> npt.NDArray[np.bool_]:
+        """Return the designs in which a constraint has a kink, or is isolated; ``arguments`` as
+        above, (d, symbols, t).
         """
         found = np.zeros(len(p), bool)
         for name, smooth in self.constraints.items():
-            paths = seen(name)
+            paths = arguments(name)
             near = smooth.clearance.near(paths.min(axis=2), paths.max(axis=2), p, paths.__getitem__)
             if near.any():
                 found[near] |= _broken_constraint(

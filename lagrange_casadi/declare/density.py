@@ -150,7 +150,15 @@ class NumericDensity:
     @property
     def mass(self) -> float:
         """The whole mass [kg]."""
-        return float(self.tails(np.zeros(1))[0][0])
+        spans = zip(self.breaks, self.breaks[1:], self.cells, strict=False)
+        terms = (
+            coefficient * part / (j + 1)
+            for a, b, cell in spans
+            for j, (coefficient, part) in enumerate(
+                zip(cell, _differences(b, a, len(cell)), strict=True)
+            )
+        )
+        return sum(terms, 0.0)
 
     def tails(self, u: Array) -> tuple[Array, ...]:
         """T0, T1 and T2 at ratios ``u`` of any shape."""

@@ -5,7 +5,6 @@ made from.
 from __future__ import annotations
 
 import functools
-import json
 import marshal
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from functools import cached_property
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from ..base.arrays import Expression, Json
 from ..base.quantities import Kinds
@@ -28,8 +28,6 @@ from .parts import Friction, Link, Load, Point, PointMass, RigidMass
 Description = dict[str, Any]
 
 _PLACE = {"body": str, "x": float, "y": float}
-_PLACED = "#"
-"""The key of a place in a template's text; no name holds this sign."""
 
 _VECTOR = [float, float, float]
 _MATRIX = [_VECTOR, _VECTOR, _VECTOR]
@@ -179,17 +177,6 @@ def kinds_of_described(description: Description) -> Kinds:
     return Kinds(coordinates, frictions, description.get("outputs", {}))
 
 
-def measured_of(description: Description) -> list[str]:
-    """The coordinates whose motion is told: all but the angles of joints with three turns that
-    close loops.
-    """
-    return [
-        name
-        for name in coordinates_of(description)
-        if name not in description.get("unmeasured", ())
-    ]
-
-
 def _driven(description: Description) -> list[str]:
     joints = description["joints"].items()
     if not in_space(description):
@@ -269,7 +256,7 @@ class Template(Graphs):
 
     def filled(self, values: Mapping[str, float]) -> Description:
         """The description for values of all parameters."""
-        numbers = self.numbers(list(values.values())).full().ravel().tolist()
+        numbers = self.numbers(np.array([*values.values()], float)).full().ravel().tolist()
         blank, places = self._blank
         found: Description = marshal.loads(blank)
         for place, (*path, last) in places:
@@ -299,20 +286,6 @@ class Template(Graphs):
         found: Description = _with(content, lambda place: numbers[place])
         return found
 
-    def dumps(self) -> str:
-        """The template as text."""
-        return json.dumps(
-            [_with(self.content, lambda place: {_PLACED: int(place)}), self.numbers.serialize()]
-        )
-
-    @classmethod
-    def loads(cls, text: str) -> Template:
-        """The template that :meth:`dumps` made a text of."""
-        content, numbers = json.loads(
-            text, object_hook=lambda found: Place(found[_PLACED]) if _PLACED in found else found
-        )
-        return cls(content, ca.Function.deserialize(numbers))
-
     @classmethod
     def of(
         cls, mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None = None
@@ -320,7 +293,7 @@ class Template(Graphs):
         """The template of what :func:`describe` gives."""
         content, asked = numbered(mechanism, driven)
         if mechanism.outputs:
-            content["outputs"] = {name: own.unit for name, own in mechanism.outputs.items()}
+            content["outputs"] = {name: output.unit for name, output in mechanism.outputs.items()}
         if mechanism.rounded:
             content["rounded"] = {name: list(by) for name, by in mechanism.rounded.items()}
         if mechanism.snapped:

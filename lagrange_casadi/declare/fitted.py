@@ -94,7 +94,7 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
         raise DeclarationError(f"fit: expected a Mechanism first, got {shown(mechanism)}")
     mechanism.own.joint(joint)
     what = f"joint '{joint.name}'"
-    mechanism.own.open(f"fit {what}")
+    mechanism.own.refuse_frozen(f"fit {what}")
     turning = mechanism.turning.get(joint.name)
     if turning == "":
         raise DeclarationError(

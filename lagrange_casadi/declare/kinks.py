@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
-from ..base.arrays import Array, Expression, Json
+from ..base.arrays import Array, Expression
 from ..base.symbolic import symbolic_property
 from .broken_curves import Isolated, Kink
 from .clearance import Clearance
@@ -96,12 +96,12 @@ class Smooth:
             return None
         found: dict[tuple[int, bool, bool], Any] = {}
         for operation, operands in operations(function, [x, fixed]):
-            for mark, whole, open_ in marks_of(operation, operands):
+            for mark, whole, crossing in marks_of(operation, operands):
                 if not mark.is_constant() and ca.depends_on(mark, x):
-                    found[mark.element_hash(), whole, open_] = mark
+                    found[mark.element_hash(), whole, crossing] = mark
         if not found:
             return None
-        rows, (_, whole, open_) = ca.vertcat(*found.values()), zip(*found, strict=True)
+        rows, (_, whole, crossing) = ca.vertcat(*found.values()), zip(*found, strict=True)
         slopes = ca.vertcat(expression, ca.gradient(expression, x))
         return cls(
             tuple(symbols),
@@ -114,35 +114,13 @@ class Smooth:
             ),
             ca.Function("slopes", [x, fixed], [ca.densify(slopes)], {"cse": True}),
             np.array(whole),
-            np.array(open_),
+            np.array(crossing),
             np.array(
                 [ca.depends_on(expression, symbol) for symbol in ca.vertsplit(fixed)]
                 if fixed.numel()
                 else [],
                 bool,
             ),
-        )
-
-    def words(self) -> list[Json]:
-        """Write it for JSON; functions as the text in which CasADi writes them."""
-        functions = [f.serialize() for f in (self.marks, self.turns, self.slopes)]
-        flags = [symbols.tolist() for symbols in (self.whole, self.open, self.uses)]
-        return [[symbol.name() for symbol in self.symbols], *functions, *flags]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> Smooth:
-        """Read what :meth:`words` wrote."""
-        names, *functions, whole, open_, uses = words
-        marks, reversals, slopes = map(ca.Function.deserialize, functions)
-        symbols = tuple(map(ca.SX.sym, names))
-        return cls(
-            symbols,
-            marks,
-            reversals,
-            slopes,
-            np.array(whole, bool),
-            np.array(open_, bool),
-            np.array(uses, bool),
         )
 
     def kink(self, path: Array, values: Sequence[float]) -> Kink | None:
@@ -244,10 +222,11 @@ class Smooth:
             steps, alone = steps.some(alone.any(axis=0).nonzero()[0]), alone[:, alone.any(axis=0)]
             if not steps.owner.size:
                 return
-            here = called(self._bends, steps.at(steps.low), steps.p, steps.way)
+            here = called(self._bends, steps.at(steps.low), steps.p, steps.change)
             # Most are at rest, or go on as they are.
             others = [
-                called(self._bends, steps.at(steps.low + far), steps.p, steps.way) for far in _APART
+                called(self._bends, steps.at(steps.low + far), steps.p, steps.change)
+                for far in _APART
             ]
             some = np.isfinite(here).all(axis=0) & ~np.all(
                 [row == here for row in others], axis=(0, 1)
@@ -255,7 +234,7 @@ class Smooth:
             if not some.any():
                 return
             steps, here, alone = steps.some(np.flatnonzero(some)), here[:, some], alone[:, some]
-            rows = called(self._bends, flat, fixed, Steps.through(paths, p).way).reshape(
+            rows = called(self._bends, flat, fixed, Steps.through(paths, p).change).reshape(
                 -1, count, n
             )
             usual = np.concatenate([_usual(rows[:-1], paths), _finite(rows[-1:]).max(axis=2)])[
@@ -322,15 +301,15 @@ class Smooth:
         passed = []
         for _ in range(_ROUNDS):
             rest = Steps.joined(waiting)
-            ends = [self._states(self._marks(rest, x)) for x in (rest.low, rest.high)]
+            ends = [self._state(rest, x) for x in (rest.low, rest.high)]
             rest = rest.some((ends[0] != ends[1]).any(axis=0))
             if not rest.owner.size:
                 break
             found = rest.halved(partial(self._state, rest))
-            ends = [self._states(self._marks(found, x)) for x in (found.low, found.high)]
-            changes, open_ = ends[0] != ends[1], self.open[:, None]
-            passed.append(found.some((changes & ~open_).any(axis=0)))
-            touched.append(found.some((changes & open_).any(axis=0)))
+            ends = [self._state(found, x) for x in (found.low, found.high)]
+            changes, crossing = ends[0] != ends[1], self.open[:, None]
+            passed.append(found.some((changes & ~crossing).any(axis=0)))
+            touched.append(found.some((changes & crossing).any(axis=0)))
             waiting = [found.to(found.high, rest.high)]
         return Steps.joined(passed or [steps.some([])]), Steps.joined(touched), turned
 
@@ -350,7 +329,7 @@ class Smooth:
         row, some = np.concatenate([row, row]), steps.some(number)
 
         def rises(x: Array, of: Steps = some, rows: npt.NDArray[np.int64] = row) -> Flags:
-            slopes = called(self.turns, of.at(x), of.p, of.way)
+            slopes = called(self.turns, of.at(x), of.p, of.change)
             return np.asarray(slopes[rows, np.arange(rows.size)] > 0.0)[None]
 
         turning = (rises(some.low) != rises(some.high))[0]

@@ -7,11 +7,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 
-from ..base.arrays import Expression, Json
+from ..base.arrays import Expression
 from ..base.symbolic import Graphs, symbolic
 from .motion import Motion, ends_function, motion_function
 
@@ -81,20 +80,3 @@ class Laws(Graphs):
         t, p = self.motion.sx_in()
         by_t = ca.densify(ca.jacobian(self.motion(t, p)[2], t))
         return ca.Function("jerk", [t, p], [by_t], ["t", "p"], ["d_jerk"], {"cse": True})
-
-    def words(self) -> list[Json]:
-        """The laws for JSON; functions as the text in which CasADi writes them."""
-        beyond = None if self.beyond is None else self.beyond.serialize()
-        return [self.joints, self.spans, self.knots, self.motion.serialize(), beyond]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> Laws:
-        """The laws that :meth:`words` made."""
-        joints, spans, knots, motion, beyond = words
-        return cls(
-            tuple(joints),
-            ca.Function.deserialize(motion),
-            tuple((low, high) for low, high in spans),
-            tuple(map(tuple, knots)),
-            None if beyond is None else ca.Function.deserialize(beyond),
-        )

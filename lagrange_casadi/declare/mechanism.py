@@ -20,9 +20,8 @@ from ..base.symbolic import Graphs, symbolic
 from ..base.units import Number
 from ..beams.beam import Beam
 from ..errors import DeclarationError
-from .constraints import constraint, row
 from .density import Density
-from .expressions import bound, check_line, check_name, value_of
+from .expressions import bound, check_line, check_name, unit_vector, value_of
 from .fitted import Fitted
 from .friction import friction
 from .joints import Axis, Joint, JointKind
@@ -50,7 +49,6 @@ from .parts import (
     Torque,
     Vector,
 )
-from .planar_joints import in_plane
 from .results import Asked, Results, UserOutput
 from .validity import demands
 
@@ -275,7 +273,18 @@ class Mechanism(Graphs):
         The force of its multiplier lambda is + lambda dPhi/dq (paper eq. 2). It acts on what Phi is
         written in: on a joint's coordinate between the joint's bodies, on a place from the ground.
         """
-        return self.constraints.setdefault(name, constraint(self.own, name, phi))
+        self.own.free("constraint", name, self.constraints)
+        phi = self.own.expression(f"constraint '{name}'", phi, moving=True)
+        if not isinstance(phi, ca.SX) or not ca.depends_on(phi, self.measures.places):
+            raise DeclarationError(
+                f"constraint '{name}' depends on no coordinate; expected an expression of"
+                " coordinate(JOINT), place(POINT) or direction(LINK)"
+            )
+        if ca.depends_on(phi, self.measures.rates):
+            raise DeclarationError(
+                f"constraint '{name}' depends on rates; expected m.nonholonomic() for it"
+            )
+        return self.constraints.setdefault(name, Constraint(name, phi))
 
     def nonholonomic(self, name: str, expression: Expression, *, replaces: Joint) -> Row:
         """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq. 3).
@@ -285,7 +294,23 @@ class Mechanism(Graphs):
         ``replaces`` is a driven joint. Its motion is prescribed and must satisfy the constraint;
         the constraint's multiplier then takes the place of the joint's effort.
         """
-        return self.rows.setdefault(name, row(self.own, name, expression, replaces))
+        self.own.free("non-holonomic constraint", name, self.rows)
+        what, rates = f"non-holonomic constraint '{name}'", self.measures.rates
+        expression = self.own.expression(what, expression, moving=True)
+        if not isinstance(expression, ca.SX) or not ca.depends_on(expression, rates):
+            raise DeclarationError(
+                f"{what} depends on no rate; expected an expression of rate(JOINT) or"
+                " velocity(POINT)"
+            )
+        if ca.depends_on(ca.jacobian(expression, rates), rates):
+            raise DeclarationError(f"{what} must be linear in the rates")
+        found = Row(name, expression, self.own.joint(replaces).name)
+        for other in self.rows.values():
+            if other.replaces == found.replaces:
+                raise DeclarationError(
+                    f"{what}: '{other.name}' already replaces the drive of joint '{found.replaces}'"
+                )
+        return self.rows.setdefault(name, found)
 
     def force(
         self,
@@ -507,7 +532,7 @@ class Mechanism(Graphs):
         """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in
         parameters.
         """
-        self.own.open("set gravity")
+        self.own.refuse_frozen("set gravity")
         self.gravity = (self.own.expression("gravity", x), self.own.expression("gravity", y), 0.0)
 
     def freeze(self) -> None:
@@ -548,10 +573,25 @@ class Mechanism(Graphs):
         axis: tuple[Expression, Expression] | None = None,
         angle: Expression | None = None,
     ) -> Joint:
-        self.own.free("joint", name, self.joints)
-        return self.joints.setdefault(
-            name, in_plane(self.own, name, kind, parent, child, axis, angle)
+        own, what = self.own, f"joint '{name}'"
+        own.free("joint", name, self.joints)
+        start, end = own.point(what, parent), own.point(what, child)
+        if start.body is end.body:
+            raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
+        if kind != "revolute" and not start.body.oriented:
+            raise DeclarationError(
+                f"{what}: its parent '{start.body.name}' is a point mass, which has no direction"
+                f" for {'the weld' if kind == 'weld' else 'the axis'}; make the other body the"
+                " parent"
+            )
+        unit = (
+            (1.0, 0.0)
+            if axis is None
+            else unit_vector(what, axis, lambda a: own.expression(f"{what}: axis", a))
         )
+        turn = 0.0 if angle is None else own.expression(f"{what}: angle", angle, "rad")
+        joint = Joint(name, kind, start, end, unit, turn, turn_given=angle is not None)
+        return self.joints.setdefault(name, joint)
 
     def _load_point(self, name: str, place: Body | Point) -> Point:
         self.own.free("load", name, self.loads)

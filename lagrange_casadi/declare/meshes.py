@@ -55,14 +55,14 @@ class Loss:
     """Friction loss in a transmission: c = -(sigma ``arm`` |lambda| + ``lean`` lambda), with sigma
     the sign of a rate.
 
-    The rate is that of the sum of coordinates of joints, each with its sign, ``turns``. ``symbol``
-    stands for c until it is found, as a friction's does.
+    The rate is that of the sum of coordinates of joints, each with its sign, ``rotations``.
+    ``symbol`` stands for c until it is found, as a friction's does.
     """
 
     name: str
     arm: Expression
     lean: Expression
-    turns: tuple[tuple[int, Joint], ...]
+    rotations: tuple[tuple[int, Joint], ...]
     symbol: Any = field(default_factory=lambda: ca.SX.sym("loss"))
 
 

@@ -70,13 +70,23 @@ class Motion:
 
 @public
 def polynomial(*coefficients: Expression) -> Motion:
-    """c0 + c1 t + c2 t^2 + ...
+    """Return the motion c0 + c1 t + c2 t^2 + ... (paper, eq. 22).
 
-    (paper eq. 22: ``polynomial(0, Omega0, epsilon0/2)``); numbers or parameters' symbols.
+    Parameters
+    ----------
+    *coefficients
+        Coefficients [rad or m, per s, per s^2 and so on]: numbers, expressions of parameters, or
+        texts as in ``polynomial("45 deg", "360 deg/s")``.
 
-    The value is the joint's coordinate [rad or m] at the time t [s]; a number may be a text, as in
-    ``polynomial("45 deg", "360 deg/s")``. Raises :class:`.DeclarationError` without a coefficient,
-    and for one that is none.
+    Returns
+    -------
+    Motion
+        The law of motion: the joint's coordinate [rad or m] at the time t [s].
+
+    Raises
+    ------
+    DeclarationError
+        Without a coefficient, and for one that is no number or expression.
     """
     if not coefficients:
         raise DeclarationError("polynomial: expected at least one coefficient")
@@ -100,10 +110,26 @@ def _per(order: int) -> str:
 def harmonic(
     mean: Expression, amplitude: Expression, frequency: Expression, phase: Expression = 0.0
 ) -> Motion:
-    """Return mean + amplitude sin(2 pi frequency t + phase): [rad or m], the frequency in Hz, the
-    phase in rad; numbers or symbols.
+    """Return the motion mean + amplitude sin(2 pi frequency t + phase).
 
-    All but the frequency may be texts, as ``"45 deg"`` or ``"100 mm"``.
+    Parameters
+    ----------
+    mean, amplitude
+        Mean value and amplitude [rad or m], or texts such as ``"45 deg"``.
+    frequency
+        Frequency [Hz], a number or an expression of parameters.
+    phase
+        Phase [rad], or a text such as ``"90 deg"``.
+
+    Returns
+    -------
+    Motion
+        The law of motion.
+
+    Raises
+    ------
+    DeclarationError
+        For a value that is neither a number nor an expression of parameters.
     """
     (middle, size), unit = coordinates("harmonic", ((mean, ""), (amplitude, "")))
     often = scalar("harmonic: frequency", frequency, symbols_of(frequency), "parameter")
@@ -113,11 +139,23 @@ def harmonic(
 
 @public
 def expression(law: Callable[[ca.SX], Expression]) -> Motion:
-    """Any law: a function that takes the symbol t [s] and returns a ``casadi.SX`` expression of it
-    and of parameters [rad or m].
+    """Return a motion by a function of the time.
 
-    Its value and rate must not jump. Raises :class:`.DeclarationError` for what is no function; a
-    scene refuses other expressions.
+    Parameters
+    ----------
+    law
+        Function that takes the symbol t [s] and returns a ``casadi.SX`` expression of it and of
+        parameters [rad or m]. Its value and rate must not jump.
+
+    Returns
+    -------
+    Motion
+        The law of motion; a scene refuses expressions of anything else.
+
+    Raises
+    ------
+    DeclarationError
+        If ``law`` is not a function.
     """
     if not callable(law):
         raise DeclarationError(f"expression: expected a function of the symbol t, got {law!r}")
@@ -126,15 +164,27 @@ def expression(law: Callable[[ca.SX], Expression]) -> Motion:
 
 @public
 def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion:
-    """A C2 cubic spline through samples, not-a-knot at its ends: ``values`` [rad or m] at ``times``
-    [s].
+    """Return a cubic spline through samples, with a continuous second derivative (not-a-knot ends).
 
-    Parameters may scale and shift all values alike, and all times: ``samples(times, ratio *
-    angles)``. Numbers may be texts, as ``"20 ms"`` and ``"45 deg"``. It is defined between the
-    first and the last time only.
+    Parameters
+    ----------
+    times
+        Increasing times [s], or texts such as ``"20 ms"``, at least four.
+    values
+        Values at these times [rad or m], or texts such as ``"45 deg"``. Parameters may scale and
+        shift all of them together, as in ``samples(times, ratio * angles)``; the same holds for
+        ``times``.
 
-    Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase,
-    for what is not finite, and for parameters that change some values otherwise than others.
+    Returns
+    -------
+    Motion
+        The law of motion, defined between the first and the last time only.
+
+    Raises
+    ------
+    DeclarationError
+        For fewer than four samples, times that do not increase, numbers that are not finite, and
+        parameters that do not change all values alike.
     """
     unit = ""
     if isinstance(times, list | tuple) and any(isinstance(time, str) for time in times):

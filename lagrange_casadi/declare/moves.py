@@ -59,19 +59,37 @@ def move(
     jerk: Symbolic | None = None,
     name: str = "",
 ) -> Move:
-    """A move from rest to rest for :func:`moves`: ``to`` a place or ``by`` a way [rad or m, or text
-    as ``"90 deg"``].
+    """Return a move from rest to rest, for :func:`moves`.
 
-    It takes a ``time`` [s], or the shortest within its limits of ``speed``, ``acceleration`` and
-    ``jerk``. With both, it takes the time, and is refused where that breaks a limit. ``law`` is one
-    of ``cycloidal``, ``modified_sine``, ``modified_trapezoid``, ``polynomial_345``,
-    ``polynomial_4567``, ``simple_harmonic``, ``trapezoid`` and ``s_curve``, or has shares of its
-    own, as ``trapezoid(0.25)``. Without one it is ``polynomial_345``, with limits of speed and
-    acceleration the trapezoid that reaches them, with all three limits the S-curve of seven
-    segments that does.
+    All numbers may be expressions of parameters.
 
-    All numbers may be expressions of parameters. Raises :class:`.DeclarationError` for what is no
-    move.
+    Parameters
+    ----------
+    to, by
+        Either the end position, or the distance [rad or m, or a text such as ``"90 deg"``].
+    time
+        Duration [s]. By default the shortest within the limits; with both, the move takes this
+        time and is refused if that breaks a limit.
+    law
+        One of ``cycloidal``, ``modified_sine``, ``modified_trapezoid``, ``polynomial_345``,
+        ``polynomial_4567``, ``simple_harmonic``, ``trapezoid`` and ``s_curve``, or
+        :func:`trapezoid` or :func:`s_curve` with other shares. By default ``polynomial_345``;
+        with limits of speed and acceleration the trapezoid that reaches them, with all three
+        limits the S-curve of seven segments that does.
+    speed, acceleration, jerk
+        Limits of the size of these [rad/s or m/s and so on].
+    name
+        Name of the part in the timetable; by default its number.
+
+    Returns
+    -------
+    Move
+        The move, a part of a motion by :func:`moves`.
+
+    Raises
+    ------
+    DeclarationError
+        If not exactly one of ``to`` and ``by`` is given, and for numbers that make no move.
     """
     what = f"move '{name}'" if name else "move"
     if (to is None) == (by is None):
@@ -81,8 +99,19 @@ def move(
 
 @public
 def dwell(time: Symbolic | None = None, *, name: str = "") -> Dwell:
-    """A rest of a ``time`` [s] for :func:`moves`; one of them may go without, and lasts as long as
-    the period asks for.
+    """Return a rest between moves, for :func:`moves`.
+
+    Parameters
+    ----------
+    time
+        Duration [s]. One dwell of a motion may have none: it then fills up the ``period``.
+    name
+        Name of the part in the timetable; by default its number.
+
+    Returns
+    -------
+    Dwell
+        The rest, a part of a motion by :func:`moves`.
     """
     return Dwell(_named(name), time)
 
@@ -101,19 +130,39 @@ def moves(
     acceleration: Expression | None = None,
     jerk: Expression | None = None,
 ) -> Motion:
-    """A law of motion made of moves and dwells, one after the other, from the place ``start`` [rad
-    or m] at the time ``begin`` [s].
+    """Return a motion of moves and dwells in sequence, at rest before and after them.
 
-    Before and after it rests. A ``cyclic`` one goes on over and over, and must come back to its
-    start, or be ``advance`` beyond it, as an indexing table is. ``period`` [s] is the time of all;
-    a dwell without a time fills it up. ``speed``, ``acceleration`` and ``jerk`` are limits of every
-    move that has none of its own.
+    Parameters
+    ----------
+    parts
+        The moves and dwells, in order.
+    start
+        Position before the first part [rad or m, or a text such as ``"90 deg"``].
+    begin
+        Time at which the first part begins [s].
+    cyclic
+        True for a motion that is repeated. It must return to its start, or end ``advance`` beyond
+        it, as an indexing table does.
+    period
+        Time of all parts together [s]; a dwell without a time fills it up. By default the sum of
+        their times.
+    advance
+        Distance by which each cycle of a ``cyclic`` motion ends beyond its start [rad or m].
+    speed, acceleration, jerk
+        Limits of every move that has none of its own.
 
-    Called with an expression, it is the same law of that: ``lift(m.coordinate(cam))`` rises by the
-    angle of a cam, and its times then are angles. Raises :class:`.DeclarationError` for moves that
-    cannot be: too fast for their limits, a time that is not positive, a cycle that does not close,
-    a period that is not the sum of the times. Where parameters decide, they are refused as others
-    that make a part impossible.
+    Returns
+    -------
+    Motion
+        The law of motion. Called with an expression, it is the same law of that:
+        ``lift(m.coordinate(cam))`` rises by the angle of a cam, and its times are angles.
+
+    Raises
+    ------
+    DeclarationError
+        For moves that are too fast for their limits, a time that is not positive, a cycle that
+        does not close, and a period that is not the sum of the times. If parameters decide, such
+        designs are refused when they are evaluated.
     """
     each = _sequence(parts)
     common = Limits(speed, acceleration, jerk)
@@ -131,7 +180,8 @@ def moves(
         place = after
     times = _filled(each, [row[2] for row in found], period, demands)
     for number, (part, time) in enumerate(zip(each, times, strict=True)):
-        _demand_time(_what(part, number), time, demands)
+        what = f"{_what(part, number)}: its time"
+        demands.add(Demand(time, True, _not_positive(what, time, " s")))
     first = _expression("moves: begin", begin, "s")
     total = _Sum(first)
     seams = [first, *(total.then(time) for time in times)]
@@ -428,10 +478,6 @@ def _filled(
         )
     )
     return [remaining if time is None else time for time in known]
-
-
-def _demand_time(what: str, time: Expression, demands: _Demanded) -> None:
-    demands.add(Demand(time, True, _not_positive(f"{what}: its time", time, " s")))
 
 
 def _not_positive(what: str, value: Expression, unit: str = "") -> Callable[[Evaluator], str]:

@@ -9,14 +9,50 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..errors import DeclarationError
-from .expressions import scalar
+from .expressions import check_name, scalar
 from .joints import Axis, Joint
 from .limits import along_link, on_link
-from .names import Part, check_free
-from .parts import Body, Expression, Link, Point
+from .parts import (
+    Body,
+    Constraint,
+    Expression,
+    Force,
+    Friction,
+    Ground,
+    LineLoad,
+    Link,
+    Load,
+    Parameter,
+    Path,
+    Point,
+    PointMass,
+    Row,
+    Spring,
+    Torque,
+)
+from .results import UserOutput
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
+
+_WORDS: dict[type[object], str] = {
+    Constraint: "a constraint",
+    Force: "a load",
+    Friction: "a load",
+    Ground: "the ground",
+    Joint: "a joint",
+    LineLoad: "a load",
+    Link: "a link",
+    UserOutput: "an output",
+    Parameter: "a parameter",
+    Path: "a path",
+    PointMass: "a point mass",
+    Row: "a non-holonomic constraint",
+    Spring: "a load",
+    Torque: "a load",
+}
+
+Part = Parameter | Body | Joint | Load | Constraint | Row | UserOutput | Path
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,18 +168,21 @@ class Ownership:
     def free(self, kind: str, name: str, table: Mapping[str, Part]) -> None:
         """Raise for a name that is taken, and where nothing can be added any more."""
         m = self.mechanism
-        self.open(f"add {kind} '{name}'")
+        self.refuse_frozen(f"add {kind} '{name}'")
         # Files and scenes know joints, loads, constraints, rows and paths by their names alone,
         # beside those of links.
         acting: tuple[Mapping[str, Part], ...] = (m.joints, m.loads, m.constraints, m.rows, m.paths)
-        check_free(
-            kind,
-            name,
-            m.name,
-            (m.bodies, *acting) if any(table is other for other in acting) else (table,),
-        )
+        check_name(kind, name)
+        others = (m.bodies, *acting) if any(table is other for other in acting) else (table,)
+        for part in (parts[name] for parts in others if name in parts):
+            bearer = next(_WORDS[known] for known in type(part).__mro__ if known in _WORDS)
+            if bearer in (f"a {kind}", f"an {kind}"):
+                raise DeclarationError(f"{kind} '{name}' is declared twice in mechanism '{m.name}'")
+            raise DeclarationError(
+                f"{kind} '{name}': the name is taken by {bearer} of mechanism '{m.name}'"
+            )
 
-    def open(self, what: str) -> None:
+    def refuse_frozen(self, what: str) -> None:
         """Raise where nothing can be changed any more."""
         if self.mechanism.frozen:
             raise DeclarationError(

@@ -34,13 +34,13 @@ def posture_entry(name: str, slides: bool, value: float, *others: float) -> str:
     return f"'{name}': '{readable(*map(math.degrees, (value, *others)))} deg'"
 
 
-def _rough(name: str, value: object, turns: bool) -> float:
+def _rough(name: str, value: object, is_angle: bool) -> float:
     """Direction [rad] or place [m] of a posture. Raises :class:`DeclarationError`."""
     try:
-        found = number(value, ANGLE if turns else LENGTH)
+        found = number(value, ANGLE if is_angle else LENGTH)
     except NumberError as error:
         raise DeclarationError(f"posture of '{name}': {error}") from None
-    if turns and abs(found) > TURNS:
+    if is_angle and abs(found) > TURNS:
         degrees = f"{math.degrees(found):.6g} deg, more than two turns"
         hint = f"; '{value:g} deg' is {value:g} degrees" if isinstance(value, (int, float)) else ""
         raise DeclarationError(f"posture of '{name}': {found:.6g} rad is {degrees}{hint}")

@@ -76,10 +76,23 @@ class Limits:
 
 @public
 def trapezoid(share: Symbolic = _CUBE) -> RestLaw:
-    """Constant acceleration, constant speed, constant deceleration: speeding up takes ``share`` of
-    the time, 1/2 at most.
+    """Return the law of constant acceleration, constant speed and constant deceleration, for a
+    :func:`move`.
 
-    Raises :class:`.DeclarationError` for a number that is no such share.
+    Parameters
+    ----------
+    share
+        Share of the time in which the motion speeds up, at most 1/2.
+
+    Returns
+    -------
+    RestLaw
+        The law.
+
+    Raises
+    ------
+    DeclarationError
+        For a number that is no such share.
     """
     _refuse_share("trapezoid: share", share, 0.5)
     top, steep = 1.0 / (1.0 - share), 1.0 / (share * (1.0 - share))
@@ -95,10 +108,24 @@ def trapezoid(share: Symbolic = _CUBE) -> RestLaw:
 
 @public
 def s_curve(share: Symbolic = _CUBE, rounding: Symbolic = 0.5) -> RestLaw:
-    """The S-curve of seven segments: speeding up takes ``share`` of the time, 1/2 at most; over
-    ``rounding`` of that the acceleration changes.
+    """Return the S-curve law of seven segments, for a :func:`move`.
 
-    Raises :class:`.DeclarationError` for numbers that are no such shares.
+    Parameters
+    ----------
+    share
+        Share of the time in which the motion speeds up, at most 1/2.
+    rounding
+        Share of that in which the acceleration changes, at most 1.
+
+    Returns
+    -------
+    RestLaw
+        The law.
+
+    Raises
+    ------
+    DeclarationError
+        For numbers that are no such shares.
     """
     _refuse_share("s_curve: share", share, 0.5)
     _refuse_share("s_curve: rounding", rounding, 1.0)

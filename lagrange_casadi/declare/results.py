@@ -218,9 +218,9 @@ class Results:
         self,
         kind: str,
         part: _Part,
-        own: Iterable[_Part],
+        declared: Iterable[_Part],
     ) -> str:
-        parts = list(own)
+        parts = list(declared)
         if isinstance(part, str) and part in [one.name for one in parts]:
             raise DeclarationError(
                 f"expected the {kind} that its declaration returned, got its name '{part}'"

@@ -104,7 +104,7 @@ class SpatialMechanism(Mechanism):
         ground's axis that is most across it. The link carries it from there; but a bar, slender and
         between two spherical joints, spins freely about its line: its y axis is the part across it
         of ``beside``, fixed in the ground, at every instant, and without ``beside`` no stress is
-        told of one that is not round.
+        evaluated for one that is not round.
         """
         self.own.free("link", name, self.bodies)
         what = f"link '{name}'"
@@ -212,7 +212,7 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which
         it carries itself, at right angles to the first: coordinates ``turn_1`` and ``turn_2``. Both
-        directions are told where the coordinates are zero.
+        directions are given where the coordinates are zero.
         """
         return self._spatial(name, "universal", (parent, child), (axis, second), at, turned)
 
@@ -392,7 +392,7 @@ class SpatialMechanism(Mechanism):
         """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in
         parameters.
         """
-        self.own.open("set gravity")
+        self.own.refuse_frozen("set gravity")
         self.gravity = self._vector("gravity", (x, y, z))
 
     def direction(self, link: Link) -> Expression:
@@ -421,7 +421,7 @@ class SpatialMechanism(Mechanism):
             zero = turned_by(what, turned, self.own)
             near, far = (self.references.get(point.body.name) for point in (start, end))
             if not turned and near and far and start.body.oriented and end.body.oriented:
-                zero, placed = near.seen(far), True
+                zero, placed = near.directions_of(far), True
         else:
             start, end, directions, zero = self._at_reference(
                 what, parent, child, at, directions, turned
@@ -487,7 +487,7 @@ class SpatialMechanism(Mechanism):
             self.own.point(what, one.point(body, place))
             for one, body in ((first, parent), (second, child))
         )
-        return start, end, first.directions(directions), first.seen(second)
+        return start, end, first.directions(directions), first.directions_of(second)
 
     def _reference(self, what: str, body: Body) -> Reference:
         if body.name not in self.references:

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Expression, Json
+from ..base.arrays import Array, Expression
 from ..base.symbolic import Graphs, symbolic
 from .mechanism import Mechanism
 from .meshes import Mesh, Transmission, Wrench
@@ -51,8 +51,8 @@ class Touch:
     """A mesh as numbers: the bodies' names, places in the carrier's axes, and forces and couples
     for units of lambda and of s.
 
-    Of its friction, ``loss`` are the arm and the lean, and ``turns`` the coordinates whose rates it
-    follows, with their signs.
+    Of its friction, ``loss`` are the arm and the lean, and ``rotations`` the coordinates whose
+    rates it follows, with their signs.
     """
 
     first: str
@@ -65,7 +65,7 @@ class Touch:
     braking: tuple[Triple, Triple]
     slack: float
     loss: tuple[float, float]
-    turns: tuple[tuple[int, str], ...]
+    rotations: tuple[tuple[int, str], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,16 +106,6 @@ class Entries(Graphs):
             Entry(*one, tuple(point)) for one, point in zip(self.each, points, strict=True)
         )
 
-    def words(self) -> list[Json]:
-        """Return them for JSON."""
-        return [self.each, self.points.serialize()]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> Entries:
-        """Return those that :meth:`words` made words of."""
-        each, points = words
-        return cls(tuple(map(tuple, each)), ca.Function.deserialize(points))
-
 
 @dataclass(frozen=True, eq=False)
 class EquationGraph(Graphs):
@@ -134,7 +124,7 @@ class EquationGraph(Graphs):
     values: ca.Function
     slopes: ca.Function
     meshes: tuple[tuple[str, str, str], ...]
-    turns: tuple[tuple[int, str], ...]
+    rotations: tuple[tuple[int, str], ...]
     wrenches: ca.Function
 
     @classmethod
@@ -184,7 +174,7 @@ class EquationGraph(Graphs):
             *(_numbers(transmission, mesh) for mesh in meshes if transmission),
         )
         rotations = (
-            transmission.loss.turns
+            transmission.loss.rotations
             if transmission is not None and transmission.loss is not None
             else ()
         )
@@ -199,7 +189,7 @@ class EquationGraph(Graphs):
             meshes=tuple(
                 (mesh.first.body.name, mesh.second.body.name, mesh.carrier.name) for mesh in meshes
             ),
-            turns=tuple((sign, joint.name) for sign, joint in rotations),
+            rotations=tuple((sign, joint.name) for sign, joint in rotations),
             wrenches=ca.Function("wrenches", [p], [ca.densify(wrenches)]),
         )
 
@@ -213,28 +203,15 @@ class EquationGraph(Graphs):
         )
         return Equation(self, p, self.entries.at(p), tuple(touches))
 
-    def words(self) -> list[Json]:
-        """Return the graph for JSON; functions as the text in which CasADi writes them."""
-        functions = [function.serialize() for function in (self.values, self.slopes, self.wrenches)]
-        return [self.name, self.row, self.entries.words(), self.meshes, self.turns, *functions]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> EquationGraph:
-        """Return the graph that :meth:`words` made words of."""
-        name, row, entries, meshes, rotations, *functions = words
-        values, slopes, wrenches = map(ca.Function.deserialize, functions)
-        names = (tuple(map(tuple, pairs)) for pairs in (meshes, rotations))
-        return cls(
-            name, row, Entries.loads(entries), values, slopes, next(names), next(names), wrenches
-        )
-
     def _touch(self, names: tuple[str, str, str], row: list[float]) -> Touch:
         centre, reach, *parts = (
             (row[k], row[k + 1], row[k + 2]) for k in range(0, 3 * _WRENCHES, 3)
         )
         along, apart, braking = ((parts[k], parts[k + 1]) for k in (0, 2, 4))
         slack, arm, lean = row[3 * _WRENCHES :]
-        return Touch(*names, centre, reach, along, apart, braking, slack, (arm, lean), self.turns)
+        return Touch(
+            *names, centre, reach, along, apart, braking, slack, (arm, lean), self.rotations
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -307,16 +284,6 @@ class LoadGraph(Graphs):
         """The law for values of all parameters."""
         return LoadLaw(self, p, self.entries.at(p))
 
-    def words(self) -> list[Json]:
-        """Return the graph for JSON; functions as the text in which CasADi writes them."""
-        return [self.name, self.kind, self.turning, self.entries.words(), self.values.serialize()]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> LoadGraph:
-        """Return the graph that :meth:`words` made words of."""
-        name, kind, turning, entries, values = words
-        return cls(name, kind, turning, Entries.loads(entries), ca.Function.deserialize(values))
-
 
 @dataclass(frozen=True, eq=False)
 class LoadLaw:
@@ -371,23 +338,6 @@ class Stated:
                 for load in mechanism.loads.values()
                 if not isinstance(load, Friction)
             ),
-        )
-
-    def words(self) -> list[Json]:
-        """Return it for JSON."""
-        return [
-            [graph.words() for graph in graphs]
-            for graphs in (self.equations, self.motions, self.laws)
-        ]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> Stated:
-        """Return what :meth:`words` made words of."""
-        equations, motions, laws = words
-        return cls(
-            equations=tuple(map(EquationGraph.loads, equations)),
-            motions=tuple(map(EquationGraph.loads, motions)),
-            laws=tuple(map(LoadGraph.loads, laws)),
         )
 
 

@@ -28,15 +28,15 @@ before.
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Straight steps of paths: from ``x`` by ``way`` (symbols, m), ``p`` (fixed, m), and of which
-    path (``owner``).
+    """Straight steps of paths: from ``x`` by ``change`` (symbols, m), ``p`` (fixed, m), and of
+    which path (``owner``).
 
     A share of a step is looked at, from ``low`` to ``high``; ``least`` and ``most`` are where the
     path ends.
     """
 
     x: Array
-    way: Array
+    change: Array
     p: Array
     owner: npt.NDArray[np.intp]
     low: Array
@@ -95,12 +95,12 @@ class Steps:
 
     def at(self, share: Operand) -> Array:
         """The places at shares of the steps, not beyond the path."""
-        return np.asarray(self.x + np.clip(share, self.least, self.most) * self.way)
+        return np.asarray(self.x + np.clip(share, self.least, self.most) * self.change)
 
     def off(self, roundings: float, least: float) -> Array:
         """The shares that move by so many roundings of places, or of ``least``."""
-        sizes = np.maximum(np.maximum(np.abs(self.x), np.abs(self.x + self.way)), least)
-        moves = np.abs(self.way) / np.spacing(sizes)
+        sizes = np.maximum(np.maximum(np.abs(self.x), np.abs(self.x + self.change)), least)
+        moves = np.abs(self.change) / np.spacing(sizes)
         return np.asarray(roundings / np.maximum(moves.max(axis=0, initial=0.0), 1.0))
 
     def halved(self, state: Callable[[Array], Array | npt.NDArray[np.bool_]]) -> Steps:
@@ -144,7 +144,7 @@ def sides_of(function: ca.Function, steps: Steps, middle: Array) -> tuple[Side, 
     for direction in (-1, 1):
         share = middle + direction * far
         given, there = (
-            (wide.at(share.ravel()), wide.p, wide.way),
+            (wide.at(share.ravel()), wide.p, wide.change),
             (share >= steps.least) & (share <= steps.most),
         )
         value, off = (

@@ -306,7 +306,7 @@ def _read(
     if len(even) != 3:
         raise DeclarationError(f"{what}: expected (start, stop, count), got {shown(even)}")
     names = ("START", "STOP")
-    symbols = _symbols(mechanism)
+    symbols = [parameter.symbol for parameter in mechanism.parameters.values()]
     each = [
         scalar(f"{what}: {name}", bound, symbols, "parameter", unit)
         for name, bound in zip(names, even[:2], strict=True)
@@ -344,10 +344,6 @@ def _rising(even: Times) -> Expression:
         return (even[1], even[0], *even[2:]) if even[1] < even[0] else even
     except (TypeError, IndexError):
         return even
-
-
-def _symbols(mechanism: Mechanism) -> list[ca.SX]:
-    return [parameter.symbol for parameter in mechanism.parameters.values()]
 
 
 def _written(mechanism: Mechanism, expression: ca.SX) -> str:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Json
 from ..base.numerals import readable
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.vocabulary import Precision
@@ -84,11 +83,10 @@ class ParameterConstraints:
         """Raise :class:`ParameterError` for parameters at which a part is impossible, by the first
         demand that is not met.
         """
-        values = self.function(list(p)).full().ravel()
-        strict = np.array([demand.positive for demand in self.each], bool)
-        refused = ~(np.isfinite(values) & (values >= 0.0) & ((values > 0.0) | ~strict))
-        if refused.any():
-            raise ParameterError(self.each[int(np.argmax(refused))].refusal(number))
+        values = self.function(np.array(p, float)).full().ravel().tolist()
+        for demand, value in zip(self.each, values, strict=True):
+            if not (value > 0.0 if demand.positive else value >= 0.0) or value == math.inf:
+                raise ParameterError(demand.refusal(number))
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,15 +102,6 @@ class Margins(Graphs):
         """Return expressions in the parameters: those that must be positive, and the others."""
         values = ca.vertsplit(self.function(symbols)) if self.function.numel_out(0) else []
         return values[: self.positive], values[self.positive :]
-
-    def words(self) -> list[Json]:
-        """Write them for JSON."""
-        return [self.function.serialize(), self.positive]
-
-    @classmethod
-    def loads(cls, words: Sequence[Any]) -> Margins:
-        """Read what :meth:`words` wrote."""
-        return cls(ca.Function.deserialize(words[0]), words[1])
 
 
 @symbolic

@@ -58,25 +58,44 @@ def belt(
     offset: Expression = 0.0,
     efficiency: Expression | None = None,
 ) -> Belt:
-    """Lay a belt or a chain round two pulleys.
+    """Declare a belt or a chain around two pulleys.
 
-    ``first`` and ``second`` are the centres of the pulleys, points on the axes about which revolute
-    joints let their bodies turn, in parallel; ``radii`` those of their pitch circles [m].
-    ``preload`` is the tension of both strands where nothing is passed on [N]: of a chain nothing. A
-    ``crossed`` belt turns the second pulley the other way round. ``carrier`` is the body on which
-    both turn, by default the one that joints tell; ``offset`` is the way that the first pitch
-    circle is ahead where both coordinates are zero [m]. ``efficiency`` is the share of the power
-    that comes out, of what goes in, whichever pulley drives.
+    Parameters
+    ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
+    first, second
+        Centres of the pulleys: points on the axes about which revolute joints let their bodies
+        turn. The axes are parallel.
+    radii
+        Radii of the two pitch circles [m].
+    preload
+        Tension of both strands without load [N]; 0 for a chain.
+    crossed
+        True for a crossed belt, which turns the second pulley in the opposite direction.
+    carrier
+        Body on which both pulleys turn; by default it follows from the joints.
+    offset
+        Distance along the belt by which the first pitch circle is ahead where both coordinates
+        are zero [m].
+    efficiency
+        Share of the input power that reaches the other pulley, whichever drives; by default 1.
 
-    The multiplier is the force along the first pulley's pitch circle, positive where it turns this
-    forward. Outputs are NAME_tight and NAME_slack, the tensions of the strands [N]. The slack one
-    is zero where the preload is too small for what is passed on: a chain or toothed belt bears
-    that, a flat belt slips. With an efficiency, NAME_loss is the power that is lost [W], and open
-    where the belt is at rest, as friction in joints is.
+    Returns
+    -------
+    Belt
+        The belt. Its multiplier is the force along the first pulley's pitch circle, positive
+        where it turns this pulley forward. Outputs are NAME_tight and NAME_slack, the tensions of
+        the strands [N]. If the preload is too small for the transmitted force, the slack strand
+        has zero tension: a chain or a toothed belt still works, a flat belt slips. With an
+        efficiency, NAME_loss is the lost power [W], indeterminate where the belt is at rest, as
+        friction in joints is.
 
-    Raises :class:`.DeclarationError` for bodies that do not turn about parallel axes through these
-    points, radii for which the pulleys touch, a preload that is negative, and an efficiency that is
-    none.
+    Raises
+    ------
+    DeclarationError
+        For bodies that do not turn about parallel axes through these points, radii for which the
+        pulleys touch, a negative preload, and an efficiency outside 0 to 1.
     """
     what, ownership = f"belt '{name}'", mechanism.own
     ownership.free("constraint", name, mechanism.constraints)
@@ -146,9 +165,9 @@ def belt(
         fits += share(what, value)
         sideways = times((r1 - r2 if crossed else r1 + r2) / distance, cross(u, e))
         mesh = replace(mesh, braking=Wrench(sideways, times(r1, u)))
-        loss = Loss(f"{name}:loss", (1 - value) / (1 + value), 0.0, one.turns)
+        loss = Loss(f"{name}:loss", (1 - value) / (1 + value), 0.0, one.rotations)
     constraint = mechanism.constraint(
-        name, r1 * one.way(mechanism) + other * two.way(mechanism) - ahead
+        name, r1 * one.displacement(mechanism) + other * two.displacement(mechanism) - ahead
     )
     fits += [fit for course in (one, two) for fit in fits_of("its centre", course)]
     varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
@@ -161,6 +180,6 @@ def belt(
     mechanism.output(f"{name}_tight", (whole + force) / 2, unit="N")
     mechanism.output(f"{name}_slack", (whole - force) / 2, unit="N")
     if loss is not None:
-        rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.turns), ca.SX(0))
+        rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.rotations), ca.SX(0))
         mechanism.output(f"{name}_loss", 2 * r1 * loss.arm * force * ca.fabs(rate), unit="W")
     return Belt(constraint, -(r1 / other))

@@ -58,17 +58,30 @@ def bent_bar(
     mass: Expression | None = None,
     per_length: Expression | None = None,
 ) -> Bent:
-    """Declare a bar that runs straight from corner to corner, as a bell crank or a bracket, with
-    sections along every piece.
+    """Declare a bar that is straight from corner to corner, such as a bell crank or a bracket.
 
-    ``corners`` are three places or more [m], numbers or expressions of parameters, in axes of the
-    bar's own: (x, y), in space (x, y, z). The bar is even: its ``mass`` [kg], or what it has
-    ``per_length`` [kg/m]. In the plane the direction of its first piece, as in a posture, is that
-    from the first corner to the second. A bell crank turns about its middle corner:
-    ``m.revolute("pivot", m.ground, bell.corner(1))``.
+    Parameters
+    ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
+    corners
+        At least three places [m], numbers or expressions of parameters, on the bar's own axes:
+        (x, y), in space (x, y, z). In the plane the direction of the first piece in a posture is
+        that from the first corner to the second.
+    mass, per_length
+        Either the mass of the whole bar [kg], or its mass per length [kg/m], which is uniform.
 
-    Raises :class:`.DeclarationError` for corners that are no places, or lie on each other, and as
-    declaring links does.
+    Returns
+    -------
+    Bent
+        The bar: links NAME_1, NAME_2 and so on, welded to each other, each with its sections. A
+        bell crank turns about its middle corner: ``m.revolute("pivot", m.ground,
+        bell.corner(1))``.
+
+    Raises
+    ------
+    DeclarationError
+        For corners that are no places or coincide, and as for links.
     """
     what, size = f"bent bar '{name}'", 3 if mechanism.space else 2
     if not isinstance(corners, Sequence) or len(corners) < 3:
@@ -114,10 +127,10 @@ def _place(mechanism: Mechanism, what: str, corner: object, size: int) -> list[E
     return [mechanism.own.expression(what, number, "m") for number in corner]
 
 
-def _length(way: Sequence[Expression]) -> Expression:
-    if any(isinstance(x, ca.SX) for x in way):
-        return ca.sqrt(sum(x * x for x in way))
-    return math.hypot(*way)
+def _length(step: Sequence[Expression]) -> Expression:
+    if any(isinstance(x, ca.SX) for x in step):
+        return ca.sqrt(sum(x * x for x in step))
+    return math.hypot(*step)
 
 
 def _turn(y: Expression, x: Expression) -> Expression:

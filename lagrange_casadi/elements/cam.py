@@ -35,7 +35,7 @@ class Design:
     ground axes, each (x, y).
 
     ``place`` is the follower's point, ``normal`` of length one from the cam to the follower,
-    ``moment`` the arm of the contact about that point, ``contact`` where it touches, ``way`` the
+    ``moment`` the arm of the contact about that point, ``contact`` where it touches, ``travel`` the
     direction in which the follower moves there. ``turned`` is the direction of the follower's own
     axis, None where nothing depends on it; ``roller`` is the radius of its roller.
     """
@@ -45,7 +45,7 @@ class Design:
     normal: tuple[Any, Any]
     moment: Any
     contact: tuple[Any, Any]
-    way: tuple[Any, Any]
+    travel: tuple[Any, Any]
     turned: tuple[Any, Any] | None
     roller: Expression
 
@@ -73,8 +73,8 @@ class Cam:
         axes.
         """
         design, x, values = self.design, self.design.angle, self.mechanism.values(parameters)
-        cosine = _dot(design.normal, design.way)
-        angle = ca.atan2(ca.fabs(_cross(design.normal, design.way)), cosine)
+        cosine = _dot(design.normal, design.travel)
+        angle = ca.atan2(ca.fabs(_cross(design.normal, design.travel)), cosine)
         rows = [
             *_turned(design.contact, -x),
             *_turned(design.place, -x),
@@ -394,7 +394,7 @@ def _at(design: Design, angle: Expression) -> Design:
 
     turned = None if design.turned is None else both(design.turned)
     place, normal, contact, direction = map(
-        both, (design.place, design.normal, design.contact, design.way)
+        both, (design.place, design.normal, design.contact, design.travel)
     )
     return Design(
         angle, place, normal, put(design.moment), contact, direction, turned, design.roller
@@ -424,11 +424,11 @@ def _outputs(made: Cam, cam: Joint, width: Expression | None, stiffness: float) 
     force = mechanism.results.multiplier(made.constraint)
     here, radius = _at(made.design, mechanism.coordinate(cam)), curvature(made.design)
     radius = ca.substitute(radius, made.design.angle, mechanism.coordinate(cam))
-    cosine = _dot(here.normal, here.way)
+    cosine = _dot(here.normal, here.travel)
     mechanism.output(f"{name}_force", force, unit="N")
     mechanism.output(
         f"{name}_pressure_angle",
-        ca.atan2(ca.fabs(_cross(here.normal, here.way)), cosine),
+        ca.atan2(ca.fabs(_cross(here.normal, here.travel)), cosine),
         unit="rad",
     )
     mechanism.output(f"{name}_radius", radius, unit="m")

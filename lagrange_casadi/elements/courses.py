@@ -27,23 +27,23 @@ class Course:
     ``slides`` along it.
 
     ``place`` and ``axis``, of length one, are in the carrier's axes where all coordinates are zero;
-    ``turns`` are the joints whose coordinates, each with its sign, add up to the angle about the
-    axis, or the way along it. ``joints`` are all joints between, and ``shifted`` how far the point
-    is from their axes. ``seen`` turns the carrier's axes from those of the body.
+    ``rotations`` are the joints whose coordinates, each with its sign, add up to the angle about
+    the axis, or the way along it. ``joints`` are all joints between, and ``shifted`` how far the
+    point is from their axes. ``seen`` turns the carrier's axes from those of the body.
     """
 
     carrier: Body
     place: Vector
     axis: Vector | None
-    turns: tuple[tuple[int, Joint], ...]
+    rotations: tuple[tuple[int, Joint], ...]
     slides: bool
     joints: tuple[Joint, ...]
     shifted: tuple[Expression, ...] = ()
     seen: Rotation = _AS_IT_IS
 
-    def way(self, mechanism: Mechanism) -> ca.SX:
+    def displacement(self, mechanism: Mechanism) -> ca.SX:
         """The angle about its axis, or the way along it, as an expression of coordinates."""
-        return sum((sign * mechanism.coordinate(joint) for sign, joint in self.turns), ca.SX(0))
+        return sum((sign * mechanism.coordinate(joint) for sign, joint in self.rotations), ca.SX(0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +167,7 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
             other,
             seen(place),
             axis and turn(axis),
-            course.turns,
+            course.rotations,
             course.slides,
             (*course.joints, joint),
             shifted,
@@ -188,7 +188,7 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
         if Numbers(mechanism).size(off) > FITTING * max(1.0, Numbers(mechanism).size(place)):
             return None
         shifted = (*shifted, *off)
-    rotations, joints = (*course.turns, (sign, joint)), (*course.joints, joint)
+    rotations, joints = (*course.rotations, (sign, joint)), (*course.joints, joint)
     return Course(
         other, seen(place), turn(axis), rotations, joint.kind == "prismatic", joints, shifted, whole
     )

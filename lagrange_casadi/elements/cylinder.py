@@ -45,18 +45,35 @@ def cylinder(
     barrel_mass: Expression = 0.0,
     rod_mass: Expression = 0.0,
 ) -> Cylinder:
-    """Declare a cylinder between two pins in a plane: links NAME_barrel and NAME_rod, pins
-    NAME_rear and NAME_front, and the slide.
+    """Declare a hydraulic or pneumatic cylinder between two pins, in a plane.
 
-    ``closed`` is the distance of its pins when it is all the way in [m], ``bore`` the diameter of
-    its piston and ``rod`` that of its rod [m], ``back_pressure`` the gauge pressure of the side
-    that does not work [Pa]. It makes a motion where a scene names it among its drives, by NAME.
-    Outputs then are NAME_cap_pressure and NAME_rod_pressure [Pa], of which the lower one is the
-    back pressure; NAME_flow [m^3/s] into the cap side, out of it where negative; and NAME_power
-    [W].
+    Parameters
+    ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
+    rear, front
+        Points at which the barrel and the rod are pinned.
+    closed
+        Distance of the pins when the cylinder is retracted [m].
+    bore, rod
+        Diameters of the piston and of the rod [m].
+    back_pressure
+        Gauge pressure of the side that does not work [Pa].
+    barrel_mass, rod_mass
+        Masses of barrel and rod [kg].
 
-    Raises :class:`.DeclarationError` for sizes that cannot be, and as declaring links and joints
-    does.
+    Returns
+    -------
+    Cylinder
+        The links NAME_barrel and NAME_rod, the pins NAME_rear and NAME_front, and the slide NAME,
+        whose coordinate is the stroke. If a scene lists it in drives, outputs are
+        NAME_cap_pressure and NAME_rod_pressure [Pa], the lower of which is the back pressure;
+        NAME_flow [m^3/s], positive into the cap side; and NAME_power [W].
+
+    Raises
+    ------
+    DeclarationError
+        For impossible sizes, in space, and as for links and joints.
     """
     what, ownership = f"cylinder '{name}'", mechanism.own
     if mechanism.space:

@@ -45,7 +45,7 @@ _SAMPLED = 721
 class Groove:
     """Position of the roller, by the symbol ``angle`` of the drum [rad], in ground axes.
 
-    ``place`` is its centre, ``normal`` of length one along the contact's force, ``way`` the
+    ``place`` is its centre, ``normal`` of length one along the contact's force, ``travel`` the
     direction in which the follower moves the centre; ``axis`` is that of the drum through
     ``centre``. ``bend`` is the curvature of its path on the drum, in the plane across the roller
     [1/m], positive where it curves along the normal.
@@ -54,7 +54,7 @@ class Groove:
     angle: Any
     place: Vector
     normal: Vector
-    way: Vector
+    travel: Vector
     axis: Vector
     centre: Vector
     bend: Any
@@ -337,8 +337,8 @@ def _contact(
 
 def _lean(design: Groove) -> tuple[Expression, Expression]:
     """The cosine and the sine of the angle between the force and the way of the roller."""
-    across = cross(design.normal, design.way)
-    return dot(design.normal, design.way), ca.sqrt(ca.SX(dot(across, across)))
+    across = cross(design.normal, design.travel)
+    return dot(design.normal, design.travel), ca.sqrt(ca.SX(dot(across, across)))
 
 
 def _unit(vector: Vector) -> Vector:

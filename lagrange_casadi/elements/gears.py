@@ -31,7 +31,7 @@ from ..declare.mechanism import Mechanism
 from ..declare.meshes import Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
-from ..geometry.vectors import Vector, cross, dot, minus
+from ..geometry.vectors import cross, dot, minus, plus
 from .courses import Course, Numbers, along, courses_on, fits_of, length
 from .pitch import Pitch, Teeth, pitch_of
 from .ranges import LEAST, at_least, positive, share, whole, within
@@ -101,7 +101,7 @@ def gears(
         Of crossed axes in its place the friction coefficient of the teeth, which slide on each
         other.
     carrier
-        The body on which both turn; by default the one that joints tell.
+        The body on which both turn; by default it follows from the joints.
     offset
         The way that the first pitch circle is ahead where both coordinates are zero [m].
 
@@ -155,7 +155,7 @@ def gears(
         mesh = _mesh(mechanism, centre, point, *pair, pitch)
         meshes.append(replace(mesh, braking=braking_of(pitch)) if lossy else mesh)
         fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
-    directions = [course.way(mechanism) for course in found[0]]
+    directions = [course.displacement(mechanism) for course in found[0]]
     ahead = ownership.expression(f"{what}: offset", offset, "m")
     constraint = mechanism.constraint(
         name, toothing.radii[0] * directions[0] + pitches[0].other * directions[1] - ahead
@@ -235,20 +235,16 @@ def _mesh(
 ) -> Mesh:
     """Place where two gears touch; on a rack the place moves."""
     if two.slides:
-        direction = two.way(mechanism)
+        direction = two.displacement(mechanism)
         assert two.axis is not None
         gone = tuple(direction * x for x in two.axis)
         back = two.seen.resolve(
-            minus(minus(_sum(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2]))
+            minus(minus(plus(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2]))
         )
-        x, y, z = _sum(second.place, back)
+        x, y, z = plus(second.place, back)
         second = Point(second.body, x, y, z=z)
     wrenches = (Wrench(force, cross(pitch.arm, force)) for force in (pitch.force, pitch.apart))
     return Mesh(first, second, one.carrier, one.place, pitch.reach, *wrenches)
-
-
-def _sum(a: Vector, b: Vector) -> Vector:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 def _outputs(mechanism: Mechanism, name: str, constraint: Constraint, pitch: Pitch) -> None:
@@ -297,7 +293,9 @@ def loss_of(
             if isinstance(teeth.pressure, ca.SX)
             else math.cos(teeth.pressure)
         )
-        return Loss(f"{name}:loss", value * length(pitch.force) / cosine, 0.0, first.turns), fits
+        return Loss(
+            f"{name}:loss", value * length(pitch.force) / cosine, 0.0, first.rotations
+        ), fits
     value = ownership.expression(f"{what}: efficiency", efficiency)
     fits = share(what, value)
     q, radius = length(pitch.relative), teeth.radii[0]
@@ -309,11 +307,11 @@ def loss_of(
             what, "efficiency is too low for a gear in this ring", divisor, LEAST, value
         )
     ahead, back = slip * radius / driving, slip * radius / driven
-    return Loss(f"{name}:loss", (ahead + back) / 2, (back - ahead) / 2, first.turns), fits
+    return Loss(f"{name}:loss", (ahead + back) / 2, (back - ahead) / 2, first.rotations), fits
 
 
 def lost(mechanism: Mechanism, constraint: Constraint, loss: Loss, pitch: Pitch) -> Expression:
     """The power that one mesh takes."""
-    rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.turns), ca.SX(0))
+    rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.rotations), ca.SX(0))
     force = mechanism.results.multiplier(constraint)
     return length(pitch.relative) * (loss.arm * ca.fabs(force * rate) + loss.lean * force * rate)

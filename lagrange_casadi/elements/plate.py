@@ -36,7 +36,7 @@ class Plate:
         return self.corners[number]
 
     def at(self, x: Expression, y: Expression) -> Point:
-        """The place (x, y) in the axes in which the corners are told [m]."""
+        """The place (x, y) in the axes of the corners [m]."""
         return self.link.at(x, y)
 
 
@@ -49,16 +49,28 @@ def plate(
     mass: Expression | None = None,
     per_area: Expression | None = None,
 ) -> Plate:
-    """Declare a rigid plate in the plane, a polygon whose ``corners`` (x, y) [m] follow each other
-    round it, either way.
+    """Declare a rigid plate in a plane, a polygon of uniform thickness without sections.
 
-    They are in axes of the plate's own: the direction of the link ``name``, as in a posture, is
-    that of these axes. The plate is even: its ``mass`` [kg], or what it has ``per_area`` [kg/m^2],
-    thickness times density. All may be expressions of parameters. It has no sections; what is to
-    have some is a :func:`.bent_bar`.
+    Parameters
+    ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
+    corners
+        At least three corners (x, y) [m] in order around the plate, on its own axes, numbers or
+        expressions of parameters. The direction of the link ``name`` in a posture is that of
+        these axes.
+    mass, per_area
+        Either the mass [kg], or the mass per area [kg/m^2], thickness times density.
 
-    Raises :class:`.DeclarationError` for what is no polygon: fewer than three corners, edges that
-    cross, no area.
+    Returns
+    -------
+    Plate
+        The plate, with its corners as points. For sections use :func:`.bent_bar`.
+
+    Raises
+    ------
+    DeclarationError
+        For fewer than three corners, edges that cross, a polygon without area, and in space.
     """
     what = f"plate '{name}'"
     if mechanism.space:

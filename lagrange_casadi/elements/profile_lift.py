@@ -48,14 +48,25 @@ class ProfileLift:
 
 @public
 def read_profile(path: str | os.PathLike[str]) -> Array:
-    """The points of a profile from a CSV file, (n, 2) [m], of its columns ``x`` and ``y``, beside
-    others.
+    """Read the points of a cam profile from a CSV file.
 
-    They are in m; other units stand with the column, as ``x [mm]``: m, mm, um.
-    :meth:`.CamProfile.save_csv` writes such a file.
+    Parameters
+    ----------
+    path
+        File with columns ``x`` and ``y``, in m or with a unit as ``x [mm]`` (m, mm, um); other
+        columns are ignored. :meth:`.CamProfile.save_csv` writes such a file.
 
-    Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for
-    columns that are missing, and for a line that has no numbers there.
+    Returns
+    -------
+    ndarray
+        Points (n, 2) [m].
+
+    Raises
+    ------
+    PathError
+        For a file that cannot be read.
+    DeclarationError
+        For missing columns, and for a line without numbers in them.
     """
     rows = read_rows(path, "the columns x and y")
     first = next(rows)
@@ -98,22 +109,36 @@ def profile_lift(
     side: int = 1,
     smoothing: float = 0.0,
 ) -> ProfileLift:
-    """The lift of a follower on a profile: what :func:`.disc_cam` takes, with the same joints and
-    the same follower.
+    """Return the lift of a follower on a given cam profile, for :func:`.disc_cam`.
 
-    ``points`` (n, 2) [m] go once round the profile, either way, seen from the cam's shaft in the
-    cam's own axes; or they are the path of a file that :func:`read_profile` reads. ``cam``,
-    ``follower``, ``point``, ``roller``, ``flat`` and ``side`` are those of :func:`.disc_cam`;
-    dimensions are taken at the default parameters. ``smoothing`` is the noise of the lift, in the
-    root mean square [m or rad], where points were measured: accelerations are second derivatives,
-    and magnify noise.
+    Parameters
+    ----------
+    mechanism, cam, follower
+        The mechanism, and the joints of cam and follower, as for :func:`.disc_cam`. Dimensions
+        are taken at the default parameters.
+    points
+        Points (n, 2) [m] once around the profile, in either sense, in the cam's own axes about
+        its shaft; or the path of a file for :func:`read_profile`.
+    point, roller, flat, side
+        As for :func:`.disc_cam`.
+    smoothing
+        Root mean square noise of the lift [m or rad] for measured points: accelerations are
+        second derivatives and magnify noise.
 
-    Normals are those of a cubic spline through the points, periodic, along its chords: the lift's
-    error goes as the fourth power of the distance of points where the profile is smooth.
+    Returns
+    -------
+    ProfileLift
+        The lift as a function of the cam's angle. Normals are those of a periodic cubic spline
+        through the points; the error of the lift falls with the fourth power of their distance if
+        the profile is smooth.
 
-    Raises :class:`.DeclarationError` for points that are no profile, a follower that cannot touch
-    all of it, as a roller that is larger than a hollow, and as :func:`.disc_cam` and :func:`.curve`
-    do; :class:`.PathError` for a file that cannot be read.
+    Raises
+    ------
+    DeclarationError
+        For points that are no profile, a follower that cannot touch all of it, for example a
+        roller that is larger than a hollow, and as for :func:`.disc_cam` and :func:`.curve`.
+    PathError
+        For a file that cannot be read.
     """
     what = "profile"
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)

@@ -225,7 +225,7 @@ def _triad(mechanism: Mechanism, what: str, axis: Vector | None) -> Triad:
     return (x, y, 0.0), (-y, x, 0.0), (0.0, 0.0, 1.0)
 
 
-def _angle(mechanism: Mechanism, way: Vector) -> float:
+def _angle(mechanism: Mechanism, direction: Vector) -> float:
     """Angle of a direction in a plane [rad], with the defaults of parameters."""
-    x, y = (mechanism.own.at_defaults(component) for component in way[:2])
+    x, y = (mechanism.own.at_defaults(component) for component in direction[:2])
     return math.atan2(y, x)

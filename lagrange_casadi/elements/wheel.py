@@ -31,20 +31,33 @@ def wheel(
     internal: bool = False,
     turned: float | str = 0.0,
 ) -> Link:
-    """Declare a round disc about its base, and return it as a link: a gear by its pitch radius, a
-    pulley, a flywheel.
+    """Declare a round disc about its base: a gear by its pitch radius, a pulley, a flywheel.
 
-    ``radius`` and ``bore`` are its outer and inner radius [m]; a ring has a large bore. Its
-    ``mass`` [kg] is told, or follows from its ``width`` [m] and its ``density`` [kg/m^3], steel's
-    by default. In space it lies in the plane of its y and z axes, the middle of its width at the
-    base. It has no sections: what is to have some is a shaft that it is welded on, or a link of its
-    own.
+    Parameters
+    ----------
+    mechanism, name
+        The mechanism, and the name of the new part.
+    radius, bore
+        Outer and inner radius [m]; a ring has a large bore.
+    width, mass, density
+        Either the ``mass`` [kg], or the ``width`` [m] and the ``density`` [kg/m^3], by default
+        that of steel.
+    teeth, internal
+        Number of teeth that drawings show, on the radius, or on the bore if ``internal``; these
+        are then the radii of pitch circles.
+    turned
+        Angle of the first tooth [rad], or a text such as ``"5 deg"``.
 
-    In the plane it is drawn round, or with a number of ``teeth``, the first at the angle ``turned``
-    [rad]: on its radius, or where ``internal`` on its bore, which are those of the pitch circle
-    then.
+    Returns
+    -------
+    Link
+        The disc. In space it lies in the plane of its y and z axes, the middle of its width at
+        the base. It has no sections: weld it on a shaft that has.
 
-    Raises :class:`.DeclarationError` for sizes that cannot be.
+    Raises
+    ------
+    DeclarationError
+        For impossible sizes.
     """
     what, ownership = f"wheel '{name}'", mechanism.own
     if (mass is None) == (width is None):
@@ -72,23 +85,18 @@ def wheel(
         )
     link = mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0), inertia=polar)
     teeth = None if teeth is None else count(f"{what}: teeth", teeth)
-    edges = [
+    outside, hole = (
         _edge(size, teeth if inward == internal else None, turned, inward=inward)
         for size, inward in ((outer, False), (inner, True))
-    ]
-    link = replace(link, outline=_outline(*edges))
+    )
+    # Along a line inward, round the hole, and back.
+    round_hole = [outside[0], hole[0], *reversed(hole)] if hole else []
+    link = replace(link, outline=(*outside, *round_hole))
     mechanism.bodies[name] = link
     return link
 
 
 _Corners = list[tuple[Expression, Expression]]
-
-
-def _outline(outer: _Corners, inner: _Corners) -> tuple[tuple[Expression, Expression], ...]:
-    """The outer edge, and the inner one where there is one: along a
-    line inward, round, and back.
-    """
-    return (*outer, *([outer[0], inner[0], *reversed(inner)] if inner else ()))
 
 
 def _edge(radius: Expression, teeth: int | None, turned: float, *, inward: bool) -> _Corners:

@@ -58,7 +58,7 @@ def assemble(
     carried = coordinates_of(mechanism, tree, driven, {*measured, *pushed})
     upward = times(-1, mechanism.gravity)
     weighed = (
-        Carried(acceleration=upward, own=Frame(acceleration=upward))
+        Carried(acceleration=upward, carried=Frame(acceleration=upward))
         if mechanism.space
         else Frame(acceleration=upward)
     )
@@ -102,7 +102,7 @@ def assemble(
         loops.append(
             equations
             if smooth is None
-            else replace(equations, seen=resting.counted(ca.vertcat(*smooth.symbols)))
+            else replace(equations, counted=resting.counted(ca.vertcat(*smooth.symbols)))
         )
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in applied_by(load, resting))
@@ -138,14 +138,14 @@ def assemble(
     kinetic = sum(energies, ca.SX(0))
     work(accelerated, (*applied, *held), loops, velocities)
     # Where a joint with three turns closes a loop, its angles are not measured.
-    open_ = [joint for joint in tree.closing if joint.turns > 2] + [
+    unmeasured = [joint for joint in tree.closing if joint.turns > 2] + [
         joint for two_force_link in tree.two_force_links for joint in two_force_link.joints
     ]
     sphericals = [c.name for c in resting.coordinates if c.spherical is not None]
     outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in user_outputs}
     efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
     for name, effort in efforts.items():
-        _refuse_unmeasured(name, *mechanism.coordinates[name], tree, open_)
+        _refuse_unmeasured(name, *mechanism.coordinates[name], tree, unmeasured)
         push(accelerated, *mechanism.coordinates[name], effort, velocities)
     return Multibody(
         mechanism=mechanism,
@@ -163,10 +163,10 @@ def assemble(
         along={
             name: resting.along(joint, axis)
             for name, (joint, axis) in mechanism.coordinates.items()
-            if joint not in open_ and name not in sphericals
+            if joint not in unmeasured and name not in sphericals
         },
         axes=resting.turning,
-        own=outputs,
+        user_outputs=outputs,
         turned=tuple(resting.turned.values()),
         kinetic=kinetic,
         velocities=velocities,

@@ -401,16 +401,16 @@ def user_outputs(
     asked = [
         asked
         for asked in mechanism.asked
-        if any(asked in mechanism.outputs[name].made_of for name in body.own)
+        if any(asked in mechanism.outputs[name].made_of for name in body.user_outputs)
     ]
     values = column(_value(mechanism.links, one, found, table_of(mechanism.space)) for one in asked)
     symbols = column(one.symbol for one in asked)
-    placed = solved.evaluate(column(body.own.values()))
+    placed = solved.evaluate(column(body.user_outputs.values()))
     return {
         Output("output", name): value
         for name, value in zip(
-            body.own,
-            ca.vertsplit(ca.substitute(placed, symbols, values)) if body.own else (),
+            body.user_outputs,
+            ca.vertsplit(ca.substitute(placed, symbols, values)) if body.user_outputs else (),
             strict=True,
         )
     }

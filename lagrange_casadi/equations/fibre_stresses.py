@@ -224,7 +224,7 @@ class FibreStresses:
         """Return the members that say where something acts, not how much."""
         return [k for k, member in enumerate(self.members) if _is_place(member)]
 
-    def stands(self, members: Array) -> npt.NDArray[np.bool_]:
+    def is_still(self, members: Array) -> npt.NDArray[np.bool_]:
         """Return the designs, whose members are (n, members, t), of which all loads stand still."""
         return np.asarray((np.ptp(members[:, self.places], axis=2) <= _NEAR).all(axis=1))
 

@@ -119,7 +119,7 @@ class _Pressed:
         """R for values of all frictions, None where they count as zero."""
         return [_sum(row, values, start) for row, start in zip(self.slopes, self.free, strict=True)]
 
-    def seen(self, k: int) -> Expression:
+    def dependence(self, k: int) -> Expression:
         """Largest dependence on a friction; None if there is none."""
         column_ = [row[k] for row in self.slopes if row[k] is not None]
         lean = self.contact.lean
@@ -223,7 +223,7 @@ class _Law:
         """Return whether it depends on a friction: never if the joint does not move at all, for
         then the friction is indeterminate.
         """
-        return not self.still and any(part.seen(k) is not None for part in self.pressed)
+        return not self.still and any(part.dependence(k) is not None for part in self.pressed)
 
 
 def _way(
@@ -270,7 +270,7 @@ def _bend(law: _Law, laws: Sequence[_Law]) -> Expression:
         for k, other in enumerate(laws)
         if other is not law and other.rest is not None
         for part in law.pressed
-        if (size := part.seen(k)) is not None
+        if (size := part.dependence(k)) is not None
     ]
     sliding = ca.fabs(law.sigma) * (1 if law.rest is None else 1 - law.rest)
     return sliding * sum(measured, ca.SX(0)) if measured else None
@@ -328,7 +328,7 @@ def _doubted(
                     law.mu * measured * changes[k]
                     for part in law.pressed
                     for k in range(len(laws))
-                    if (measured := part.seen(k)) is not None
+                    if (measured := part.dependence(k)) is not None
                 ),
                 ca.SX(0),
             )
@@ -343,7 +343,7 @@ def _least_pivot(laws: Sequence[_Law], block: Sequence[int]) -> Expression:
     for j, law in zip(block, laws, strict=True):
         row: list[Any] = []
         for k in block:
-            sizes = [size for part in law.pressed if (size := part.seen(k)) is not None]
+            sizes = [size for part in law.pressed if (size := part.dependence(k)) is not None]
             entry = None if not sizes else -law.mu * sum(sizes[1:], sizes[0])
             row.append(entry if j != k else 1 if entry is None else 1 + entry)
         matrix.append(row)

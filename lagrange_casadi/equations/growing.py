@@ -66,7 +66,7 @@ class Grown:
                 along
                 and branch.far.body.oriented
                 and isinstance(frame, Carried)
-                and frame.shortest is frame.own
+                and frame.shortest is frame.carried
             ):
                 frame = frame.displaced_along(translation, turning)
                 self.own_axes.add(joint.name)
@@ -90,15 +90,15 @@ class Grown:
         """An expression of what the user measures in the tree's own variables, angles counted by
         turns.
         """
-        return self._measured(expression, turns=True)
+        return self._measured(expression, counted=True)
 
     def at_state(self, expression: Expression) -> ca.SX:
         """Expression with rates; angles that are not driven are symbols of their own, for
         :mod:`.turns`.
         """
-        return self._measured(expression, turns=False)
+        return self._measured(expression, counted=False)
 
-    def _measured(self, expression: Expression, *, turns: bool) -> ca.SX:
+    def _measured(self, expression: Expression, *, counted: bool) -> ca.SX:
         symbols: list[Any] = []
         values: list[Any] = []
         for measure in self.mechanism.measures.asked:
@@ -113,12 +113,12 @@ class Grown:
                 assert measure.axis is not None
                 local = own_coordinate(measure.axis, self.coordinates)
                 known = (
-                    turns or measure.axis.kind == "slide" or (local is not None and local.driven)
+                    counted or measure.axis.kind == "slide" or (local is not None and local.driven)
                 )
                 place = (
                     place_along(of, measure.axis, self.frames, self.coordinates)
                     if known
-                    else self._seen(of, measure.axis)
+                    else self._counted_angle(of, measure.axis)
                 )
                 values += [place, *rates_along(of, measure.axis, self.frames, self.coordinates)]
             elif isinstance(of, Point):
@@ -128,13 +128,13 @@ class Grown:
             else:
                 frame = self.frames[of.name]
                 values += [
-                    frame.rotation.angle if turns else self._seen(of),
+                    frame.rotation.angle if counted else self._counted_angle(of),
                     frame.rate[2],
                     frame.angular[2],
                 ]
         return ca.substitute(ca.SX(expression), column(symbols), column(values))
 
-    def _seen(self, of: Joint | Link, axis: Axis | None = None) -> Expression:
+    def _counted_angle(self, of: Joint | Link, axis: Axis | None = None) -> Expression:
         """The symbol of an angle."""
         name = of.name if axis is None else axis.coordinate
         if name not in self.turned:
@@ -197,7 +197,7 @@ class Grown:
         return Carried(
             *motion,
             replace(local, anchor=anchor),
-            base.turns + sum(coordinate.kind != "slide" for coordinate in coordinates),
+            base.rotations + sum(coordinate.kind != "slide" for coordinate in coordinates),
         )
 
     def _turn(
@@ -403,9 +403,9 @@ def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Fr
     each turned from the last.
     """
     slides = _slides(coordinates)
-    speed, acceleration = base.own.motion_of(_ends(branch, slides)[0])
+    speed, acceleration = base.carried.motion_of(_ends(branch, slides)[0])
     motion = Frame(
-        speed=speed, acceleration=acceleration, rate=base.own.rate, angular=base.own.angular
+        speed=speed, acceleration=acceleration, rate=base.carried.rate, angular=base.carried.angular
     )
     if not branch.far.body.oriented:
         for direction, coordinate in slides:

@@ -54,8 +54,8 @@ class Course:
         """
         generator, size = np.random.default_rng(1), self.coordinates.numel()
         # A few ways to move tell as much as every rate by itself.
-        ways = ca.DM(generator.normal(size=(self.rates.numel(), _WAYS)))
-        moved = ca.densify(ca.jtimes(ca.SX(self.coordinate_rates), self.rates, ways))
+        directions = ca.DM(generator.normal(size=(self.rates.numel(), _WAYS)))
+        moved = ca.densify(ca.jtimes(ca.SX(self.coordinate_rates), self.rates, directions))
         others = _others(moved, self.coordinates)
         at = generator.uniform(0.2, 2.0, size)
         speeds = ca.Function("moved", [self.coordinates, others], [moved])(

@@ -26,7 +26,7 @@ from .iteration import Iterated, NewtonLoop, place_roughly
 from .linear import LinearSystem
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody, column
-from .postures import Undecided, directions, measured, turns
+from .postures import Undecided, directions, is_angle, measured
 from .residuals import loop_residual, reach, redundancy_residual
 from .spherical import SphericalCoordinates
 from .substitution import Expressions, Numbers
@@ -103,10 +103,10 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
         except AssemblyError:
             # A loop whose way is open may have to be closed in the other one: the last such loop
             # first.
-            open_ = solver.undecided.ways[len(solver.ways) :]
-            for k, (_, modes) in enumerate(open_):
+            undecided = solver.undecided.closures[len(solver.branches) :]
+            for k, (_, modes) in enumerate(undecided):
                 waiting += [
-                    (*solver.ways, *(0,) * k, other) for other in reversed(range(1, len(modes)))
+                    (*solver.branches, *(0,) * k, other) for other in reversed(range(1, len(modes)))
                 ]
             if not waiting or tried == _WAYS - 1:
                 raise
@@ -126,9 +126,9 @@ class _Solver:
         multibody: Multibody,
         posture: dict[str, float],
         start: Start,
-        ways: tuple[int, ...] = (),
+        branches: tuple[int, ...] = (),
     ) -> None:
-        self.ways = ways
+        self.branches = branches
         self.multibody = multibody
         self.posture = posture
         self.start = start
@@ -214,15 +214,14 @@ class _Solver:
             closure = self.found.put_into(closure)
         for coordinate, value in zip(form.unknown, variables, strict=True):
             if coordinate.axis.move == "screw" and form.branches:
-                value, deviation = wound_angles(coordinate, value, self._counting(), self.numbers)
+                counting = [
+                    c for c in self.known if c.kind == "angle" and c.name not in self.wrapped
+                ]
+                value, deviation = wound_angles(coordinate, value, counting, self.numbers)
                 self.deviations[coordinate.name] = self.found.put_into(deviation)
             self.numbers.note(coordinate.variables, self.numbers.of(value))
             self._know(coordinate, self.found.put_into(value))
         return closure
-
-    def _counting(self) -> list[Coordinate]:
-        """The coordinates known so far whose angles count turns."""
-        return [c for c in self.known if c.kind == "angle" and c.name not in self.wrapped]
 
     def _note_closure(self, block: Block, closure: ca.SX) -> None:
         """Note how far a block is from a dead centre: of blocks that one joint closes, the one that
@@ -273,8 +272,8 @@ class _Solver:
                 )
             )
             # Taken for now, so that the loops after it are looked at too.
-            number = len(self.undecided.ways)
-            first = self.ways[number] if number < len(self.ways) else 0
+            number = len(self.undecided.closures)
+            first = self.branches[number] if number < len(self.branches) else 0
             near = near[first:] + near[:first]
             modes = [
                 {
@@ -302,7 +301,7 @@ class _Solver:
                 residual = self.numbers.of(place)[0] - self.posture[name]
                 total += (
                     abs(math.remainder(residual, 2.0 * math.pi))
-                    if turns(self.multibody, name)
+                    if is_angle(self.multibody, name)
                     else abs(residual) / size
                 )
         return total
@@ -327,7 +326,7 @@ class _Solver:
         if angles and (
             needed
             or any(
-                n not in self.multibody.frames and turns(self.multibody, n) for n in self.posture
+                n not in self.multibody.frames and is_angle(self.multibody, n) for n in self.posture
             )
         ):
             rough = directions(self.multibody, self.posture, self.numbers, self.known)

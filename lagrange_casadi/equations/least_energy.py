@@ -18,7 +18,6 @@ Schmidt's method makes their strains orthogonal, one way after another, at every
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -69,7 +68,7 @@ def feeling(mechanism: Mechanism, want: Wanted) -> Wanted:
 @dataclass(frozen=True, eq=False)
 class LeastEnergy:
     """Statically indeterminate forces as ``x + ways y``: ``x`` is the solution of least energy,
-    ``y`` what remains indeterminate; columns of ``ways`` of determined forces are zero.
+    ``y`` what remains indeterminate; columns of ``responses`` of determined forces are zero.
 
     For each link without stiffness ``firm`` is the reason, and ``through`` is true if an
     indeterminate force loads it. ``idle`` is true if an indeterminate force loads no link, and
@@ -79,7 +78,7 @@ class LeastEnergy:
     """
 
     x: Any
-    ways: Any
+    responses: Any
     firm: Mapping[str, str]
     through: Any
     idle: Any
@@ -91,7 +90,9 @@ class LeastEnergy:
         what is chosen in its place.
         """
         still = ca.SX.sym("still", free.numel())
-        whole = ca.substitute(column(map(ca.SX, acting.values())), free, self.x + self.ways @ still)
+        whole = ca.substitute(
+            column(map(ca.SX, acting.values())), free, self.x + self.responses @ still
+        )
         found = Forces.over(dict(zip(acting, ca.vertsplit(whole), strict=True)), still)
         return replace(found, before=Forces.over(acting, free).open)
 
@@ -154,18 +155,6 @@ class Completion:
         found += [why for _, why in loaded if why != _NO_BEAM]
         return (*found, "some do not deform any link") if idle else tuple(found)
 
-    def dumps(self) -> str:
-        """Write it as text."""
-        return json.dumps(
-            [list(map(str, self.doubted)), dict(self.firm), self.function.serialize()]
-        )
-
-    @classmethod
-    def loads(cls, text: str) -> Completion:
-        """Read the text that :meth:`dumps` wrote."""
-        doubted, firm, function = json.loads(text)
-        return cls(tuple(map(Output.of, doubted)), firm, ca.Function.deserialize(function))
-
 
 def least_energy(
     mechanism: Mechanism, elastic: Elastic, columns: Mapping[Column, Expression], free: Expression
@@ -199,11 +188,13 @@ def least_energy(
 
     strained, bent, weights = _strains(beams, free)
     bending = ca.vertcat(ca.SX(0, free.numel()), *(loaded[name] for name in soft))
-    chosen = _apart([(mode.way, 1 - mode.does) for mode in apart], bent, weights, bending, least)
+    chosen = _apart(
+        [(mode.response, 1 - mode.does) for mode in apart], bent, weights, bending, least
+    )
     x, residual = ca.SX.zeros(free.numel()), strained
     for mode in chosen:
         share = ca.dot(mode.weighed, residual) * mode.inverse
-        x, residual = x - share * mode.way, residual - share * mode.made
+        x, residual = x - share * mode.response, residual - share * mode.made
 
     idle = sum(
         (1 - stiffened.does) * (1 - mode.does)
@@ -211,7 +202,7 @@ def least_energy(
     )
     return LeastEnergy(
         x=x,
-        ways=ca.horzcat(
+        responses=ca.horzcat(
             *((1 - mode.does) * _relaxed(mode, chosen[k + 1 :]) for k, mode in enumerate(chosen))
         ),
         firm=firm,
@@ -223,14 +214,14 @@ def least_energy(
 
 
 @dataclass(frozen=True, eq=False)
-class _Way:
+class _Response:
     """A way in which what is open may change, and what it ``made`` of rows, times their weights
     ``weighed``.
 
     ``does`` tells whether it did anything, and ``inverse`` is one over the sum of squares, or zero.
     """
 
-    way: Any
+    response: Any
     made: Any
     weighed: Any
     does: Any
@@ -238,35 +229,36 @@ class _Way:
 
 
 def _apart(
-    ways: Iterable[tuple[Expression, Expression]],
+    responses: Iterable[tuple[Expression, Expression]],
     rows: Expression,
     weights: Expression,
     measure: ca.SX,
     least: Expression,
-) -> list[_Way]:
+) -> list[_Response]:
     """Make what ``rows`` make of ways orthogonal, each to those before it that did something.
 
     A way comes with whether it may. It does something if ``measure`` makes more of it than
     ``least``, a square.
     """
-    found: list[_Way] = []
-    for mode, may in ways:
+    found: list[_Response] = []
+    for mode, may in responses:
         made = rows @ mode
         for before in found:
             share = ca.dot(before.weighed, made) * before.inverse
-            mode, made = mode - share * before.way, made - share * before.made
+            mode, made = mode - share * before.response, made - share * before.made
         does = may * (ca.sumsqr(measure @ mode) > least) if measure.numel() else ca.SX(0)
         weighed = weights * made
         found.append(
-            _Way(mode, made, weighed, does, does / ca.if_else(does, ca.dot(weighed, made), 1))
+            _Response(mode, made, weighed, does, does / ca.if_else(does, ca.dot(weighed, made), 1))
         )
     return found
 
 
-def _relaxed(mode: _Way, later: Sequence[_Way]) -> Expression:
+def _relaxed(mode: _Response, later: Sequence[_Response]) -> Expression:
     """A way, with what is chosen along later ones when it changes."""
-    return mode.way - sum(
-        (ca.dot(other.weighed, mode.made) * other.inverse * other.way for other in later), ca.SX(0)
+    return mode.response - sum(
+        (ca.dot(other.weighed, mode.made) * other.inverse * other.response for other in later),
+        ca.SX(0),
     )
 
 
@@ -297,7 +289,7 @@ def _strains(
 
 
 def _residual(
-    chosen: Sequence[_Way],
+    chosen: Sequence[_Response],
     x: Expression,
     strained: Expression,
     bent: Expression,
@@ -308,7 +300,7 @@ def _residual(
     size = ca.fmax(ca.dot(weights * whole, whole), ca.dot(weights * strained, strained))
     found = ca.SX(0)
     for mode in chosen:
-        made = bent @ mode.way
+        made = bent @ mode.response
         product = ca.dot(weights * made, made) * size
         found = ca.fmax(
             found,

@@ -61,7 +61,7 @@ def pressing_apart(transmission: Transmission, multiplier: Expression) -> Fricti
 def braking(multibody: Multibody, loss: Loss, multiplier: Expression) -> FrictionContact:
     """Friction loss of a transmission, by its multiplier."""
     rate, acceleration = ca.SX(0), ca.SX(0)
-    for sign, joint in loss.turns:
+    for sign, joint in loss.rotations:
         one, change = rates_along(joint, joint.axes[0], multibody.frames, multibody.coordinates)
         rate, acceleration = rate + sign * one, acceleration + sign * change
     contact = Contact(loss.arm, (multiplier,), loss.lean)

@@ -143,7 +143,7 @@ def internal_forces(
             for member in members
         }
         if multibody.mechanism.space:
-            columns |= _on_joint_axes(joints[name], found[name].own)
+            columns |= _on_joint_axes(joints[name], found[name].local)
     tying = {c.name: c.multipliers for c in multibody.loop_equations if c.declared}
     tying |= {program.row.name: program.multiplier for program in multibody.rows}
     columns |= {Output("multiplier", name): tying[name] for name in want.multipliers}
@@ -204,7 +204,7 @@ class Action:
     def __add__(self, other: Action) -> Action:
         return Action(plus(self.force, other.force), plus(self.couple, other.couple))
 
-    def seen(self, rotation: Rotation) -> Action:
+    def resolved(self, rotation: Rotation) -> Action:
         """Reaction in turned axes."""
         return Action(rotation.resolve(self.force), rotation.resolve(self.couple))
 
@@ -217,7 +217,7 @@ class Reaction:
     """Force and moment of a joint's parent on its child: in ground axes, and in the parent's."""
 
     ground: Action
-    own: Action
+    local: Action
 
 
 def _section_law(
@@ -236,7 +236,9 @@ def _section_law(
         if place[0] is None:
             tip += acting
             continue
-        members = (*_by_plane(acting, space), place[0] / link.length)
+        force, couple = acting.force, acting.couple
+        acts = (*force, *couple) if space else (*force[:2], couple[2])
+        members = (*acts, place[0] / link.length)
         load_points |= {
             Output("station", name, member, source): value
             for member, value in zip(load_point_members(space), members, strict=True)
@@ -266,11 +268,6 @@ def _section_law(
         | distributed_loads(multibody, link)
         | rotary(multibody, link, frame.rate, frame.angular)
     )
-
-
-def _by_plane(acting: Action, space: bool) -> tuple[Expression, ...]:
-    """The numbers of a station: what acts along and across the link's axis, and about it."""
-    return (*acting.force, *acting.couple) if space else (*acting.force[:2], acting.couple[2])
 
 
 def _between_pins(multibody: Multibody, link: Link, drives: Expression) -> bool:
@@ -351,7 +348,7 @@ def _loads_on(
                 continue
             # The parent's axes are as near as the joint; another way leads by the ground's.
             local = multibody.mechanism.space and point is joint.parent
-            action = found[joint.name].own if local else found[joint.name].ground
+            action = found[joint.name].local if local else found[joint.name].ground
             for axis in joint.axes:
                 if axis.coordinate in drives:
                     along = multibody.along[axis.coordinate]
@@ -370,7 +367,7 @@ def _loads_on(
             else:
                 x = at_end(point)
             action = action if sign > 0 else -action
-            yield joint.name, (x, y, z), action if local else action.seen(rotation)
+            yield joint.name, (x, y, z), action if local else action.resolved(rotation)
     counts: dict[str, int] = {}
     m = multibody.mechanism
     acting = {*m.joints, *m.loads, *m.constraints, *m.rows}
@@ -382,7 +379,11 @@ def _loads_on(
                 counts[part.source] += 1
                 name = f"{part.source}_{counts[part.source]}"
             counts[part.source] = max(counts[part.source], 1)
-            yield name, (x, *part.point.place[1:]), Action(part.force, part.couple).seen(rotation)
+            yield (
+                name,
+                (x, *part.point.place[1:]),
+                Action(part.force, part.couple).resolved(rotation),
+            )
 
 
 def _at_base(point: Point) -> bool:
@@ -397,9 +398,9 @@ def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Expressi
     rotation = multibody.frames[joint.parent.body.name].rotation
     if joint.name in multibody.own_axes:
         local = _on_parent(multibody, joint, actions)
-        return Reaction(local.seen(rotation.inverse), local)
+        return Reaction(local.resolved(rotation.inverse), local)
     ground = _in_ground_axes(multibody, joint, actions)
-    return Reaction(ground, ground.seen(rotation))
+    return Reaction(ground, ground.resolved(rotation))
 
 
 def _in_ground_axes(

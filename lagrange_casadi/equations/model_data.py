@@ -5,15 +5,14 @@ parameters.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Expression, Json
+from ..base.arrays import Array, Expression
 from ..base.quantities import Kinds, Output
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
@@ -44,8 +43,6 @@ from .fibre_stresses import FibreStresses, numbers_of
 from .residuals import extent
 from .section_function import Section
 from .tree import span
-
-_Value = TypeVar("_Value")
 
 
 def materials_of(description: Description) -> dict[str, Material]:
@@ -268,53 +265,9 @@ class ModelData(Graphs):
         kinds = (
             ("joint", content["joints"]),
             ("path", content.get("paths", ())),
-            ("bar", content["bodies"]),
+            ("two-force link", content["bodies"]),
         )
         return f"{next((kind for kind, parts in kinds if part in parts), 'constraint')} '{part}'"
-
-    def words(self) -> dict[str, Json]:
-        """The data for JSON; functions as the text in which CasADi writes them."""
-        return {name: write(getattr(self, name)) for name, (write, _) in _WRITTEN.items()}
-
-    @classmethod
-    def loads(cls, words: Mapping[str, Any]) -> ModelData:
-        """Read the data that :meth:`words` made."""
-        return cls(**{name: read(words[name]) for name, (_, read) in _WRITTEN.items()})
-
-
-def _as_it_is(value: _Value) -> _Value:
-    return value
-
-
-def _parameters(words: Mapping[str, tuple[float, str, float, float]]) -> dict[str, Parameter]:
-    known = words.items()
-    return {
-        name: Parameter(name, default, unit, low, high, ca.SX.sym(name))
-        for name, (default, unit, low, high) in known
-    }
-
-
-_FUNCTION = ca.Function.serialize, ca.Function.deserialize
-_WRITTEN: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
-    "rounding": (_as_it_is, _as_it_is),
-    **dict.fromkeys(("span", "partial"), (_as_it_is, tuple)),
-    **dict.fromkeys(("extent", "masses"), _FUNCTION),
-    "parameters": (
-        lambda own: {name: [p.default, p.unit, p.low, p.high] for name, p in own.items()},
-        _parameters,
-    ),
-    "laws": (Laws.words, Laws.loads),
-    "timing": (asdict, lambda words: Timing(**words)),
-    "margins": (
-        lambda own: {precision: margins.words() for precision, margins in own.items()},
-        lambda words: {precision: Margins.loads(margins) for precision, margins in words.items()},
-    ),
-    "corners": (Corners.words, Corners.loads),
-    "jumps": (_as_it_is, lambda words: {name: tuple(jumps) for name, jumps in words.items()}),
-    "stated": (Stated.words, Stated.loads),
-    "template": (Template.dumps, Template.loads),
-}
-"""Writers and readers of each field for JSON."""
 
 
 def _rounding(scene: Scene) -> float:

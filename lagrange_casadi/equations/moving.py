@@ -120,9 +120,9 @@ class Moving:
         body, solved = self.body, self.solved
         columns = _beyond(body, _seeing(body, self.want))
         measured = (
-            (loop.name, ca.vertsplit(loop.seen))
+            (loop.name, ca.vertsplit(loop.counted))
             for loop in body.loop_equations
-            if loop.seen is not None
+            if loop.counted is not None
         )
         columns |= {
             Check("seen", f"{name}:{k}"): value
@@ -185,7 +185,7 @@ class Moving:
             for check, value in whole.items()
             if any(check in revolutions for revolutions in loop_angles.values())
         }
-        return columns | dict(motions.items()) | _untold(body, motions), loop_angles
+        return columns | dict(motions.items()) | _unmeasured_angles(body, motions), loop_angles
 
 
 def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:
@@ -197,7 +197,7 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:
         f"row '{program.row.name}'": ca.vertcat(program.residual, program.size)
         for program in body.rows
     }
-    found |= {f"output '{name}'": expression for name, expression in body.own.items()}
+    found |= {f"output '{name}'": expression for name, expression in body.user_outputs.items()}
     for part in parts:
         kind = (
             "load"
@@ -265,7 +265,7 @@ def _rolls(body: Multibody, want: Wanted) -> dict[Column, Expression]:
     return found
 
 
-def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Expression]:
+def _unmeasured_angles(body: Multibody, motions: Collection[Output]) -> dict[Column, Expression]:
     """Check of the turns of spherical joints, which are ``open`` in gimbal lock; the second angle
     is defined there.
     """

@@ -111,8 +111,8 @@ class LoopEquations:
     symbols of their multipliers.
 
     ``residual`` is Phi, followed by its total time derivatives. ``joint`` is None for a
-    ``two_force_link``, which has a length, and for a user's constraint. ``seen`` are the quantities
-    that a constraint with kinks depends on.
+    ``two_force_link``, which has a length, and for a user's constraint. ``counted`` are the
+    quantities that a constraint with kinks depends on.
     """
 
     name: str
@@ -122,12 +122,12 @@ class LoopEquations:
     residual_acceleration: Any
     multipliers: Any
     two_force_link: TwoForceLink | None = None
-    seen: Any = None
+    counted: Any = None
 
     @property
     def kind(self) -> str:
         """Kind of the part, in a word."""
-        return "joint" if self.joint else "bar" if self.two_force_link else "constraint"
+        return "joint" if self.joint else "two-force link" if self.two_force_link else "constraint"
 
     @property
     def declared(self) -> bool:
@@ -200,8 +200,8 @@ class Multibody:
     their accelerations are less that of gravity, as matter feels them. ``efforts`` are the symbols
     of efforts along other coordinates than those whose motion is given, and ``along`` what a unit
     of effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the
-    directions in ground axes about which turns relative to a body turn, by coordinate; ``own`` are
-    the user's outputs, in symbols of results too.
+    directions in ground axes about which turns relative to a body turn, by coordinate;
+    ``user_outputs`` are the user's outputs, in symbols of results too.
     """
 
     mechanism: Mechanism
@@ -219,7 +219,7 @@ class Multibody:
     efforts: dict[str, Any]
     along: dict[str, Vector]
     axes: dict[str, Vector]
-    own: dict[str, Any]
+    user_outputs: dict[str, Any]
     kinetic: Any
     velocities: Velocities
 

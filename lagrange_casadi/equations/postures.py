@@ -19,7 +19,7 @@ from .multibody import Coordinate, Multibody, own_coordinate, place_along
 from .substitution import Numbers
 
 
-def turns(multibody: Multibody, name: str) -> bool:
+def is_angle(multibody: Multibody, name: str) -> bool:
     """Return whether a name of a posture is an angle."""
     return name in multibody.frames or multibody.mechanism.coordinates[name][1].kind == "angle"
 
@@ -87,12 +87,12 @@ class Undecided:
     that iterated loops need.
     """
 
-    ways: list[tuple[str, tuple[Mapping[str, float], ...]]] = field(default_factory=list)
+    closures: list[tuple[str, tuple[Mapping[str, float], ...]]] = field(default_factory=list)
     lacking: list[tuple[str, list[tuple[str, bool]]]] = field(default_factory=list)
     words: list[str] = field(default_factory=list)
 
     def __bool__(self) -> bool:
-        return bool(self.ways or self.lacking)
+        return bool(self.closures or self.lacking)
 
     def note_ways(
         self,
@@ -120,7 +120,7 @@ class Undecided:
             )
 
         chosen = max(modes[0], key=apart)
-        self.ways.append(
+        self.closures.append(
             (block.joints, tuple({chosen.posture_key: mode[chosen]} for mode in modes))
         )
         many = "two" if len(modes) == 2 else "several"
@@ -141,15 +141,19 @@ class Undecided:
     def refusal(self, multibody: Multibody) -> PostureError:
         """All of it as an error, with lines to paste."""
         lines = []
-        for k in range(len(self.ways[0][1])) if len(self.ways) == 1 and not self.lacking else (0,):
+        for k in (
+            range(len(self.closures[0][1]))
+            if len(self.closures) == 1 and not self.lacking
+            else (0,)
+        ):
             entries = [
                 posture_entry(
                     name,
-                    not turns(multibody, name),
+                    not is_angle(multibody, name),
                     modes[k][name],
                     *(mode[name] for mode in modes),
                 )
-                for _, modes in self.ways
+                for _, modes in self.closures
                 for name in modes[k]
             ]
             entries += [
@@ -158,14 +162,14 @@ class Undecided:
                 for name, angular in names
             ]
             lines.append("posture={" + ", ".join(entries) + "}")
-        say = f"choose one by {' or '.join(lines)}" if self.ways else lines[0]
+        say = f"choose one by {' or '.join(lines)}" if self.closures else lines[0]
         after = (
             ", for example; each loop is listed for the first assembly of the loops before it"
-            if len(self.ways) > 1
+            if len(self.closures) > 1
             else ""
         )
         return PostureError(
             f"{'; '.join(self.words)}; {say}{after}",
-            tuple(modes for _, modes in self.ways),
+            tuple(modes for _, modes in self.closures),
             bool(self.lacking),
         )

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array
+from ..base.graph_text import dumps, loads
 from ..base.quantities import Output, law_members, load_point_members
 from ..base.symbolic import Graphs, symbolic
+from ..declare.corners import Corners
+from ..declare.description import Place, Template
+from ..declare.kinks import Smooth
 from ..declare.laws import Laws
+from ..declare.parts import Parameter
 from ..declare.scene import Wanted
+from ..declare.stated import Entries, EquationGraph, LoadGraph, Stated
+from ..declare.times import Timing
+from ..declare.validity import Margins
 from ..errors import PickleError
-from .checks import Check, Column, Kind, column_of
+from .checks import Check, Column, Kind
 from .iteration import NewtonLoop
 from .least_energy import Completion
 from .mobility import load_points_of
@@ -177,7 +184,7 @@ class Program(Graphs):
         """Return whether the loops of a closure are iterated."""
         return self.newton is not None and closure in self.newton.names
 
-    @property
+    @cached_property
     def instructions(self) -> dict[str, int]:
         """Instructions of each function."""
         functions = {"motion": self.motion, "instant": self.instant} | (
@@ -190,63 +197,14 @@ class Program(Graphs):
 
     def dumps(self) -> str:
         """Write it as text."""
-        newton = None
-        if self.newton is not None:
-            loop = self.newton
-            newton = {
-                "step": loop.step.serialize(),
-                "guess": loop.guess,
-                "turning": loop.turning,
-                "names": loop.names,
-                "joints": loop.joints,
-            }
-        loop_angles = {
-            str(angle): {str(part): sign for part, sign in parts.items()}
-            for angle, parts in self.loop_angles.items()
-        }
-        kept = {
-            "data": self.data.words(),
-            "wanted": asdict(self.wanted),
-            "identity": self.identity,
-            "columns": self.names,
-            "loop_angles": loop_angles,
-        }
-        if self.completion is not None:
-            kept["completion"] = self.completion.dumps()
-        return json.dumps(kept | {"instant": self.instant.serialize(), "newton": newton})
+        return dumps(self)
 
     @classmethod
     @symbolic
     def loads(cls, text: str) -> Program:
         """Read the text that :meth:`dumps` wrote."""
-        kept = json.loads(text)
-        instant = ca.Function.deserialize(kept["instant"])
-        newton = None
-        if kept["newton"] is not None:
-            loop = kept["newton"]
-            step = ca.Function.deserialize(loop["step"])
-            newton = NewtonLoop(
-                step,
-                tuple(loop["guess"]),
-                tuple(loop["turning"]),
-                tuple(loop["names"]),
-                loop["joints"],
-            )
-        columns = tuple(map(column_of, kept["columns"]))
-        loop_angles = {
-            Output.of(k): {column_of(part): sign for part, sign in v.items()}
-            for k, v in kept["loop_angles"].items()
-        }
-        completion = Completion.loads(kept["completion"]) if "completion" in kept else None
-        data = ModelData.loads(kept["data"])
-        content: dict[str, Any] = {
-            name: tuple(names) if isinstance(names, list) else names
-            for name, names in kept["wanted"].items()
-        }
-        wanted = Wanted(**content)
-        return cls(
-            data, wanted, instant, newton, columns, loop_angles, completion, kept["identity"]
-        )
+        found: Program = loads(text, (cls, *_PARTS))
+        return found
 
     def __reduce__(self) -> tuple[Callable[[str], Program], tuple[str]]:
         """Send it as its text. Raises :class:`.PickleError` where that would not tell all."""
@@ -256,3 +214,10 @@ class Program(Graphs):
                 " process alone; expected expressions of CasADi's own functions"
             )
         return Program.loads, (self.dumps(),)
+
+
+_PARTS = (
+    *(Check, Completion, Corners, Entries, EquationGraph, Laws, LoadGraph, Margins, ModelData),
+    *(NewtonLoop, Output, Parameter, Place, Smooth, Stated, Template, Timing, Wanted),
+)
+"""Kinds of what a program is made of."""

@@ -76,10 +76,12 @@ def count_revolutions(
             values[turned.name] = solved.evaluate(turned.angle)
         elif not any(depends_on_turns(used[name], turned.symbol) for name in users[turned.name]):
             values[turned.name] = solved.evaluate(turned.within)
-    open_ = [turned for turned in multibody.turned if turned.name not in values]
+    undetermined = [turned for turned in multibody.turned if turned.name not in values]
     deviations: dict[str, ca.SX] = {}
     for turned, rule in zip(
-        open_, _rules(multibody, solved, motion, span, start, open_, counted), strict=True
+        undetermined,
+        _rules(multibody, solved, motion, span, start, undetermined, counted),
+        strict=True,
     ):
         if rule is None:
             raise DeclarationError(
@@ -88,8 +90,8 @@ def count_revolutions(
                 " and cosine, or the angle of a drive"
             )
         about = (
-            ca.dot(ca.DM(rule.turns), counted) + rule.centre
-            if any(rule.turns)
+            ca.dot(ca.DM(rule.revolutions), counted) + rule.centre
+            if any(rule.revolutions)
             else ca.SX(rule.centre)
         )
         c, s = (solved.evaluate(part) for part in (turned.cosine, turned.sine))
@@ -97,20 +99,20 @@ def count_revolutions(
             s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about)
         )
         values[turned.name] = deviations[turned.name] + about
-    seen = solved.found.and_of(
+    extended = solved.found.and_of(
         column(turned.symbol for turned in multibody.turned),
         column(values[turned.name] for turned in multibody.turned),
     )
-    return replace(solved, found=seen), deviations
+    return replace(solved, found=extended), deviations
 
 
 @dataclass(frozen=True)
 class _Rule:
-    """An angle makes so many ``turns`` for one of each angle that counts them, and about that it
-    swings beside a ``centre``.
+    """An angle makes so many ``revolutions`` for one of each angle that counts them, and about that
+    it swings beside a ``centre``.
     """
 
-    turns: tuple[int, ...]
+    revolutions: tuple[int, ...]
     centre: float
 
     @classmethod
@@ -144,16 +146,16 @@ def _rules(
     motion: ca.Function,
     span: tuple[float, float],
     start: Start,
-    open_: Sequence[Turned],
+    undetermined: Sequence[Turned],
     counted: ca.SX,
 ) -> list[_Rule | None]:
     """The rules of some angles, by what they do along the motion of the scene, and as its one drive
     goes all the way round.
     """
-    if not open_:
+    if not undetermined:
         return []
-    time, p, many = multibody.mechanism.time, multibody.mechanism.symbols, len(open_)
-    angles = solved.evaluate(column(turned.within for turned in open_))
+    time, p, many = multibody.mechanism.time, multibody.mechanism.symbols, len(undetermined)
+    angles = solved.evaluate(column(turned.within for turned in undetermined))
     f = ca.Function(
         "angles", [time, solved.driven, solved.iterated, p], [ca.vertcat(angles, counted)]
     )

@@ -47,7 +47,7 @@ class TwoForceLink:
         """True if the y axis was declared."""
         return self.link.beside is not None
 
-    def own(self, joint: Joint) -> Point:
+    def on_bar(self, joint: Joint) -> Point:
         """A joint's point on the bar."""
         return joint.on(self.link)
 
@@ -58,12 +58,12 @@ class TwoForceLink:
     @property
     def start(self) -> Expression:
         """Position of the first joint along the bar [m]."""
-        return self.own(self.joints[0]).x
+        return self.on_bar(self.joints[0]).x
 
     @property
     def length(self) -> Expression:
         """Distance of the joints [m]."""
-        return self.own(self.joints[1]).x - self.start
+        return self.on_bar(self.joints[1]).x - self.start
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,9 +31,9 @@ def wound_angles(
     c, s, angle = ca.vertsplit(variables)
     about, beside = ca.SX(0), numbers.of(angle)[0]
     for other in counting:
-        if ca.depends_on(angle, other.variables) and (turns := _turns(angle, other, numbers)):
-            about += turns * other.value
-            beside -= turns * numbers.of(other.value)[0]
+        if ca.depends_on(angle, other.variables) and (revolutions := _turns(angle, other, numbers)):
+            about += revolutions * other.value
+            beside -= revolutions * numbers.of(other.value)[0]
     # In few digits, lest the last ones of some library's sines be told in the graph.
     about += round(beside, _DIGITS)
     deviation = ca.atan2(

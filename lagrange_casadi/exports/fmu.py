@@ -6,25 +6,31 @@ from __future__ import annotations
 
 import ctypes
 import io
+import math
 import zipfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
 
 from ..base.arrays import Array
 from ..base.cache import working_folder
 from ..codegen import find_compiler
 from ..codegen.compiler import Compiler, broken, compiled, complaint
 from ..codegen.printer import literal
-from ..errors import CompilerError, LagrangeCasadiError, StoreError
+from ..errors import (
+    CompilerError,
+    DeclarationError,
+    LagrangeCasadiError,
+    StoreError,
+    UnknownNameError,
+)
 from ..portable.contract import REST
 from ..portable.header import header
 from ..portable.source import Source
 from ..portable.text import indented, template
 from .fmu_description import Description, page
-
-if TYPE_CHECKING:
-    pass
 
 _HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 _EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -38,14 +44,18 @@ def check_tools() -> None:
     _compiler()
 
 
-def fmu(source: Source, p: Array) -> bytes:
-    """The archive ``<prefix>.fmu`` of a program whose parameters start with ``p``.
+def fmu(source: Source, p: Array, by: str = "") -> bytes:
+    """The archive ``<prefix>.fmu`` of a program whose parameters start with ``p``; ``by`` says what
+    moves it, see :class:`.Description`.
 
     The same program gives the same bytes, as far as the compiler does. Raises
-    :class:`CompilerError` for what it refuses, and :class:`StoreError` for what FMPy finds wrong.
+    :class:`CompilerError` for what it refuses, :class:`StoreError` for what FMPy finds wrong, and
+    :class:`.DeclarationError` for a coordinate that goes back and forth.
     """
     fmpy, prefix = _fmpy(), source.contract.prefix
-    description = Description(source, p, (f"{prefix}.c", f"{prefix}_fmi2.c"))
+    if by not in ("", "time"):
+        _check_way(source, p, by)
+    description = Description(source, p, (f"{prefix}.c", f"{prefix}_fmi2.c"), by)
     headers = Path(fmpy.__file__).parent / "c-code"
     sources = {file: (headers / file).read_text() for file in _HEADERS}
     sources |= {
@@ -83,10 +93,10 @@ def wrapper(description: Description) -> str:
         **source.words,
         guid=description.guid,
         parameters=len(c.settings),
-        values=len(values),
+        values=max(1, len(values)),
         outputs=len(c.outputs),
-        timed=int(c.timed),
-        start=",\n".join(f"  {wide(value)} /* {name} */" for name, value in values),
+        timed=int(description.timed),
+        start=",\n".join(f"  {wide(value)} /* {name} */" for name, value in values) or "  0.0",
         turning=",\n".join(f"  {int(m.wrapped)} /* {m.path} */" for m in c.outputs),
         start_time=wide(source.exported.program.data.span[0]),
         limits=_limits(description),
@@ -97,6 +107,7 @@ def wrapper(description: Description) -> str:
         ),
         prepared="&model, &parameters" if c.settings else "&model",
         carried="".join(f"  if (state->begun) {line}\n" for line in carried),
+        reached=_reached(description),
         give=indented(_given(description)),
         take="\n".join(
             f"  found[{k}] = (double) outputs->{m.name};" for k, m in enumerate(c.outputs)
@@ -127,6 +138,12 @@ def _given(description: Description) -> Iterable[str]:
     double.
     """
     c = description.contract
+    if description.by:
+        if description.by == "time":
+            yield "return motion(&state->model, state->time, inputs);"
+        else:
+            yield f"return reach(&state->model, state->values[{len(c.settings)}], inputs);"
+        return
     places = {
         m.source: f"state->values[{k}]" for k, m in enumerate(description.inputs, len(c.settings))
     } | {"time": "state->time"}
@@ -139,6 +156,56 @@ def _given(description: Description) -> Iterable[str]:
                 f"inputs->{m.name} = ({c.prefix}_real) ({places[whole]} - (double)"
                 f" inputs->{c.input_of(whole)});"
             )
+    yield f"return {c.prefix.upper()}_OK;"
+
+
+def _reached(description: Description) -> str:
+    """C of the motion that is inside: at a time, and at the place of a coordinate."""
+    c, source = description.contract, description.source
+    if not description.by:
+        return ""
+    rest = f", ({c.prefix}_real) (time - (double) ({c.prefix}_real) time)" if c.rests else ""
+    text = template("fmu_motion.c", **source.words, rest=rest)
+    if description.by == "time":
+        return text
+    data, wide, name = source.exported.program.data, literal("double"), f"motion:{description.by}"
+    place = c.input_of(name)
+    value = f"(double) inputs->{place}"
+    parts = [f"inputs->{place} = ({c.prefix}_real) place;"]
+    if c.rests:
+        other = c.input_of(REST + name)
+        value += f" + (double) inputs->{other}"
+        parts.append(f"inputs->{other} = ({c.prefix}_real) (place - (double) inputs->{place});")
+    limits = [x if math.isfinite(x) else math.copysign(1e300, x) for x in source.span]
+    rising = description.start[f"{name}_rate"] > 0.0
+    return text + template(
+        "fmu_reach.c",
+        **source.words,
+        coordinate=description.by.replace("*/", ""),
+        value=value,
+        put=indented(parts),
+        sign="" if rising else "-",
+        start=wide(data.span[0]),
+        stop=wide(data.span[1]),
+        least=wide(limits[0]),
+        most=wide(limits[1]),
+    )
+
+
+def _check_way(source: Source, p: Array, by: str) -> None:
+    """Raise :class:`UnknownNameError` for a coordinate whose motion is not given, and
+    :class:`DeclarationError` for one that does not rise or fall at all instants.
+    """
+    program = source.exported.program
+    if by not in program.driven:
+        raise UnknownNameError("coordinate", by, ["time", *program.driven])
+    times = np.linspace(*program.data.span, max(2, 4 * program.data.timing.count))
+    rates = program.motion(times[None, :], p)[1].full()[program.driven.index(by)]
+    if not (np.all(rates > 0.0) or np.all(rates < 0.0)):
+        raise DeclarationError(
+            f"an FMU by '{by}': this coordinate stands still or turns back, so its place does not"
+            " say when it is; use 'time'"
+        )
 
 
 def _fmpy() -> Any:

@@ -39,13 +39,15 @@ class Description:
     """A unit's ``modelDescription.xml``, for parameters ``p``; ``sources`` are the files to
     compile.
 
-    The value reference of a variable is its place: parameters, inputs, outputs, and the time where
-    anything depends on it.
+    ``by`` is empty where the motion of the drives is an input, ``time`` where the scene's motion is
+    inside, or the coordinate that is an input in place of the time. The value reference of a
+    variable is its place: parameters, inputs, outputs, and the time where anything depends on it.
     """
 
     source: Source
     p: Array
     sources: tuple[str, ...]
+    by: str = ""
 
     @property
     def contract(self) -> Contract:
@@ -54,11 +56,17 @@ class Description:
 
     @property
     def inputs(self) -> tuple[Member, ...]:
-        """The motion of the drives.
+        """The motion of the drives, or as much of it as is an input.
 
         The time is the importer's, and what single precision leaves is computed.
         """
-        return tuple(m for m in self.contract.inputs if m.source in self.start)
+        given = (m for m in self.contract.inputs if m.source in self.start)
+        return tuple(m for m in given if self.by in ("", m.source.removeprefix("motion:")))
+
+    @property
+    def timed(self) -> bool:
+        """True if anything depends on the importer's time."""
+        return self.by == "time" or (self.contract.timed and not self.by)
 
     @cached_property
     def start(self) -> dict[str, float]:
@@ -95,7 +103,11 @@ class Description:
         c = self.contract
         names = [f"parameter:{m.source}" for m in c.settings] + [m.source for m in self.inputs]
         found = {name: k for k, name in enumerate(names, 1)}
-        return found | ({"time": len(names) + len(c.outputs) + 1} if c.timed else {})
+        found |= {"time": len(names) + len(c.outputs) + 1} if self.timed else {}
+        if not self.by:
+            return found
+        inside = found["time"] if self.by == "time" else found[f"motion:{self.by}"]
+        return found | dict.fromkeys(["time", *self.start], inside)
 
     def _root(self, guid: str) -> ElementTree.Element:
         c = self.contract
@@ -113,15 +125,15 @@ class Description:
             numberOfEventIndicators="0",
         )
         for kind, able in _KINDS.items():
-            way = _add(
+            element = _add(
                 root, kind, modelIdentifier=c.prefix, **{able: "true"}, canGetAndSetFMUstate="true"
             )
-            files = _add(way, "SourceFiles")
+            files = _add(element, "SourceFiles")
             for file in self.sources:
                 _add(files, "File", name=file)
         members = (*c.settings, *self.inputs, *c.outputs)
         units = _add(root, "UnitDefinitions")
-        for unit in dict.fromkeys([m.unit for m in members] + ["s"] * c.timed):
+        for unit in dict.fromkeys([m.unit for m in members] + ["s"] * self.timed):
             _unit(units, unit)
         logged = _add(root, "LogCategories")
         for name, meaning in LOGGED.items():
@@ -175,7 +187,7 @@ class Description:
                 {"causality": "output", "variability": "continuous", "initial": "calculated"},
                 {},
             )
-        if c.timed:
+        if self.timed:
             name = "time" if all(m.source != "time" for m in c.settings) else "simulation/time"
             add(
                 Member("", name, "s", "time"),
@@ -197,9 +209,11 @@ class Description:
                 unknown = _add(group, "Unknown", index=str(k))
                 if reach is not None:
                     on = sorted(
-                        self.known[name]
-                        for name in reach[m.source] & self.known.keys()
-                        if fixed or not name.startswith("parameter:")
+                        {
+                            self.known[name]
+                            for name in reach[m.source] & self.known.keys()
+                            if fixed or not name.startswith("parameter:")
+                        }
                     )
                     unknown.set("dependencies", " ".join(map(str, on)))
 

@@ -27,8 +27,10 @@ from ..portable.wasm import check_zig
 from ..portable.wasm import wasm as for_pages
 from ..version import __version__
 from .companions import companions
+from .control import control as for_control
 from .fmu import check_tools
 from .fmu import fmu as archive
+from .structured_text import structured_text as blocks
 
 MANIFEST = Manifest(
     "export.json",
@@ -54,8 +56,10 @@ def export(
     table: Annotated[float | None, LATER] = None,
     largest: int | None = None,
     force: bool = False,
-    fmu: bool = False,
+    fmu: bool | str = False,
     wasm: bool = False,
+    control: bool = False,
+    structured_text: bool = False,
 ) -> Contract:
     """Write a scene as C into a folder: header, source, self-test, example, build files, README.
 
@@ -80,10 +84,16 @@ def export(
         changed since. Files of others are never touched; those of the earlier export that are no
         longer written are removed, unless they were changed.
     fmu
-        Also write ``<prefix>.fmu``, a unit of FMI 2.0. Needs FMPy and a C compiler.
+        Also write ``<prefix>.fmu``, a unit of FMI 2.0, whose inputs are the motion of the drives;
+        with ``"time"`` the scene's motion is inside, and with the name of a coordinate, as
+        ``"crank"``, its place is the input. Needs FMPy and a C compiler.
     wasm
         Also write ``<prefix>.wasm``, with a wrapper in JavaScript, its types and
         ``README.wasm.md``. Needs ziglang.
+    control
+        Also write ``<prefix>_control.hpp``, a class of C++ for controllers, and its test.
+    structured_text
+        Also write ``<prefix>.st``, function blocks of IEC 61131-3, and their test.
 
     Returns
     -------
@@ -122,6 +132,10 @@ def export(
     files = {file: text.encode() for file, text in texts.items()}
     if wasm:
         files |= for_pages(source)
+    more = [
+        writer for writer, asked in ((for_control, control), (blocks, structured_text)) if asked
+    ]
+    files |= {file: text.encode() for writer in more for file, text in writer(source).items()}
     unit = f"{agreed.prefix}.fmu"
     known = MANIFEST.known(folder)
     allowed: dict[str, Any] = {"beside": force, "changed": force, "apart": _BUILD}
@@ -131,7 +145,8 @@ def export(
             f"cannot export into {folder}: it holds an export of another name; {MANIFEST.way_out}"
         )
     if fmu:
-        files[unit] = archive(source, np.array(list(source.values.values())))
+        by = fmu if isinstance(fmu, str) else ""
+        files[unit] = archive(source, np.array(list(source.values.values())), by)
     with MANIFEST.filling(folder, _manifest(source), alone=True, **allowed) as draft:
         for file, content in files.items():
             (draft / file).write_bytes(content)

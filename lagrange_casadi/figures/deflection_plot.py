@@ -111,5 +111,5 @@ def _spectrum(axes: Axes, response: Vibration) -> None:
         else "many times"
     )
     verdict = "enough" if response.enough else "NOT enough"
-    axes.set_title(f"by swinging, bending is off by {off}: rigid links are {verdict}", fontsize=10)
+    axes.set_title(f"resonance changes bending by {off}: rigid links are {verdict}", fontsize=10)
     axes.legend(frameon=False, fontsize=9)

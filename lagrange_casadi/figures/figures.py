@@ -18,11 +18,11 @@ from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import PLANE, SPACE
-from ..declare.description import parts_of, shaft_bearings_of
+from ..declare.description import bends_of, parts_of, shaft_bearings_of
 from ..errors import DeclarationError, PathError, UnknownNameError, shown
 from ..instants.ordering import vanishes
 from ..instants.solution import Peak, Solution
-from ..shapes.pictures import one_at_a_time, save
+from ..shapes.pictures import ending_of, one_at_a_time, save
 from ..shapes.readable import scale_for
 from ..shapes.specs import (
     DeflectionPlot,
@@ -51,8 +51,9 @@ _FILE = re.compile(r"[A-Za-z0-9_-]+")
 
 @public
 def default_figures(solution: Solution) -> tuple[Spec, ...]:
-    """The usual drawings of whatever a solution holds."""
+    """The usual drawings of whatever a solution holds, but for the welds inside bent bars."""
     specs: list[Spec] = []
+    internal = bends_of(solution.description)
     groups: dict[tuple[str, str], list[str]] = {}
     for output, values in solution.outputs.items():
         drawn = output.group in (
@@ -63,6 +64,8 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
             "friction",
             "output",
         ) or output == Output("motion", output.part)
+        if output.part in internal:
+            continue
         if drawn and solution.determined(output) and np.any(values):
             suffix = "_own" if output.member.endswith(("u", "v", "w")) else ""
             if suffix and all(solution.determined(other) for other in _in_ground_axes(output)):
@@ -107,22 +110,27 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
 
 
 def _in_ground_axes(output: Output) -> Iterator[Output]:
-    """The components in ground axes of a reaction that is told on the joint's own."""
+    """The components in ground axes of a reaction that is given on the joint's own."""
     return (Output(output.group, output.part, output.member[0] + component) for component in "xyz")
 
 
 @public
 def draw(
-    solution: Solution, specs: Sequence[Spec], folder: str | os.PathLike[str], si: bool = False
+    solution: Solution,
+    specs: Sequence[Spec],
+    folder: str | os.PathLike[str],
+    si: bool = False,
+    svg: bool = False,
 ) -> Iterator[tuple[Spec, Path | None]]:
-    """Draw specs, or the usual ones where there are none, into an existing folder as PNG, one by
-    one.
+    """Draw specs, or the usual ones where there are none, into an existing folder, one by one, as
+    PNG or as SVG.
 
     Axes have the units that people read, as kN and mm where numbers call for them; with ``si``
     those of SI, without prefixes. The path is None where the solution lacks what a spec draws.
     Raises :class:`DeclarationError` for what is no spec.
     """
     chosen, folder = specs or default_figures(solution), Path(folder)
+    ending = ending_of(svg)
     for spec in chosen:
         if not isinstance(spec, Spec):
             raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
@@ -138,8 +146,8 @@ def draw(
         if not _has(solution, spec):
             yield spec, None
             continue
-        path = folder / f"{spec.name}.png"
-        save(spec.draw(solution, si), path, dpi=120)
+        path = folder / f"{spec.name}{ending}"
+        save(spec.draw(solution, si), path, ending, dpi=120)
         yield spec, path
 
 
@@ -291,14 +299,6 @@ def _mechanism(spec: MechanismDrawing, solution: Solution, si: bool) -> Figure:
     return draw_mechanism(solution, spec.count, spec.overlay, si)
 
 
-def _diagrams(spec: SectionDiagrams, solution: Solution, si: bool) -> Figure:
-    return draw_section_diagrams(solution, spec.links, si)
-
-
-def _polar(spec: PolarPlots, solution: Solution, si: bool) -> Figure:
-    return draw_polar(solution, spec.joints, si)
-
-
 def _strength(spec: StrengthPlot, solution: Solution, si: bool) -> Figure:
     from .strength_plot import draw_strength
 
@@ -321,8 +321,8 @@ _FIGURES: dict[type[Spec], Callable[[Any, Solution, bool], Figure]] = {
     TimePlot: _time,
     SpanPlot: _span,
     SectionMaps: _maps,
-    SectionDiagrams: _diagrams,
-    PolarPlots: _polar,
+    SectionDiagrams: lambda spec, *drawn: draw_section_diagrams(drawn[0], spec.links, drawn[1]),
+    PolarPlots: lambda spec, *drawn: draw_polar(drawn[0], spec.joints, drawn[1]),
     MechanismDrawing: _mechanism,
     StrengthPlot: _strength,
     UtilisationPlot: _utilisation,

@@ -277,14 +277,14 @@ def _label(
     triad = _triad_at(spots(cloud_of(thin)), edge)
     lines = [spots(_along(line.points)) for line in (*lines_of(now), *axes_of(now, now, size))]
     marks = spots(np.array([mark.place for mark in marks_of(now)]))[:, None] + _RING
-    stands = [
+    supports = [
         spots(place)[None] - [[-4.0, 6.0], [0.0, 6.0], [4.0, 6.0]] for place in grounds_of(now)
     ]
     things = np.concatenate(
         [
             *lines,
             marks.reshape(-1, 2),
-            *stands,
+            *supports,
             triad + _ARROW * np.array([[-1, -1], [0, 0], [1, 1]]),
         ]
     )
@@ -381,8 +381,8 @@ def _name(
             va="bottom",
             path_effects=[withStroke(linewidth=2.0, foreground="white")],
         )
-        own = apart(low, size, spot)
-        if own > 9.0 or sum(apart(low, size, other) < 2.0 * own for other in anchors) > 1:
+        distance = apart(low, size, spot)
+        if distance > 9.0 or sum(apart(low, size, other) < 2.0 * distance for other in anchors) > 1:
             line = corner + np.array([np.clip(spot, low, low + size), spot]) / scale
             axes.plot(*line.T, color="0.5", linewidth=0.5, zorder=12, label="_")
 

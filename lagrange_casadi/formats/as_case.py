@@ -127,12 +127,12 @@ class _Case:
         for joint, place in self.at.items():
             if place not in self.places and any(place):
                 self.places[place] = self.variable(f"at_{joint}")
-        told_at = {place: joint for joint, place in reversed(self.at.items())}
+        joint_at = {place: joint for joint, place in reversed(self.at.items())}
         sizes = Counter((k, abs(x)) for place in self.places for k, x in enumerate(place) if x)
         for (k, size), count in sizes.items():
             if count > 1:
                 owner = next(at for at in self.places if abs(at[k]) == size)
-                name = self.parameter(f"{told_at[owner]}_{'xyz'[k]}")
+                name = self.parameter(f"{joint_at[owner]}_{'xyz'[k]}")
                 self.lengths[k, size] = name
                 self.lines.append(f'{name} = m.parameter("{name}", {text_of(size)}, "m")')
 
@@ -266,8 +266,8 @@ class _Case:
                 self.turn("first", _minus(parent), row.angle, ("x", "y", away))
                 self.turn("second", _minus(child), row.other, ("u", "v", back))
             factor, e, f = text_of(row.factor), "xyz"[row.i], "uvw"[row.j]
-            told_row = ROWS[row.kind].format(e=e, f=f, factor=factor)
-            said = told_row + _signed(-row.value)
+            row_text = ROWS[row.kind].format(e=e, f=f, factor=factor)
+            said = row_text + _signed(-row.value)
             self.lines += _call("m.constraint", [json.dumps(name), said])
 
     def turn(self, name: str, counted: str, start: float, axes: tuple[str, str, str]) -> None:
@@ -353,12 +353,12 @@ class _Case:
         y /= np.linalg.norm(y)
         return np.column_stack([x, y, np.cross(x, y)])
 
-    def parameter(self, told: str) -> str:
+    def parameter(self, wanted: str) -> str:
         """Return a name for a parameter, which no part may have."""
         parts = {*self.model.bodies, *self.model.joints, *self.model.couplings, *self.model.ties}
-        while told in parts:
-            told = f"{told}_"
-        return self.variable(told)
+        while wanted in parts:
+            wanted = f"{wanted}_"
+        return self.variable(wanted)
 
     def variable(self, arguments: str) -> str:
         """Return a name for a variable that none has yet."""
@@ -413,12 +413,12 @@ class _Case:
         return ", ".join(parts) if inner else f"({', '.join(parts)})"
 
 
-def _call(function: str, told: Sequence[str], after: str = "") -> list[str]:
+def _call(function: str, arguments: Sequence[str], after: str = "") -> list[str]:
     """Return a call in one line, or in a line for each argument, these broken like it."""
-    if len(line := f"{function}({', '.join(told)}){after}") <= WIDTH or len(told) < 2:
+    if len(line := f"{function}({', '.join(arguments)}){after}") <= WIDTH or len(arguments) < 2:
         return [line]
     lines = [f"{function}("]
-    for one in told:
+    for one in arguments:
         head, bracket, inner = one.partition("(")
         broken = [f"{one},"]
         if bracket and len(one) > WIDTH - 4 and one.endswith(")"):

@@ -103,11 +103,13 @@ class _Reader:
         local = self.value(root, "Name")
         model.name = model.name_of("mechanism", local, root.where, {})
         if not np.allclose(self.frame(root).axes, np.eye(3)) or any(self.frame(root).place):
-            model.notes.append("The place of the assembly itself is not read: it is the ground's.")
+            model.notes.append(
+                "The placement of the assembly itself is ignored: the assembly is the ground."
+            )
         self.points(root, GROUND, f"/{local}")
         for part in self.all(root, "Parts"):
             if part.text != "Part":
-                raise model.refuse(part.where, "is not read: expected a Part")
+                raise model.refuse(part.where, "is not supported here; expected a Part")
             self.part(part, f"/{local}")
         sets = self.below(root, "ConstraintSets")
         for joint in self.all(sets, "Joints"):
@@ -120,7 +122,7 @@ class _Reader:
             ("ForceTorques", root),
         ):
             for one in self.all(parent, group):
-                model.notes.append(f"{one.text} of line {one.at} is not read.")
+                model.notes.append(f"{one.text} of line {one.at} is ignored.")
         x, y, z = self.vector(root, "ConstantGravity")
         model.gravity = (float(x), float(y), float(z))
         self.times()
@@ -214,7 +216,7 @@ class _Reader:
         taken = {**model.joints, **model.ties}
         name = self.named[f"{path}/{data}"] = model.name_of("joint", data, where, taken)
         if line.text not in KINDS and line.text not in TIES:
-            raise model.refuse(where, f"is not read; valid: {', '.join([*KINDS, *TIES])}")
+            raise model.refuse(where, f"is not supported; valid: {', '.join([*KINDS, *TIES])}")
         (parent, near), (child, far) = self.marker(line, "MarkerI"), self.marker(line, "MarkerJ")
         key = _NUMBERS.get(line.text, "")
         has = any(one.text == key for one in line.below)
@@ -239,14 +241,14 @@ class _Reader:
     def row(self, tie: Tie, row: Row, kind: str, value: float) -> Row:
         """Return a row of a joint with its number; one that turns keeps what it is in the file."""
         near, far = self.model.frames(tie)
-        known = near.seen(far)
+        known = near.relative(far)
         if row.kind == "slide and turn":
             factor = value if kind == "RackPinionJoint" else -value / math.tau
             angle = math.atan2(known.axes[1, 0], known.axes[0, 0])
             found = float(known.place[row.i]) + factor * angle
             return Row(row.kind, row.i, value=_clean(found), factor=factor, angle=_clean(angle))
         if row.kind == "wheels":
-            back = far.seen(near).place
+            back = far.relative(near).place
             first = _clean(math.atan2(known.place[1], known.place[0]))
             second = _clean(math.atan2(back[1], back[0]))
             found = second + value * first
@@ -266,7 +268,7 @@ class _Reader:
             "TranslationalMotion": ("TranslationZ", "slide"),
         }
         if line.text not in laws:
-            raise model.refuse(where, f"is not read; valid: {', '.join(laws)}")
+            raise model.refuse(where, f"is not supported; valid: {', '.join(laws)}")
         key, direction = laws[line.text]
         path = self.value(line, "MotionJoint")
         joint = model.joints.get(self.named.get(path, ""))

@@ -51,7 +51,7 @@ BODY = ("name", "mass", "centre", "inertia", "rod", "point", "places", *FRAME)
 JOINT = ("name", "kind", "parent", "child", "on_parent", "on_child", "lead")
 COUPLING = ("name", "first", "second", "ratio", "offset")
 
-Told = Mapping[str, Any]
+Data = Mapping[str, Any]
 
 
 def read(path: Path, text: str) -> Model:
@@ -100,10 +100,10 @@ def write(model: Model) -> str:
     data: dict[str, Any] = {"schema": SCHEMA, "version": VERSION, "name": model.name, "units": "SI"}
     data["gravity"] = list(model.gravity)
     data["time"] = dict(zip(("start", "stop", "count"), model.span, strict=True))
-    data["bodies"] = [_told_body(body) for body in model.bodies.values()]
+    data["bodies"] = [_body_data(body) for body in model.bodies.values()]
     data["joints"] = [
         {"name": one.name, "kind": one.kind, "parent": one.parent, "child": one.child}
-        | {"on_parent": _told_frame(one.on_parent), "on_child": _told_frame(one.on_child)}
+        | {"on_parent": _frame_data(one.on_parent), "on_child": _frame_data(one.on_child)}
         | ({"lead": one.lead} if one.lead else {})
         for one in model.joints.values()
     ]
@@ -122,8 +122,8 @@ def write(model: Model) -> str:
     return json.dumps(data, indent=1, allow_nan=False) + "\n"
 
 
-def _told_body(body: Body) -> dict[str, Json]:
-    data: dict[str, Any] = {"name": body.name, "mass": body.mass} | _told_frame(body.frame)
+def _body_data(body: Body) -> dict[str, Json]:
+    data: dict[str, Any] = {"name": body.name, "mass": body.mass} | _frame_data(body.frame)
     if body.rod is not None:
         data["rod"] = [end.tolist() for end in body.rod]
     elif body.point:
@@ -136,31 +136,31 @@ def _told_body(body: Body) -> dict[str, Json]:
     return data
 
 
-def _told_frame(frame: Frame) -> dict[str, Json]:
+def _frame_data(frame: Frame) -> dict[str, Json]:
     data: dict[str, Any] = {"place": frame.place.tolist()}
     if not np.array_equal(frame.axes, np.eye(3)):
         data["axes"] = frame.axes.T.tolist()
     return data
 
 
-def _body(model: Model, where: str, told: Told) -> Body:
-    _keys(model, where, told, BODY, ("name", "mass"))
-    name = model.name_of("body", _text(model, where, told["name"]), where, model.bodies)
-    mass = number(model, f"{where}.mass", told["mass"], "mass")
-    frame = _frame(model, where, {key: told[key] for key in FRAME if key in told})
+def _body(model: Model, where: str, data: Data) -> Body:
+    _keys(model, where, data, BODY, ("name", "mass"))
+    name = model.name_of("body", _text(model, where, data["name"]), where, model.bodies)
+    mass = number(model, f"{where}.mass", data["mass"], "mass")
+    frame = _frame(model, where, {key: data[key] for key in FRAME if key in data})
     places = {
         one: numbers(model, f"{where}.places.{one}", place, "place", 3)
-        for one, place in _table(model, f"{where}.places", told.get("places", {})).items()
+        for one, place in _table(model, f"{where}.places", data.get("places", {})).items()
     }
-    if "rod" in told:
-        ends = _list(model, f"{where}.rod", told["rod"])
+    if "rod" in data:
+        ends = _list(model, f"{where}.rod", data["rod"])
         if len(ends) != 2:
             raise model.refuse(f"{where}.rod", "expected two places")
         start, end = (numbers(model, f"{where}.rod", one, "rod", 3) for one in ends)
         body = Body.slender(name, mass, (start, end), where)
         return Body(name, mass, body.centre, body.inertia, frame, places, body.rod, where=where)
-    centre = numbers(model, f"{where}.centre", told.get("centre", (0.0, 0.0, 0.0)), "centre", 3)
-    inertia, given = None, told.get("inertia")
+    centre = numbers(model, f"{where}.centre", data.get("centre", (0.0, 0.0, 0.0)), "centre", 3)
+    inertia, given = None, data.get("inertia")
     if given is not None and all(isinstance(one, Sequence) for one in _list(model, where, given)):
         rows = [numbers(model, f"{where}.inertia", one, "inertia", 3) for one in given]
         inertia = np.array(rows)
@@ -170,44 +170,44 @@ def _body(model: Model, where: str, told: Told) -> Body:
             )
     elif given is not None:
         inertia = np.diag(numbers(model, f"{where}.inertia", given, "inertia", 3))
-    point = told.get("point", False) is True
+    point = data.get("point", False) is True
     return Body(name, mass, centre, inertia, frame, places, point=point, where=where)
 
 
-def _joint(model: Model, where: str, told: Told) -> Joint:
-    _keys(model, where, told, JOINT, ("name", "kind", "parent", "child"))
-    name = model.name_of("joint", _text(model, where, told["name"]), where, model.joints)
-    if told["kind"] not in COORDINATES:
+def _joint(model: Model, where: str, data: Data) -> Joint:
+    _keys(model, where, data, JOINT, ("name", "kind", "parent", "child"))
+    name = model.name_of("joint", _text(model, where, data["name"]), where, model.joints)
+    if data["kind"] not in COORDINATES:
         valid = ", ".join(COORDINATES)
-        words = f"joint '{name}': unknown kind {shown(told['kind'])}; valid: {valid}"
+        words = f"joint '{name}': unknown kind {shown(data['kind'])}; valid: {valid}"
         raise model.refuse(f"{where}.kind", words)
-    parent, child = (_text(model, f"{where}.{key}", told[key]) for key in ("parent", "child"))
+    parent, child = (_text(model, f"{where}.{key}", data[key]) for key in ("parent", "child"))
     near, far = (
-        _frame(model, f"{where}.{key}", told.get(key, {})) for key in ("on_parent", "on_child")
+        _frame(model, f"{where}.{key}", data.get(key, {})) for key in ("on_parent", "on_child")
     )
-    lead = number(model, f"{where}.lead", told.get("lead", 0.0), "lead")
-    return Joint(name, told["kind"], parent, child, near, far, lead, where)
+    lead = number(model, f"{where}.lead", data.get("lead", 0.0), "lead")
+    return Joint(name, data["kind"], parent, child, near, far, lead, where)
 
 
-def _frame(model: Model, where: str, told: Told) -> Frame:
+def _frame(model: Model, where: str, data: Data) -> Frame:
     """Return a frame: its place, and either its three axes, or the direction of z."""
-    _keys(model, where, told, FRAME, ())
-    place = numbers(model, f"{where}.place", told.get("place", (0.0, 0.0, 0.0)), "place", 3)
-    if "axes" in told:
-        rows = _list(model, f"{where}.axes", told["axes"])
+    _keys(model, where, data, FRAME, ())
+    place = numbers(model, f"{where}.place", data.get("place", (0.0, 0.0, 0.0)), "place", 3)
+    if "axes" in data:
+        rows = _list(model, f"{where}.axes", data["axes"])
         axes = np.array([numbers(model, f"{where}.axes", row, "axes", 3) for row in rows]).T
         if axes.shape != (3, 3):
             raise model.refuse(f"{where}.axes", "expected the directions of x, y and z")
         return Frame(place, rotation(model, f"{where}.axes", axes))
-    if "z" in told:
-        z = numbers(model, f"{where}.z", told["z"], "z", 3)
+    if "z" in data:
+        z = numbers(model, f"{where}.z", data["z"], "z", 3)
         if not np.any(z):
             raise model.refuse(f"{where}.z", "expected a direction, got zero")
         return Frame(place, about_axis(z))
     return Frame(place)
 
 
-def _coupling(model: Model, where: str, data: Told) -> Coupling:
+def _coupling(model: Model, where: str, data: Data) -> Coupling:
     _keys(model, where, data, COUPLING, ("name", "first", "second", "ratio"))
     name = model.name_of("coupling", _text(model, where, data["name"]), where, model.couplings)
     first, second = (_text(model, f"{where}.{key}", data[key]) for key in ("first", "second"))
@@ -216,18 +216,18 @@ def _coupling(model: Model, where: str, data: Told) -> Coupling:
     return Coupling(name, first, second, ratio, offset, where)
 
 
-def _law(model: Model, where: str, told: object) -> Law:
-    if isinstance(told, str):
-        return Law(told, where=where)
-    table = _table(model, where, told)
+def _law(model: Model, where: str, given: object) -> Law:
+    if isinstance(given, str):
+        return Law(given, where=where)
+    table = _table(model, where, given)
     _keys(model, where, table, ("times", "values"), ("times", "values"))
     count = len(_list(model, where, table["times"]))
     rows = [numbers(model, f"{where}.{key}", table[key], key, count) for key in ("times", "values")]
     return Law(samples=(tuple(rows[0].tolist()), tuple(rows[1].tolist())), where=where)
 
 
-def _span(model: Model, told: object) -> tuple[float, float, int]:
-    table = _table(model, "time", told)
+def _span(model: Model, given: object) -> tuple[float, float, int]:
+    table = _table(model, "time", given)
     _keys(model, "time", table, ("start", "stop", "count"), ("start", "stop", "count"))
     start, stop = (number(model, f"time.{key}", table[key], key) for key in ("start", "stop"))
     count = table["count"]
@@ -248,10 +248,10 @@ def _keys(
             raise model.refuse(where, f"lacks '{key}'")
 
 
-def _table(model: Model, where: str, told: object) -> dict[str, Any]:
-    if not isinstance(told, dict):
-        raise model.refuse(where, f"expected an object, got {shown(told)}")
-    return told
+def _table(model: Model, where: str, given: object) -> dict[str, Any]:
+    if not isinstance(given, dict):
+        raise model.refuse(where, f"expected an object, got {shown(given)}")
+    return given
 
 
 def _list(model: Model, where: str, data: object) -> list[Any]:
@@ -260,7 +260,7 @@ def _list(model: Model, where: str, data: object) -> list[Any]:
     return list(data)
 
 
-def _text(model: Model, where: str, told: object) -> str:
-    if not isinstance(told, str) or not told or len(told) > 200:
-        raise model.refuse(where, f"expected a text, got {shown(told)}")
-    return told
+def _text(model: Model, where: str, given: object) -> str:
+    if not isinstance(given, str) or not given or len(given) > 200:
+        raise model.refuse(where, f"expected a text, got {shown(given)}")
+    return given

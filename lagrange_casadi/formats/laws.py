@@ -75,7 +75,7 @@ def _allowed(node: ast.expr) -> ast.expr:
                 raise LawError(f"{name} of {len(given)} numbers")
             return ast.Call(ast.Name(f"ca.{name}"), [_allowed(one) for one in given], [])
     raise LawError(
-        f"'{ast.unparse(node)[:60]}' is not read; valid: numbers, pi, t, + - * / ^,"
+        f"'{ast.unparse(node)[:60]}' is not supported; valid: numbers, pi, t, + - * / ^,"
         f" {', '.join(NAMES)}"
     )
 

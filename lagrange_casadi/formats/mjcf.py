@@ -54,10 +54,10 @@ def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -
             continue
         there = (base / data).resolve()
         if Path(data).is_absolute() or not there.is_relative_to(folder):
-            raise model.refuse(line.where, f"{key} {shown(data)} leads out of its folder")
+            raise line.refuse(f"{key} {shown(data)} leads out of its folder")
         if line.name == "include" and there.is_file():
             if depth > _DEEPEST:
-                raise model.refuse(line.where, "includes are too deep")
+                raise line.refuse("includes are too deep")
             included = there.read_text(encoding="utf-8", errors="replace")
             _inside(model, folder, parsed(model, included, ""), there.parent, depth + 1)
     for one in line.inside:
@@ -118,7 +118,7 @@ class _Reader:
         above = self.bodies[int(m.body_parentid[k])]
         first, count = int(m.body_jntadr[k]), int(m.body_jntnum[k])
         if not count:
-            near = model.frame_of(above).seen(frame)
+            near = model.frame_of(above).relative(frame)
             joint = model.name_of("joint", f"{name}_fixed", where, model.joints)
             model.joints[joint] = Joint(joint, "weld", above, name, near, Frame(), where=where)
         for j in range(first, first + count):
@@ -146,29 +146,29 @@ class _Reader:
                 far = far.then(Frame(axes=turned(np.array([0.0, 0.0, 1.0]), -ref)))
             else:
                 at = at.then(Frame(np.array([0.0, 0.0, -ref])))
-        near = model.frame_of(above).seen(at)
+        near = model.frame_of(above).relative(at)
         model.joints[name] = Joint(name, kind, above, below, near, far, where=where)
 
     def equality(self, k: int) -> None:
         """Declare an equality: connect and weld close loops, joint couples two of them."""
-        model, m, told = self.model, self.m, self.called("EQUALITY", k)
-        where, data = f"equality {shown(told)}", m.eq_data[k]
+        model, m, stated = self.model, self.m, self.called("EQUALITY", k)
+        where, data = f"equality {shown(stated)}", m.eq_data[k]
         one, other = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
         kinds = self.mujoco.mjtEq
         kind = kinds(int(m.eq_type[k]))
         sites = int(m.eq_objtype[k]) == int(self.mujoco.mjtObj.mjOBJ_SITE)
         if kind == kinds.mjEQ_JOINT:
             if np.any(data[2:5]) or other < 0:
-                raise model.refuse(where, "is not read: its polynomial is not linear")
-            name = model.name_of("coupling", told, where, model.couplings)
+                raise model.refuse(where, "is not supported: its polynomial is not linear")
+            name = model.name_of("coupling", stated, where, model.couplings)
             starts = [float(m.qpos0[m.jnt_qposadr[j]]) for j in (one, other)]
             offset = float(data[0]) + starts[0] - float(data[1]) * starts[1]
             first, second = self.joints[other], self.joints[one]
             model.couplings[name] = Coupling(name, first, second, float(data[1]), offset, where)
             return
         if kind not in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD):
-            raise model.refuse(where, "is not read; valid: connect, weld, joint")
-        name = model.name_of("joint", told, where, model.joints)
+            raise model.refuse(where, "is not supported; valid: connect, weld, joint")
+        name = model.name_of("joint", stated, where, model.joints)
         if sites:
             near, far = self.site(one), self.site(other)
             one, other = int(m.site_bodyid[one]), int(m.site_bodyid[other])

@@ -22,7 +22,7 @@ from ..studies.evaluate import evaluate
 from .laws import LONGEST, ONE_NUMBER
 from .record import Body, Frame, Joint, Law, Model, turned
 
-Told = dict[str, Any]
+Data = dict[str, Any]
 
 SAMPLES = 1001
 """Instants of a motion that has no expression, as one from measured points."""
@@ -62,7 +62,7 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
     model = Model(described["name"], file, span=(start, stop, 101))
     what = f"mechanism '{model.name}'"
     for name in (*described["constraints"], *described["rows"]):
-        raise DeclarationError(f"{what}: constraint '{name}' has no word in a model file")
+        raise DeclarationError(f"{what}: constraint '{name}' cannot be written into a model file")
     if described["loads"]:
         model.notes.append(f"Loads are not exported: {', '.join(described['loads'])}.")
     x, y, z = (*described["gravity"], 0.0)[:3]
@@ -82,7 +82,9 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
     laws = scene.prescribed
     for k, name in enumerate(laws.joints):
         if name not in known:
-            raise DeclarationError(f"{what}: the motion of '{name}' has no word in a model file")
+            raise DeclarationError(
+                f"{what}: the motion of '{name}' cannot be written into a model file"
+            )
         t = ca.SX.sym("t")
         law = ca.Function("law", [t], [ca.densify(laws.motion(t, values)[0][k])])
         model.motions[name] = _law(law, model.span)
@@ -101,17 +103,17 @@ def _frame(solution: Solution, body: str) -> Frame:
     return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
 
 
-def _body(name: str, told: Told, numbers: BodyNumbers, frame: Frame) -> Body:
+def _body(name: str, described: Data, numbers: BodyNumbers, frame: Frame) -> Body:
     mass, zero = numbers.mass, np.zeros(3)
     if numbers.length is None:
         return Body(name, mass, zero, None, frame, point=True)
-    if "centre" not in told:
-        density = density_of(told)
-        if len(density.cells) == 1 and len(density.cells[0]) == 1 and not any(slices_of(told)):
+    if "centre" not in described:
+        density = density_of(described)
+        if len(density.cells) == 1 and len(density.cells[0]) == 1 and not any(slices_of(described)):
             rod = Body.slender(name, mass, (zero, np.array([numbers.length, 0.0, 0.0])))
             return Body(name, mass, rod.centre, rod.inertia, frame, rod=rod.rod)
     inertia = np.array(numbers.inertia)
-    if "centre" in told and not isinstance(told["centre"]["inertia"], list):
+    if "centre" in described and not isinstance(described["centre"]["inertia"], list):
         # In a plane one moment is given; two more that a body may have.
         inertia[0, 0] = inertia[1, 1] = inertia[2, 2] / 2.0
     return Body(name, mass, np.array(numbers.centre), inertia, frame)

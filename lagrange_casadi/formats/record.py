@@ -74,11 +74,11 @@ class Frame:
     axes: Array = field(default_factory=lambda: np.eye(3))
 
     def then(self, inner: Frame) -> Frame:
-        """Return a frame that is told on this one, on what this one is told on."""
+        """Return a frame given relative to this one, relative to the reference of this one."""
         return Frame(self.place + self.axes @ inner.place, self.axes @ inner.axes)
 
-    def seen(self, other: Frame) -> Frame:
-        """Return a frame that is told on what this one is told on, on this one."""
+    def relative(self, other: Frame) -> Frame:
+        """Return a frame given relative to the reference of this one, relative to this one."""
         return Frame(self.axes.T @ (other.place - self.place), self.axes.T @ other.axes)
 
     def at(self, place: Array) -> Array:
@@ -195,7 +195,7 @@ class Law:
 
 @dataclass(eq=False)
 class Model:
-    """A mechanism as a file tells it. ``notes`` say what was not read, and what was cleaned.
+    """A mechanism as a file describes it. ``notes`` say what was ignored, and what was cleaned.
 
     ``file`` is the name of the file, ``span`` the instants: start [s], stop [s], count. ``posture``
     are rough values of coordinates at the start, from which loops that are open in the reference
@@ -223,16 +223,16 @@ class Model:
         """Return the error of an element of the file."""
         return ModelFileError(f"{self.file}: {where + ': ' if where else ''}{words}")
 
-    def name_of(self, kind: str, told: str, where: str, taken: Collection[str]) -> str:
+    def name_of(self, kind: str, stated: str, where: str, taken: Collection[str]) -> str:
         """Return a name of the file as one that parts may have, and keep what it was."""
-        name = re.sub(r"\W", "_", told.strip(), flags=re.ASCII)
+        name = re.sub(r"\W", "_", stated.strip(), flags=re.ASCII)
         name = name if name[:1].isalpha() else f"{kind[0]}_{name}"
         if name in taken or (name == GROUND and kind == "body"):
-            raise self.refuse(where, f"{kind} {shown(told)}: the name is taken")
+            raise self.refuse(where, f"{kind} {shown(stated)}: the name is taken")
         while name in {GROUND, *self.bodies, *self.joints, *self.couplings, *self.ties}:
             name = f"{name}_{kind}"
-        if name != told:
-            self.called[name] = told
+        if name != stated:
+            self.called[name] = stated
         return name
 
     def frame_of(self, body: str) -> Frame:
@@ -249,7 +249,7 @@ class Model:
     def at_reference(self, joint: Joint) -> list[float]:
         """Return the coordinates of a joint in the reference posture, in their order."""
         near, far = self.frames(joint)
-        known = near.seen(far)
+        known = near.relative(far)
         x, y, z = (float(number) for number in known.place)
         turn = math.atan2(known.axes[1, 0], known.axes[0, 0])
         about = _three_turns(known.axes)
@@ -276,7 +276,7 @@ class Model:
     def apart(self, joint: Joint) -> tuple[float, float]:
         """Return by how much the frames of a joint miss what it holds: in m, and in rad."""
         near, far = self.frames(joint)
-        known = near.seen(far)
+        known = near.relative(far)
         slides, angles = HELD[joint.kind]
         gap = math.hypot(*(float(known.place["xyz".index(axis)]) for axis in slides))
         if any(one != GROUND and self.bodies[one].point for one in (joint.parent, joint.child)):
@@ -306,25 +306,25 @@ def _three_turns(axes: Array) -> list[float]:
     return [math.atan2(-axes[1, 2], axes[2, 2]), y, math.atan2(-axes[0, 1], axes[0, 0])]
 
 
-def number(model: Model, where: str, told: object, what: str) -> float:
+def number(model: Model, where: str, given: object, what: str) -> float:
     """Return a number of a file. Raises :class:`.ModelFileError` for what is none, and for one that
     no machine has.
     """
     try:
-        found = float(told)  # type: ignore[arg-type]
+        found = float(given)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
-        raise model.refuse(where, f"{what}: expected a number, got {shown(told)}") from None
-    if isinstance(told, bool) or "_" in str(told) or not abs(found) <= LARGEST:
+        raise model.refuse(where, f"{what}: expected a number, got {shown(given)}") from None
+    if isinstance(given, bool) or "_" in str(given) or not abs(found) <= LARGEST:
         expected = f"expected a finite number of at most {LARGEST:g}"
-        raise model.refuse(where, f"{what}: {expected}, got {shown(told)}")
+        raise model.refuse(where, f"{what}: {expected}, got {shown(given)}")
     return found
 
 
-def numbers(model: Model, where: str, told: object, what: str, count: int) -> Array:
+def numbers(model: Model, where: str, given: object, what: str, count: int) -> Array:
     """Return so many numbers of a file, from a list or from a text with blanks."""
-    parts = told.split() if isinstance(told, str) else told
+    parts = given.split() if isinstance(given, str) else given
     if not isinstance(parts, Sequence) or len(parts) != count:
-        raise model.refuse(where, f"{what}: expected {count} numbers, got {shown(told)}")
+        raise model.refuse(where, f"{what}: expected {count} numbers, got {shown(given)}")
     return np.array([number(model, where, part, what) for part in parts])
 
 
@@ -348,7 +348,7 @@ MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def inertia_of(moments: Sequence[float], axes: Array) -> Array:
-    """Return the inertia of six :data:`MOMENTS` about axes, on the axes that these are told on."""
+    """Return the inertia of six :data:`MOMENTS` about axes, on the reference axes of these."""
     xx, xy, xz, yy, yz, zz = moments
     return np.asarray(axes @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ axes.T)
 

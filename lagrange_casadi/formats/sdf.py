@@ -18,12 +18,10 @@ from .record import (
     Model,
     about_axis,
     inertia_of,
-    number,
-    numbers,
     rotation,
     rpy,
 )
-from .xml_tree import Element, attribute, needed, parsed
+from .xml_tree import Element, parsed
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -49,13 +47,13 @@ def read(path: Path, text: str) -> Model:
     root = parsed(model, text, "sdf")
     world = root.first("world")
     if world is not None and (line := world.first("gravity")) is not None:
-        x, y, z = numbers(model, line.where, line.text, "gravity", 3)
+        x, y, z = line.numbers(line.text, "gravity", 3)
         model.gravity = (float(x), float(y), float(z))
-    line = needed(model, world or root, "model")
+    line = (world or root).needed("model")
     others = [one for one in (world or root).all("model") if one is not line]
-    model.notes += [f"Model {shown(one.given.get('name'))} of line {one.line} is not read."
+    model.notes += [f"Model {shown(one.given.get('name'))} of line {one.line} is ignored."
                     for one in others]  # fmt: skip
-    model.name = model.name_of("mechanism", attribute(model, line, "name"), line.where, {})
+    model.name = model.name_of("mechanism", line.attribute("name"), line.where, {})
     return _Reader(model, line).read()
 
 
@@ -64,12 +62,7 @@ class _Reader:
 
     def __init__(self, model: Model, line: Element) -> None:
         self.model, self.line = model, line
-        self.named: dict[str, Element] = {}
-        for one in line.all("link", "frame", "joint"):
-            name = attribute(model, one, "name")
-            if name in self.named:
-                raise model.refuse(one.where, "the name is taken")
-            self.named[name] = one
+        self.named = line.by_name("link", "frame", "joint")
         self.own = self.pose(line.first("pose"))
         self.bodies: dict[str, str] = {}
         self.joints: dict[str, str] = {}
@@ -79,7 +72,7 @@ class _Reader:
         for link in self.line.all("link"):
             self.body(link)
         for joint in self.line.all("joint"):
-            if attribute(self.model, joint, "type") != "gearbox":
+            if joint.attribute("type") != "gearbox":
                 self.joint(joint)
         for joint in self.line.all("joint"):
             self.couplings(joint)
@@ -93,23 +86,23 @@ class _Reader:
             self.model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
         for one in self.line.inside:
             if one.name in ("model", "include"):
-                raise self.model.refuse(one.where, "is not read: put its links into the model")
+                raise one.refuse("is not supported; put its links into the model itself")
             if one.name not in _IGNORED:
-                self.model.notes.append(f"<{one.name}> of line {one.line} is not read.")
+                self.model.notes.append(f"<{one.name}> of line {one.line} is ignored.")
         return self.model
 
     def body(self, link: Element) -> None:
         """Declare a link as a body."""
-        model, data = self.model, attribute(self.model, link, "name")
+        model, data = self.model, link.attribute("name")
         name = self.bodies[data] = model.name_of("body", data, link.where, model.bodies)
         inertial, mass = link.first("inertial"), 1.0
         if inertial is None or inertial.first("inertia") is None:
             words = "lacks <inertia>, in place of which Gazebo has 1 kg and 1 kg m^2"
-            raise model.refuse((inertial or link).where, words)
+            raise (inertial or link).refuse(words)
         if (line := inertial.first("mass")) is not None:
-            mass = number(model, line.where, line.text.strip(), "mass")
+            mass = line.number(line.text.strip(), "mass")
         centre = self.pose(inertial.first("pose"))
-        moments = needed(model, inertial, "inertia")
+        moments = inertial.needed("inertia")
         six = [self.value(moments, key, 1.0 if key[1] == key[2] else 0.0) for key in MOMENTS]
         inertia = inertia_of(six, centre.axes)
         frame = self.frame(data, ())
@@ -117,11 +110,11 @@ class _Reader:
 
     def joint(self, line: Element) -> None:
         """Declare a joint, whose frames coincide as the model stands."""
-        model, data = self.model, attribute(self.model, line, "name")
-        kind = KINDS.get(attribute(model, line, "type"))
+        model, data = self.model, line.attribute("name")
+        kind = KINDS.get(line.attribute("type"))
         if kind is None:
             words = f"unknown type {shown(line.given['type'])}; valid: {', '.join(KINDS)}, gearbox"
-            raise model.refuse(line.where, words)
+            raise line.refuse(words)
         name = self.joints[data] = model.name_of("joint", data, line.where, model.joints)
         parent, child = self.end(line, "parent"), self.end(line, "child")
         frame = self.frame(data, ())
@@ -132,28 +125,28 @@ class _Reader:
             if kind == "universal":
                 second = self.axis(line, "axis2", frame)
                 if abs(first @ second) > 1e-6:
-                    raise model.refuse(line.where, "its two axes are not at right angles")
+                    raise line.refuse("its two axes are not at right angles")
                 far = Frame(frame.place, about_axis(second))
         lead = 0.0
         if kind == "screw":
-            lead = self.value(needed(model, line, "screw_thread_pitch"), "", 0.0)
+            lead = self.value(line.needed("screw_thread_pitch"), "", 0.0)
         model.joints[name] = Joint(
             name,
             kind,
             parent,
             child,
-            model.frame_of(parent).seen(near),
-            model.frame_of(child).seen(far),
+            model.frame_of(parent).relative(near),
+            model.frame_of(child).relative(far),
             lead,
             line.where,
         )
 
     def couplings(self, line: Element) -> None:
         """Declare what ties a joint to another one: a mimic, a gearbox."""
-        model, data = self.model, attribute(self.model, line, "name")
+        model, data = self.model, line.attribute("name")
         axis = line.first("axis")
         if axis is not None and (mimic := axis.first("mimic")) is not None:
-            other = attribute(model, mimic, "joint")
+            other = mimic.attribute("joint")
             ratio, offset, reference = (
                 self.value(mimic, key, usual)
                 for key, usual in (("multiplier", 0.0), ("offset", 0.0), ("reference", 0.0))
@@ -162,7 +155,7 @@ class _Reader:
         if line.given["type"] != "gearbox":
             return
         ratio = self.value(line, "gearbox_ratio", 1.0)
-        carrier = needed(model, line, "gearbox_reference_body").text.strip()
+        carrier = line.needed("gearbox_reference_body").text.strip()
         ends = []
         for side in ("parent", "child"):
             body = self.end(line, side)
@@ -174,42 +167,42 @@ class _Reader:
             ]
             if len(found) != 1:
                 words = f"its {side} has no joint on the reference body {shown(carrier)}"
-                raise model.refuse(line.where, words)
+                raise line.refuse(words)
             ends.append(found[0])
         self.coupling(line, data, (ends[0], ends[1]), -ratio, 0.0)
 
     def coupling(
-        self, line: Element, told: str, joints: tuple[str, str], ratio: float, offset: float
+        self, line: Element, stated: str, joints: tuple[str, str], ratio: float, offset: float
     ) -> None:
         """Declare second = ratio first + offset."""
         model = self.model
         for joint in joints:
             if joint not in self.joints:
                 words = f"unknown joint {shown(joint)}; valid: {', '.join(self.joints)}"
-                raise model.refuse(line.where, words)
-        name = model.name_of("coupling", told, line.where, model.couplings)
+                raise line.refuse(words)
+        name = model.name_of("coupling", stated, line.where, model.couplings)
         first, second = (self.joints[joint] for joint in joints)
         model.couplings[name] = Coupling(name, first, second, ratio, offset, line.where)
 
     def axis(self, line: Element, key: str, frame: Frame) -> Array:
         """Return the direction of a joint's axis, on the ground's axes."""
-        data = needed(self.model, line, key)
+        data = line.needed(key)
         xyz, given = data.first("xyz"), np.array([0.0, 0.0, 1.0])
         on = frame
         if xyz is not None:
-            given = numbers(self.model, xyz.where, xyz.text, "xyz", 3)
+            given = xyz.numbers(xyz.text, "xyz", 3)
             if expressed := xyz.given.get("expressed_in"):
                 on = self.known(xyz, expressed, ())
         legacy = data.first("use_parent_model_frame")
         if legacy is not None and legacy.text.strip() in ("1", "true"):
             on = self.own
         if not np.any(given):
-            raise self.model.refuse(data.where, "expected a direction, got zero")
+            raise data.refuse("expected a direction, got zero")
         return np.asarray(on.axes @ given / np.linalg.norm(given))
 
     def end(self, line: Element, key: str) -> str:
-        """Return the body of a joint's parent or child, which may be told by a frame on it."""
-        data = needed(self.model, line, key)
+        """Return the body of a joint's parent or child, which may be given by a frame on it."""
+        data = line.needed(key)
         name = data.text.strip()
         for _ in range(len(self.named) + 1):
             if name == "world":
@@ -221,18 +214,18 @@ class _Reader:
                 break
             name = frame.given.get("attached_to", "")
         words = f"unknown link {shown(data.text.strip())}; valid: world, {', '.join(self.bodies)}"
-        raise self.model.refuse(data.where, words)
+        raise data.refuse(words)
 
     def frame(self, name: str, above: tuple[str, ...]) -> Frame:
-        """Return where a link, frame or joint is; poses may be told on each other."""
+        """Return where a link, frame or joint is; poses may be given relative to each other."""
         line = self.named[name]
         if name in above:
-            raise self.model.refuse(line.where, "its pose is relative to itself")
+            raise line.refuse("its pose is relative to itself")
         pose, on = line.first("pose"), ""
         if pose is not None:
             on = pose.given.get("relative_to", "") or pose.given.get("frame", "")
         if not on and line.name == "joint":
-            on = needed(self.model, line, "child").text.strip()
+            on = line.needed("child").text.strip()
         elif not on and line.name == "frame":
             on = line.given.get("attached_to", "")
         return self.known(line, on, (*above, name)).then(self.pose(pose))
@@ -245,7 +238,7 @@ class _Reader:
             return Frame()
         if name not in self.named:
             words = f"unknown frame {shown(name)}; valid: {', '.join(self.named)}"
-            raise self.model.refuse(line.where, words)
+            raise line.refuse(words)
         return self.frame(name, above)
 
     def pose(self, line: Element | None) -> Frame:
@@ -254,8 +247,8 @@ class _Reader:
             return Frame()
         data = line.text
         if line.given.get("rotation_format", "euler_rpy") != "euler_rpy":
-            raise self.model.refuse(line.where, "rotation_format: expected euler_rpy")
-        six = numbers(self.model, line.where, data, "pose", 6)
+            raise line.refuse("rotation_format: expected euler_rpy")
+        six = line.numbers(data, "pose", 6)
         angles = np.radians(six[3:]) if line.given.get("degrees") in ("true", "1") else six[3:]
         return Frame(six[:3], rotation(self.model, line.where, rpy(angles)))
 
@@ -264,4 +257,4 @@ class _Reader:
         found = line if not key else line.first(key)
         if found is None:
             return usual
-        return number(self.model, found.where, found.text.strip(), key or line.name)
+        return found.number(found.text.strip(), key or line.name)

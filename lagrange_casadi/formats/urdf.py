@@ -1,7 +1,7 @@
 """Robots as URDF: links, joints, and what people add for loops.
 
 The root link is the ground. Links without mass that are fixed to another one are frames of it.
-Loops are told by a second joint of a link, and by ``<constraint>`` (proposed for urdfdom),
+Loops are given by a second joint of a link, and by ``<constraint>`` (proposed for urdfdom),
 ``<loop>`` and ``<coupling>`` (URDF+), ``<loop_joint>`` (Isaac Sim) and
 ``<drake:ball_constraint>``.
 """
@@ -25,11 +25,10 @@ from .record import (
     about_axis,
     inertia_of,
     number,
-    numbers,
     rotation,
     rpy,
 )
-from .xml_tree import Element, attribute, needed, parsed
+from .xml_tree import Element, parsed
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -59,7 +58,7 @@ def read(path: Path, text: str) -> Model:
     for one in root.inside:
         if one.name.startswith("xacro:"):
             data = f"xacro {path.name} > expanded.urdf"
-            raise model.refuse(one.where, f"is a macro of xacro; expand it first: {data}")
+            raise one.refuse(f"is a macro of xacro; expand it first: {data}")
     model.name = model.name_of("mechanism", root.given.get("name", path.stem), root.where, {})
     return _Robot(model, root).read()
 
@@ -69,12 +68,7 @@ class _Robot:
 
     def __init__(self, model: Model, root: Element) -> None:
         self.model, self.root = model, root
-        self.links: dict[str, Element] = {}
-        for link in root.all("link"):
-            name = attribute(model, link, "name")
-            if name in self.links:
-                raise model.refuse(link.where, "the name is taken")
-            self.links[name] = link
+        self.links = root.by_name("link")
         self.on: dict[str, tuple[str, Frame]] = {}
         self.names: dict[str, str] = {}
 
@@ -86,7 +80,7 @@ class _Robot:
         roots = [name for name in self.links if name not in children]
         if len(roots) != 1:
             found = ", ".join(map(repr, roots)) or "none"
-            raise model.refuse(self.root.where, f"expected one root link, found {found}")
+            raise self.root.refuse(f"expected one root link, found {found}")
         self.on[roots[0]] = (GROUND, Frame())
         placed = {roots[0]: Frame()}
         waiting = joints
@@ -129,7 +123,7 @@ class _Robot:
         self, line: Element, kind: str, one: tuple[str, Frame], other: tuple[str, Frame]
     ) -> None:
         """Declare a joint between frames of two links."""
-        data = attribute(self.model, line, "name")
+        data = line.attribute("name")
         name = self.names[data] = self.model.name_of("joint", data, line.where, self.model.joints)
         (parent, near), (child, far) = (
             (self.on[link][0], self.on[link][1].then(frame)) for link, frame in (one, other)
@@ -146,8 +140,8 @@ class _Robot:
         else:
             given = line.first("parent_axis", "axis")
             if given is not None and given.given.get("frame") == "parent":
-                # The axis is told on the parent alone: the child's is where it is at zero.
-                known = placed[child].seen(placed[parent].then(near))
+                # The axis is given on the parent alone: the child's is where it is at zero.
+                known = placed[child].relative(placed[parent].then(near))
                 far = Frame(far.place, rotation(self.model, line.where, known.axes))
             else:
                 far = far.then(self.axes(line, kind, "parent_axis", "axis"))
@@ -157,11 +151,11 @@ class _Robot:
         """Read a ball constraint of Drake's."""
         sides = []
         for letter, point in (("A", "p_AP"), ("B", "p_BQ")):
-            body = needed(self.model, line, f"drake:ball_constraint_body_{letter}")
-            place = needed(self.model, line, f"drake:ball_constraint_{point}")
-            data = attribute(self.model, place, "value")
-            at = numbers(self.model, place.where, data, point, 3)
-            sides.append((self.known(body, attribute(self.model, body, "name")), Frame(at)))
+            body = line.needed(f"drake:ball_constraint_body_{letter}")
+            place = line.needed(f"drake:ball_constraint_{point}")
+            data = place.attribute("value")
+            at = place.numbers(data, point, 3)
+            sides.append((self.known(body, body.attribute("name")), Frame(at)))
         line.given.setdefault("name", f"ball_{len(self.model.joints)}")
         self.add(line, "spherical", sides[0], sides[1])
 
@@ -172,7 +166,7 @@ class _Robot:
         model, first = self.model, self.joint(mimic, "joint")
         second = self.joint(joint, "name")
         ratio, offset = (
-            number(model, mimic.where, mimic.given.get(key, usual), key)
+            mimic.number(mimic.given.get(key, usual), key)
             for key, usual in (("multiplier", "1"), ("offset", "0"))
         )
         name = f"{second}_mimic"
@@ -184,13 +178,13 @@ class _Robot:
         links = [self.side(line, side)[0] for side in (_ONE, _OTHER)]
         for link in links:
             if link not in above:
-                raise model.refuse(line.where, f"link {shown(link)} has no joint")
+                raise line.refuse(f"link {shown(link)} has no joint")
         if len({self.side(above[link], _ONE)[0] for link in links}) > 1:
-            raise model.refuse(line.where, "is not read if its links hang on two different links")
+            raise line.refuse("is supported only if both its links have the same parent")
         first, second = (self.joint(above[link], "name") for link in links)
-        value = attribute(model, needed(model, line, "ratio"), "value")
-        ratio = number(model, line.where, value, "ratio")
-        data = attribute(model, line, "name")
+        value = line.needed("ratio").attribute("value")
+        ratio = line.number(value, "ratio")
+        data = line.attribute("name")
         name = model.name_of("coupling", data, line.where, model.couplings)
         model.couplings[name] = Coupling(name, first, second, ratio, where=line.where)
 
@@ -212,7 +206,7 @@ class _Robot:
             for joint in joints
             for one in joint.all("dynamics")
             for key in ("damping", "friction")
-            if number(self.model, one.where, one.given.get(key) or "0", key)
+            if one.number(one.given.get(key) or "0", key)
         }
         if losses:
             self.model.notes.append(f"Damping and friction are not read: {', '.join(losses)}.")
@@ -222,22 +216,22 @@ class _Robot:
             self.model.notes.append(f"Frames without mass are left out: {', '.join(frames)}.")
         for one in self.root.inside:
             if one.name not in (*_KNOWN, *_LOOPS):
-                self.model.notes.append(f"<{one.name}> of line {one.line} is not read.")
+                self.model.notes.append(f"<{one.name}> of line {one.line} is ignored.")
 
-    def body(self, told: str, frame: Frame) -> str:
+    def body(self, stated: str, frame: Frame) -> str:
         """Declare a link as a body."""
-        model, link = self.model, self.links[told]
-        name = model.name_of("body", told, link.where, model.bodies)
+        model, link = self.model, self.links[stated]
+        name = model.name_of("body", stated, link.where, model.bodies)
         inertial = link.first("inertial")
         if inertial is None:
             none = np.zeros(3)
             model.bodies[name] = Body(name, 0.0, none, np.diag(none), frame, where=link.where)
             return name
-        line = needed(model, inertial, "mass")
-        mass = number(model, line.where, attribute(model, line, "value"), "mass")
+        line = inertial.needed("mass")
+        mass = line.number(line.attribute("value"), "mass")
         origin, inertia = self.origin(inertial.first("origin")), None
-        if (told_inertia := inertial.first("inertia")) is not None:
-            where, given = told_inertia.where, told_inertia.given
+        if (stated_inertia := inertial.first("inertia")) is not None:
+            where, given = stated_inertia.where, stated_inertia.given
             six = [number(model, where, given.get(key, "0"), key) for key in MOMENTS]
             inertia = inertia_of(six, origin.axes)
         model.bodies[name] = Body(name, mass, origin.place, inertia, frame, where=link.where)
@@ -245,10 +239,10 @@ class _Robot:
 
     def kind(self, line: Element) -> str:
         """Return the kind of a joint."""
-        data = attribute(self.model, line, "type")
+        data = line.attribute("type")
         if data not in KINDS:
             words = f"unknown type {shown(data)}; valid: {', '.join(KINDS)}"
-            raise self.model.refuse(line.where, words)
+            raise line.refuse(words)
         return KINDS[data]
 
     def axes(self, line: Element, kind: str, *names: str) -> Frame:
@@ -257,30 +251,29 @@ class _Robot:
             return Frame()
         axis: Array = np.array([1.0, 0.0, 0.0])
         if (found := line.first(*(names or ("axis",)))) is not None:
-            data = attribute(self.model, found, "xyz")
-            axis = numbers(self.model, found.where, data, "axis", 3)
+            data = found.attribute("xyz")
+            axis = found.numbers(data, "axis", 3)
             if not np.any(axis):
-                raise self.model.refuse(found.where, "expected a direction, got zero")
+                raise found.refuse("expected a direction, got zero")
         return Frame(axes=about_axis(axis))
 
     def origin(self, line: Element | None) -> Frame:
-        """Return the frame that ``xyz`` and ``rpy`` tell."""
+        """Return the frame that ``xyz`` and ``rpy`` give."""
         if line is None:
             return Frame()
         place, angles = (
-            numbers(self.model, line.where, line.given.get(key, "0 0 0"), key, 3)
-            for key in ("xyz", "rpy")
+            line.numbers(line.given.get(key, "0 0 0"), key, 3) for key in ("xyz", "rpy")
         )
         return Frame(place, rotation(self.model, line.where, rpy(angles)))
 
     def side(self, line: Element, names: tuple[str, ...]) -> tuple[str, Frame]:
-        """Return one link of a joint or a loop, and the frame on it that the dialect tells."""
+        """Return one link of a joint or a loop, and the frame on it that the dialect gives."""
         found = line.first(*names)
         if found is None and names == _OTHER:  # some write link1 twice
             found = next(iter(list(line.all("link1"))[1:2]), None)
         if found is None:
-            raise self.model.refuse(line.where, f"lacks <{names[0]}>")
-        link = self.known(found, attribute(self.model, found, "link"))
+            raise line.refuse(f"lacks <{names[0]}>")
+        link = self.known(found, found.attribute("link"))
         beside = line.first(f"{found.name}_origin")
         return link, self.origin(found.first("origin") or beside or found)
 
@@ -288,15 +281,15 @@ class _Robot:
         """Return a joint's name in the record. Raises :class:`.ModelFileError` for one that is not
         there.
         """
-        data = attribute(self.model, line, key)
+        data = line.attribute(key)
         if data not in self.names:
             words = f"unknown joint {shown(data)}; valid: {', '.join(self.names)}"
-            raise self.model.refuse(line.where, words)
+            raise line.refuse(words)
         return self.names[data]
 
     def known(self, line: Element, link: str) -> str:
         """Return a link's name. Raises :class:`.ModelFileError` for one that is not there."""
         if link not in self.links:
             words = f"unknown link {shown(link)}; valid: {', '.join(self.links)}"
-            raise self.model.refuse(line.where, words)
+            raise line.refuse(words)
         return link

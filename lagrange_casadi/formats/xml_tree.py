@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from ..errors import shown
-from .record import Model
+from ..base.arrays import Array
+from ..errors import ModelFileError, shown
+from .record import Model, number, numbers
 
 _DEEPEST = 200
 _MOST = 500_000
@@ -15,8 +16,11 @@ _MOST = 500_000
 
 @dataclass(eq=False)
 class Element:
-    """An element: its name, attributes, text, and what is in it."""
+    """An element of a model's file: its name, attributes, text, and what is in it. What is missing
+    or wrong in it is a :class:`.ModelFileError`.
+    """
 
+    model: Model
     name: str
     line: int
     given: dict[str, str] = field(default_factory=dict)
@@ -37,20 +41,54 @@ class Element:
         """Return the first element in it of these names."""
         return next(self.all(*names), None)
 
+    def refuse(self, words: str) -> ModelFileError:
+        """Return the error of this element."""
+        return self.model.refuse(self.where, words)
+
+    def needed(self, *names: str) -> Element:
+        """Return the first element in it of these names, of which there must be one."""
+        if (found := self.first(*names)) is None:
+            raise self.refuse(f"lacks <{names[0]}>")
+        return found
+
+    def attribute(self, *names: str) -> str:
+        """Return the first attribute of these names, of which there must be one."""
+        for name in names:
+            if name in self.given:
+                return self.given[name]
+        raise self.refuse(f"lacks {names[0]}=")
+
+    def number(self, given: object, what: str) -> float:
+        """Return a number of it."""
+        return number(self.model, self.where, given, what)
+
+    def numbers(self, given: object, what: str, count: int) -> Array:
+        """Return so many numbers of it."""
+        return numbers(self.model, self.where, given, what, count)
+
+    def by_name(self, *names: str) -> dict[str, Element]:
+        """Return the elements in it of these names, by their attribute name."""
+        found: dict[str, Element] = {}
+        for one in self.all(*names):
+            if (name := one.attribute("name")) in found:
+                raise one.refuse("the name is taken")
+            found[name] = one
+        return found
+
 
 def parsed(model: Model, text: str, root: str) -> Element:
     """Return the root element of a text, any where no name is told.
 
     Raises :class:`.ModelFileError`.
     """
-    parser, stack, count = expat.ParserCreate(), [Element("", 0)], 0
+    parser, stack, count = expat.ParserCreate(), [Element(model, "", 0)], 0
 
     def start(name: str, given: dict[str, str]) -> None:
         nonlocal count
         count += 1
-        one = Element(name, parser.CurrentLineNumber, given)
+        one = Element(model, name, parser.CurrentLineNumber, given)
         if len(stack) > _DEEPEST or count > _MOST:
-            raise model.refuse(one.where, "too deep, or too many elements")
+            raise one.refuse("too deep, or too many elements")
         stack[-1].inside.append(one)
         stack.append(one)
 
@@ -74,20 +112,5 @@ def parsed(model: Model, text: str, root: str) -> Element:
         raise model.refuse(f"line {error.lineno}", f"no XML: {error}") from None
     found = stack[0].inside[0]
     if root and found.name != root:
-        raise model.refuse(found.where, f"expected <{root}>")
+        raise found.refuse(f"expected <{root}>")
     return found
-
-
-def needed(model: Model, element: Element, *names: str) -> Element:
-    """Return the first element of these names. Raises :class:`.ModelFileError` for none."""
-    if (found := element.first(*names)) is None:
-        raise model.refuse(element.where, f"lacks <{names[0]}>")
-    return found
-
-
-def attribute(model: Model, element: Element, *names: str) -> str:
-    """Return an attribute. Raises :class:`.ModelFileError` for none."""
-    for name in names:
-        if name in element.given:
-            return element.given[name]
-    raise model.refuse(element.where, f"lacks {names[0]}=")

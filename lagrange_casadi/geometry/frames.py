@@ -134,40 +134,43 @@ class Carried(Frame):
     """A frame in space whose motion is also known in its own axes, where levers are short and a
     turn keeps a component.
 
-    ``own`` is the motion in axes at rest that lie along the body's own at the instant, by the same
-    anchor; ``turns`` lead to it from the ground. After a single one, about an axis of the ground's,
-    the motion is as short in the ground's axes, where others want it too.
+    ``carried`` is the motion in axes at rest that lie along the body's own at the instant, by the
+    same anchor; ``rotations`` lead to it from the ground. After a single one, about an axis of the
+    ground's, the motion is as short in the ground's axes, where others want it too.
     """
 
-    own: Frame = field(default_factory=Frame)
-    turns: int = 0
+    carried: Frame = field(default_factory=Frame)
+    rotations: int = 0
 
     @property
     def shortest(self) -> Frame:
         """The motion of the body in those axes at rest in which it is shortest."""
-        return self.own if self.turns > 1 else self
+        return self.carried if self.rotations > 1 else self
 
     def displaced(self, translation: Vector, turning: Vector) -> Carried:
         """The frame displaced at the anchor, by the rates of a translation and of a rotation."""
-        local = self.own.displaced(
+        local = self.carried.displaced(
             self.rotation.resolve(translation), self.rotation.resolve(turning)
         )
         return replace(
-            self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), own=local
+            self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), carried=local
         )
 
     def displaced_along(self, translation: Vector, turning: Vector) -> Carried:
         """Displacement by rates in the body's own axes."""
         there = self.displaced(self.rotation.apply(translation), self.rotation.apply(turning))
-        return replace(there, own=self.own.displaced(translation, turning))
+        return replace(there, carried=self.carried.displaced(translation, turning))
 
     def along_axis(self) -> Frame:
         """The body at its origin, seen in axes at rest that lie along its own at the instant."""
-        if self.shortest is not self.own:
+        if self.shortest is not self.carried:
             return super().along_axis()
-        speed, acceleration = self.own.motion_of(ZERO)
+        speed, acceleration = self.carried.motion_of(ZERO)
         return Frame(
-            speed=speed, acceleration=acceleration, rate=self.own.rate, angular=self.own.angular
+            speed=speed,
+            acceleration=acceleration,
+            rate=self.carried.rate,
+            angular=self.carried.angular,
         )
 
 

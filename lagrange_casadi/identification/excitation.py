@@ -192,7 +192,7 @@ class _Search:
         )
 
     def _cost(self, x: Array) -> tuple[int, float]:
-        """Return the number of combinations that a motion leaves untold, and its condition."""
+        """Return the number of combinations that a motion leaves unexcited, and its condition."""
         try:
             base = self._base(*self._scaled(x))
         except AssemblyError:

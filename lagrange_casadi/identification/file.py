@@ -44,7 +44,7 @@ def save_identification(
             file.attrs.update({"schema": SCHEMA, "schema_version": VERSION, "case": found.name})
             file.attrs.update({"measurements": found.measurements, "condition": found.condition})
             file.attrs.update({"rounds": found.rounds, "cutoff": found.cutoff or math.inf})
-            file.attrs.update({"untold": list(found.untold), "absent": list(found.absent)})
+            file.attrs.update({"unexcited": list(found.unexcited), "absent": list(found.absent)})
             group = file.create_group("parameters", track_order=True)
             for name, value in found.values.items():
                 group[name] = value

@@ -75,7 +75,7 @@ class Data:
 
     def parameters(self, theta: Array) -> Array:
         """Return the values of all parameters."""
-        p = self.defaults.copy()
+        p: Array = self.defaults.copy()
         p[list(self.numbers)] = theta
         return p
 

@@ -21,7 +21,7 @@ from .fit import Data, Fit, Loss, fit, nonlinear
 from .measurements import Filter, Measurements
 from .regressor import DrivenMotion, Regressor
 
-_TOLD = 1e-8
+_ROUNDED = 1e-8
 """Share of a regressor's norm that is not rounding."""
 
 
@@ -76,14 +76,17 @@ class Identification:
     """Parameters that were found, and how sure they are.
 
     ``name`` is that of the mechanism. ``values`` and ``errors`` are those of the unknown
-    parameters; the standard error is infinite for one that is told only within a combination. ``base`` are
-    the combinations that are told. ``untold`` are combinations that they do not tell, but that other speeds and
-    accelerations at the same places do; ``absent`` are parameters on which nothing measured
-    depends. ``nonlinear`` are the parameters that forces are not linear in while the others are
-    unknown too, and with which each goes; their base is that at the values found. ``condition`` is
-    that of the base, in columns of norm 1. ``noise`` are standard deviations, given or estimated,
-    ``outliers`` the shares of instants whose weight Huber's loss lowered, and ``cutoffs`` the
-    frequencies [Hz] at which the smoothing of each drive's coordinate halves the power.
+    parameters; the standard error is infinite for one that is told only within a combination.
+
+    ``base`` are the combinations that are told, and ``condition`` is that of their columns of norm
+    1. ``unexcited`` are combinations that only other speeds and accelerations at the same places
+    tell; ``absent`` are parameters on which nothing measured depends. ``nonlinear`` are
+    the parameters that forces are not linear in while the others are unknown too, and with which
+    each goes; their base is that at the values found.
+
+    ``noise`` are standard deviations, given or estimated, ``outliers`` the shares of instants whose
+    weight Huber's loss lowered, and ``cutoffs`` the frequencies [Hz] at which the smoothing of each
+    drive's coordinate halves the power.
     ``covariance`` is that of the base parameters.
     """
 
@@ -93,7 +96,7 @@ class Identification:
     errors: Mapping[str, float]
     units: Mapping[str, str]
     base: tuple[BaseParameter, ...]
-    untold: tuple[str, ...]
+    unexcited: tuple[str, ...]
     absent: tuple[str, ...]
     nonlinear: Mapping[str, tuple[str, ...]]
     condition: float
@@ -240,7 +243,7 @@ def identify(
     loss = Loss(given, robust, data.theta, spread, consistency)
     curved = nonlinear(data, z, names, ranking.scales)
     found = fit(data, z, loss, ranking)
-    return _told(scene, measurements, data, found, (names, curved, ranking), cutoff)
+    return _result(scene, measurements, data, found, (names, curved, ranking), cutoff)
 
 
 def _measured(measurements: Measurements, quantities: Sequence[str]) -> Array:
@@ -268,7 +271,7 @@ def _compared(
     )
 
 
-def _told(
+def _result(
     scene: Scene,
     measurements: Measurements,
     data: Data,
@@ -309,7 +312,7 @@ def _told(
             BaseParameter(names[k], words, units[names[k]], value, error)
             for k, words, value, error in every
         ),
-        untold=_untold(data, found, ranking, names),
+        unexcited=_unexcited(data, found, ranking, names),
         absent=tuple(names[k] for k in base.absent),
         nonlinear=curved,
         condition=base.condition,
@@ -325,7 +328,7 @@ def _told(
     )
 
 
-def _untold(data: Data, found: Fit, ranking: Ranking, names: Sequence[str]) -> tuple[str, ...]:
+def _unexcited(data: Data, found: Fit, ranking: Ranking, names: Sequence[str]) -> tuple[str, ...]:
     """Return combinations that other rates and accelerations at the measured places would tell."""
     generator, motion, scales = np.random.default_rng(0), data.motion, ranking.scales
     known = np.flatnonzero(np.isfinite(motion.acceleration).all(axis=1))
@@ -339,14 +342,14 @@ def _untold(data: Data, found: Fit, ranking: Ranking, names: Sequence[str]) -> t
     )
     rows = slopes.reshape(-1, len(names))
     rows = rows[np.isfinite(rows).all(axis=1)] * scales
-    told = found.rows.columns / found.noise[found.rows.quantity][:, None] * scales
-    size = np.linalg.norm(told, axis=0) + np.linalg.norm(rows, axis=0)
-    size = np.maximum(size, _TOLD * size.max())
+    here = found.rows.columns / found.noise[found.rows.quantity][:, None] * scales
+    size = np.linalg.norm(here, axis=0) + np.linalg.norm(rows, axis=0)
+    size = np.maximum(size, _ROUNDED * size.max())
     rank = len(found.base.chosen)
-    left = np.linalg.svd(triangle(told / size), full_matrices=True)[2][rank:]
+    left = np.linalg.svd(triangle(here / size), full_matrices=True)[2][rank:]
     rows = triangle(rows / size)
     more = rows @ left.T @ left
-    if not np.linalg.norm(more) > _TOLD * np.linalg.norm(rows):
+    if not np.linalg.norm(more) > _ROUNDED * np.linalg.norm(rows):
         return ()
-    more[:, np.linalg.norm(more, axis=0) <= _TOLD * np.linalg.norm(rows)] = 0.0
+    more[:, np.linalg.norm(more, axis=0) <= _ROUNDED * np.linalg.norm(rows)] = 0.0
     return base_of(more / size / scales, ranking).words(names)

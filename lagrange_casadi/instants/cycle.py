@@ -78,7 +78,7 @@ class Cycle:
         width = self.period / nodes
         first = (
             math.ceil(self.drive.start / width)
-            if self.drive.way > 0
+            if self.drive.sense > 0
             else math.floor(self.drive.start / width) - nodes
         )
         angles = (
@@ -129,7 +129,7 @@ class Drive:
     p: Array
     joint: str
     start: float
-    way: int
+    sense: int
     terms: Any
 
     @classmethod
@@ -230,7 +230,7 @@ class Drive:
         centre.
         """
         steps = np.arange(turns * _STEPS).astype(np.float64) + _OFFSET
-        angles = self.start + self.way * math.tau / _STEPS * steps
+        angles = self.start + self.sense * math.tau / _STEPS * steps
         here = np.array(self.program.newton.guess if self.program.newton else ())[:, None]
         places = np.empty((here.size, angles.size))
         for i in range(angles.size if self.program.newton else 0):
@@ -316,7 +316,7 @@ def cycle_of(program: Program, p: Array, rates: tuple[float, float]) -> Cycle:
         if revolutions == 1:
             _refuse_other_powers(drive, course, sizes, rates)
         half = course.angles.size // 2
-        gained = drive.way * (values[..., half:] - values[..., :half])
+        gained = drive.sense * (values[..., half:] - values[..., :half])
         near = _SAME * np.abs(values).max(axis=-1) + _FAINT * sizes
         change = gained[0].mean(axis=-1)
         change[np.abs(change) <= near[0]] = 0.0

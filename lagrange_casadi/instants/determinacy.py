@@ -1,9 +1,9 @@
 """Determinacy of forces by equilibrium, decided for the parameters and instants that are evaluated.
 
 In a mechanism with more constraints than it needs, forces are f + s u, where u is what equilibrium
-leaves open, and elasticity does not tell. A check ``open`` of a force is the size of s. A force is
-determined where that is zero: by structure, and then it has no such check, in every posture, or in
-one alone.
+leaves open, and elasticity does not determine. A check ``open`` of a force is the size of s. A
+force is determined where that is zero: by structure, and then it has no such check, in every
+posture, or in one alone.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ..equations.program import Program
 from .backends import Evaluated, run
 from .elasticity import Elasticity
 from .evaluation_method import EvaluationMethod
-from .rules import open_limit
+from .rules import indeterminate_limit
 
 
 def undetermined(
@@ -39,13 +39,16 @@ def undetermined(
 
 
 def completed(
-    program: Program, found: Evaluated, t: Array, p: Array, left_open: Sequence[Output]
+    program: Program, found: Evaluated, t: Array, p: Array, indeterminate: Sequence[Output]
 ) -> tuple[Elasticity, dict[str, Array]]:
-    """Report what least strain energy told at instants ``t``, why some are ``left_open``, and its
-    residual for a certificate.
+    """Report what least strain energy determined at instants ``t``, why some are ``indeterminate``,
+    and its residual for a certificate.
     """
-    completion, known = program.completion, np.isfinite(found.out).all(axis=0)
-    if completion is None or not known.any():
+    completion = program.completion
+    if completion is None:
+        return Elasticity(), {}
+    known = np.isfinite(found.out).all(axis=0)
+    if not known.any():
         return Elasticity(), {}
     driven, iterated = (
         program.motion(t[None, known], p),
@@ -56,10 +59,10 @@ def completed(
     doubted = _beyond(
         program, dict(zip(completion.doubted, changes, strict=True)), p, EvaluationMethod()
     )
-    completed_outputs = tuple(output for output in doubted if output not in left_open)
+    completed_outputs = tuple(output for output in doubted if output not in indeterminate)
     reasons = (
         completion.reasons([bool(row.any()) for row in through], idle=bool(idle.any()))
-        if left_open
+        if indeterminate
         else ()
     )
     residual = np.zeros(t.size)
@@ -73,7 +76,7 @@ def _beyond(
     """The outputs that change at any of some instants by more than what is none."""
     if not changes:
         return ()
-    extent, limit = program.extent(p), open_limit(program, method.precision, method.newton)
+    extent, limit = program.extent(p), indeterminate_limit(program, method.precision, method.newton)
     units = {
         output: extent if output.unit(program.data.kinds) == MOMENT else 1.0 for output in changes
     }
@@ -93,17 +96,17 @@ def determinate(
     if not program.indeterminate:
         return program, ()
     table, _ = run(program, t, p, EvaluationMethod("vm"))
-    left_open = undetermined(
+    indeterminate = undetermined(
         program, table.out[:, table.status == Status.OK], p, EvaluationMethod()
     )
     others = (
         ()
         if telling
-        else tuple(output for output in program.indeterminate if output not in left_open)
+        else tuple(output for output in program.indeterminate if output not in indeterminate)
     )
     return _without(
-        program, (*left_open, *(Check("open", output) for output in (*left_open, *others)))
-    ), left_open
+        program, (*indeterminate, *(Check("open", output) for output in (*indeterminate, *others)))
+    ), indeterminate
 
 
 @functools.lru_cache(maxsize=32)

@@ -134,5 +134,5 @@ def seconds(
     ``interpreted`` is by the virtual machine.
     """
     counts = program.instructions
-    steps = counts.pop("loops", 0) * (method.newton or 1)
+    steps = counts.get("loops", 0) * ((method.newton or 1) - 1)
     return (sum(counts.values()) + steps) * instants / (_RATE_INTERPRETED if interpreted else _RATE)

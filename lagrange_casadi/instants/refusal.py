@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -84,11 +84,13 @@ def refusal(
     if status in (Status.OK, Status.AT_REST):
         refused = Refusal(Status.NOT_FINITE, _not_finite(program, evaluated.out[:, i], at))
     else:
-        left_open = functools.partial(_left_open, program, evaluated.iterated[:, i], float(t[i]), p)
+        loops = functools.partial(
+            _unclosed_loops, program, evaluated.iterated[:, i], float(t[i]), p
+        )
         refused = Refusal(
             status,
             _Broken(program, program.rules[numbers[i] - 1], evaluated.out[:, i], most, at).words(
-                left_open
+                loops
             ),
         )
     return replace(refused, message=_beyond(program, p, precision, at) or refused.message)
@@ -98,10 +100,24 @@ def _first_broken(
     program: Program, evaluated: Evaluated, most: Sequence[float], beside: Array
 ) -> npt.NDArray[np.intp]:
     """The number of the first rule that each instant breaks (t,), or zero."""
-    checks = [np.asarray(evaluated.out[bound.column], float) for bound in program.bounds]
-    given = [checks, [*map(np.float64, most)], [*beside], [evaluated.status.astype(float)]]
-    (found,) = interpret(program.status, given, numpy_arithmetic())
-    return np.broadcast_to(found[0], evaluated.status.shape).astype(np.intp)
+    checks = [evaluated.out[bound.column] for bound in program.bounds]
+    shares = [*map(np.float64, most)]
+
+    def numbers(
+        checks: Iterable[Array], beside: Iterable[Array], status: Array
+    ) -> npt.NDArray[np.intp]:
+        given = [[np.asarray(row, float) for row in checks], shares, [*beside], [status]]
+        (found,) = interpret(program.status, given, numpy_arithmetic())
+        return np.broadcast_to(found[0], status.shape).astype(np.intp)
+
+    if not evaluated.status.any():
+        # A rule is kept within an interval: if the least and the largest keep it, all do.
+        few, near = (
+            [np.array([row.min(), row.max()]) for row in rows] for rows in (checks, [*beside])
+        )
+        if not (np.isnan([*few, *near]).any() or numbers(few, near, np.zeros(2)).any()):
+            return np.zeros(evaluated.status.shape, np.intp)
+    return numbers(checks, beside, evaluated.status.astype(float))
 
 
 def _beside(
@@ -185,7 +201,7 @@ def _beyond(program: Program, p: Array, precision: Precision, at: str) -> str | 
     return None
 
 
-def _left_open(program: Program, start: Array, t: float, p: Array) -> str:
+def _unclosed_loops(program: Program, start: Array, t: float, p: Array) -> str:
     """Describe the loops that iteration does not close at an instant: those with the largest
     residuals, or all if these are not known.
 
@@ -226,8 +242,8 @@ class _Broken:
     most: Sequence[float]
     at: str
 
-    def words(self, still_open: Callable[[], str]) -> str:
-        """Message of a refusal; ``still_open`` names the loops that iteration did not close."""
+    def words(self, unclosed: Callable[[], str]) -> str:
+        """Message of a refusal; ``unclosed`` names the loops that iteration did not close."""
         newton, at, k = self.program.newton, self.at, self.rule.bound
         if k is None:
             assert newton is not None
@@ -235,7 +251,7 @@ class _Broken:
                 cause = "they are near a dead centre, or the instant before is too far off"
                 return f"the loops closed by {newton.joints} converge slowly {at}: {cause}"
             cause = "their links do not reach, or the instant before is too far off"
-            return f"the loops closed by {still_open()} did not converge {at}: {cause}"
+            return f"the loops closed by {unclosed()} did not converge {at}: {cause}"
         bound = self.program.bounds[k]
         part, value = str(bound.part), float(self.out[bound.column])
         if bound.kind in ("CLOSURE", "BRANCH"):
@@ -296,19 +312,19 @@ class _Broken:
         if bound.column in self.program.checks("gimbal").values():
             lock = f"passes gimbal lock {after}" if passes else f"is in gimbal lock {at}"
             why = (
-                "its third axis comes to lie along its first; choose axis and second so that turn_2"
-                " keeps away from 90 deg"
+                "its third axis becomes parallel to its first; choose axis and second so that"
+                " turn_2 stays away from 90 deg"
             )
             return f"joint '{part}' {lock}: {why}"
         if bound.column in self.program.checks("roll").values():
             lies = (
-                f"comes to lie along its beside {after}"
+                f"passes through its beside= direction {after}"
                 if passes
-                else f"lies along its beside {at}"
+                else f"lies along its beside= direction {at}"
             )
             return (
-                f"bar '{part}' {lies}, so its y axis is undefined; choose a direction that stays"
-                " across it"
+                f"two-force link '{part}' {lies}, so its y axis is undefined; choose a"
+                " direction that stays across it"
             )
         if bound.column in self.program.checks("hold").values():
             where_to = f"cannot produce the motion {after if passes else at}"
@@ -319,14 +335,14 @@ class _Broken:
         if not passes:
             return (
                 f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces"
-                " are not determined there"
+                " are indeterminate"
             )
         near = (
-            "; if it only comes near one, take more instants"
+            "; if it only comes close to one, take more instants"
             if self.program.newton is not None
             else ""
         )
         return (
-            f"the loop closed by {closed} passes a dead centre {after}, and can continue in two"
-            f" ways{near}"
+            f"the loop closed by {closed} passes a dead centre {after}, where it can"
+            f" continue on either branch{near}"
         )

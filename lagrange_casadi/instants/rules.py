@@ -60,7 +60,7 @@ def limit(program: Program, bound: Bound, precision: Precision, newton: int | No
     """
     exact, kind = newton is None, bound.kind
     if kind in ("OPEN", "OPEN_MOMENT"):
-        return open_limit(program, precision, newton)
+        return indeterminate_limit(program, precision, newton)
     if kind == "BEYOND":
         return BEYOND[precision]
     if kind in ("CLOSURE", "BRANCH"):
@@ -80,7 +80,7 @@ def limit(program: Program, bound: Bound, precision: Precision, newton: int | No
     return {"JAM": _DEAD * ROUNDING[precision], "REST": 0.5, "TURNED": REACH}[kind]
 
 
-def open_limit(program: Program, precision: Precision, newton: int | None) -> float:
+def indeterminate_limit(program: Program, precision: Precision, newton: int | None) -> float:
     """Limit of how far a determined force may change with what equilibrium leaves open; of a
     moment, a share of the extent.
     """

@@ -165,7 +165,7 @@ class SectionLaw(Brief):
         u = np.stack(
             [*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *load_points], axis=-1
         )
-        beyond = [
+        crossed = [
             [edge(u, self.slack, side) < load.station[:, None] for side in SIDES]
             for load in self.loads
         ]
@@ -191,7 +191,7 @@ class SectionLaw(Brief):
                 np.repeat(values[..., None], len(SIDES) if self.loads else 1, axis=-1)
                 for values in (gaps, sizes)
             )
-            for load, change, there in zip(self.loads, changes.loads, beyond, strict=True):
+            for load, change, there in zip(self.loads, changes.loads, crossed, strict=True):
                 load_point, constant, slope = (
                     values[:, None] for values in self._acting(force, load)
                 )
@@ -281,9 +281,9 @@ class SectionLaw(Brief):
             load_point, _, slope = (_column(values, u) for values in self._acting(force, load))
             going, more, steeper = (_column(values, u) for values in self._acting(force, change))
             # A station that moves takes its force's arm with it.
-            beyond = edge(u, self.slack, side) < load_point
+            crossed = edge(u, self.slack, side) < load_point
             values = values + np.where(
-                beyond, more + slope * going + steeper * (load_point - u), 0.0
+                crossed, more + slope * going + steeper * (load_point - u), 0.0
             )
             passing = np.where(u == load_point, going, passing)
         return values + passing * self.along(force, u, side) if self.loads else values
@@ -385,17 +385,17 @@ class SectionLaw(Brief):
         values[:, 3::2] = self.at(force, places[:, 3::2], side="base")
         inner = np.sort(np.stack([still, *load_points, still + 1.0], axis=1), axis=1)
         low, high = inner[:, :-1], inner[:, 1:]
-        seen = [edge(low, self.slack) < load.station[:, None] for load in self.loads]
+        beyond = [edge(low, self.slack) < load.station[:, None] for load in self.loads]
 
         def within(name: str, u: Array) -> Array:
             if len(parts := self._parts(name)) > 1:
                 return size_of(within(part, u) for part in parts)
-            masks = (mask.reshape(mask.shape + (1,) * (u.ndim - mask.ndim)) for mask in seen)
-            beyond = (
+            masks = (mask.reshape(mask.shape + (1,) * (u.ndim - mask.ndim)) for mask in beyond)
+            after = (
                 self._beyond(name, load, u, mask)
                 for load, mask in zip(self.loads, masks, strict=True)
             )
-            return np.asarray(self._smooth(name, u) + sum(beyond))
+            return np.asarray(self._smooth(name, u) + sum(after))
 
         parts = self._parts(force)
         if len(parts) == 1 and not self.distributed_loads:
@@ -475,9 +475,9 @@ class SectionLaw(Brief):
             terms.arm * getattr(load, self.table.sections[terms.shear].acting) * self.length,
         )
 
-    def _beyond(self, force: str, load: AnyPointLoad, u: Array, seen: Operand) -> Array:
+    def _beyond(self, force: str, load: AnyPointLoad, u: Array, crossed: Operand) -> Array:
         load_point, constant, slope = (_column(values, u) for values in self._acting(force, load))
-        return np.where(seen, constant + slope * (load_point - u), 0.0)
+        return np.where(crossed, constant + slope * (load_point - u), 0.0)
 
     def _turning(
         self, force: str, within: Callable[[str, Array], Array], low: Array, high: Array

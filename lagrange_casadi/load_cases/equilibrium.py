@@ -6,6 +6,7 @@ They are the actions by which the certificate balances bodies, so nothing of the
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,8 +15,10 @@ import numpy.typing as npt
 from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..beams.beam import beam_from_numbers
 from ..case import Case, scene_of
 from ..declare.declared import Declared
+from ..declare.description import Description, density_of
 from ..declare.scene import Scene
 from ..declare.stated import Triple
 from ..equations.derive import compile_scene
@@ -25,52 +28,13 @@ from ..verification.balance import all_actions
 from ..verification.certificate import placed_of, reported_of, tolerance
 from ..verification.placing import Moving
 from ..verification.vectors import Vector
+from .loads import Load, LoadCase, Rod
 
 _SLIGHT = 1e-9
 """Share of the largest load below which a peak is rounding, and governs nothing."""
 
 _NEAR = 1e-9
 """Distance of a time from an instant, as a share of the last instant, that counts as none."""
-
-
-@dataclass(frozen=True)
-class Load:
-    """A force [N] and a moment [N m] about the place ``at`` [m], on the link's axes.
-
-    ``name`` is that of the output it is reported as: ``reaction:A``, ``effort:O``, ``load:gas``,
-    ``multiplier:mesh``. A line load is its resultant.
-    """
-
-    name: str
-    at: Triple
-    force: Triple
-    moment: Triple
-
-
-@dataclass(frozen=True)
-class LoadCase:
-    """Everything that loads a link at time ``t`` [s], on its own axes, from its origin.
-
-    ``governs`` are the quantities that are largest at this instant. The link bears ``loads``, and
-    on each of its masses at r the inertia and weight ``gravity - acceleration - alpha x r - omega x
-    (omega x r)``: ``acceleration`` of the origin [m/s^2], angular velocity ``omega`` [rad/s],
-    angular acceleration ``alpha`` [rad/s^2]. With ``mass`` [kg], its ``centre`` [m] and the
-    ``inertia`` about it [kg m^2] these are in equilibrium, but for ``residual``: of forces, and of
-    moments about the centre, each relative to the largest on the link.
-    """
-
-    link: str
-    t: float
-    governs: tuple[str, ...]
-    loads: tuple[Load, ...]
-    acceleration: Triple
-    omega: Triple
-    alpha: Triple
-    gravity: Triple
-    mass: float
-    centre: Triple
-    inertia: tuple[Triple, Triple, Triple]
-    residual: tuple[float, float]
 
 
 @public
@@ -90,9 +54,9 @@ def link_load_cases(
     link
         Name of the link, rigid body or point mass.
     t
-        Instants of the solution [s]. Default: those at which a section force of the link, or the
-        force or moment of a joint on it, is largest in size; those at which friction at rest
-        leaves forces indeterminate are left out.
+        Instants of the solution [s]. Default: those at which a section force or a stress of the
+        link, or the force or moment of a joint on it, is largest in size; those at which friction
+        at rest leaves forces indeterminate are left out.
     scene
         The scene, for a mechanism with constraints: along which directions they act is not in a
         solution.
@@ -213,6 +177,7 @@ class _History:
     def cases(self, solution: Solution, t: Sequence[float] | None) -> tuple[LoadCase, ...]:
         """Return the load cases at times, or at the instants that govern."""
         body, limit = self.declared.bodies[self.link], tolerance(solution)
+        rod = _rod(solution.description["bodies"][self.link])
         known = np.ones(self.shape[0], dtype=bool)
         for _, force, moment in self.loads.values():
             known &= np.isfinite(force + moment).all(axis=1)
@@ -250,6 +215,7 @@ class _History:
                 centre=body.centre,
                 inertia=body.inertia,
                 residual=(force_residual, moment_residual),
+                rod=rod,
             )
             found.append(case)
         return tuple(found)
@@ -338,12 +304,25 @@ class _History:
         if self.link in solution.links_with_sections:
             for section in solution.table.forces:
                 name = f"section:{self.link}:{section}"
-                turns = solution.unit(name) == "N m"
-                yield name, solution.extremes(name)[0], moment if turns else force
+                is_moment = solution.unit(name) == "N m"
+                yield name, solution.extremes(name)[0], moment if is_moment else force
+            with suppress(DeclarationError):  # no beam, or stresses that are not known
+                stress = solution.stress(self.link)
+                for kind in ("normal", "shear", "von_mises"):
+                    yield f"stress:{self.link}:{kind}", stress.largest(kind).value, 0.0
         for name, (_, forces, moments) in self.loads.items():
             if name.startswith("reaction:"):
                 yield f"{name}:resultant", _sizes(forces), force
                 yield f"{name}:moment", _sizes(moments), moment
+
+
+def _rod(body: Description) -> Rod | None:
+    """Return a described link as a bar, where it has a beam."""
+    if "beam" not in body:
+        return None
+    slices = body["density"].get("slices", {})
+    moments = tuple(density_of({"density": slices[name]}) for name in slices)
+    return Rod(body["length"], density_of(body), moments, beam_from_numbers(body["beam"]))
 
 
 def _sizes(rows: Array) -> Array:

@@ -1,25 +1,25 @@
-"""Load cases as files: JSON, CSV, and text that an input file of CalculiX or Abaqus includes."""
+"""Load cases as files: JSON, CSV, and input of programs of finite elements."""
 
 from __future__ import annotations
 
 import csv
 import io
 import json
-import math
 import os
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from ..arguments import public
 from ..base.publish import filling
 from ..base.vocabulary import LOAD_FORMATS
-from ..declare.stated import Triple
-from ..errors import UnknownNameError
-from .equilibrium import LoadCase
+from ..errors import DeclarationError, UnknownNameError
+from .beam_model import beam_model
+from .loads import LoadCase, nodes_of
+from .solver_text import calculix, nastran
 
-_SAME = 1e-9
-"""Distance of two places [m] that are one node."""
+_NASTRAN = 10
+"""Numbers of Nastran's load sets of a load case."""
 
 _UNITS = {
     "t": "s",
@@ -39,7 +39,10 @@ _UNITS = {
 
 @public
 def write_load_cases(
-    cases: Sequence[LoadCase], folder: str | os.PathLike[str], formats: Sequence[str] = ("json",)
+    cases: Sequence[LoadCase],
+    folder: str | os.PathLike[str],
+    formats: Sequence[str] = ("json",),
+    nodes: Mapping[str, str] | None = None,
 ) -> tuple[str, ...]:
     """Write load cases of one or several links.
 
@@ -50,32 +53,65 @@ def write_load_cases(
     folder
         The folder; files of other names in it stay.
     formats
-        Of ``json``, ``csv``, ``inp``.
+        Of ``json``, ``csv``; ``inp`` and ``nas``, which input files of CalculiX or Abaqus, and of
+        Nastran include; ``beam``, for a link with a beam an input file of CalculiX that runs.
+    nodes
+        Names of node sets or numbers of nodes in your mesh, by names of joints and loads; by the
+        name of a link that of its element set. Default: these names themselves, and for Nastran
+        1, 2, ...
 
     Returns
     -------
     tuple of str
-        Names of the files: LINK.json, LINK.csv and LINK.inertia.csv, LINK_1.inp, LINK_2.inp, ...
+        Names of the files: LINK.json, LINK.csv and LINK.inertia.csv, and for each load case
+        LINK_1.inp, LINK_1.nas, LINK_1.beam.inp, ...
 
     Raises
     ------
     UnknownNameError
-        For another format.
+        For another format, and for ``nodes`` of a part that loads no link.
+    DeclarationError
+        For ``beam`` of a link without one, or whose material has no moduli.
     PathError
         If the folder cannot be written.
     """
     if unknown := [name for name in formats if name not in LOAD_FORMATS]:
         raise UnknownNameError("format", unknown, LOAD_FORMATS)
-    links = dict.fromkeys(case.link for case in cases)
+    links, chosen = dict.fromkeys(case.link for case in cases), dict(nodes or {})
+    loaded = {name: None for case in cases for name in (*nodes_of(case), case.link)}
+    if unknown := [name for name in chosen if name not in loaded]:
+        raise UnknownNameError("load", unknown, loaded)
     written = []
     with filling(Path(folder)) as draft:
         for link in links:
-            chosen = [case for case in cases if case.link == link]
+            own = [case for case in cases if case.link == link]
             for name in dict.fromkeys(formats):
-                for file, text in _WRITERS[name](chosen):
+                for file, text in _files(name, own, chosen):
                     (draft / file).write_text(text, encoding="utf-8", newline="\n")
                     written.append(file)
     return tuple(written)
+
+
+def _files(
+    name: str, cases: Sequence[LoadCase], nodes: Mapping[str, str]
+) -> Iterator[tuple[str, str]]:
+    """Yield names and texts of the files of a link in a format."""
+    if name in ("json", "csv"):
+        yield from _json(cases) if name == "json" else _csv(cases)
+        return
+    for number, case in enumerate(cases, 1):
+        file = f"{case.link}_{number}.{'beam.inp' if name == 'beam' else name}"
+        if name == "inp":
+            lines = calculix(case, file, nodes)
+        elif name == "nas":
+            lines = nastran(case, _NASTRAN * number, nodes)
+        elif case.rod is None:
+            raise DeclarationError(
+                f"load cases of link '{case.link}': format 'beam' needs a link with a beam"
+            )
+        else:
+            lines = beam_model(case, case.rod, nodes)
+        yield file, "\n".join(lines) + "\n"
 
 
 def _json(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
@@ -84,9 +120,15 @@ def _json(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
         "link": cases[0].link,
         "axes": "of the link, from its origin",
         "units": _UNITS,
-        "cases": [asdict(case) for case in cases],
+        "cases": [_numbers(case) for case in cases],
     }
     yield f"{cases[0].link}.json", json.dumps(content, indent=1) + "\n"
+
+
+def _numbers(case: LoadCase) -> dict[str, object]:
+    found = asdict(replace(case, rod=None))
+    del found["rod"]
+    return found
 
 
 def _csv(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
@@ -115,75 +157,3 @@ def _csv(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
 
 def _columns(heads: Sequence[tuple[str, str]]) -> list[str]:
     return [f"{name.format(x)} [{_UNITS[field]}]" for field, name in heads for x in "xyz"]
-
-
-def _inp(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
-    """Yield a file for each load case, to be included in a step."""
-    for number, case in enumerate(cases, 1):
-        name = f"{case.link}_{number}.inp"
-        yield name, "\n".join(_inp_lines(case, name)) + "\n"
-
-
-def _inp_lines(case: LoadCase, file: str) -> Iterator[str]:
-    yield f"** {case.link} at t = {case.t:.9g} s: {', '.join(case.governs) or 'as asked'}"
-    yield "** SI units, on the axes of the link, from its origin. Within a step:"
-    yield f"** *INCLUDE, INPUT={file}"
-    yield f"** Element set {case.link}: mass {case.mass:.9g} kg, centre {_listed(case.centre)} m"
-    yield "** Node sets, each of the one node that takes a joint's load:"
-    nodes = _nodes(case)
-    for name, (at, _, _) in nodes.items():
-        yield f"**   {name} at {_listed(at)} m"
-    yield "** Moments are on degrees of freedom 4 to 6 of that node. Of a *RIGID BODY of CalculiX"
-    yield "** they are on 1 to 3 of its ROT NODE."
-    yield "*CLOAD"
-    for name, (_, force, moment) in nodes.items():
-        for k, value in enumerate((*force, *moment), 1):
-            if value != 0.0:
-                yield f"{name}, {k}, {value:.12g}"
-    weight = [g - a for g, a in zip(case.gravity, case.acceleration, strict=True)]
-    size, spin = math.hypot(*weight), math.hypot(*case.omega)
-    if size or spin:
-        yield "*DLOAD"
-    if size:
-        yield "** gravity less the acceleration of the origin"
-        yield f"{case.link}, GRAV, {size:.12g}, {_listed([x / size for x in weight])}"
-    if spin:
-        yield "** square of the angular velocity, a point of its axis, its direction"
-        axis = [x / spin for x in case.omega]
-        yield f"{case.link}, CENTRIF, {spin**2:.12g}, 0., 0., 0., {_listed(axis)}"
-    if any(case.alpha):
-        yield f"** Angular acceleration [rad/s^2]: {_listed(case.alpha)}"
-        yield "** CalculiX has no load for it: add the force -m (alpha x r) on the mass m of each"
-        yield "** node at r. Without it the loads are not in equilibrium."
-
-
-def _nodes(case: LoadCase) -> dict[str, tuple[Triple, Triple, Triple]]:
-    """Return places by names of node sets, each with the sum of its forces and moments: two loads
-    at one place are one node's.
-    """
-    found: dict[str, tuple[Triple, Triple, Triple]] = {}
-    for load in case.loads:
-        for name, (at, force, moment) in found.items():
-            if math.dist(at, load.at) <= _SAME:
-                found[name] = (at, _sum(force, load.force), _sum(moment, load.moment))
-                break
-        else:
-            name = load.name.partition(":")[2].replace(":", "_")
-            while name.upper() in {other.upper() for other in found}:
-                name += "_"
-            found[name] = (load.at, load.force, load.moment)
-    return found
-
-
-def _sum(a: Triple, b: Triple) -> Triple:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
-
-
-def _listed(numbers: Sequence[float]) -> str:
-    return ", ".join(f"{x:.12g}" for x in numbers)
-
-
-_WRITERS: dict[str, Callable[[Sequence[LoadCase]], Iterator[tuple[str, str]]]] = dict(
-    zip(LOAD_FORMATS, (_json, _csv, _inp), strict=True)
-)
-"""Names and texts of the files of a link, by format."""

@@ -53,7 +53,8 @@ class Peaks:
 
     A peak that is not told is at least this, which was found. ``tops``, where they are asked for,
     (q, :data:`TOPS`, 4), are local peaks in no order: the number of the curve among its quantity's
-    own, NaN where there are no more, time, ratio and value.
+    own, NaN where there are no more, time, ratio and value. ``error``, of peaks that are those of
+    the instants, is how much larger each may be between them.
     """
 
     value: Array
@@ -61,18 +62,19 @@ class Peaks:
     xi: Array
     resolved: Flags
     tops: Array | None = None
+    error: Array | None = None
 
 
 class Listed(NamedTuple):
     """Local peaks that are listed: those down to a ``share`` of the largest.
 
-    Where ``way`` is 1 or -1, peaks are those of values times that, not of sizes. These are counted
+    Where ``sign`` is 1 or -1, peaks are those of values times that, not of sizes. These are counted
     from so far below the least at the instants that a share of little more than a half takes all
     there are between that and the largest.
     """
 
     share: float
-    way: int = 0
+    sign: int = 0
 
 
 class Samples(NamedTuple):

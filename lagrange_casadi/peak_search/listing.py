@@ -20,10 +20,10 @@ def base_of(quantity: Numbers, values: Array, count: int) -> Array:
 
 
 class Counted:
-    """Curves times a ``way``, counted from a ``base``."""
+    """Curves times a ``sign``, counted from a ``base``."""
 
-    def __init__(self, source: CurveSource, way: int, base: Array) -> None:
-        self.source, self.way, self.base = source, way, base
+    def __init__(self, source: CurveSource, sign: int, base: Array) -> None:
+        self.source, self.sign, self.base = source, sign, base
 
     def at(self, t: Array) -> Samples:
         """Sample times of the span."""
@@ -31,7 +31,7 @@ class Counted:
 
     def counted(self, samples: Samples) -> Samples:
         """Samples relative to the base."""
-        return samples._replace(values=self.way * samples.values - self.base)
+        return samples._replace(values=self.sign * samples.values - self.base)
 
 
 class Tops:

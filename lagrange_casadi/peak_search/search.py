@@ -25,7 +25,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from . import fits
-from .between import Flags, highest, unresolved
+from .between import Flags, highest, reach, unresolved
 from .intervals import (
     INNER,
     SIDE,
@@ -103,6 +103,7 @@ def peaks(
     samples: Samples,
     hiding: Flags,
     listed: Listed | None = None,
+    sampled: bool = False,
 ) -> Peaks:
     """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples``
     are.
@@ -110,9 +111,10 @@ def peaks(
     ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below
     the largest sample. Of several that are as large but for rounding the first is told, for else
     rounding would choose their sign. A quantity that is no number at any instant, as friction at
-    rest leaves it, has no peak. ``listed`` says which local peaks are told too.
+    rest leaves it, has no peak. ``listed`` says which local peaks are told too. ``sampled`` peaks
+    are those at the instants, with an error.
     """
-    base, direction = np.zeros(len(curves.units)), listed.way if listed else 0
+    base, direction = np.zeros(len(curves.units)), listed.sign if listed else 0
     if direction:
         base = base_of(np.array(curves.quantities), direction * samples.values, base.size)
         source = Counted(source, direction, base[list(curves.quantities), None])
@@ -120,8 +122,11 @@ def peaks(
     given, lacks = samples, np.isnan(samples.values)
     samples = samples._replace(values=np.where(lacks, 0.0, samples.values))
     search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:], listed)
-    if t.size > 1:
-        search.interval(Interval(t, samples), 0, hiding)
+    interval, error = Interval(t, samples), None
+    if sampled:
+        error = search.error(interval, hiding)
+    elif t.size > 1:
+        search.interval(interval, 0, hiding)
     found = search.found(t, given)
     none = np.full(found.value.size, np.nan)
     none[search.quantity[~lacks.all(axis=1)]] = 0.0
@@ -132,7 +137,8 @@ def peaks(
     if tops is not None and direction:
         tops[tops[..., 3] < 0.0] = np.nan
         value, tops[..., 3] = direction * (value + base), direction * (tops[..., 3] + base[:, None])
-    return Peaks(value, found.t + none, found.xi + none, found.resolved, tops)
+    error = None if error is None else error + none
+    return Peaks(value, found.t + none, found.xi + none, found.resolved, tops, error)
 
 
 class _Search:
@@ -165,7 +171,7 @@ class _Search:
         self.resolved, self.going = np.ones(self.best.size, bool), np.zeros(self.best.size)
         self.samples, self.hidden = samples.values, 0
         self.step = float(t[-1] - t[0]) / max(t.size - 1, 1)
-        self.left = INTERVALS + 4 * t.size
+        self.budget = INTERVALS + 4 * t.size
         self.tops = Tops(self.quantity, self.best.size, self.step)
 
     @property
@@ -251,6 +257,22 @@ class _Search:
         resolved = (self.resolved & (self.going <= self.best / 2)) | np.isinf(self.best)
         return Peaks(np.copysign(self.best, self.sign), self.t, self.xi, resolved)
 
+    def error(self, interval: Interval, hiding: Flags) -> Array:
+        """Return how much larger each quantity may be between instants than at them; infinite where
+        something may hide there.
+        """
+        values, nothing = interval.samples.values, NOTHING * self.scale
+        if interval.t.size == 1:
+            return np.where(self.best > nothing, self.rounding, nothing)
+        if interval.t.size < fits.SEVEN:
+            return np.full(self.best.size, np.inf)
+        watched, watches = interval.samples.watched, self.curves.watches
+        if (hiding | unresolved(watched, watches, interval.step)[0]).any():
+            return np.full(self.best.size, np.inf)
+        furthest = self.best.copy()
+        np.maximum.at(furthest, self.quantity, reach(values).max(axis=1))
+        return np.where(self.best > nothing, furthest - self.best + self.rounding, nothing)
+
     def interval(self, interval: Interval, depth: int, hiding: Flags) -> None:
         """Search a panel; in ``hiding`` steps something is known to hide."""
         n, values = interval.t.size, interval.samples.values
@@ -267,9 +289,9 @@ class _Search:
             self.hidden += np.count_nonzero(hiding) if depth == 0 else 0
             self.stretches(interval, bound, hiding | kinked)
             self.settle(interval, bound)
-            open_ = (bound > self.limit[:, None]).any(axis=1)
+            unsettled = (bound > self.limit[:, None]).any(axis=1)
             bound[
-                [curve for curve in np.flatnonzero(open_).tolist() if self.rounded(curve)]
+                [curve for curve in np.flatnonzero(unsettled).tolist() if self.rounded(curve)]
             ] = -np.inf
         size = np.fmax(self.best, np.finfo(float).tiny)[self.quantity]
         while True:
@@ -280,8 +302,8 @@ class _Search:
             risen = bound[:, step] > self.limit
             if depth == DEEPEST or interval.step <= SPACING * np.abs(interval.t).max():
                 self.end(interval, step, risen, depth == DEEPEST)
-            elif self.left > 0:
-                self.left -= 1
+            elif self.budget > 0:
+                self.budget -= 1
                 self.inside(interval, step, depth)
             else:
                 self.resolved[self.quantity[risen | hiding[step]]] = False
@@ -305,7 +327,7 @@ class _Search:
         for j, time in enumerate(t):
             for curve in range(samples.values.shape[0]):
                 self.note(curve, samples.values[curve, j], time, samples.places[curve, j])
-        self.left -= 1
+        self.budget -= 1
         if t[0] - start > 2 * beside:
             self.part(start, t[0], first, samples.some(slice(0, 1)), depth)
         if stop - t[1] > 2 * beside:

@@ -164,7 +164,7 @@ def contract(
     name: str,
     precision: Precision,
     solution: Solution,
-    left_open: tuple[Output, ...],
+    indeterminate: tuple[Output, ...],
     *,
     fixed: bool,
 ) -> Contract:
@@ -195,7 +195,7 @@ def contract(
         tuple(links),
         program.driven,
         timed,
-        tuple(map(str, left_open)),
+        tuple(map(str, indeterminate)),
         solution.table,
     )
 

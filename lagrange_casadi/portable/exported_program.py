@@ -216,10 +216,8 @@ def _sound(program: Program, symbols: ca.SX, precision: Precision) -> tuple[ca.F
     Those come first.
     """
     both = program.data.margins[precision].in_order(symbols)
-    positive, others = ([value for value in values if _changes(value)] for values in both)
+    positive, others = (
+        [x for x in values if isinstance(x, ca.SX) and not x.is_constant()] for values in both
+    )
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *positive, *others))
     return ca.Function("sound", [symbols], [out], {"cse": True}), len(positive)
-
-
-def _changes(value: ca.SX) -> bool:
-    return isinstance(value, ca.SX) and not value.is_constant()

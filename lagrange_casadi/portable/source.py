@@ -180,14 +180,14 @@ class Source:
                 p_values="model->parameters" if self.exported.sizes["p"] else "0",
             )
         if "status" in self.exported.functions:
-            names = ", ".join(f"{self._upper}_{name}" for name in self._answers())
+            names = ", ".join(f"{self._upper}_{name}" for name in self.answers())
             kind = f"static const {self.contract.prefix}_status"
             found += (
                 f"\n/* What a broken rule says, by its number. */\n{kind} broken[] = {{{names}}};\n"
             )
         return found + table_text(self.exported)
 
-    def _answers(self) -> Iterator[str]:
+    def answers(self) -> Iterator[str]:
         """Answer for each rule that may be broken, by its number."""
         program = self.exported.program
         yield "OK"

@@ -70,7 +70,7 @@ def sourced(
     scene.checked(values)
     checked_span(compiled.laws, data.timing, values)
     instants = instants_of(compiled.laws, data.timing, values).t
-    whole, (compiled, left_open) = (
+    whole, (compiled, indeterminate) = (
         compiled,
         determinate(compiled, instants, p, telling=table is None),
     )
@@ -91,7 +91,7 @@ def sourced(
     read = (
         None if table is None else (drive_of(compiled), table_of(compiled, solution.t, p, method))
     )
-    agreed = contract(compiled, name, precision, solution, left_open, fixed=table is not None)
+    agreed = contract(compiled, name, precision, solution, indeterminate, fixed=table is not None)
     emitted = exported(compiled, precision, newton, p, read)
     check_size(emitted, largest)
     guess = compiled.newton.guess if compiled.newton is not None and read is None else ()
@@ -99,11 +99,5 @@ def sourced(
     slopes = exported_slopes(compiled, agreed, by, p, exact.t, vectors.times) if by else None
     if slopes is not None:
         emitted = replace(emitted, functions={**emitted.functions, FUNCTION: slopes.function})
-    return Source(
-        agreed, emitted, _hash(declared, values), guess, method.options, values, vectors, slopes
-    )
-
-
-def _hash(declared: str, values: Mapping[str, float]) -> str:
-    """The hash of what is declared, wanted and set."""
-    return hashlib.sha256("\0".join([declared, json.dumps(values)]).encode()).hexdigest()[:32]
+    declared_hash = hashlib.sha256(f"{declared}\0{json.dumps(values)}".encode()).hexdigest()[:32]
+    return Source(agreed, emitted, declared_hash, guess, method.options, values, vectors, slopes)

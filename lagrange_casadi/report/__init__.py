@@ -5,8 +5,16 @@ one file.
 from .comparison import write_comparison
 from .live import Live
 from .notebook import View, scene_summary, summary, view
-from .of_scene import scene_report, with_motion
-from .page import ENDINGS, assembled, live_digest, page, write_page, write_report
+from .page import (
+    ENDINGS,
+    assembled,
+    live_digest,
+    page,
+    scene_report,
+    with_motion,
+    write_page,
+    write_report,
+)
 
 __all__ = [
     "ENDINGS",

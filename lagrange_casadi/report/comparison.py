@@ -155,7 +155,7 @@ def _names(first: Solution, second: Solution) -> tuple[str, str]:
     if not differ:
         return "first run", "second run"
     one, other = (
-        ", ".join(f"{name} = {own[name]:.5g}" for name in differ[:3] if name in own)
-        for own in values
+        ", ".join(f"{name} = {named[name]:.5g}" for name in differ[:3] if name in named)
+        for named in values
     )
     return one, other

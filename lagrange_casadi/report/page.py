@@ -20,11 +20,13 @@ from string import Template
 
 from ..base.arrays import Json
 from ..base.publish import writing
+from ..declare.scene import Scene
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..portable.wasm import engine
+from ..studies.evaluate import evaluate
 from .contents import contents
-from .live import Live
+from .live import Live, run_of
 
 SCRIPTS = (
     *(
@@ -182,3 +184,24 @@ def _asset(name: str) -> str:
     return (
         resources.files(__package__).joinpath("assets").joinpath(name).read_text(encoding="utf-8")
     )
+
+
+def scene_report(
+    scene: Scene,
+    path: str | os.PathLike[str],
+    parameters: Mapping[str, float] | None,
+    wanted: Sequence[str] | None,
+    live: bool,
+) -> None:
+    """Evaluate a scene and write its page: see :meth:`.Scene.report`."""
+    scene.wants(wanted)
+    asked = with_motion(scene.wanted if wanted is None else wanted)
+    run = run_of(scene.name)
+    alive = Live.of(scene, scene.timing(), asked, run, parameters) if live else None
+    elastic = False if live else None
+    write_report(evaluate(scene, parameters=parameters, wanted=asked, elastic=elastic), path, alive)
+
+
+def with_motion(wanted: Sequence[str]) -> list[str]:
+    """Wanted outputs with motion, without which nothing can be shown."""
+    return list(wanted) if {"all", "motion"} & set(wanted) else [*wanted, "motion"]

@@ -113,12 +113,12 @@ def _made(
     # After those of the law, a row for each power of each load; couples have no arm.
     first = 0
     for load in distributed:
-        for direction, there, way in (
+        for direction, there, sense in (
             (terms.distributed, plain[4 if terms.arm else 3 :], sign),
             (terms.couple, rows[0][3:], 1),
         ):
             summed += [
-                (factor, there[first + power], way)
+                (factor, there[first + power], sense)
                 for power, factor in enumerate(load.get(direction, ()))
             ]
         first += max(map(len, load.values()))

@@ -77,13 +77,13 @@ class PeakKind(enum.IntEnum):
     """The first or the last instant."""
     SWITCH = 2
     """A kink or a jump, whose time is known."""
-    UNTOLD = 3
+    UNKNOWN = 3
     """A kink or a jump of which it is not known what makes it, or none: there is no derivative."""
     LINK_END = 4
     """The base or the tip of the link; in time the quantity is stationary there."""
 
 
-_SMOOTH, _END, _SWITCH, _UNTOLD, _LINK_END = map(int, PeakKind)
+_SMOOTH, _END, _SWITCH, _UNKNOWN, _LINK_END = map(int, PeakKind)
 
 
 class PeakSlopes(NamedTuple):
@@ -155,7 +155,7 @@ class MovingPeaks:
         if sound.all():
             return self._gradient(chosen, peaks, nothing)
         size = (t.size, self.p.size)
-        kinds, switch = np.full(t.size, _UNTOLD, np.int8), np.full(t.size, -1, np.intc)
+        kinds, switch = np.full(t.size, _UNKNOWN, np.int8), np.full(t.size, -1, np.intc)
         found = PeakSlopes(np.full(size, np.nan), kinds, np.zeros(size), switch, t.copy())
         some = (value[sound], t[sound], peaks[2][sound])
         inner = self._gradient(chosen[sound], some, nothing[sound])
@@ -179,8 +179,8 @@ class MovingPeaks:
         moved[at_last], moved[at_first] = self.ends.slopes[::-1]
         if steep.any():
             moved[steep], switch[steep] = self._switching(t[steep], z[steep])
-            untold = np.isnan(moved[steep]).any(axis=1)
-            kinds[steep] = np.where(untold, _UNTOLD, _SWITCH)
+            unknown = np.isnan(moved[steep]).any(axis=1)
+            kinds[steep] = np.where(unknown, _UNKNOWN, _SWITCH)
             going |= steep
         total = here[:, 2:] + np.where(going[:, None], here[:, :1] * moved, lacking)
         return PeakSlopes(total, kinds, moved, switch, times)
@@ -311,40 +311,43 @@ class MovingPeaks:
             found[at_knots], which[at_knots] = 0.0, -1
         return found[back], which[back]
 
-    def curvature(self, chosen: Numbers, peaks: Peaks, own: PeakSlopes, nothing: Flags) -> Array:
-        """The second derivatives (q, parameters, parameters) of peaks whose gradient is ``own``.
+    def curvature(
+        self, chosen: Numbers, peaks: Peaks, first_order: PeakSlopes, nothing: Flags
+    ) -> Array:
+        """The second derivatives (q, parameters, parameters) of peaks whose gradient is
+        ``first_order``.
 
         NaN where a peak has none; one that is ``nothing`` (q,) but rounding stays where it is.
         """
         value, t, xi = peaks
         found = np.full((t.size, self.p.size, self.p.size), np.nan)
-        sound = np.isfinite(own.slopes).all(axis=1) & np.isfinite(value)
+        sound = np.isfinite(first_order.slopes).all(axis=1) & np.isfinite(value)
         if sound.any() and self.p.size:
-            there = PeakSlopes._make(array[sound] for array in own)
+            there = PeakSlopes._make(array[sound] for array in first_order)
             second = self._curvature(chosen[sound], value[sound], xi[sound], there, nothing[sound])
             found[sound] = (second + np.swapaxes(second, 1, 2)) / 2
         return found
 
     def _curvature(
-        self, chosen: Numbers, value: Array, xi: Array, own: PeakSlopes, nothing: Flags
+        self, chosen: Numbers, value: Array, xi: Array, first_order: PeakSlopes, nothing: Flags
     ) -> Array:
         first, last = self.instants[[0, -1]]
-        smooth = np.isin(own.kinds, (_SMOOTH, _LINK_END))
+        smooth = np.isin(first_order.kinds, (_SMOOTH, _LINK_END))
         inside = (xi > SAME_PLACE) & (xi < 1.0 - SAME_PLACE)
         free_t, free_xi = smooth & (self.step > 0.0) & ~nothing, inside & ~nothing
         # The search knows a place to the root of its rounding: one step of Newton's method leads
         # there.
-        there = self._bends(chosen, own.t, xi, value)
+        there = self._bends(chosen, first_order.t, xi, value)
         _, away, free_xi = self._turned(there, free_t, free_xi, value, _NEAR_XI)
         there = self._bends(
             chosen,
-            np.clip(own.t - away[0], first, last),
+            np.clip(first_order.t - away[0], first, last),
             np.where(np.isnan(xi), xi, xi - away[1]),
             value,
         )
         (inner_t, across, inner_xi), *_ = self._turned(there, free_t, free_xi, value, np.inf)
         # What moves with an end or a switch, along each way of a parameter.
-        moved = own.moved
+        moved = first_order.moved
         changes = there.changes[:, 2:]
         pulled = changes[:, :, :2] + np.einsum("qw,qi->qwi", moved, there.changes[:, 0, :2])
         inner = np.array([[inner_t, across], [across, inner_xi]])
@@ -354,7 +357,7 @@ class MovingPeaks:
         second = (
             whole[:, :, 2:]
             + whole[:, :, :1] * moved[:, None, :]
-            + there.gradient[:, :1, None] * self._moved_bends(own)
+            + there.gradient[:, :1, None] * self._moved_bends(first_order)
         )
         # A level peak that slopes elsewhere for other parameters jumps there.
         level = free_t & (inner_t == 0.0)
@@ -368,26 +371,26 @@ class MovingPeaks:
         directions = unit_ways(range(self.p.size), self.p.size)
         return self.slopes.bends(t, z, self.p, chosen, xi, value, directions)
 
-    def _moved_bends(self, own: PeakSlopes) -> Array:
+    def _moved_bends(self, first_order: PeakSlopes) -> Array:
         """The second derivatives (q, parameters, parameters) of the times of peaks that go with an
         end or a switch; else 0.
         """
         first, last = self.instants[[0, -1]]
-        found = np.zeros((own.t.size, self.p.size, self.p.size))
-        at_end = own.kinds == _END
-        sooner = own.t[at_end] - first <= last - own.t[at_end]
+        found = np.zeros((first_order.t.size, self.p.size, self.p.size))
+        at_end = first_order.kinds == _END
+        sooner = first_order.t[at_end] - first <= last - first_order.t[at_end]
         found[at_end] = np.where(sooner[:, None, None], *self.ends.bends)
-        some = np.flatnonzero(own.switch >= 0)
+        some = np.flatnonzero(first_order.switch >= 0)
         if some.size:
-            chosen = len(self.slopes.points.quantities) + own.switch[some]
-            there = self._bends(chosen, own.t[some], np.full(some.size, np.nan), None)
+            chosen = len(self.slopes.points.quantities) + first_order.switch[some]
+            there = self._bends(chosen, first_order.t[some], np.full(some.size, np.nan), None)
             second = np.delete(np.delete(there.changes, 1, axis=1), 1, axis=2)
-            found[some] = implicit_bends(there.gradient[:, 0], second, own.moved[some])
+            found[some] = implicit_bends(there.gradient[:, 0], second, first_order.moved[some])
         return found
 
-    def ties(self, chosen: Numbers, value: Array, own: PeakSlopes, others: Array) -> Flags:
-        """Return which of the peaks (q,), whose gradient is ``own``, tie with another one of their
-        quantity, which is as large and changes differently with the parameters.
+    def ties(self, chosen: Numbers, value: Array, first_order: PeakSlopes, others: Array) -> Flags:
+        """Return which of the peaks (q,), whose gradient is ``first_order``, tie with another one
+        of their quantity, which is as large and changes differently with the parameters.
 
         The largest of both then has a kink at these parameters, and no derivative. What is as large
         and changes alike, as the same peak in the next turn, is no tie. ``others`` (q, n, 4) are
@@ -396,7 +399,7 @@ class MovingPeaks:
         found = np.zeros(value.size, bool)
         there = (
             ~np.isnan(others[..., 0])
-            & (np.isfinite(value) & np.isfinite(own.slopes).all(axis=1))[:, None]
+            & (np.isfinite(value) & np.isfinite(first_order.slopes).all(axis=1))[:, None]
         )
         # Of one there is no other.
         there &= np.count_nonzero(there, axis=1)[:, None] > 1
@@ -407,10 +410,10 @@ class MovingPeaks:
         changed = self.gradient(chosen[numbers], (values, t, xi), sizes).slopes
         sized, direct = (
             np.sign(values)[:, None] * changed,
-            np.sign(value[numbers])[:, None] * own.slopes[numbers],
+            np.sign(value[numbers])[:, None] * first_order.slopes[numbers],
         )
         # What rounding leaves of a slope that is nothing is no difference.
-        noise = _NOISE * np.nanmax(np.abs(own.slopes), axis=0) + _FAINT * np.abs(
+        noise = _NOISE * np.nanmax(np.abs(first_order.slopes), axis=0) + _FAINT * np.abs(
             value[numbers, None]
         ) / np.where(self.p == 0.0, 1.0, np.abs(self.p))
         other = (

@@ -96,7 +96,7 @@ def _along(
     method: EvaluationMethod,
 ) -> Iterator[tuple[Output, Array]]:
     """Derivatives of the section forces of a link that are determined, each (t, xi, parameters)."""
-    table, left_open = solution.table, solution.indeterminate
+    table, indeterminate = solution.table, solution.indeterminate
     columns = [output for output in solution.outputs if output.along and output.part == link]
     function = section_slopes(program.data, link, columns, by)
     batch, xi, forces = Batch.of(function, method), solution.xi, table.forces
@@ -116,5 +116,5 @@ def _along(
         }
         grids[some] = batch.at(many * xi.size, given).reshape(many, xi.size, len(forces), len(by))
     for k, force in enumerate(forces):
-        if not made_of(left_open, link, force, table):
+        if not made_of(indeterminate, link, force, table):
             yield Output("section", link, force), grids[:, :, k]

@@ -42,9 +42,8 @@ class Batch:
     @classmethod
     def of(cls, function: ca.Function, method: EvaluationMethod) -> Batch:
         """Compile it by the compiler of a method; always in doubles."""
-        found = compiled(
-            method, lambda compiler: codegen.load_batch(function, compiler, _flags(method))
-        )
+        flags = tuple(shlex.split(method.flags))
+        found = compiled(method, lambda compiler: codegen.load_batch(function, compiler, flags))
         return cls(function, None if found is None else found[1])
 
     def at(self, n: int, given: Mapping[str, tuple[npt.NDArray[np.generic], int]]) -> Array:
@@ -192,17 +191,17 @@ class Slopes:
         chosen: Numbers,
         xi: Array,
         value: Array | None,
-        ways: Array,
+        directions: Array,
     ) -> Bends:
-        """Derivatives of :meth:`at` along each of ``ways`` (w, 2 + parameters) in time, in xi/l and
-        in the parameters. The iterated coordinates must close the loops.
+        """Derivatives of :meth:`at` along each of ``directions`` (w, 2 + parameters) in time, in
+        xi/l and in the parameters. The iterated coordinates must close the loops.
 
         They are derived and compiled when they are first asked for.
         """
-        n, w = t.size, len(ways)
+        n, w = t.size, len(directions)
         given = _given(t, z, p, chosen, xi, value)
         given = {name: (rows, each * w) for name, (rows, each) in given.items()}
-        found = self._second.at(n * w, given | {"way": (np.tile(ways, (n, 1)), 1)})
+        found = self._second.at(n * w, given | {"way": (np.tile(directions, (n, 1)), 1)})
         found = found.reshape(n, w, 2, 2 + p.size)
         return Bends(found[:, 0, 0], found[:, :, 1])
 
@@ -248,7 +247,3 @@ def _given(
         "moving": (known.astype(float)[:, None], 1),
         codegen.CHOSEN: (np.asarray(chosen, np.intc), 1),
     }
-
-
-def _flags(method: EvaluationMethod) -> tuple[str, ...]:
-    return tuple(shlex.split(method.flags))

@@ -41,17 +41,16 @@ figcaption { font-size: 13px; overflow-wrap: anywhere; }
 """
 
 
-def write_index(title: str, names: Sequence[str], folder: Path) -> None:
-    """Write ``index.html`` beside the pictures of these names, in their order: a list of them, and
+def write_index(title: str, pictures: Sequence[Path], folder: Path) -> None:
+    """Write ``index.html`` beside these pictures, in their order: a list of them, and
     all of them.
     """
-    escaped = [html.escape(name) for name in names]
-    links = "".join(f'<a href="#{name}">{name.replace("_", " ")}</a>\n' for name in escaped)
+    escaped = [(html.escape(path.stem), html.escape(path.name)) for path in pictures]
+    links = "".join(f'<a href="#{name}">{name.replace("_", " ")}</a>\n' for name, _ in escaped)
     figures = "".join(
-        f'<figure id="{name}"><a href="{name}.png"><img src="{name}.png"'
-        f' alt="{name.replace("_", " ")}"'
-        f' loading="lazy"></a><figcaption>{name}.png</figcaption></figure>\n'
-        for name in escaped
+        f'<figure id="{name}"><a href="{file}"><img src="{file}" alt="{name.replace("_", " ")}"'
+        f' loading="lazy"></a><figcaption>{file}</figcaption></figure>\n'
+        for name, file in escaped
     )
     text = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'

@@ -21,6 +21,11 @@ gives the same bytes: programs, clocks.
 """
 
 
+def ending_of(svg: bool) -> str:
+    """Return the ending of a figure's name in a folder of figures."""
+    return ".svg" if svg else ".png"
+
+
 _drawing = threading.RLock()
 
 

@@ -141,7 +141,7 @@ def axes_of(solution: Solution, all_instants: Solution, size: float) -> Iterator
             continue
         parent, child = joint["parent"], joint["child"]
         if kinds and kinds[0] == "slide":
-            ways = (
+            strokes = (
                 np.einsum(
                     "tk,tk->t",
                     place_of(s, child) - place_of(s, parent),
@@ -149,7 +149,7 @@ def axes_of(solution: Solution, all_instants: Solution, size: float) -> Iterator
                 )
                 for s in (all_instants, solution)
             )
-            reach = np.concatenate([*ways, [0.0]])
+            reach = np.concatenate([*strokes, [0.0]])
             ends = np.array([reach.min() - _AXIS * size, reach.max() + _AXIS * size])
             along = direction_of(solution, parent["body"], directions[0])[0]
             yield Line(

@@ -137,7 +137,7 @@ def save(
         seal(draft, SCHEMA)
 
 
-def check_target(target: Path, own: str = SCHEMA) -> None:
+def check_target(target: Path, schema: str = SCHEMA) -> None:
     """Raise :class:`PathError` where no file of a schema can be put: it replaces another one, and
     nothing else that holds anything.
 
@@ -155,14 +155,14 @@ def check_target(target: Path, own: str = SCHEMA) -> None:
     place = settled(target)
     if not place.exists() or not place.stat().st_size:
         return
-    schema = kind_of(place)
-    if schema != own:
+    found = kind_of(place)
+    if found != schema:
         unsealed = (
             "an HDF5 file of something else, or without its seal"
             if is_hdf5(place)
             else "no file of HDF5"
         )
-        kind = (_OTHERS | {None: unsealed}).get(schema, "an HDF5 file of something else")
+        kind = (_OTHERS | {None: unsealed}).get(found, "an HDF5 file of something else")
         raise PathError(f"cannot write {target}: it is {kind}; choose another name")
 
 
@@ -544,7 +544,7 @@ def _read(file: h5py.File) -> Solution:
     provenance = Provenance(
         **words, versions=parsed(file.attrs["versions"], {str: str}, "versions")
     )
-    left_open = tuple(map(Output.of, parsed(file.attrs["undetermined"], [str], "undetermined")))
+    indeterminate = tuple(map(Output.of, parsed(file.attrs["undetermined"], [str], "undetermined")))
     completed, reasons = (
         parsed(file.attrs.get(key, "[]"), [str], key) for key in ("by_elasticity", "open_because")
     )
@@ -562,7 +562,7 @@ def _read(file: h5py.File) -> Solution:
         ordered,
         description,
         provenance,
-        left_open,
+        indeterminate,
         certificate,
         errors,
         limit,
@@ -587,11 +587,11 @@ def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
     Raises ``ValueError`` for those of what is no drive.
     """
     found = {}
-    for name, untold in parsed(file.attrs.get("holding", "{}"), {str: str}, "holding").items():
+    for name, reason in parsed(file.attrs.get("holding", "{}"), {str: str}, "holding").items():
         if Output("effort", name) not in solution.outputs:
             raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
         least, largest = (
             numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS
         )
-        found[name] = Holding(least, largest, solution.unit(Output("effort", name)), untold)
+        found[name] = Holding(least, largest, solution.unit(Output("effort", name)), reason)
     return found

@@ -88,6 +88,35 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
             f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
             f" {having or 'none'}"
         )
+    across, along = reaction_sizes(solution, joint)
+    rate, slide = (joint_rate(solution, joint, kind) for kind in ("angle", "slide"))
+    verdicts: list[Verdict] = []
+    unknown: list[str] = []
+    if parts is None:
+        parts = list(parts_from_numbers(fitted).values())
+    for part in parts:
+        _check(joint, part)
+        if isinstance(part, Pin):
+            verdicts += _pin(part, across, solution.t)
+        elif isinstance(part, Plain):
+            found, missing = _plain(part, across, rate, slide, solution.t)
+            verdicts += found
+            unknown += missing
+        elif rate is None:
+            unknown.append(f"rolling bearing: the motion of joint '{joint}' is not evaluated")
+        else:
+            verdicts += _rolling(part, across, along, rate, solution.t)
+    return Safety(joint, tuple(verdicts), tuple(unknown))
+
+
+def reaction_sizes(solution: Solution, joint: str) -> tuple[Array, Array]:
+    """Return the sizes of a reaction across its joint's axis, and along it, each (t,); zero where
+    friction at rest leaves it indeterminate.
+
+    Raises :class:`.DeclarationError` for a joint that there is not, and a reaction that was not
+    evaluated, or is indeterminate at all instants.
+    """
+    joints = solution.description["joints"]
     if joint not in joints:
         raise UnknownNameError("joint", joint, joints)
     members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
@@ -107,25 +136,7 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
             " indeterminate"
         )
     # What does not count is no load: it is below every peak, and loads a bearing over no way.
-    across, along = (np.where(counts, force, 0.0) for force in (across, along))
-    rate, slide = (_rate(solution, joint, kind) for kind in ("angle", "slide"))
-    verdicts: list[Verdict] = []
-    left: list[str] = []
-    if parts is None:
-        parts = list(parts_from_numbers(fitted).values())
-    for part in parts:
-        _check(joint, part)
-        if isinstance(part, Pin):
-            verdicts += _pin(part, across, solution.t)
-        elif isinstance(part, Plain):
-            found, missing = _plain(part, across, rate, slide, solution.t)
-            verdicts += found
-            left += missing
-        elif rate is None:
-            left.append(f"rolling bearing: the motion of joint '{joint}' is not evaluated")
-        else:
-            verdicts += _rolling(part, across, along, rate, solution.t)
-    return Safety(joint, tuple(verdicts), tuple(left))
+    return np.where(counts, across, 0.0), np.where(counts, along, 0.0)
 
 
 def _check(joint: str, part: Fitted) -> None:
@@ -137,11 +148,11 @@ def _check(joint: str, part: Fitted) -> None:
             )
 
 
-def _rate(solution: Solution, joint: str, kind: str) -> Array | None:
-    """The rate at which a joint turns or slides; None if it is not told, or there is none."""
+def joint_rate(solution: Solution, joint: str, kind: str) -> Array | None:
+    """The rate at which a joint turns or slides; None if it was not evaluated, or there is none."""
     entry = solution.description["joints"][joint]
     kinds = entry.get("coordinates") or {joint: entry.get("coordinate")}
-    name = next((name for name, own in kinds.items() if own == kind), None)
+    name = next((name for name, moves in kinds.items() if moves == kind), None)
     if kind == "angle":
         name = entry.get("turning", name)
     return None if name is None else solution.outputs.get(Output("motion", name, "rate"))
@@ -152,7 +163,7 @@ def _forces(solution: Solution, joint: str) -> tuple[Array, Array]:
     if "coordinates" not in solution.description["joints"][joint]:
         found = solution.reaction(joint)
         return np.hypot(found.fx, found.fy), np.zeros_like(found.fx)
-    # In space reactions are told on the joint's own axes too, of which the first is the one it
+    # In space reactions are given on the joint's own axes too, of which the first is the one it
     # turns about.
     nothing = np.zeros_like(solution.t)
     u, v, w = (
@@ -203,7 +214,7 @@ def _plain(
     if bearing.speed is not None:
         found.append(_verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s"))
     if bearing.heating is not None:
-        weights = _weights(t)
+        weights = time_weights(t)
         mean = float(pressure * speed @ weights / weights.sum())
         factor = bearing.heating / mean if mean else math.inf
         found.append(Verdict("heating", factor, f"p v {mean / 1e6:.4g} MPa m/s in the mean"))
@@ -214,7 +225,7 @@ def _rolling(
     bearing: Rolling, across: Array, along: Array, rate: Array, t: Array
 ) -> Iterator[Verdict]:
     load = bearing.radial * across + bearing.axial * along
-    weights = _weights(t)
+    weights = time_weights(t)
     shares = np.abs(rate) * weights
     rpm = float(shares.sum() / weights.sum()) * 60 / math.tau
     even = equivalent_load(load, shares, bearing.exponent)
@@ -226,7 +237,7 @@ def _rolling(
         yield _verdict("static load", bearing.static, load, t, "load", "N")
 
 
-def _weights(t: Array) -> Array:
+def time_weights(t: Array) -> Array:
     """Weight of each instant, by trapezia [s]; a single one has the weight of a second."""
     steps = np.diff(t) / 2
     return np.append(steps, 0.0) + np.append(0.0, steps) if t.size > 1 else np.ones(1)

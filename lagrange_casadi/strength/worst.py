@@ -93,7 +93,7 @@ class LinkHistories:
         stresses = FibreStresses.of(outputs, member.link, law.density, member.beam)
         members = np.array([[outputs[output] for output in stresses.members]])
         numbers = np.array([numbers_of(law.length, law.density, member.beam)], float)
-        return cls(stresses, members, numbers, bool(stresses.stands(members)[0]))
+        return cls(stresses, members, numbers, bool(stresses.is_still(members)[0]))
 
     @cached_property
     def parts(self) -> tuple[FibrePart, ...]:

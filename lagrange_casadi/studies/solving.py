@@ -78,19 +78,19 @@ def solve(
     times = instants.t
     p = np.array(list(values.values()))
     program.data.corners.refuse_isolated_laws(times, p.tolist())
-    left_open: tuple[Output, ...] = ()
+    indeterminate: tuple[Output, ...] = ()
     if method.table is not None:
-        program, left_open = determinate(program, times, p)
+        program, indeterminate = determinate(program, times, p)
     found, provenance = columns(program, times, p, method, threads)
     refuse(program, found, times, p, method)
     out = np.asarray(found.out, float)
     program.data.corners.refuse_constraints(lambda name: program.seen(name, out), p.tolist())
-    left_open += undetermined(program, out, p, method)
+    indeterminate += undetermined(program, out, p, method)
     description = program.data.at(p)
-    elasticity, unbalanced = completed(program, found, times, p, left_open)
+    elasticity, unbalanced = completed(program, found, times, p, indeterminate)
     within = phases(program, out, times, p) if certificate else {}
     outputs = outputs_of(program, out) | {
-        output: np.full(times.size, np.nan) for output in left_open
+        output: np.full(times.size, np.nan) for output in indeterminate
     }
     ordered = in_order(outputs, description)
     solution = Solution(
@@ -100,7 +100,7 @@ def solve(
         ordered,
         description,
         provenance,
-        left_open,
+        indeterminate,
         over=instants.over,
     )
     by = by_parameters(program.data.parameters, names)
@@ -109,12 +109,12 @@ def solve(
         solution, tolerance=tolerance(solution), sensitivities=slopes, elasticity=elasticity
     )
     if solution.resting.any():
-        open_ = {
+        unknown = {
             name: held
             for name, held in holding(scene, solution).items()
             if np.isnan(solution.effort(name)).any()
         }
-        solution = replace(solution, holding=open_)
+        solution = replace(solution, holding=unknown)
     if certificate:
         residuals = (
             _closed(program, out, p) | residuals_of(solution, program, out, p, within) | unbalanced
@@ -225,7 +225,7 @@ def residuals_of(
     )
 
 
-def _hidden(program: Program, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:
+def _hidden(program: Program, out: Array, indeterminate: Sequence[Output]) -> dict[Output, Array]:
     """Forces that a solution does not give, and its certificate needs: multipliers that were not
     wanted, and what is open.
     """
@@ -233,7 +233,9 @@ def _hidden(program: Program, out: Array, left_open: Sequence[Output]) -> dict[O
         Output("multiplier", name): out[k] for name, k in program.checks("multiplier").items()
     }
     return unwanted | {
-        output: out[program.outputs[output]] for output in left_open if output in program.outputs
+        output: out[program.outputs[output]]
+        for output in indeterminate
+        if output in program.outputs
     }
 
 

@@ -98,16 +98,25 @@ def tolerance(solution: Solution) -> float:
 
 def failure(solution: Solution) -> str:
     """Describe the residuals of a solution that fail."""
-    worse = ", ".join(f"{name} {value:.2g}" for name, value in solution.failed.items())
+    worse = ", ".join(
+        f"{_SAID.get(name, name)} {value:.2g}" for name, value in solution.failed.items()
+    )
     return f"the certificate fails: {worse}, but at most {solution.tolerance:.2g} is rounding"
+
+
+_SAID = {"ends": "section ends"}
+_NOTHING = "not computed; it needs motion, efforts, reactions and loads"
 
 
 def summary(residuals: Mapping[str, Array]) -> str:
     """The largest residuals, in one line; and how singular the loops are, where it matters."""
     parts = [
-        f"{name} {np.max(values):.1e}" for name, values in residuals.items() if name != "condition"
+        f"{_SAID.get(name, name)} {np.max(values):.1e}"
+        for name, values in residuals.items()
+        if name != "condition"
     ]
-    said = "certificate: " + (", ".join(parts) if parts else "nothing to check without outputs")
+    found = ", ".join(parts)
+    said = f"certificate: {f'relative residuals {found}' if found else _NOTHING}"
     worst = float(np.max(residuals.get("condition", np.ones(1))))
     return said + (
         f"; near a dead centre, where the loops magnify errors by {worst:.3g}"

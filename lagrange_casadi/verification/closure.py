@@ -76,7 +76,7 @@ def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
         (entry,) = motion.entries
         if entry.part in placed.reported.unmeasured:
             continue
-        moving, rotations = stacked(placed, motion), placed.turns(entry)
+        moving, rotations = stacked(placed, motion), placed.is_angle(entry)
         found = motion.at(*moving, t)
         off = np.abs(found)
         if entry.kind == "direction":
@@ -88,11 +88,11 @@ def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
             for residual, one in zip(off, largest, strict=True)
         ):
             blur = NEARBY * digits.rounding * np.max(np.abs(t))
-            open_ = np.nansum(
+            blurred = np.nansum(
                 [np.abs(motion.at(*moving, t + direction) - found) for direction in (-blur, blur)],
                 axis=0,
             )
-            off = np.maximum(off - open_, 0.0)
+            off = np.maximum(off - blurred, 0.0)
         yield rotations, off
 
 

@@ -25,10 +25,10 @@ def sense(touch: Touch, declared: Declared, reported: Reported) -> Scalar:
     """The sign with which the first turns on the carrier; where it turns back, that of the instants
     right after.
     """
-    if not touch.turns:
+    if not touch.rotations:
         return 0.0
-    rate = np.sum([sign * reported.rate(name) for sign, name in touch.turns], axis=0)
-    change = np.sum([sign * reported.acceleration(name) for sign, name in touch.turns], axis=0)
+    rate = np.sum([sign * reported.rate(name) for sign, name in touch.rotations], axis=0)
+    change = np.sum([sign * reported.acceleration(name) for sign, name in touch.rotations], axis=0)
     driven = (name for name in declared.driven if Output("motion", name) in reported.outputs)
     fastest = sum((np.abs(reported.rate(name)) for name in driven), np.zeros_like(reported.t))
     return np.sign(np.where(np.abs(rate) > _REST * fastest, rate, change))

@@ -285,7 +285,7 @@ def _trials(course: _Course, z: Array) -> tuple[Array, dict[int, Array]]:
             decision = _decision(code, values, _operation(code, values))
             differs = _differs(step, decision, instants.unit)
             if differs.any():
-                sides[k] = np.where(differs, decision, step.decision)
+                sides[k] = np.broadcast_to(np.where(differs, decision, step.decision), shape)
             if code == _HANDED:
                 return noise.handed(np.where(differs, step.decision, decision))
             return _following(code, values, step.decision)

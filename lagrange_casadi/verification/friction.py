@@ -213,9 +213,9 @@ def _thread(joint: JointNumbers, numbers: Mapping[str, float], force: Array) -> 
     angle, phi = np.arctan(joint.pitch / radius), np.arctan(numbers["mu"])
 
     def pressing(sign: Array) -> Array:
-        way = np.sign(sign) * np.sign(force)
-        whole = radius * np.abs(force) * (np.tan(way * angle + phi) - np.tan(way * angle))
-        half = radius * np.abs(force) * (np.tan(phi - way * angle) + np.tan(way * angle))
+        sense = np.sign(sign) * np.sign(force)
+        whole = radius * np.abs(force) * (np.tan(sense * angle + phi) - np.tan(sense * angle))
+        half = radius * np.abs(force) * (np.tan(phi - sense * angle) + np.tan(sense * angle))
         return np.asarray(
             ((1 + np.abs(sign)) * whole + (1 - np.abs(sign)) * half) / (2.0 * numbers["mu"] or 1.0)
         )

@@ -125,7 +125,7 @@ def _turned(
     angles = [
         k
         for k, entry in enumerate(law.entries)
-        if placed.turns(entry) and entry.part not in placed.declared.driven
+        if placed.is_angle(entry) and entry.part not in placed.declared.driven
     ]
     t = placed.reported.t
 
@@ -167,7 +167,7 @@ def _open(
     for sign in (-off, off):
         evaluated = [law.at(places, rates, t + sign * np.max(np.abs(t)))]
         for k, entry in enumerate(law.entries):
-            angle = placed.turns(entry)
+            angle = placed.is_angle(entry)
             for rows, step in (
                 (places, (1.0 if angle else declared.extent) + np.abs(places[k])),
                 (rates, turned if angle else fastest),

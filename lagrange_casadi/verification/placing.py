@@ -168,7 +168,7 @@ class Placed:
         rotations = [near.axes.turn(direction) for direction in about.values()]
         return NIL, effort * _reciprocal(rotations, [*about].index(axis.coordinate))
 
-    def turns(self, entry: Entry) -> bool:
+    def is_angle(self, entry: Entry) -> bool:
         """Return whether an entry of an equation is an angle."""
         return entry.kind == "direction" or (
             entry.kind == "coordinate" and self.declared.kinds[entry.part] == "angle"
@@ -230,12 +230,12 @@ def _relative(declared: Declared, reported: Reported, joint: JointNumbers) -> Re
             continue
         direction, name = Vector(*axis.direction), axis.coordinate
         moves, gains = reported.rate(name), reported.acceleration(name)
-        way = direction if axis.kind == "slide" else joint.pitch * direction
-        if any(way.components):
+        along = direction if axis.kind == "slide" else joint.pitch * direction
+        if any(along.components):
             slide, speed, change = (
-                slide + reported.value(name) * way,
-                speed + moves * way,
-                change + gains * way,
+                slide + reported.value(name) * along,
+                speed + moves * along,
+                change + gains * along,
             )
         if axis.kind == "slide":
             continue

@@ -115,7 +115,8 @@ $carried  state->model = model;
   return fmi2OK;
 }
 
-static void give(const State* state, ${p}_inputs* inputs) {
+$reached
+static ${p}_status give(const State* state, ${p}_inputs* inputs) {
 $give
 }
 
@@ -136,8 +137,8 @@ static fmi2Status update(Unit* unit) {
   state->status = prepare(unit);
   if (state->status != fmi2OK) return state->status;
   before = state->model;
-  give(state, &inputs);
-  status = ${p}_evaluate(&state->model, &inputs, &outputs);
+  status = give(state, &inputs);
+  if (status == ${P}_OK) status = ${p}_evaluate(&state->model, &inputs, &outputs);
   state->status = judged(unit, status);
   if (status != ${P}_OK) {
     state->model = before;

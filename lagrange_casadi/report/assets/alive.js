@@ -188,7 +188,7 @@ class Alive {
         if (miss === 0) break;
         t -= (d - even[i]) / rate;
       }
-      if (!(least <= 1e-13 * scale) || (i > 0 && !(best > found[i - 1]))) throw new NoResult(`the motion of ${joint} does not go all the way from ${format(start)} to ${format(stop)}`);
+      if (!(least <= 1e-13 * scale) || (i > 0 && !(best > found[i - 1]))) throw new NoResult(`the motion of ${joint} does not cover the range from ${format(start)} to ${format(stop)}`);
       found[i] = best;
       t = best + (i + 1 < count ? (even[i + 1] - even[i]) / at(best)[1] : 0);
     }

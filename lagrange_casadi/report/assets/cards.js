@@ -211,7 +211,7 @@ function mapCard(link, name, focus = false) {
       });
       offer();
       own.choices.append(links, what);
-      own.lacking = () => "This map is of the file's design alone; charts and peaks of stresses follow the sliders.";
+      own.lacking = () => "This map shows the file's design only; charts and peaks of stresses follow the sliders.";
     },
     () => {
       const one = chosen();

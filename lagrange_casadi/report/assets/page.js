@@ -118,7 +118,7 @@ function linksTable() {
   if (!columns.length) return null;
   const cells = [];
   const cellOf = (row) => {
-    if (!row || row.open) return element("td", {}, row ? "open" : "");
+    if (!row || row.open) return element("td", {}, row ? "indeterminate" : "");
     const [value, when] = [element("b"), element("small")];
     cells.push([row, value, when]);
     return element("td", {}, element("button", { type: "button", title: "Show when and where", click: () => showRow(row) }, value, when));

@@ -23,7 +23,7 @@ function resultTables(show) {
     contents.rows.filter((row) => !row.open && (state.all || !isNothing(row, sizes)) && state.words.every((word) => `${row.name} ${row.what}`.toLowerCase().includes(word)));
   const tables = [];
   const renew = () => tables.forEach((table) => table.fill());
-  const find = element("input", { type: "search", placeholder: "find, as: rod bending", "aria-label": "Find a part or quantity", class: "find", title: "Find (/); Enter shows the first that is found", input: () => {
+  const find = element("input", { type: "search", placeholder: "search, for example: rod bending", "aria-label": "Find a part or quantity", class: "find", title: "Find (/); Enter shows the first that is found", input: () => {
     state.words = find.value.toLowerCase().split(/\s+/).filter(Boolean);
     renew();
   }, keydown: (event) => {
@@ -38,7 +38,7 @@ function resultTables(show) {
     if (one === null || one === undefined) return "";
     const size = Math.abs(row.peak.value);
     const rounding = (state.all && isNothing(row)) || Math.abs(one) <= Math.max(UNSEEN * size, row.error ?? 0);
-    return Number.isNaN(one) ? "–" : shown(rounding ? 0 : one, row.unit, 6, size);
+    return Number.isNaN(one) ? "–" : rounding ? shown(0, row.unit) : shown(one, row.unit, 6, size);
   };
   const when = (mark) => (mark && !Number.isNaN(mark.t) ? shown(mark.t, "s", 5, Math.max(Math.abs(instants.t[0]), Math.abs(instants.t.at(-1)))) : "");
   const names = [["name", (row) => row.name], ["part", (row) => row.part], ["quantity", whatOf], ["unit", (row) => row.unit]];
@@ -93,7 +93,7 @@ function strengthTables() {
   // What is open comes last.
   const used = (row) => (row.open ? -1 : row.used ?? Infinity);
   const words = (row) => (row.open ? "" : row.used === null ? "∞" : format(row.used, 4));
-  const factor = (row) => (row.open ? "open" : row.factor === null ? (row.used === 0 ? "∞" : "0") : format(row.factor, 4));
+  const factor = (row) => (row.open ? "not evaluated" : row.factor === null ? (row.used === 0 ? "∞" : "0") : format(row.factor, 4));
   const heads = [
     ["part", (row) => row.part],
     ["against", (row) => row.against],
@@ -133,16 +133,16 @@ const forcesChecked = contents.certificate.residuals.some((one) => one.name === 
 
 function certificateText() {
   const { state, residuals, tolerance, words } = contents.certificate;
-  const right = forcesChecked ? "Checked independently, and right" : "The motion is checked, and right; its forces could not be, for want of outputs";
+  const right = forcesChecked ? "Checked independently, and right" : "The motion is checked, and right; the forces are not checked, because outputs are missing";
   const head = { certified: right, failed: "The check fails: do not trust these numbers", none: "Not checked" }[state];
   const told = (one) => (one.largest === null ? "–" : format(one.largest, 2));
   const lines = residuals.filter((one) => one.name !== "condition").map((one) => [one.what, told(one)]);
   const limit = lines.length > 0 && element("p", {}, `No residual may be above ${format(tolerance, 2)}.`);
-  const loops = residuals.filter((one) => one.name === "condition").map((one) => element("p", {}, `The condition of the loops is at most ${told(one)}; 1 is the least, and near a dead centre it is very many.`));
+  const loops = residuals.filter((one) => one.name === "condition").map((one) => element("p", {}, `The condition number of the loops is at most ${told(one)}; 1 is best, and it grows without bound towards a dead centre.`));
   const alarm = state === "failed" && element("p", { class: "alarm" }, words);
-  const forces = "The reported motions, reactions, efforts and loads were put into Newton's and Euler's equations of every body anew, in plain arithmetic, at every instant.";
-  const sentence = forcesChecked ? forces : "The bodies were placed anew by the reported motion, in plain arithmetic, at every instant.";
-  const other = element("p", { class: "alarm other", hidden: true }, "This is the certificate of the file's design. Other designs are evaluated by the same code, which refuses what it finds impossible, but nothing certifies them; the command line does.");
+  const forces = "The reported motions, reactions, efforts and loads were inserted into the Newton-Euler equations of every body, by an independent program, at every instant.";
+  const sentence = forcesChecked ? forces : "The positions of all bodies were recomputed from the reported motion, by an independent program, at every instant.";
+  const other = element("p", { class: "alarm other", hidden: true }, "This is the certificate of the file's design. Designs chosen by the sliders are evaluated by the same code and refused if they are impossible, but they are not certified: evaluate them from the command line for that.");
   reading.watchers.add(() => (other.hidden = designState() === "file"));
   return element("section", { class: "text" }, element("h2", {}, "Certificate"), other, element("p", { class: `verdict ${state}` }, head), alarm,
     state !== "none" && element("p", {}, sentence),

@@ -78,7 +78,7 @@ const UNSEEN = 1e-12; // Over the largest value: what is smaller is the rounding
 /** A value of a curve with its unit, by the largest of all; the rounding of nothing, also beside the largest of the unit, is nothing. */
 function shownOf(value, unit, most) {
   const nothing = Math.abs(value) <= UNSEEN * Math.max(most, sizesOfUnits().get(unit) ?? 0);
-  return nothing ? shown(0, unit, 5, most) : shown(value, unit, 5, most);
+  return nothing ? shown(0, unit) : shown(value, unit, 5, most);
 }
 
 /** What stands at an axis: words, and the unit in brackets. */

@@ -40,13 +40,13 @@ class Conditions:
     the objective. ``curvature`` is the least second derivative of the Lagrangian along what limits
     with a multiplier leave free: infinite where that is nothing, NaN where it has none. ``least``
     is the same along what all active limits leave free: below zero at what is no minimum, which is
-    left along ``way``.
+    left along ``direction``.
     """
 
     residual: float
     curvature: float
     least: float
-    way: Array
+    direction: Array
 
     @property
     def turns_down(self) -> bool:
@@ -100,8 +100,8 @@ def conditions(
         ),
     ):
         found.append(_least(hessian, np.vstack([jacobian[active], np.eye(at.size)[bound]])))
-    (curvature, _), (least, way) = found
-    return Conditions(residual, curvature, least, way[:chosen])
+    (curvature, _), (least, direction) = found
+    return Conditions(residual, curvature, least, direction[:chosen])
 
 
 def _least(hessian: Array, active: Array) -> tuple[float, Array]:

@@ -215,7 +215,7 @@ class Descent:
         A program holds some peaks where they are, so that its second derivatives may be less than
         those of the peaks.
         """
-        direction = found.conditions.way / (np.abs(found.conditions.way).max() or 1.0)
+        direction = found.conditions.direction / (np.abs(found.conditions.direction).max() or 1.0)
         excess, objective = self._merit(evaluated)
         for step in (share * sign for share in _STEPS for sign in (1.0, -1.0)):
             tried = self.evaluator.evaluate(

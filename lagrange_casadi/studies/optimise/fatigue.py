@@ -84,7 +84,7 @@ class Tired:
         members = members[None][:, :, instants]
         if not instants.size:
             return []
-        if not stresses.stands(members)[0]:
+        if not stresses.is_still(members)[0]:
             raise DeclarationError(
                 f"a load moves along link '{self.link}'; its fatigue is available in sweeps only"
             )

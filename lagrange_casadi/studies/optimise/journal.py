@@ -16,18 +16,13 @@ from pathlib import Path
 from typing import IO, Any
 
 from ...base.arrays import Json
+from ...base.locks import lock
 from ...base.publish import check_writable, settled, telling
 from ...errors import BusyError, PathError, StoreError
 from ...store.untrusted import check_shape
 from ..sweep.plan import difference
 from .search_run import WORDS, SearchRun
 from .solver import SearchTask
-
-try:
-    import fcntl
-except ImportError:  # where there is none, nothing keeps two searches apart
-    fcntl = None  # type: ignore[assignment]
-
 
 _FIRST = b' {"identity": '
 """Beginning of the first line after its checksum."""
@@ -98,13 +93,12 @@ def kept(
     journal, ours = Journal(target), False
     try:
         with telling(path), path.open("a+b") as file:
-            if fcntl is not None:
-                try:
-                    fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:
-                    raise BusyError(
-                        f"another search is writing {target}: wait for it, or write another file"
-                    ) from None
+            try:
+                lock(file.fileno())
+            except BlockingIOError:
+                raise BusyError(
+                    f"another search is writing {target}: wait for it, or write another file"
+                ) from None
             journal.file = file
             file.seek(0)
             ours = force or _holds_nothing(file.read())

@@ -156,11 +156,11 @@ class NonlinearProgram:
             * self.closed
             + [np.array([point.guess for point in averages]).ravel()] * bool(self.averaged)
         )
-        start = np.append(x, self._level(held)) if self.levelled else x
         n = x.size
-        low, high = np.zeros(start.size), np.ones(start.size)
+        start, low, high = x, np.zeros(n), np.ones(n)
         if self.levelled:
-            low[n], high[n] = -np.inf, np.inf
+            level = max(sign * point.value for point, sign in held[0].points) / held[0].scale
+            start, low, high = np.append(x, level), np.append(low, -np.inf), np.append(high, np.inf)
         found = built.solver(x0=start, p=given, lbx=low, ubx=high, lbg=-np.inf, ubg=0.0)
         status = str(built.solver.stats()["return_status"])
         at, by_g, by_x = (found[name].full().ravel() for name in ("x", "lam_g", "lam_x"))
@@ -188,9 +188,6 @@ class NonlinearProgram:
         above.
         """
         return self.objective.kind in ("peak", "max")
-
-    def _level(self, held: Sequence[Held]) -> float:
-        return max(sign * point.value for point, sign in held[0].points) / held[0].scale
 
     @property
     def closed(self) -> bool:

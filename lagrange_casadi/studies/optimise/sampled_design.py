@@ -94,11 +94,11 @@ class SampledDesign:
         """The time of a point [s]."""
         return float(self.t[0] + point.share * (self.t[-1] - self.t[0]))
 
-    def points(self, output: Output, way: int) -> list[Point]:
-        """The local peaks over time of a quantity times ``way``, or of its size where that is 0,
+    def points(self, output: Output, sign: int) -> list[Point]:
+        """The local peaks over time of a quantity times ``sign``, or of its size where that is 0,
         the largest first.
         """
-        history = self.engine.history(self.p, Listed(_ALL, way)) if way else self.history
+        history = self.engine.history(self.p, Listed(_ALL, sign)) if sign else self.history
         found: list[Point] = []
         for curve, t, xi, value in history.tops[self.engine.quantities.index(str(output))].tolist():
             if curve == curve:
@@ -113,7 +113,7 @@ class SampledDesign:
                         value=value,
                     )
                 )
-        return sorted(found, key=lambda point: -(way * point.value if way else abs(point.value)))
+        return sorted(found, key=lambda point: -(sign * point.value if sign else abs(point.value)))
 
     def closures(self) -> Array:
         """The squares of the sines of the transmission angles (loops, t), NaN or below zero where

@@ -17,13 +17,12 @@ from ...declare.times import Times
 from ...errors import DeclarationError
 from ...methods import method
 from ...store.runs import check_target
-from .executors import Executor, LocalExecutor
 from .file import SCHEMA, save
 from .front import Front, front_of
 from .journal import kept
 from .optimum import Optimum
 from .problem import Problem, Question
-from .searching import Progress, Search
+from .searching import Executor, LocalExecutor, Progress, Search
 from .solver import Solver
 from .starts import MOST, Starts
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TypeVar
+from functools import partial
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from ...base.publish import uninterrupted
 from ...errors import NoDesignError
 from .evaluated_design import EvaluatedDesign
-from .executors import Executor
 from .journal import Journal
 from .optimum import Optimum, optimum_of
 from .problem import Problem
@@ -25,6 +25,29 @@ Progress = Callable[[int, float, float], None]
 """Hears the number of the way, and the objective and the worst excess over a limit of a design on
 it.
 """
+
+
+class Executor(Protocol):
+    """Executor of runs."""
+
+    def go(
+        self, solver: Solver, tasks: Sequence[SearchTask], progress: Progress
+    ) -> Iterator[tuple[int, SearchRun]]:
+        """The ways of errands with their numbers, in any order.
+
+        One that was interrupted says so, and is the last.
+        """
+
+
+class LocalExecutor:
+    """The present process, one start after another."""
+
+    def go(
+        self, solver: Solver, tasks: Sequence[SearchTask], progress: Progress
+    ) -> Iterator[tuple[int, SearchRun]]:
+        """The ways of errands."""
+        for number, task in enumerate(tasks):
+            yield number, solver.descend(task, partial(progress, number))
 
 
 @dataclass(eq=False)

@@ -82,7 +82,7 @@ class Followed:
 
         directions = np.eye(2)[:size] * nudges
         bend = np.array(
-            [(slopes(at + way) - slopes(at - way)) / (2 * way.sum()) for way in directions]
+            [(slopes(at + nudge) - slopes(at - nudge)) / (2 * nudge.sum()) for nudge in directions]
         )
         bend = (bend + bend.T) / 2
         if not np.isfinite(bend).all() or not (np.linalg.eigvalsh(sign * bend) < 0.0).all():

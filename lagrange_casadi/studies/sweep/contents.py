@@ -75,9 +75,9 @@ def contents(file: h5py.File) -> Contents:
 
     def visit(place: str, item: h5py.Group | h5py.Dataset) -> None:
         if isinstance(item, h5py.Dataset):
-            folder, _, own = place.rpartition("/")
+            folder, _, last = place.rpartition("/")
             if item.is_scale or folder == "grid":
-                check_dataset(item, [length(own if item.is_scale else DESIGN)])
+                check_dataset(item, [length(last if item.is_scale else DESIGN)])
             else:
                 axes = tuple(
                     item.dims[axis][0].name.rpartition("/")[2]

@@ -148,7 +148,7 @@ def _groups(sweep: Sweep) -> dict[str, list[str]]:
 def _of_kind(sweep: Sweep, kind: str) -> dict[str, Output]:
     """The columns of a kind, and what they are of."""
     named = ((name, *name.split(":", 1)) for name in sweep.columns if ":" in name)
-    return {name: Output.of(of) for name, own, of in named if own == kind}
+    return {name: Output.of(of) for name, prefix, of in named if prefix == kind}
 
 
 def _group(output: Output, space: bool) -> str:

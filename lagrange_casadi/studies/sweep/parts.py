@@ -19,16 +19,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, TypedDict
 
+from ...base.locks import lock
 from ...base.publish import flush, put, settled, telling
 from ...errors import BusyError, PathError, StoreError, one_line
 from ...store.untrusted import parsed
 from .column import Column
 from .plan import IDENTITY, Identity
-
-try:
-    import fcntl
-except ImportError:  # where there is none, nothing keeps two sweeps apart
-    fcntl = None  # type: ignore[assignment]
 
 
 class _Head(TypedDict):
@@ -153,8 +149,7 @@ class Folder:
             except FileNotFoundError:
                 continue
             try:
-                if fcntl is not None:
-                    fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                lock(number)
                 # Another sweep may have ended, and removed the folder, between the two calls.
                 if self._is_held(number):
                     return number

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...errors import NoDesignError
 from ...instants.ordering import table_of_described
-from ...shapes.pictures import one_at_a_time, save
+from ...shapes.pictures import ending_of, one_at_a_time, save
 from .best import best, chosen, size
 from .cut import DOTS, LINES, Cut, stays
 from .meanings import STATUS
@@ -307,14 +307,19 @@ class Front:
 Spec = Peaks | Scatter | Along | Front
 
 
-def draw_sweep(sweep: Sweep, specs: Sequence[Spec], folder: Path) -> Iterator[tuple[Path, str]]:
-    """Draw into an existing folder as PNG, one by one: the file, and where it is not drawn, why."""
+def draw_sweep(
+    sweep: Sweep, specs: Sequence[Spec], folder: Path, svg: bool = False
+) -> Iterator[tuple[Path, str]]:
+    """Draw into an existing folder, one by one, as PNG or as SVG: the file, and where it is not
+    drawn, why.
+    """
+    ending = ending_of(svg)
     for spec in specs:
-        path = folder / f"{spec.name}.png"
+        path = folder / f"{spec.name}{ending}"
         why = ""
         with one_at_a_time(STYLE):
             try:
-                save(spec.draw(sweep), path, dpi=200)
+                save(spec.draw(sweep), path, ending, dpi=200)
             except NoDesignError as error:
                 why = str(error)
         yield path, why

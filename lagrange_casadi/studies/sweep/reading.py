@@ -528,8 +528,8 @@ def _along(
     return np.broadcast_to(np.reshape(_taken(dataset, where[axis]), shape), kept).ravel()
 
 
-def _opened(path: str | Path, seen: VerifiedFile | None) -> AbstractContextManager[h5py.File]:
-    return opened_file(path, SCHEMA, READ, "the file of a sweep", " of sweeps", seen)
+def _opened(path: str | Path, verified: VerifiedFile | None) -> AbstractContextManager[h5py.File]:
+    return opened_file(path, SCHEMA, READ, "the file of a sweep", " of sweeps", verified)
 
 
 def _refuse_unfinished(path: str | Path) -> None:

@@ -129,8 +129,8 @@ class Kept:
         (stresses, numbers), material = self._stresses[link], self.data.materials[link]
         chosen = [self.series.index(str(member)) for member in stresses.members]
         members, matter = series[there][:, chosen], numbers(p[there].T).full().T
-        counts = np.array([counted(own) for own in members])
-        kinds = np.column_stack([stresses.stands(members), counts])
+        counts = np.array([counted(member) for member in members])
+        kinds = np.column_stack([stresses.is_still(members), counts])
         for still, *moving in np.unique(kinds, axis=0).tolist():
             alike = (kinds == [still, *moving]).all(axis=1)
             some, values = there[alike], members[alike][..., moving]

@@ -1,0 +1,143 @@
+"""``lagrange-casadi free``: a machine left to itself, its steady cycle, its flywheel."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+import click
+
+from ..base.numerals import real
+from ..case import load_case
+from ..declare.even_points import EvenPoints
+from ..errors import CertificateError, UnknownNameError
+from ..forward import FreeMotion, Law, dc_motor, induction_motor, power, torque
+from ..forward.plot import check_picture, plot_cycle
+from ..forward.running import flywheel, free
+from ..store.runs import check_target, save
+from ..verification.certificate import failure, summary
+from .echo import echo
+from .options import parameters
+
+LAWS: dict[str, tuple[Callable[..., Law], int]] = {
+    "torque": (torque, 1),
+    "power": (power, 1),
+    "dc": (dc_motor, 2),
+    "induction": (induction_motor, 3),
+}
+"""Laws of drives by the word of the option, and how many numbers each takes."""
+
+
+def free_command(
+    case: Path,
+    drive: str | None,
+    geared: float,
+    load: float,
+    inertia: float,
+    start: str | None,
+    steady: bool,
+    fluctuation: float | None,
+    cycle: float,
+    count: int,
+    settings: Sequence[tuple[str, float | str]],
+    t: EvenPoints | None,
+    want: Sequence[str],
+    out: Path | None,
+    plot: Path | None,
+) -> None:
+    """See :func:`.commands.free`."""
+    if fluctuation is not None and inertia:
+        raise click.UsageError("--fluctuation finds the flywheel; expected it without --inertia")
+    if plot is not None:
+        check_picture(plot)
+    loaded = load_case(case)
+    target = out or Path(f"{loaded.name}_free.h5")
+    check_target(target)
+    law = None if drive is None else _law(drive).geared(geared)
+    begin = None if start is None else _numbers("--start", start, 2)
+    wheel = None
+    if fluctuation is not None:
+        wheel = flywheel(
+            loaded.scene,
+            fluctuation=fluctuation,
+            drive=law,
+            load=load,
+            start=begin,
+            cycle=math.tau * cycle,
+            count=count,
+            parameters=parameters(settings),
+            wanted=want or None,
+        )
+        found = wheel.motion
+    else:
+        found = free(
+            loaded.scene,
+            drive=law,
+            load=load,
+            inertia=inertia,
+            start=begin,
+            t=t,
+            steady=steady,
+            cycle=math.tau * cycle,
+            count=count,
+            parameters=parameters(settings),
+            wanted=want or None,
+        )
+    for line in _lines(found):
+        echo(line)
+    if wheel is not None:
+        echo(
+            f"flywheel: {wheel.inertia:.6g} kg m^2 by the exact cycle, {wheel.textbook:.6g} kg m^2"
+            f" by the energy method, for a swing of {wheel.energy:.6g} J"
+        )
+    save(found.solution, target)
+    echo(f"wrote {target}")
+    if plot is not None:
+        plot_cycle(found, plot)
+        echo(f"wrote {plot}")
+    echo(summary(found.solution.certificate))
+    if found.solution.failed:
+        raise CertificateError(failure(found.solution))
+
+
+def _law(text: str) -> Law:
+    """Read WORD=NUMBER,... as a law."""
+    word, _, numbers = text.partition("=")
+    if word not in LAWS:
+        raise UnknownNameError("law of --drive", word, LAWS)
+    make, many = LAWS[word]
+    return make(*_numbers(f"--drive {word}", numbers, many))
+
+
+def _numbers(what: str, text: str, many: int) -> list[float]:
+    try:
+        found = [real(word) for word in text.split(",")]
+    except ValueError:
+        found = []
+    if len(found) != many:
+        raise click.UsageError(f"{what}: expected {many} numbers with commas between, got '{text}'")
+    return found
+
+
+def _lines(found: FreeMotion) -> Iterator[str]:
+    solution, cycle = found.solution, found.cycle
+    unit, speed = (solution.unit(f"motion:{found.joint}{of}") for of in ("", "_rate"))
+    yield (
+        f"{solution.case}: {found.t.size} instants from {found.t[0]:.6g} to {found.t[-1]:.6g} s,"
+        f" {found.joint} from {found.angle[0]:.6g} to {found.angle[-1]:.6g}"
+        f" {unit}, speed from {found.speed.min():.6g} to"
+        f" {found.speed.max():.6g} {speed}"
+    )
+    if cycle is not None:
+        yield (
+            f"steady cycle of {cycle.period:.6g} s: mean speed {cycle.mean_speed:.6g} {speed}, from"
+            f" {cycle.least:.6g} to {cycle.largest:.6g}, fluctuation {cycle.fluctuation:.4g}"
+        )
+        if cycle.torque:
+            yield f"torque that keeps the mean speed: {cycle.torque:.6g} N m"
+        yield (
+            f"power: {cycle.power:.6g} W from the drive, {cycle.load:.6g} W to its load,"
+            f" {cycle.taken:.6g} W to the machine, of which {cycle.lost:.6g} W to friction"
+        )
+    yield from (f"event: {event}" for event in found.events)

@@ -1,0 +1,146 @@
+"""Torques that drive a machine or load it, as expressions of time, angle and speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+
+from ..arguments import Symbolic, public
+from ..base.arrays import Expression
+from ..base.symbolic import symbolic
+from ..errors import DeclarationError
+from . import curves
+from .expressions import error_text, scalar, symbols_of
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """A torque [N m], or force [N] of a drive that slides, over the time [s], the coordinate [rad
+    or m] and the rate [rad/s or m/s] of the drive: ``graph(t, angle, speed)``.
+    """
+
+    graph: Callable[[Expression, Expression, Expression], Expression]
+
+    @public
+    def geared(self, ratio: Symbolic) -> Law:
+        """Return the law of a motor that turns ``ratio`` times as fast as the drive, without
+        losses.
+        """
+        times = _number("geared: ratio", ratio, "1")
+        return Law(lambda t, angle, speed: times * self.graph(t, times * angle, times * speed))
+
+
+@symbolic
+def torque_of(law: Law, what: str, arguments: Sequence[ca.SX], parameters: ca.SX) -> ca.SX:
+    """Return a law as an expression of symbols for time, angle and speed, and of parameters.
+
+    Raises :class:`.DeclarationError`, saying ``what`` it is, for what is no such expression.
+    """
+    try:
+        value = law.graph(*arguments)
+    except Exception as error:
+        raise DeclarationError(
+            f"{what} cannot be made as an expression of t, angle and speed (CasADi's functions,"
+            f" numbers without units): {error_text(error)[:240]}"
+        ) from None
+    symbols = [*arguments, *(ca.vertsplit(parameters) if parameters.numel() else [])]
+    return ca.SX(scalar(what, value, symbols, "parameter", "N*m"))
+
+
+def law_of(given: Law | float | None, what: str) -> Law:
+    """Read a law; a number is a constant torque, and None no torque at all."""
+    if isinstance(given, Law):
+        return given
+    if given is None:
+        return torque(0.0)
+    try:
+        return torque(given)
+    except DeclarationError as error:
+        raise DeclarationError(f"{what}: expected a law of forward, or a number; {error}") from None
+
+
+@public
+def torque(value: Symbolic) -> Law:
+    """A constant torque [N m], or force [N] of a drive that slides."""
+    constant = _number("torque", value, "N*m")
+    return Law(lambda t, angle, speed: constant)
+
+
+@public
+def power(value: Symbolic) -> Law:
+    """A constant power [W]: the torque is power over speed, without bound at rest."""
+    constant = _number("power", value, "W")
+    return Law(lambda t, angle, speed: constant / speed)
+
+
+@public
+def torque_curve(speeds: Sequence[float], torques: Sequence[float]) -> Law:
+    """Torques [N m] at increasing speeds [rad/s], (n,) each, and straight lines between them and
+    beyond.
+
+    Raises :class:`.DeclarationError` for speeds that do not increase.
+    """
+    curves.rows("torque_curve", speeds, torques, 2)
+    return Law(lambda t, angle, speed: curves.table(speed, speeds, torques))
+
+
+@public
+def dc_motor(stall_torque: Symbolic, no_load_speed: Symbolic) -> Law:
+    """A DC motor at constant voltage: its torque falls on a line from ``stall_torque`` [N m] at
+    rest to nothing at ``no_load_speed`` [rad/s].
+    """
+    stall = _number("dc_motor: stall_torque", stall_torque, "N*m")
+    free = _number("dc_motor: no_load_speed", no_load_speed, "rad/s")
+    return Law(lambda t, angle, speed: stall * (1.0 - speed / free))
+
+
+@public
+def induction_motor(
+    breakdown_torque: Symbolic, breakdown_slip: Symbolic, synchronous_speed: Symbolic
+) -> Law:
+    """An induction motor by Kloss's formula, 2 T_b / (s/s_b + s_b/s) with the slip s = 1 -
+    speed/synchronous speed.
+
+    Parameters
+    ----------
+    breakdown_torque
+        Largest torque T_b [N m].
+    breakdown_slip
+        Slip s_b at which it is reached.
+    synchronous_speed
+        Speed of the field [rad/s].
+
+    Returns
+    -------
+    Law
+        The torque over speed; above the synchronous speed the motor brakes.
+    """
+    most = _number("induction_motor: breakdown_torque", breakdown_torque, "N*m")
+    at = _number("induction_motor: breakdown_slip", breakdown_slip, "1")
+    field = _number("induction_motor: synchronous_speed", synchronous_speed, "rad/s")
+
+    def graph(_t: Expression, _angle: Expression, speed: Expression) -> Expression:
+        slip = 1.0 - speed / field
+        return 2.0 * most * at * slip / (slip * slip + at * at)
+
+    return Law(graph)
+
+
+@public
+def expression(law: Callable[[Expression, Expression, Expression], Expression]) -> Law:
+    """Any law: a function of the symbols t [s], angle [rad or m] and speed [rad/s or m/s] that
+    returns a ``casadi.SX`` expression of them and of parameters [N m or N].
+
+    Raises :class:`.DeclarationError` for what is no function.
+    """
+    if not callable(law):
+        raise DeclarationError(
+            f"expression: expected a function of t, angle and speed, got {law!r}"
+        )
+    return Law(law)
+
+
+def _number(what: str, value: object, unit: str) -> Expression:
+    return scalar(what, value, symbols_of(value), "parameter", unit)

@@ -1,0 +1,289 @@
+"""Structured text of IEC 61131-3: function blocks of a scene and of its motion, and a program that
+tests them against golden vectors.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import casadi as ca
+import numpy as np
+
+from ..arithmetic.interpret import operation_name, steps
+from ..base.quantities import Output
+from ..base.status import Status
+from ..errors import DeclarationError
+from ..portable.source import Source
+from ..portable.text import indented, template
+
+_ONE = {
+    **{name: name.upper() for name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "exp")},
+    "fabs": "ABS",
+    "log": "LN",
+    "floor": "LC_FLOOR",
+    "ceil": "LC_CEIL",
+}
+_TWO = {"pow": "EXPT", "constpow": "EXPT", "fmin": "MIN", "fmax": "MAX"}
+_TWO |= {name: f"LC_{name.upper()}" for name in ("atan2", "fmod", "remainder", "copysign")}
+_WRITTEN = {
+    **{getattr(ca, f"OP_{name.upper()}"): f"{own}({{0}})" for name, own in _ONE.items()},
+    **{getattr(ca, f"OP_{name.upper()}"): f"{own}({{0}}, {{1}})" for name, own in _TWO.items()},
+    ca.OP_ADD: "{0} + {1}",
+    ca.OP_SUB: "{0} - {1}",
+    ca.OP_MUL: "{0} * {1}",
+    ca.OP_DIV: "{0} / {1}",
+    ca.OP_NEG: "-{0}",
+    ca.OP_SQ: "{0} * {0}",
+    ca.OP_TWICE: "{0} + {0}",
+    ca.OP_INV: "1.0 / {0}",
+    ca.OP_ASSIGN: "{0}",
+    ca.OP_HYPOT: "SQRT({0} * {0} + {1} * {1})",
+    ca.OP_LT: "SEL({0} < {1}, 0.0, 1.0)",
+    ca.OP_LE: "SEL({0} <= {1}, 0.0, 1.0)",
+    ca.OP_EQ: "SEL({0} = {1}, 0.0, 1.0)",
+    ca.OP_NE: "SEL({0} <> {1}, 0.0, 1.0)",
+    ca.OP_NOT: "SEL({0} = 0.0, 0.0, 1.0)",
+    ca.OP_AND: "SEL({0} <> 0.0 AND {1} <> 0.0, 0.0, 1.0)",
+    ca.OP_OR: "SEL({0} <> 0.0 OR {1} <> 0.0, 0.0, 1.0)",
+    ca.OP_SIGN: "SEL({0} > 0.0, SEL({0} < 0.0, {0}, -1.0), 1.0)",
+    ca.OP_IF_ELSE_ZERO: "SEL({0} <> 0.0, 0.0, {1})",
+}
+
+
+def structured_text(source: Source) -> dict[str, str]:
+    """Return the file ``<prefix>.st`` of a scene, for the parameters of the export.
+
+    Raises :class:`.DeclarationError` for what the language lacks: single precision, a table of the
+    cycle, a function that has no name in it.
+    """
+    c = source.contract
+    if c.rests or source.exported.cycle is not None:
+        raise DeclarationError("structured text: expected double precision and no table")
+    given = _identifiers("in", (m.name for m in c.inputs))
+    taken = _identifiers("out", (m.name for m in c.outputs))
+    inputs = {m.source: name for m, name in zip(c.inputs, given, strict=True)}
+    instant, drive = _Block(source, inputs), _Block(source, inputs)
+    body, motion = list(instant.instant()), list(drive.motion())
+    outputs = []
+    for name, m in zip(taken, c.outputs, strict=True):
+        value = f"y[{source.exported.columns.index(Output.of(m.source))}]"
+        outputs.append(f"  {name} := {f'LC_DIRECTION({value})' if m.wrapped else value};")
+    words = {
+        "name": re.sub(r"[^ -~]|\(\*|\*\)", "?", c.name),
+        "block": _identifiers("mechanism", [c.prefix])[0],
+        "version": source.words["version"],
+        "scene": source.identity,
+        "inputs": indented(f"{name} : LREAL;" for name in given),
+        "outputs": indented(f"{name} : LREAL;" for name in taken),
+        "columns": len(source.exported.columns) - 1,
+        "registers": indented(instant.declared()),
+        "motion_registers": indented(drive.declared()),
+        "body": "\n".join(body),
+        "motion": "\n".join(motion),
+        "taken": "\n".join(outputs),
+        "start": _number(float(source.golden.times[0])),
+        "test": "\n".join(_test(source, given, taken)),
+    }
+    return {f"{c.prefix}.st": template("structured.st", **words)}
+
+
+@dataclass(eq=False)
+class _Block:
+    """A function block under way: its arrays by their sizes, and its tables."""
+
+    source: Source
+    inputs: dict[str, str]
+    arrays: dict[str, int] = field(default_factory=dict)
+    tables: dict[str, Sequence[float]] = field(default_factory=dict)
+
+    def declared(self) -> Iterator[str]:
+        """Yield declarations of variables."""
+        for name, size in self.arrays.items():
+            start = f" := [{', '.join(map(_number, self.source.guess))}]" if name == "z" else ""
+            yield f"{name} : ARRAY[0..{max(size, 1) - 1}] OF LREAL{start};"
+        if "z" in self.arrays:
+            yield from ("size : LREAL;", "before : LREAL;")
+        for name, numbers in self.tables.items():
+            yield f"{name} : ARRAY[0..{len(numbers) - 1}] OF LREAL := ["
+            rows = [numbers[k : k + 6] for k in range(0, len(numbers), 6)]
+            yield ",\n    ".join("  " + ", ".join(map(_number, row)) for row in rows) + "];"
+
+    def array(self, name: str, size: int) -> list[str]:
+        """Declare an array; return its elements."""
+        self.arrays[name] = size
+        return [f"{name}[{k}]" for k in range(size)]
+
+    def motion(self) -> Iterator[str]:
+        """Yield the statements of the scene's motion at t."""
+        c, functions = self.source.contract, self.source.exported.functions
+        names = [
+            [self.inputs[f"motion:{drive}{end}"] for drive in c.drives]
+            for end in ("", "_rate", "_acceleration")
+        ]
+        yield from self.lines(functions["law"], [["t"], self.parameters()], names)
+        if c.timed:
+            yield f"{self.inputs['time']} := t;"
+
+    def instant(self) -> Iterator[str]:
+        """Yield the statements of an instant, up to whether it is valid."""
+        c, exported = self.source.contract, self.source.exported
+        functions, sizes, p = exported.functions, exported.sizes, self.parameters()
+        moment = [self.inputs.get("time", "0.0")]
+        moment += [self.inputs[f"motion:{drive}"] for drive in c.drives]
+        counted = self.array("counted", sizes["counted"])
+        if counted:
+            yield from self.lines(functions["count"], [moment, p], [counted])
+        z: list[str] = []
+        yield from ("iterated := 0.0;", "valid := TRUE;")
+        if self.source.iterated:
+            z = self.array("w", sizes["loops"])
+            yield from self.closing(z, counted)
+        rates = [
+            [self.inputs[f"motion:{drive}{end}"] for drive in c.drives]
+            for end in ("_rate", "_acceleration")
+        ]
+        columns = [f"y[{k}]" for k in range(sizes["evaluated"])]
+        given = [counted, *rates, z, self.fixed("constants_of")]
+        yield from self.lines(functions["instant"], given, [columns])
+        if "status" in functions:
+            rows = [f"y[{k}]" for k in range(len(exported.columns))]
+            given = [rows, self.fixed("matter")[: sizes["gapped"]], ["iterated"]]
+            yield from self.lines(functions["status"], given, [["rule"]])
+            allowed = [k for k, answer in enumerate(self.source.answers()) if answer == "OK"]
+            tests = " OR ".join(f"rule = {_number(float(k))}" for k in allowed)
+            yield f"valid := valid AND ({tests});"
+
+    def closing(self, z: Sequence[str], counted: Sequence[str]) -> Iterator[str]:
+        """Yield the statements that close loops from where they stood."""
+        exported, newton = self.source.exported, self.source.exported.program.newton
+        assert newton is not None
+        rule = {key: _number(float(value)) for key, value in exported.rule.items()}
+        stood, c = self.array("z", len(z)), self.array("c", len(z))
+        yield from (f"{now} := {then};" for now, then in zip(z, stood, strict=True))
+        yield from ("size := 1.0;", "before := 1.0;")
+        yield f"FOR n := 1 TO {int(exported.rule['steps'])} DO"
+        yield f"IF NOT (size < {rule['done']}) THEN"
+        yield "before := size;"
+        step = exported.functions["loops"]
+        yield from self.lines(step, [z, counted, self.parameters()], [c, ["size"]], within="k")
+        yield from (f"{now} := {now} + {more};" for now, more in zip(z, c, strict=True))
+        yield from ("END_IF;", "END_FOR;")
+        yield f"IF size < {rule['lost']} THEN"
+        turn = _number(math.tau)
+        for then, now, turning in zip(stood, z, newton.turning, strict=True):
+            whole = f" - {turn} * LC_FLOOR({now} / {turn} + 0.5)" if turning else ""
+            yield f"{then} := {now}{whole};"
+        yield from ("ELSE", "valid := FALSE;", "END_IF;")
+        yield f"IF size > {rule['rate']} * before AND size > {rule['rounding']} THEN"
+        yield from (f"iterated := {_number(float(Status.SLOW))};", "END_IF;")
+
+    def parameters(self) -> list[str]:
+        """Return the parameters as numbers."""
+        return [_number(value) for value in self.source.values.values()]
+
+    def fixed(self, name: str) -> list[str]:
+        """Return what a function of parameters alone gives, as numbers."""
+        function = self.source.exported.functions.get(name)
+        if function is None:
+            return []
+        values = function(list(self.source.values.values()))
+        return [_number(float(x)) for x in np.ravel(values.full())]
+
+    def lines(
+        self,
+        function: ca.Function,
+        inputs: Sequence[Sequence[str]],
+        outputs: Sequence[Sequence[str]],
+        within: str = "n",
+    ) -> Iterator[str]:
+        """Yield the instructions of a function, one statement each; ``within`` counts in tables."""
+        largest = self.arrays.get("a", 0)
+        for step in steps(function):
+            target = f"a[{step.results[0]}]"
+            if step.operation == ca.OP_OUTPUT:
+                i, k = step.results
+                yield f"{outputs[i][k]} := a[{step.arguments[0]}];"
+                continue
+            largest = max(largest, step.results[0] + 1)
+            given = [f"a[{place}]" for place in step.arguments]
+            if step.operation == ca.OP_INPUT:
+                i, k = step.arguments
+                yield f"{target} := {inputs[i][k]};"
+            elif step.operation == ca.OP_CONST:
+                yield f"{target} := {_number(step.constant)};"
+            elif step.looked_up is not None:
+                cell = step.looked_up.kind == "cell"
+                numbers = step.looked_up.numbers[1:-1] if cell else step.looked_up.numbers
+                yield from self.looked_up(
+                    target, given[0], numbers.tolist(), within if cell else ""
+                )
+            elif step.operation in _WRITTEN:
+                yield f"{target} := {_WRITTEN[step.operation].format(*given)};"
+            else:
+                raise DeclarationError(
+                    f"structured text has no word for {operation_name(step.operation)}, which the"
+                    " scene needs"
+                )
+        self.arrays["a"] = largest
+
+    def looked_up(
+        self, target: str, given: str, numbers: Sequence[float], counter: str
+    ) -> Iterator[str]:
+        """Yield statements that look a number up: its cell with a counter, else its entry."""
+        name = next((one for one, held in self.tables.items() if held == numbers), "")
+        name = name or f"table_{len(self.tables)}"
+        self.tables[name] = numbers
+        if not counter:
+            yield f"{target} := {name}[LREAL_TO_DINT({given})];"
+            return
+        yield from (f"x := {given};", f"{target} := 0.0;")
+        yield f"FOR {counter} := 0 TO {len(numbers) - 1} DO"
+        yield from (f"IF {name}[{counter}] <= x THEN", f"{target} := {target} + 1.0;", "END_IF;")
+        yield "END_FOR;"
+
+
+def _test(source: Source, given: Sequence[str], taken: Sequence[str]) -> Iterator[str]:
+    """Yield a program that follows the motion and compares outputs at golden instants."""
+    g, c = source.golden, source.contract
+    before = float(g.times[0])
+    for number, t in enumerate(g.times.tolist()):
+        count = g.steps if number else 1
+        yield f"FOR n := 1 TO {count} DO"
+        yield f"t := SEL(n = {count}, t + {_number((t - before) / count)}, {_number(t)});"
+        yield "drive(t := t);"
+        yield f"unit({', '.join(f'{name} := drive.{name}' for name in given)});"
+        yield "END_FOR;"
+        before = t
+        yield from ("IF NOT unit.valid THEN", "failed := failed + 1;", "END_IF;")
+        for k, (name, m) in enumerate(zip(taken, c.outputs, strict=True)):
+            gap = f"unit.{name} - ({_number(float(g.outputs[number, k]))})"
+            gap = f"LC_DIRECTION({gap})" if m.wrapped else gap
+            yield f"IF NOT (ABS({gap}) <= {_number(float(g.outputs_off[k]))}) THEN"
+            yield from ("failed := failed + 1;", "END_IF;")
+
+
+def _number(value: float) -> str:
+    """Return a number of LREAL."""
+    if math.isnan(value):
+        raise DeclarationError("structured text has no number for NaN, which the scene needs")
+    value = max(-1.7976931348623157e308, min(value, 1.7976931348623157e308))
+    mantissa, _, power = f"{value:.17g}".partition("e")
+    mantissa += "" if "." in mantissa else ".0"
+    return f"{mantissa}E{power}" if power else mantissa
+
+
+def _identifiers(first: str, names: Iterable[str]) -> list[str]:
+    """Return names that differ where capitals do not count; with a first word none is the
+    language's.
+    """
+    found: dict[str, str] = {}
+    for name in names:
+        plain = re.sub("_+", "_", f"{first}_{name}").rstrip("_")
+        tries = itertools.chain([plain], (f"{plain}_{k}" for k in itertools.count(2)))
+        chosen = next(one for one in tries if one.lower() not in found)
+        found[chosen.lower()] = chosen
+    return list(found.values())

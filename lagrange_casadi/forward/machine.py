@@ -1,0 +1,153 @@
+"""The equation of motion of a machine, compiled: evaluated at one state after another."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..base.arrays import Array
+from ..codegen import find_compiler, load_batch
+from ..codegen.emit import newton_rule
+from ..equations.free_equation import COLUMNS, FreeEquation
+from ..instants.backends import begun
+
+ROW = {name: k for k, name in enumerate(COLUMNS)}
+
+_EVEN = 1e9
+"""A flywheel of so many times the machine's inertia lets it turn evenly."""
+
+_APART = 0.05
+"""Steps by which loops are followed to a start [rad or m]."""
+
+
+@dataclass(eq=False)
+class _Compiled:
+    """A function at one point, compiled where there is a compiler: arguments are written into
+    ``given``, and stay.
+    """
+
+    function: ca.Function
+    given: dict[str, Array]
+    found: Array
+    _call: Any = None
+    _entry: Any = None
+
+    @classmethod
+    def of(cls, function: ca.Function) -> _Compiled:
+        given = {
+            function.name_in(k): np.zeros(function.numel_in(k)) for k in range(function.n_in())
+        }
+        made = cls(function, given, np.zeros(function.numel_out(0)))
+        if (compiler := find_compiler("c")) is not None:
+            library = load_batch(function, compiler)
+            made._entry = library.entry
+            made._call = library.call.made(
+                n=1,
+                **{name: array.ctypes.data for name, array in given.items()},
+                **{f"{name}_every": 0 for name in given},
+                found=made.found.ctypes.data,
+            )
+        return made
+
+    def __call__(self) -> Array:
+        """Evaluate it; the result is overwritten by the next call."""
+        if self._entry is None:
+            self.found[:] = self.function(*self.given.values()).full().ravel()
+        else:
+            self._entry(self._call)
+        return self.found
+
+
+@dataclass(eq=False)
+class Machine:
+    """A machine with one degree of freedom, ready to be evaluated at any state, with ``values`` of
+    all parameters.
+
+    ``z`` are the coordinates of iterated loops where it was evaluated last, ``evaluations`` how
+    often it was.
+    """
+
+    equation: FreeEquation
+    values: Mapping[str, float]
+    state: _Compiled
+    loops: _Compiled | None
+    z: Array
+    evaluations: int = 0
+
+    @classmethod
+    def of(cls, equation: FreeEquation, inertia: float, values: Mapping[str, float]) -> Machine:
+        """Compile an equation of motion, with the ``inertia`` of a flywheel."""
+        p, program = np.array(list(values.values())), equation.program
+        state = _Compiled.of(equation.state)
+        loops = None if equation.loops is None else _Compiled.of(equation.loops)
+        for one in (state, loops):
+            if one is not None:
+                one.given["p"][:] = p
+        state.given["added"][1] = inertia
+        z = np.array(begun(program, program.data.span[0], p))
+        return cls(equation, values, state, loops, z)
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name, for messages."""
+        return self.equation.program.data.name
+
+    def law(self, t: float) -> tuple[float, float]:
+        """Coordinate and rate of the drive as the scene has them."""
+        found = self.equation.program.motion(t, list(self.values.values()))
+        return float(found[0]), float(found[1])
+
+    @property
+    def added(self) -> Array:
+        """Torque and inertia on the drive, to be set."""
+        return self.state.given["added"]
+
+    @contextmanager
+    def evenly(self, angle: float, speed: float) -> Iterator[None]:
+        """Let it turn evenly for a while, as with a flywheel that is large beyond measure, and no
+        added torque; the state is one of its own.
+        """
+        before, own = self.added.copy(), float(self.at(0.0, angle, speed)[ROW["inertia"]])
+        self.added[:] = 0.0, _EVEN * own
+        try:
+            yield
+        finally:
+            self.added[:] = before
+
+    def begin(self, t: float, angle: float) -> bool:
+        """Follow the loops from the scene's own start to an angle; return whether they close."""
+        first = self.law(self.equation.program.data.span[0])[0]
+        steps = 1 + int(abs(angle - first) / _APART)
+        return all(self._close(t, x) for x in np.linspace(first, angle, steps + 1)[1:])
+
+    def at(self, t: float, angle: float, speed: float) -> Array:
+        """Rows :data:`COLUMNS` of a state; no number where loops do not close there."""
+        self.evaluations += 1
+        given = self.state.given
+        given["t"][0], given["angle"][0], given["speed"][0] = t, angle, speed
+        if not self._close(t, angle):
+            return np.full(len(COLUMNS), np.nan)
+        given["z"][:] = self.z
+        return self.state()
+
+    def _close(self, t: float, angle: float) -> bool:
+        if self.loops is None:
+            return True
+        rule, given, z = newton_rule("double", None), self.loops.given, self.z.copy()
+        given["t"][0], given["angle"][0] = t, angle
+        for _ in range(int(rule["steps"])):
+            given["z"][:] = z
+            *correction, size = self.loops().tolist()
+            if not math.isfinite(size):
+                return False
+            z += correction
+            if size < rule["done"]:
+                self.z = z
+                return True
+        return False

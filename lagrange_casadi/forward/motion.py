@@ -1,0 +1,432 @@
+"""A machine left to itself: its motion under a drive's law, and all forces along it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import casadi as ca
+import numpy as np
+
+from ..arguments import Outputs, public
+from ..arithmetic import lookups
+from ..base.arrays import Array, Expression
+from ..base.quantities import Output
+from ..base.symbolic import symbolic
+from ..declare.description import coordinates_of
+from ..declare.even_points import EvenPoints, points
+from ..declare.motion import Motion
+from ..declare.scene import Scene
+from ..equations.derive import compiled_for
+from ..errors import CertificateWarning, DeclarationError, LagrangeCasadiError, warn
+from ..instants.solution import Solution
+from ..studies.request import Request
+from ..studies.solving import solve
+from ..verification.certificate import failure
+from .machine import ROW, Machine
+
+ACCURACY = 1e-12
+"""Relative error of a step of integration."""
+
+_MOST_EVALUATIONS = 4_000_000
+_LEAST = 1e-9
+"""Share of the whole time by which a run must go on after a stop."""
+
+DEAD, _NEAR = 1e-4, 0.05
+"""Sine of a loop's transmission angle at which the loop is at a dead centre; and that below which a
+run that cannot go on is at one.
+"""
+
+_RATES = [ROW[name] for name in ("acceleration", "drive", "load", "taken")]
+
+_SLOW = 1e-9
+"""Rate at which friction has its direction, and of a machine that is nearly at rest."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """An event of a free machine at time ``t`` [s], at an ``angle`` [rad or m] and a ``speed``
+    [rad/s or m/s]: it is at ``rest``, and turns back or goes on; it is ``held`` at rest by
+    friction, or at a ``dead centre``, which ends the run.
+    """
+
+    kind: str
+    t: float
+    angle: float
+    speed: float
+
+    def __str__(self) -> str:
+        return f"{self.kind} at t = {self.t:.6g} s, coordinate {self.angle:.6g}"
+
+
+@public
+@dataclass(frozen=True)
+class Cycle:
+    """Numbers of a steady cycle of a machine.
+
+    ``mean_speed`` is the cycle's angle over its ``period`` [s], ``least`` and ``largest`` are the
+    smallest and the greatest speed [rad/s], between the instants too. ``torque`` [N m] is the
+    constant one that keeps the mean speed where no drive was given, else zero. ``power`` [W] is the
+    mean that the drive gives; the load takes ``load``, and the scene ``taken``, of which its
+    frictions take ``lost``, by its instants.
+    """
+
+    period: float
+    mean_speed: float
+    least: float
+    largest: float
+    torque: float
+    power: float
+    load: float
+    taken: float
+    lost: float
+
+    @property
+    def fluctuation(self) -> float:
+        """Coefficient of fluctuation: largest less least speed, over the mean speed."""
+        return abs((self.largest - self.least) / self.mean_speed)
+
+
+@public
+@dataclass(frozen=True, eq=False, repr=False)
+class FreeMotion:
+    """The motion that a machine makes by itself, over its instants ``t`` [s].
+
+    ``angle``, ``speed`` and ``acceleration`` are those of the drive's ``joint`` [rad or m, and per
+    s and s^2], ``drive`` and ``load`` the torques of the laws [N m or N], and ``reflected`` is the
+    inertia that the drive feels, without the flywheel's [kg m^2 or kg], each (t,). Since the first
+    instant the drive has done ``work_drive`` [J], the load has taken ``work_load``, and the
+    scene's own loads, springs, weights and frictions ``work_taken``; ``kinetic`` is the kinetic
+    energy [J], that of the flywheel's ``inertia`` [kg m^2 or kg] too. ``energy`` is what is missing
+    in their balance, over the largest of them: a residual of the certificate of ``solution``, which
+    has all forces. ``scene`` is the scene with this motion. ``events`` are what happened on the
+    way; ``ended`` is the one that ended the run early, or None. ``cycle`` has the numbers of a
+    steady cycle, where one was asked for.
+    """
+
+    joint: str
+    t: Array
+    angle: Array
+    speed: Array
+    acceleration: Array
+    drive: Array
+    load: Array
+    reflected: Array
+    work_drive: Array
+    work_load: Array
+    work_taken: Array
+    kinetic: Array
+    inertia: float
+    events: tuple[Event, ...]
+    scene: Scene
+    solution: Solution
+    cycle: Cycle | None = None
+
+    def __repr__(self) -> str:
+        return (
+            f"<FreeMotion of {self.solution.case}: {self.t.size} instants from {self.t[0]:.5g} to"
+            f" {self.t[-1]:.5g} s, speed from {self.speed.min():.5g} to {self.speed.max():.5g}>"
+        )
+
+    @property
+    def ended(self) -> Event | None:
+        """The event that ended the run before its time."""
+        last = self.events[-1] if self.events else None
+        return last if last is not None and last.kind in ("held", "dead centre") else None
+
+    @property
+    def resisting(self) -> Array:
+        """Torque [N m] that the load and the scene's loads, springs, weights and frictions take at
+        the speed of the machine, with what its varying inertia does, (t,): without the flywheel
+        the drive needs as much to turn evenly.
+        """
+        return np.asarray(self.drive - (self.reflected + self.inertia) * self.acceleration)
+
+    @property
+    def energy(self) -> Array:
+        """Residual of the balance of energy, (t,)."""
+        works = (self.work_drive, self.work_load, self.work_taken)
+        missing = self.kinetic - self.kinetic[0] - works[0] + works[1] + works[2]
+        largest = max(float(np.abs(energy).max()) for energy in (self.kinetic, *works))
+        return np.asarray(np.abs(missing) / (largest or 1.0))
+
+
+@dataclass(frozen=True)
+class Start:
+    """State in which a machine is let go: coordinate and rate of its drive."""
+
+    angle: float
+    speed: float
+
+
+def begun_at(machine: Machine, start: Sequence[float] | None, t: float) -> Start:
+    """Return the state at the start: as given, or as the law of the scene has it."""
+    if start is None:
+        return Start(*machine.law(t))
+    try:
+        angle, speed = (float(x) for x in start)
+    except (TypeError, ValueError):
+        raise DeclarationError(f"start: expected (coordinate, rate), got {start!r}") from None
+    if not (math.isfinite(angle) and math.isfinite(speed)):
+        raise DeclarationError(f"start: expected finite numbers, got {start!r}")
+    return Start(angle, speed)
+
+
+def follow(
+    scene: Scene,
+    machine: Machine,
+    start: Start,
+    even: EvenPoints,
+    wanted: Outputs | None,
+    accuracy: float,
+) -> FreeMotion:
+    """Integrate a machine over instants, and evaluate the scene along the motion found."""
+    times = points(even)
+    if times.size < 2:
+        raise DeclarationError("t: a free machine needs two instants or more")
+    if not machine.begin(float(times[0]), start.angle):
+        raise DeclarationError(
+            f"start: the loops of '{machine.name}' do not close at {start.angle:.6g}"
+        )
+    y, events = _integrated(machine, start, times, accuracy)
+    times = times[: y.shape[1]]
+    if times.size < 2:
+        raise LagrangeCasadiError(
+            f"free machine '{machine.name}': {events[-1]}, before the second instant"
+        )
+    machine.begin(float(times[0]), start.angle)
+    posture = {**scene.posture, **_posture(scene, machine, float(times[0]), start)}
+    ways = np.append(y[1, 1:], y[1, -1])  # at rest, where something depends on that, the next one
+    rows = np.empty((len(ROW), times.size))
+    for i, (now, angle, speed) in enumerate(zip(times, y[0], y[1], strict=True)):
+        rows[:, i] = machine.at(now, angle, speed)
+        if not math.isfinite(rows[ROW["acceleration"], i]):
+            rows[:, i] = machine.at(now, angle, math.copysign(_SLOW, ways[i]))
+    flywheel = float(machine.added[1])
+    law = hermite(times, y[0], y[1], rows[ROW["acceleration"]])
+    moved = replace(
+        scene,
+        motion={machine.equation.joint: law},
+        t=(float(times[0]), float(times[-1]), times.size),
+        over=None,
+        posture=posture,
+    )
+    solution = solve(moved, Request(machine.values, None, None, None, wanted))
+    found = FreeMotion(
+        machine.equation.joint,
+        times,
+        *(y[0], y[1], rows[ROW["acceleration"]], rows[ROW["drive"]], rows[ROW["load"]]),
+        *(rows[ROW["inertia"]] - flywheel, y[2], y[3], y[4]),
+        kinetic=rows[ROW["kinetic"]] + flywheel * y[1] ** 2 / 2.0,
+        inertia=flywheel,
+        events=tuple(events),
+        scene=moved,
+        solution=solution,
+    )
+    turning = rows[ROW["inertia"]] * rows[ROW["acceleration"]]
+    return replace(found, solution=_certified(found, float(np.abs(turning).max())))
+
+
+def _certified(found: FreeMotion, turning: float) -> Solution:
+    """The solution with the residuals of energy and of the drive's law in its certificate;
+    ``turning`` is the largest torque of inertia [N m].
+    """
+    solution = found.solution
+    residuals = {"energy": found.energy}
+    effort = Output("effort", found.joint)
+    if effort in solution.outputs:
+        given = found.drive - found.load - found.inertia * found.acceleration
+        torques = (given, found.drive, found.load)
+        largest = max(turning, *(float(np.abs(x).max()) for x in torques))
+        missing = np.abs(np.nan_to_num(solution.outputs[effort] - given))
+        residuals["drive"] = missing / (largest or 1.0)
+    solution = replace(solution, certificate={**solution.certificate, **residuals})
+    if solution.failed and any(name in solution.failed for name in residuals):
+        warn(f"{failure(solution)}; the solution is not certified", CertificateWarning)
+    return solution
+
+
+def _posture(scene: Scene, machine: Machine, t: float, start: Start) -> dict[str, float]:
+    """Coordinates of the joints at the start, from which the loops are assembled there; none where
+    it is that of the scene.
+    """
+    if start.angle == machine.law(t)[0]:
+        return {}
+    program, p = (
+        compiled_for(scene, ["motion"], machine.values),
+        np.array([*machine.values.values()]),
+    )
+    out = program.instant(t, start.angle, 0.0, 0.0, machine.z, p).full().ravel()
+    found = {}
+    for name, kind in coordinates_of(program.data.at(p)).items():
+        row = program.outputs.get(Output("motion", name))
+        if row is not None and name != machine.equation.joint:
+            value = float(out[row])
+            found[name] = math.remainder(value, math.tau) if kind == "angle" else value
+    return found
+
+
+@symbolic
+def hermite(t: Array, value: Array, rate: Array, acceleration: Array) -> Motion:
+    """A motion with given values, rates and accelerations at given times, exact there: a polynomial
+    of degree five between two of them, so that its acceleration is continuous.
+    """
+    h = np.diff(t)
+    rise = value[1:] - value[:-1] - h * (rate[:-1] + h * acceleration[:-1] / 2.0)
+    faster = rate[1:] - rate[:-1] - h * acceleration[:-1]
+    change = acceleration[1:] - acceleration[:-1]
+    cells = (
+        value[:-1],
+        rate[:-1],
+        acceleration[:-1] / 2.0,
+        (10.0 * rise - 4.0 * h * faster + h**2 * change / 2.0) / h**3,
+        (-15.0 * rise + 7.0 * h * faster - h**2 * change) / h**4,
+        (6.0 * rise - 3.0 * h * faster + h**2 * change / 2.0) / h**5,
+    )
+
+    def graph(time: Expression) -> Expression:
+        if t.size == 2:
+            u, c = time - t[0], [ca.SX(float(cell[0])) for cell in cells]
+        else:
+            number = lookups.cell(t.tolist(), time, ends=False)
+            u = time - lookups.entries(t[:-1].tolist(), number)
+            c = [lookups.entries(cell.tolist(), number) for cell in cells]
+        found = ca.SX(c[-1])
+        for coefficient in reversed(c[:-1]):
+            found = found * u + coefficient
+        return found
+
+    return Motion(
+        graph,
+        span=(float(t[0]), float(t[-1])),
+        knots=tuple(t.tolist()),
+        description=f"the motion of a free machine through {t.size} instants",
+    )
+
+
+def _integrated(
+    machine: Machine, start: Start, times: Array, accuracy: float
+) -> tuple[Array, list[Event]]:
+    """States at the instants that are reached, (5, t): coordinate, rate, works of the drive, of the
+    load and of the scene; and the events.
+    """
+    from scipy.integrate import solve_ivp
+
+    t, end = float(times[0]), float(times[-1])
+    first = machine.at(t, start.angle, start.speed).copy()
+    for name in ("drive", "load"):
+        if not math.isfinite(first[ROW[name]]):
+            raise LagrangeCasadiError(
+                f"free machine '{machine.name}': its {name} is without bound at the start, at the"
+                f" rate {start.speed:g}"
+            )
+    first = machine.at(t, start.angle, start.speed or _SLOW).copy()
+    energy = abs(first[ROW["kinetic"]]) + machine.added[1] * start.speed**2 / 2.0
+    energy = max(energy, *(abs(first[ROW[name]]) for name in ("drive", "load", "inertia")), 1e-12)
+    scales = accuracy * np.array([1.0, max(abs(start.speed), 1.0), energy, energy, energy])
+    state = np.array([start.angle, start.speed, 0.0, 0.0, 0.0])
+    done, events = [state[:, None]], list[Event]()
+    while True:
+        way = math.copysign(1.0, state[1]) if state[1] else _first_way(machine, t, float(state[0]))
+        if way == 0.0:
+            events.append(Event("held", t, float(state[0]), 0.0))
+            break
+        rates = _Rates(machine, way, (t, float(state[0]), float(state[1])))
+        run = solve_ivp(
+            *(rates, (t, end), state),
+            method="DOP853",
+            rtol=max(accuracy, 2.3e-14),
+            atol=scales,
+            t_eval=times[(times > t) & (times <= end)],
+            events=_watched(machine, way),
+            first_step=(end - t) * 1e-6,
+        )
+        done.append(np.reshape(run.y, (state.size, -1)))  # SciPy's is a list where it is empty
+        if run.status == -1:
+            events.append(_why_lost(machine, *rates.last))
+            break
+        if run.status == 0:
+            break
+        (rests, dead), (states, dead_states) = run.t_events, run.y_events
+        if dead.size:
+            at = dead_states[0]
+            events.append(Event("dead centre", float(dead[0]), float(at[0]), float(at[1])))
+            break
+        before, t, state = t, float(rests[0]), states[0] * (1.0, 0.0, 1.0, 1.0, 1.0)
+        if t - before < _LEAST * (end - times[0]):
+            events.append(Event("held", t, float(state[0]), 0.0))
+            break
+        events.append(Event("rest", t, float(state[0]), 0.0))
+        if t >= end:
+            break
+    return np.concatenate(done, axis=1), events
+
+
+@dataclass
+class _Rates:
+    """The rates of the states of a machine that moves one ``way``: what depends on that, as a
+    friction, stays as it is up to where the machine is at rest and beyond, so that
+    nothing jumps before rest is found. ``last`` is the last time, coordinate and rate at which it
+    was finite.
+    """
+
+    machine: Machine
+    way: float
+    last: tuple[float, float, float]
+
+    def __call__(self, t: float, y: Array) -> list[float]:
+        machine, angle, speed = self.machine, float(y[0]), float(y[1])
+        if machine.evaluations > _MOST_EVALUATIONS:
+            raise LagrangeCasadiError(
+                f"free machine '{machine.name}': after {_MOST_EVALUATIONS} evaluations the run is"
+                f" at t = {t:.6g} s alone; expected a shorter time or a coarser accuracy"
+            )
+        slow = self.way * speed < _SLOW
+        a, drive, load, taken = machine.at(t, angle, self.way * _SLOW if slow else speed)[_RATES]
+        if math.isfinite(a):
+            self.last = t, angle, speed
+        return [speed, a, drive * speed, load * speed, taken]
+
+
+def _watched(machine: Machine, way: float) -> list[Callable[[float, Array], float]]:
+    """Functions of the state that are zero at rest, and at a dead centre, for a machine that moves
+    one ``way``.
+    """
+
+    def rest(_t: float, y: Array) -> float:
+        return float(y[1])
+
+    def dead(t: float, y: Array) -> float:
+        sine = float(machine.at(t, float(y[0]), float(y[1]) or way * _SLOW)[ROW["sine"]])
+        return sine - DEAD if math.isfinite(sine) else 1.0
+
+    vars(rest).update(terminal=True, direction=-way)
+    vars(dead).update(terminal=True)
+    return [rest, dead]
+
+
+def _first_way(machine: Machine, t: float, angle: float) -> float:
+    """The way in which a machine at rest begins to move: 1 or -1, or 0 where friction holds it."""
+    ahead, back = (
+        float(machine.at(t, angle, way * _SLOW)[ROW["acceleration"]]) for way in (1.0, -1.0)
+    )
+    if ahead > 0.0 or ahead == back == 0.0:
+        return 1.0
+    return -1.0 if back < 0.0 else 0.0
+
+
+def _why_lost(machine: Machine, t: float, angle: float, speed: float) -> Event:
+    """The event at which the integrator can go no further.
+
+    Raises :class:`.LagrangeCasadiError` where it is no dead centre.
+    """
+    rows = machine.at(t, angle, speed)
+    if not rows[ROW["sine"]] >= _NEAR:
+        return Event("dead centre", t, angle, speed)
+    raise LagrangeCasadiError(
+        f"free machine '{machine.name}': its motion cannot be followed beyond t = {t:.6g} s,"
+        f" coordinate {angle:.6g}, rate {speed:.6g}: acceleration"
+        f" {rows[ROW['acceleration']]:.3g}, drive {rows[ROW['drive']]:.3g}; a law is without bound"
+        " or jumps back and forth there"
+    )

@@ -1,0 +1,67 @@
+"""A picture of a free machine: torque over the drive's coordinate, with the areas above and below
+its mean, and speed.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ..arguments import public
+from ..base.publish import check_writable, writing
+from ..errors import DeclarationError
+from ..shapes.pictures import PICTURES, one_at_a_time, save
+from .motion import FreeMotion
+
+
+def check_picture(path: str | Path) -> None:
+    """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and
+    :class:`.PathError`.
+    """
+    target = Path(path)
+    if target.suffix not in PICTURES:
+        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
+    check_writable(target)
+
+
+@public
+@one_at_a_time()
+def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
+    """Draw the torque that a machine needs on its drive over the coordinate, what the drive gives,
+    and the speed, into a file.
+
+    The torque needed is the one that would turn the machine evenly at the speed that it has. Areas
+    above its mean are energy that the speed pays, those below are energy that it gets back. Raises
+    as :func:`check_picture` does.
+    """
+    check_picture(path)
+    from matplotlib.figure import Figure
+
+    solution = motion.solution
+    angle = solution.unit(f"motion:{motion.joint}") == "rad"
+    x = np.degrees(motion.angle) if angle else motion.angle
+    resisting = motion.resisting
+    mean = float(np.sum((resisting[1:] + resisting[:-1]) / 2.0 * np.diff(motion.angle)))
+    mean /= float(motion.angle[-1] - motion.angle[0]) or 1.0
+    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    upper.fill_between(x, resisting, mean, where=resisting > mean, color="#f2c9b8", lw=0.0)
+    upper.fill_between(x, resisting, mean, where=resisting <= mean, color="#c9dff2", lw=0.0)
+    upper.plot(x, resisting, color="#1f4e79", lw=1.0, label="needed")
+    upper.axhline(mean, color="#1f4e79", lw=0.8, ls="--", label="its mean")
+    upper.plot(x, motion.drive, color="#c0392b", lw=1.0, label="drive")
+    upper.set(ylabel="torque [N m]" if angle else "force [N]")
+    upper.legend(loc="best", frameon=False, fontsize=9)
+    turn = 60.0 / math.tau if angle else 1.0
+    lower.plot(x, turn * motion.speed, color="#2e7d4f", lw=1.2)
+    lower.set(
+        xlabel=f"{motion.joint} [{'deg' if angle else 'm'}]",
+        ylabel="speed [1/min]" if angle else "speed [m/s]",
+    )
+    for axes in (upper, lower):
+        axes.grid(True, color="0.92")
+    target = Path(path)
+    with writing(target) as (file,):
+        save(figure, file, target.suffix)

@@ -1,0 +1,189 @@
+"""Load spectra: rainflow matrices of what loads a part, and equivalent loads of bearings."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..arguments import Positive, public
+from ..base.arrays import Array
+from ..base.publish import writing
+from ..base.units import count
+from ..errors import DeclarationError
+from ..instants.solution import Solution
+from ..strength.bearings import equivalent_load, joint_rate, reaction_sizes, time_weights
+from ..strength.rainflow import counted
+
+_HEADS = ("range", "mean", "cycles", "range_low", "range_high", "mean_low", "mean_high")
+
+
+@public
+@dataclass(frozen=True)
+class BearingLoads:
+    """Loads of a bearing as catalogues ask for them: ``radial`` and ``axial`` [N] even loads that
+    wear it as much as those of the cycle, at the mean ``speed`` [1/min]; and the largest of each.
+    """
+
+    joint: str
+    radial: float
+    axial: float
+    speed: float
+    largest_radial: float
+    largest_axial: float
+    largest_speed: float
+
+
+@public
+def bearing_loads(solution: Solution, joint: str, exponent: Positive = 3.0) -> BearingLoads:
+    """Compute equivalent loads and speeds of a joint for catalogues of bearings.
+
+    Parameters
+    ----------
+    solution
+        A solution with the joint's reaction and motion.
+    joint
+        Name of the joint.
+    exponent
+        That of the bearing's life: 3 for balls, 10/3 for rollers.
+
+    Returns
+    -------
+    BearingLoads
+        Loads are weighted by the angle that the joint turns under them; the speed is the mean of
+        its size, also of a joint that swings.
+
+    Raises
+    ------
+    DeclarationError
+        For a reaction or a rate that was not evaluated, or is indeterminate.
+    """
+    across, along = reaction_sizes(solution, joint)
+    rate = joint_rate(solution, joint, "angle")
+    if rate is None:
+        raise DeclarationError(f"joint '{joint}' does not turn, or its motion was not evaluated")
+    speed, weights = np.abs(rate) * 60.0 / math.tau, time_weights(solution.t)
+    turned = speed * weights
+    return BearingLoads(
+        joint,
+        equivalent_load(across, turned, exponent),
+        equivalent_load(along, turned, exponent),
+        float(turned.sum() / weights.sum()),
+        *(float(values.max()) for values in (across, along, speed)),
+    )
+
+
+def write_bearing_loads(loads: Sequence[BearingLoads], path: Path) -> None:
+    """Write loads of bearings as CSV, a row for each joint."""
+    each = ("radial [N]", "axial [N]", "speed [1/min]")
+    heads = ["joint", *each, *(f"largest {name}" for name in each)]
+    _write(path, "", [heads, *map(astuple, loads)])
+
+
+@public
+def write_spectrum(
+    solution: Solution,
+    name: str,
+    path: str | os.PathLike[str],
+    *,
+    classes: int = 64,
+    repeating: bool = True,
+) -> None:
+    """Write the rainflow matrix of a quantity as CSV: ranges, means and counts of its cycles.
+
+    Parameters
+    ----------
+    solution
+        A solution.
+    name
+        What ``solution.array`` takes, as ``reaction:A:fx``; at a ratio xi/l of a link a section
+        force, as ``section:rod:bending@0.5``, or the normal stress of the fibre where its range is
+        widest, ``stress:rod@0.5``.
+    path
+        The file. Rows with their classes begin with ``range``, ``mean`` and ``cycles``.
+    classes
+        Classes of ranges and of means; 0 writes each cycle with its range and mean as they are.
+    repeating
+        True if the history repeats for ever, so that its ends are no cycle by themselves.
+
+    Raises
+    ------
+    DeclarationError
+        For a quantity that was not evaluated, or is indeterminate.
+    PathError
+        If the file cannot be written.
+    """
+    history, unit = _history(solution, name)
+    if history.ndim != 1:
+        raise DeclarationError(f"spectrum of '{name}': give a ratio too, as in '{name}@0.5'")
+    if not np.isfinite(history).all():
+        raise DeclarationError(f"spectrum of '{name}': it is indeterminate at some instants")
+    number = count("spectrum: classes", classes, 0)
+    cycles = [cycle for cycle in counted(history, repeating=repeating) if cycle.size > 0.0]
+    found: dict[tuple[float, ...], float] = defaultdict(float)
+    widest, lowest = float(np.ptp(history)), float(history.min())
+    for cycle in cycles:
+        size, mean = cycle.size, cycle.mean
+        if number:
+            ranges, means = (
+                _class_of(value, start, widest, number)
+                for value, start in ((size, 0.0), (mean, lowest))
+            )
+            key = (sum(ranges) / 2, sum(means) / 2, *ranges, *means)
+        else:
+            key = (size, mean, size, size, mean, mean)
+        found[key] += cycle.times
+    rows = [(*key[:2], times, *key[2:]) for key, times in sorted(found.items())]
+    seconds = float(np.ptp(solution.t))
+    again = "which repeat" if repeating else "once"
+    text = f"# {name} [{unit}], counted over {seconds:.9g} s, {again}\n"
+    _write(Path(path), text, [_HEADS, *rows])
+
+
+def _class_of(value: float, start: float, width: float, count: int) -> tuple[float, float]:
+    """Return the ends of the class that a value is in."""
+    k = min(int((value - start) / width * count), count - 1)
+    return start + width * k / count, start + width * (k + 1) / count
+
+
+def _history(solution: Solution, name: str) -> tuple[Array, str]:
+    """Return a quantity over time, and its unit."""
+    group, _, rest = name.partition(":")
+    quantity, at, place = rest.partition("@")
+    if not at:
+        return solution.array(name), solution.unit(name)
+    try:
+        ratio = float(place)
+    except ValueError:
+        ratio = math.nan
+    if not 0.0 <= ratio <= 1.0 or group not in ("section", "stress"):
+        raise DeclarationError(
+            f"spectrum of '{name}': expected section:LINK:FORCE@RATIO or stress:LINK@RATIO, with a"
+            " ratio xi/l from 0 to 1"
+        )
+    if group == "stress":
+        stresses = solution.stress(quantity).at(ratio)[0]
+        return stresses[int(np.argmax(np.ptp(stresses, axis=1)))], "Pa"
+    link, _, force = quantity.rpartition(":")
+    law = solution.section(link).law
+    if force not in solution.table.forces:
+        raise DeclarationError(
+            f"spectrum of '{name}': unknown section force '{force}'; valid:"
+            f" {', '.join(solution.table.forces)}"
+        )
+    values = law.at(force, np.full((solution.t.size, 1), ratio))[:, 0]
+    return np.asarray(values), solution.unit(f"section:{quantity}")
+
+
+def _write(path: Path, head: str, rows: Sequence[Sequence[object]]) -> None:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    with writing(path) as (draft,):
+        draft.write((head + text.getvalue()).encode())
