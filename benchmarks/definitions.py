@@ -113,6 +113,7 @@ _SWEPT = "from benchmarks.sweeps import report; print(report({0}, {1}, {2}))"
 _OPTIMUM = "from benchmarks.optimum import report; print(report(5))"
 _GRADIENTS = "from benchmarks.gradients import report; print(report(20))"
 _STEADY = "from benchmarks.steady import report; print(report(5))"
+_IDENTIFY = "from benchmarks.identification import report; print(report(3))"
 _LARGE = "from benchmarks.large import report; print(report({0}))"
 
 PROGRAMS = (
@@ -158,6 +159,8 @@ PROGRAMS = (
         _GRADIENTS, repeat=1, reports=True),
     Program("steady", "the steady cycle of the punch press, of an evaluation of it",
         _STEADY, repeat=1, reports=True),
+    Program("identify", "73 parameters of an arm from 6000 instants, of an evaluation of them",
+        _IDENTIFY, repeat=1, reports=True),
     *(
         Program(f"large-{n}", f"an open chain of {n} links, everything", _LARGE.format(n),
             cold=True, repeat=1, reports=True)
