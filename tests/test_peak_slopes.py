@@ -55,7 +55,7 @@ def test_slopes_of_peaks_are_those_of_their_differences(name):
     scene = load_case(CASES / name).scene
     f = prepare(scene, wanted=["effort", "reaction", "section"])
     found, gradient = gaps(f)
-    assert not (gradient.kinds == PeakKind.UNTOLD).any()
+    assert not (gradient.kinds == PeakKind.UNKNOWN).any()
     worst = max(found, key=found.get)
     assert found[worst] <= 1e-6, (worst, found[worst])
 
@@ -180,7 +180,7 @@ def test_motions_by_samples():
     told = {
         key: gap
         for key, gap in found.items()
-        if gradient.kinds[f.quantities.index(key[0])] != PeakKind.UNTOLD
+        if gradient.kinds[f.quantities.index(key[0])] != PeakKind.UNKNOWN
     }
     assert len(told) >= 14
     assert max(told.values()) <= 1e-6

@@ -4,7 +4,7 @@ import importlib
 import math
 
 import pytest
-from internals import contents, untold_lines
+from internals import contents, not_evaluated_lines
 from mechanisms import slider_crank
 from strong import STEEL, press, robot, slider
 
@@ -115,7 +115,7 @@ def test_what_is_open_is_told_by_its_name(scene):
         with pytest.raises(DeclarationError) as refused:
             solution.safety(part)
         assert [row["where"] for row in rows if row["part"] == part] == [str(refused.value)]
-    assert {note.split("'")[1] for note in untold_lines(solution)} == OPEN[scene]
+    assert {note.split("'")[1] for note in not_evaluated_lines(solution)} == OPEN[scene]
 
 
 @pytest.fixture

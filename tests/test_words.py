@@ -17,7 +17,7 @@ PRIVATE = {
     *("rungs", "summit", "summits", "look", "looks", "loose", "ball", "balls", "rubbing", "rubs"),
     *("lets", "crew", "errand", "errands", "trail", "trails", "doubts", "doubtful", "misfits"),
     *("borne", "swings", "tally", "witness", "freed", "tells", "reaching", "stations", "spreads"),
-    *("told", "felt", "stead"),
+    *("told", "untold", "felt", "stead"),
 }
 """Words that once stood for methods of evaluation, local maxima, samples, load points and more."""
 

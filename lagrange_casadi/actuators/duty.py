@@ -160,7 +160,7 @@ def duty_of(
     rad/m; a negative one turns it the other way. ``efficiency`` is that of the gearbox, ``inertia``
     [kg m^2] that of the motor's rotor and what turns with it. A ``linear`` motor pushes a drive
     that slides; its inertia is the mass of its moving part [kg], and its ratio usually 1.
-    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias.
+    ``carried`` is the result of :func:`.inertia_at` for the drive, for the ratio of inertias.
     ``holding`` is the range of its efforts, by default the solution's: where joints with friction
     rest, the effort is the end of the range that is larger in size.
 

@@ -47,7 +47,7 @@ class Beam:
 
     ``columns`` are the effective lengths of the link as a column over its length: where it bends
     along y, in the plane of motion of a planar mechanism, and where it bends along z. By default
-    joints tell them (:mod:`..equations.buckling`).
+    they follow from the joints (:mod:`..equations.buckling`).
 
     Raises :class:`.DeclarationError` for what is none of these.
     """

@@ -145,4 +145,4 @@ TABLE = {
 """Strengths: EN 10025-2 (S235, S355, up to 16 mm), EN ISO 683-1 and -2 (C45+QT, 42CrMo4+QT, up to
 16 mm), EN 1563, EN 755-2 (extruded rod of at most 20 mm), ASTM B348 grade 5. Moduli of steel: EN
 1993-1-1, 3.2.6. The endurance limit of steels is half the ultimate strength, that of a polished
-rotating beam (Shigley, eq. 6-8): a part's own is lower. Of the others none is told."""
+rotating beam (Shigley, eq. 6-8): a part's own is lower. The others have none."""

@@ -23,7 +23,7 @@ from ..studies.sweep.instant_axis import in_words
 from ..studies.sweep.plan import Identity
 from .echo import echo
 from .report import Rows, asked_line
-from .strength_lines import untold_lines
+from .strength_lines import not_evaluated_lines
 
 
 def info(target: Path, want: tuple[str, ...]) -> None:
@@ -85,7 +85,7 @@ def _describe_file(solution: Solution) -> None:
     )
     for note in solution.notes:
         echo(f"note: {note}")
-    for line in untold_lines(solution):
+    for line in not_evaluated_lines(solution):
         echo(line)
     if solution.sensitivities.by:
         by = ", ".join(solution.sensitivities.parameters)

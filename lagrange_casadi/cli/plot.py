@@ -20,7 +20,7 @@ from ..studies.sweep.default_figures import default_plots
 from ..studies.sweep.plots import Spec, draw_sweep
 from .drawing import draw_with_progress
 from .echo import echo
-from .strength_lines import untold_lines
+from .strength_lines import not_evaluated_lines
 
 _UNDRAWN = "cannot be drawn"
 
@@ -55,7 +55,7 @@ def plot(
         with reported_as(_UNDRAWN, file), MANIFEST.filling(out) as draft:
             draw_with_progress(solution, drawn, draft, si, svg)
         if not drawn:
-            for line in untold_lines(solution):
+            for line in not_evaluated_lines(solution):
                 echo(line, err=True)
     echo(f"wrote the figures in {out}/; {out}/{NAME} shows all of them")
 

@@ -29,7 +29,7 @@ from ..studies.sweep.axes import grouped
 from ..verification.certificate import failure
 from .echo import echo, say_step
 from .options import parameters
-from .strength_lines import untold_lines
+from .strength_lines import not_evaluated_lines
 
 _FILES = (".h5", ".hdf5")
 _UNSHOWN = "cannot be shown"
@@ -132,7 +132,7 @@ def _of_two(
     if same_runs(*solutions):
         echo("note: both runs are the same: all their values are equal", err=True)
     for solution in solutions:
-        for line in untold_lines(solution):
+        for line in not_evaluated_lines(solution):
             echo(line, err=True)
     echo(f"wrote {out}: open it in a browser")
     for solution in solutions:
@@ -195,7 +195,7 @@ def _announce(solution: Solution, out: Path) -> None:
             " tables are of all",
             err=True,
         )
-    for line in untold_lines(solution):
+    for line in not_evaluated_lines(solution):
         echo(line, err=True)
     echo(f"wrote {out}: open it in a browser")
     if solution.failed:

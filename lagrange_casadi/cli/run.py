@@ -39,7 +39,7 @@ from .replaced import figures_in, replaced_lines
 from .report import Rows
 from .rows import rows_of
 from .slope_lines import slope_lines
-from .strength_lines import strength_cards, strength_lines, untold_lines
+from .strength_lines import not_evaluated_lines, strength_cards, strength_lines
 
 _SCREEN = 39
 """Lines of a screen, but for that of the next prompt."""
@@ -129,7 +129,7 @@ def run(
     rest += _notes(scene, solution, scene.timing(t, over))
     if folder and not loaded.figures:
         parts = [*beams_of(solution.description), *fitted_of(solution.description)]
-        rest += untold_lines(solution, among("safety", parts, asked))
+        rest += not_evaluated_lines(solution, among("safety", parts, asked))
     if not no_certificate:
         rest.append(summary(solution.certificate))
     rest += replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn)

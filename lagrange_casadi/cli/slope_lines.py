@@ -19,12 +19,12 @@ _WORDS = {
     PeakKind.END: "at an end of the instants",
     PeakKind.SWITCH: "at a kink or a jump",
     PeakKind.LINK_END: "at an end of the link",
-    PeakKind.UNTOLD: "at a kink or a jump of unknown origin",
+    PeakKind.UNKNOWN: "at a kink or a jump of unknown origin",
 }
 
 
 def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[str]:
-    """The derivatives of the peaks and means that a run tells, where sensitivities were wanted: a
+    """The derivatives of the peaks and means that a run prints, if sensitivities were wanted: a
     column for each parameter.
     """
     by = solution.sensitivities.parameters

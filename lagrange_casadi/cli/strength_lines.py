@@ -11,7 +11,7 @@ from ..declare.wanted_names import among
 from ..equations.stress import KINDS
 from ..errors import DeclarationError
 from ..instants.solution import Solution
-from ..strength.parts import untold
+from ..strength.parts import not_evaluated
 from ..strength.safety import Life, Safety
 from ..strength.stress import Stress, StressPeak
 from ..studies.strength_peaks import refine_safety, refine_stress
@@ -72,11 +72,11 @@ def strength_cards(
             yield from evaluated(part, lambda name: [_least(_safety(solution, name, scene))])
 
 
-def untold_lines(solution: Solution, besides: Collection[str] = ()) -> Iterator[str]:
+def not_evaluated_lines(solution: Solution, besides: Collection[str] = ()) -> Iterator[str]:
     """Lines on links and joints without figures and tables of strength, and the reasons, except
     those reported before.
     """
-    for part, why in untold(solution).items():
+    for part, why in not_evaluated(solution).items():
         if part not in besides:
             yield f"note: no factor of safety of '{part}': {why}"
 

@@ -1,4 +1,4 @@
-"""Directions in space as users tell them: axes, turns in sequence, places of a reference posture,
+"""Directions in space as users give them: axes, turns in sequence, places of a reference posture,
 moments of inertia.
 """
 
@@ -151,7 +151,7 @@ def across(axis: Vector) -> Vector:
 
 
 def turned_by(what: str, turned: Expression, own: Ownership) -> tuple[Vector, Vector]:
-    """The directions of a body's x and y axes: as told, or after turns in sequence, each about an
+    """The directions of a body's x and y axes: as given, or after turns in sequence, each about an
     axis that those before carry.
     """
     expected = (
@@ -176,7 +176,7 @@ def between(
     what: str, places: Expression, beside: Expression, checked: Checked
 ) -> tuple[Reference, Expression, Vector | None]:
     """The reference of a link that lies between two places, its length, and the direction
-    ``beside`` of length 1, where told.
+    ``beside`` of length 1, if given.
     """
     if not isinstance(places, (tuple, list)) or len(places) != 2:
         raise DeclarationError(f"{what}: between must be two places, got {places!r}")

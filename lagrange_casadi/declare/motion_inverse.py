@@ -79,7 +79,7 @@ class MotionInverse:
     """A law of motion to be inverted: ``law(t, p) -> (d, rate, acceleration)``, defined within
     ``span`` [s].
 
-    ``steady`` tells that its rate does not depend on time, ``varies`` that the law depends on
+    ``steady`` says that its rate does not depend on time, ``varies`` that the law depends on
     parameters.
     """
 

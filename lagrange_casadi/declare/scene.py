@@ -232,23 +232,23 @@ class Scene(Graphs):
         Instants in equal steps of a driven coordinate, in place of ``t``: the joint's name, start,
         stop [rad, or text such as ``"720 deg"``; or m] and count; start and stop may be expressions
         of parameters, and are in the order of time. The times follow from the joint's motion, which
-        must not turn back on the way. Where the motion's rate depends on time, the stretch counts
-        that goes through the start of ``t``.
+        must not turn back on the way. If the motion's rate depends on time, the interval is taken
+        that contains the start of ``t``.
     posture
         Rough directions of links and coordinates of joints at the first instant [rad, or text as
         ``"350 deg"``; m], by name, to choose between the ways in which a loop can be assembled.
     assembly
-        Values of parameters with which loops are first assembled, in place of the defaults. The way
-        to assemble is chosen there.
+        Values of parameters with which loops are first assembled, in place of the defaults. The
+        branch is chosen with them.
     drives
-        The joints whose efforts make the motion; by default those whose motion is given. Of more
-        drives than are needed, the efforts are those of the least sum of squares, each times its
-        joint's weight: a mapping gives weights by joint, numbers or expressions of parameters; a
-        list gives each the weight 1.
+        The joints whose efforts produce the motion; by default those whose motion is given. If
+        there are more drives than needed, the weighted sum of squares of their efforts is least: a
+        mapping gives weights by joint, numbers or expressions of parameters; a list gives each the
+        weight 1.
     elastic
-        Whether least strain energy tells the forces that equilibrium leaves open, by the beams of
-        links: of all, or of those that are named, and others are rigid. Forces that go through a
-        link without a beam stay open.
+        True if least strain energy of the links' beams shall determine the forces that equilibrium
+        does not; or the names of the links that are elastic, and all others are rigid. Forces that
+        go through a link without a beam stay indeterminate.
     rounding
         How far axes [rad] and places [of its size] in space may be off where loops do not close as
         declared, 0 to 1e-3.

@@ -104,7 +104,7 @@ class SpatialMechanism(Mechanism):
         ground's axis that is most across it. The link carries it from there; but a bar, slender and
         between two spherical joints, spins freely about its line: its y axis is the part across it
         of ``beside``, fixed in the ground, at every instant, and without ``beside`` no stress is
-        told of one that is not round.
+        evaluated for one that is not round.
         """
         self.own.free("link", name, self.bodies)
         what = f"link '{name}'"
@@ -212,7 +212,7 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which
         it carries itself, at right angles to the first: coordinates ``turn_1`` and ``turn_2``. Both
-        directions are told where the coordinates are zero.
+        directions are given where the coordinates are zero.
         """
         return self._spatial(name, "universal", (parent, child), (axis, second), at, turned)
 

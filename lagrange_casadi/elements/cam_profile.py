@@ -40,7 +40,8 @@ class CamProfile:
     ``x`` and ``y`` [m] are where the follower touches it while the cam is at ``angle`` [rad], and
     ``pitch_x`` and ``pitch_y`` where the follower's point is. ``pressure_angle`` [rad] is between
     the force and the way of that point, ``radius`` [m] that of curvature: positive where the
-    profile is convex, infinite where it is straight. ``undercut`` tells where it would cut itself.
+    profile is convex, infinite where it is straight. ``undercut`` is true where it would cut
+    itself.
     """
 
     name: str

@@ -101,7 +101,7 @@ def gears(
         Of crossed axes in its place the friction coefficient of the teeth, which slide on each
         other.
     carrier
-        The body on which both turn; by default the one that joints tell.
+        The body on which both turn; by default it follows from the joints.
     offset
         The way that the first pitch circle is ahead where both coordinates are zero [m].
 

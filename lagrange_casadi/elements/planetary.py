@@ -60,7 +60,7 @@ def planetary(
     sun, carrier, ring
         The points in the middle of the three, each a body that a revolute joint lets turn about it;
         one of them may be the ground, or welded to it. A link stands for its base. A carrier has
-        its mass told with centre and inertia, because pins are all round it.
+        with mass, centre and inertia, because pins are all round it.
     teeth
         Numbers of teeth of sun, planets and ring. The ring has as many as the sun and twice a
         planet.

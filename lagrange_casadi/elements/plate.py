@@ -36,7 +36,7 @@ class Plate:
         return self.corners[number]
 
     def at(self, x: Expression, y: Expression) -> Point:
-        """The place (x, y) in the axes in which the corners are told [m]."""
+        """The place (x, y) in the axes of the corners [m]."""
         return self.link.at(x, y)
 
 

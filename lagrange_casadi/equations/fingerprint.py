@@ -54,23 +54,23 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
     content += [scene.elastic] if scene.elastic else []
     try:
         _spell(content, words, expressions)
-    except _UntoldError:
+    except _UnreadableError:
         return None
     laws = scene.prescribed.motion
-    if any(f.class_name() in _UNTOLD for f in [laws, *laws.find_functions()]):
+    if any(f.class_name() in _UNKNOWN for f in [laws, *laws.find_functions()]):
         return None
     written = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.vec(ca.densify(e)) for e in expressions)))
     declared = ca.Function("declared", ca.symvar(written), [written])
-    if any(f.class_name() in _UNTOLD for f in declared.find_functions()):
+    if any(f.class_name() in _UNKNOWN for f in declared.find_functions()):
         return None
     return "\0".join([*words, declared.serialize(), laws.serialize()])
 
 
-_UNTOLD = ("CallbackInternal", "External", "GenericExternal")
+_UNKNOWN = ("CallbackInternal", "External", "GenericExternal")
 """Functions that CasADi writes down by name, not by content."""
 
 
-class _UntoldError(Exception):
+class _UnreadableError(Exception):
     pass
 
 
@@ -100,7 +100,7 @@ def _spell(item: object, words: list[str], expressions: list[ca.SX]) -> None:
             words.append(entry.name)
             _spell(getattr(item, entry.name), words, expressions)
     else:
-        raise _UntoldError
+        raise _UnreadableError
 
 
 @functools.cache

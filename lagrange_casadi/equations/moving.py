@@ -185,7 +185,7 @@ class Moving:
             for check, value in whole.items()
             if any(check in revolutions for revolutions in loop_angles.values())
         }
-        return columns | dict(motions.items()) | _untold(body, motions), loop_angles
+        return columns | dict(motions.items()) | _unmeasured_angles(body, motions), loop_angles
 
 
 def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:
@@ -265,7 +265,7 @@ def _rolls(body: Multibody, want: Wanted) -> dict[Column, Expression]:
     return found
 
 
-def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Expression]:
+def _unmeasured_angles(body: Multibody, motions: Collection[Output]) -> dict[Column, Expression]:
     """Check of the turns of spherical joints, which are ``open`` in gimbal lock; the second angle
     is defined there.
     """

@@ -110,7 +110,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
 
 
 def _in_ground_axes(output: Output) -> Iterator[Output]:
-    """The components in ground axes of a reaction that is told on the joint's own."""
+    """The components in ground axes of a reaction that is given on the joint's own."""
     return (Output(output.group, output.part, output.member[0] + component) for component in "xyz")
 
 

@@ -15,7 +15,7 @@ from .into import draw_into
 
 @one_at_a_time()
 def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
-    """Write the picture into a file; its kind is told by a name's ending."""
+    """Write the picture into a file; its kind follows from the ending of the name."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(12, 8), layout="constrained")

@@ -19,7 +19,7 @@ _TEXT = 40
 
 @one_at_a_time()
 def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) -> None:
-    """Write the picture into a file; its kind is told by a name's ending."""
+    """Write the picture into a file; its kind follows from the ending of the name."""
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 

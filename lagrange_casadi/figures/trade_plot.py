@@ -15,7 +15,7 @@ _LEAST = 1e-17
 
 @one_at_a_time()
 def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
-    """Write the picture into a file; its kind is told by a name's ending."""
+    """Write the picture into a file; its kind follows from the ending of the name."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(12, 6.5), layout="constrained")

@@ -74,11 +74,11 @@ class Frame:
     axes: Array = field(default_factory=lambda: np.eye(3))
 
     def then(self, inner: Frame) -> Frame:
-        """Return a frame that is told on this one, on what this one is told on."""
+        """Return a frame given relative to this one, relative to the reference of this one."""
         return Frame(self.place + self.axes @ inner.place, self.axes @ inner.axes)
 
     def relative(self, other: Frame) -> Frame:
-        """Return a frame that is told on what this one is told on, on this one."""
+        """Return a frame given relative to the reference of this one, relative to this one."""
         return Frame(self.axes.T @ (other.place - self.place), self.axes.T @ other.axes)
 
     def at(self, place: Array) -> Array:
@@ -195,7 +195,7 @@ class Law:
 
 @dataclass(eq=False)
 class Model:
-    """A mechanism as a file tells it. ``notes`` say what was not read, and what was cleaned.
+    """A mechanism as a file describes it. ``notes`` say what was ignored, and what was cleaned.
 
     ``file`` is the name of the file, ``span`` the instants: start [s], stop [s], count. ``posture``
     are rough values of coordinates at the start, from which loops that are open in the reference
@@ -348,7 +348,7 @@ MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def inertia_of(moments: Sequence[float], axes: Array) -> Array:
-    """Return the inertia of six :data:`MOMENTS` about axes, on the axes that these are told on."""
+    """Return the inertia of six :data:`MOMENTS` about axes, on the reference axes of these."""
     xx, xy, xz, yy, yz, zz = moments
     return np.asarray(axes @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ axes.T)
 

@@ -201,7 +201,7 @@ class _Reader:
         return np.asarray(on.axes @ given / np.linalg.norm(given))
 
     def end(self, line: Element, key: str) -> str:
-        """Return the body of a joint's parent or child, which may be told by a frame on it."""
+        """Return the body of a joint's parent or child, which may be given by a frame on it."""
         data = line.needed(key)
         name = data.text.strip()
         for _ in range(len(self.named) + 1):
@@ -217,7 +217,7 @@ class _Reader:
         raise data.refuse(words)
 
     def frame(self, name: str, above: tuple[str, ...]) -> Frame:
-        """Return where a link, frame or joint is; poses may be told on each other."""
+        """Return where a link, frame or joint is; poses may be given relative to each other."""
         line = self.named[name]
         if name in above:
             raise line.refuse("its pose is relative to itself")

@@ -1,7 +1,7 @@
 """Robots as URDF: links, joints, and what people add for loops.
 
 The root link is the ground. Links without mass that are fixed to another one are frames of it.
-Loops are told by a second joint of a link, and by ``<constraint>`` (proposed for urdfdom),
+Loops are given by a second joint of a link, and by ``<constraint>`` (proposed for urdfdom),
 ``<loop>`` and ``<coupling>`` (URDF+), ``<loop_joint>`` (Isaac Sim) and
 ``<drake:ball_constraint>``.
 """
@@ -140,7 +140,7 @@ class _Robot:
         else:
             given = line.first("parent_axis", "axis")
             if given is not None and given.given.get("frame") == "parent":
-                # The axis is told on the parent alone: the child's is where it is at zero.
+                # The axis is given on the parent alone: the child's is where it is at zero.
                 known = placed[child].relative(placed[parent].then(near))
                 far = Frame(far.place, rotation(self.model, line.where, known.axes))
             else:
@@ -258,7 +258,7 @@ class _Robot:
         return Frame(axes=about_axis(axis))
 
     def origin(self, line: Element | None) -> Frame:
-        """Return the frame that ``xyz`` and ``rpy`` tell."""
+        """Return the frame that ``xyz`` and ``rpy`` give."""
         if line is None:
             return Frame()
         place, angles = (
@@ -267,7 +267,7 @@ class _Robot:
         return Frame(place, rotation(self.model, line.where, rpy(angles)))
 
     def side(self, line: Element, names: tuple[str, ...]) -> tuple[str, Frame]:
-        """Return one link of a joint or a loop, and the frame on it that the dialect tells."""
+        """Return one link of a joint or a loop, and the frame on it that the dialect gives."""
         found = line.first(*names)
         if found is None and names == _OTHER:  # some write link1 twice
             found = next(iter(list(line.all("link1"))[1:2]), None)

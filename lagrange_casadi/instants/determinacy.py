@@ -1,9 +1,9 @@
 """Determinacy of forces by equilibrium, decided for the parameters and instants that are evaluated.
 
 In a mechanism with more constraints than it needs, forces are f + s u, where u is what equilibrium
-leaves open, and elasticity does not tell. A check ``open`` of a force is the size of s. A force is
-determined where that is zero: by structure, and then it has no such check, in every posture, or in
-one alone.
+leaves open, and elasticity does not determine. A check ``open`` of a force is the size of s. A
+force is determined where that is zero: by structure, and then it has no such check, in every
+posture, or in one alone.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ def undetermined(
 def completed(
     program: Program, found: Evaluated, t: Array, p: Array, indeterminate: Sequence[Output]
 ) -> tuple[Elasticity, dict[str, Array]]:
-    """Report what least strain energy told at instants ``t``, why some are ``indeterminate``, and
-    its residual for a certificate.
+    """Report what least strain energy determined at instants ``t``, why some are ``indeterminate``,
+    and its residual for a certificate.
     """
     completion = program.completion
     if completion is None:

@@ -101,8 +101,8 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
         for end in (found.min(axis=0), found.max(axis=0)):
             ends.append(effort.copy())
             ends[-1][at[there]] = np.where(known, end, np.nan)[there]
-        untold = next((words for wrong, words in reasons if wrong[there].any()), "")
-        ranges[name] = Holding(ends[0], ends[1], solution.unit(output), untold)
+        reason = next((words for wrong, words in reasons if wrong[there].any()), "")
+        ranges[name] = Holding(ends[0], ends[1], solution.unit(output), reason)
     return ranges
 
 

@@ -82,7 +82,7 @@ class Pose(Brief):
     """Place of a body's base in ground axes [m] and direction of its axis [rad], each (t,).
 
     ``angle`` is counter-clockwise from x and continuous in time; it is None for a point mass and in
-    space. There ``z`` is told too, and ``axes`` (t, 3, 3): its rows are the body's axes x, y and z
+    space. There ``z`` is given too, and ``axes`` (t, 3, 3): its rows are the body's axes x, y and z
     in ground axes, NaN those that it has none of.
     """
 

@@ -1,5 +1,5 @@
-"""Total derivatives of what a graph tells, by time, by the ratio xi/l and by the parameters: CasADi
-functions of an instant and a place.
+"""Total derivatives of the columns of a graph, by time, by the ratio xi/l and by the parameters:
+CasADi functions of an instant and a place.
 
 They are those at a time and a place that stand still. Driven coordinates change with the parameters
 of their laws, closed forms are differentiated as they stand, and iterated coordinates change by the
@@ -107,7 +107,7 @@ class PointFunction(Graphs):
         """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: the derivatives that
         ``function`` has, and how they change along a ``way`` of time, xi/l and the parameters.
 
-        Raises :class:`.DeclarationError` for a motion by samples that does not tell its knots.
+        Raises :class:`.DeclarationError` for a motion by samples whose knots are not known.
         """
         t, z, p, xi, *_ = inputs = self.function.sx_in()
         names = self.function.name_in()

@@ -77,13 +77,13 @@ class PeakKind(enum.IntEnum):
     """The first or the last instant."""
     SWITCH = 2
     """A kink or a jump, whose time is known."""
-    UNTOLD = 3
+    UNKNOWN = 3
     """A kink or a jump of which it is not known what makes it, or none: there is no derivative."""
     LINK_END = 4
     """The base or the tip of the link; in time the quantity is stationary there."""
 
 
-_SMOOTH, _END, _SWITCH, _UNTOLD, _LINK_END = map(int, PeakKind)
+_SMOOTH, _END, _SWITCH, _UNKNOWN, _LINK_END = map(int, PeakKind)
 
 
 class PeakSlopes(NamedTuple):
@@ -155,7 +155,7 @@ class MovingPeaks:
         if sound.all():
             return self._gradient(chosen, peaks, nothing)
         size = (t.size, self.p.size)
-        kinds, switch = np.full(t.size, _UNTOLD, np.int8), np.full(t.size, -1, np.intc)
+        kinds, switch = np.full(t.size, _UNKNOWN, np.int8), np.full(t.size, -1, np.intc)
         found = PeakSlopes(np.full(size, np.nan), kinds, np.zeros(size), switch, t.copy())
         some = (value[sound], t[sound], peaks[2][sound])
         inner = self._gradient(chosen[sound], some, nothing[sound])
@@ -179,8 +179,8 @@ class MovingPeaks:
         moved[at_last], moved[at_first] = self.ends.slopes[::-1]
         if steep.any():
             moved[steep], switch[steep] = self._switching(t[steep], z[steep])
-            untold = np.isnan(moved[steep]).any(axis=1)
-            kinds[steep] = np.where(untold, _UNTOLD, _SWITCH)
+            unknown = np.isnan(moved[steep]).any(axis=1)
+            kinds[steep] = np.where(unknown, _UNKNOWN, _SWITCH)
             going |= steep
         total = here[:, 2:] + np.where(going[:, None], here[:, :1] * moved, lacking)
         return PeakSlopes(total, kinds, moved, switch, times)

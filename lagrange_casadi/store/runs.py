@@ -587,11 +587,11 @@ def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
     Raises ``ValueError`` for those of what is no drive.
     """
     found = {}
-    for name, untold in parsed(file.attrs.get("holding", "{}"), {str: str}, "holding").items():
+    for name, reason in parsed(file.attrs.get("holding", "{}"), {str: str}, "holding").items():
         if Output("effort", name) not in solution.outputs:
             raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
         least, largest = (
             numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS
         )
-        found[name] = Holding(least, largest, solution.unit(Output("effort", name)), untold)
+        found[name] = Holding(least, largest, solution.unit(Output("effort", name)), reason)
     return found

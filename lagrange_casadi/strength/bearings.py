@@ -149,7 +149,7 @@ def _check(joint: str, part: Fitted) -> None:
 
 
 def joint_rate(solution: Solution, joint: str, kind: str) -> Array | None:
-    """The rate at which a joint turns or slides; None if it is not told, or there is none."""
+    """The rate at which a joint turns or slides; None if it was not evaluated, or there is none."""
     entry = solution.description["joints"][joint]
     kinds = entry.get("coordinates") or {joint: entry.get("coordinate")}
     name = next((name for name, moves in kinds.items() if moves == kind), None)
@@ -163,7 +163,7 @@ def _forces(solution: Solution, joint: str) -> tuple[Array, Array]:
     if "coordinates" not in solution.description["joints"][joint]:
         found = solution.reaction(joint)
         return np.hypot(found.fx, found.fy), np.zeros_like(found.fx)
-    # In space reactions are told on the joint's own axes too, of which the first is the one it
+    # In space reactions are given on the joint's own axes too, of which the first is the one it
     # turns about.
     nothing = np.zeros_like(solution.t)
     u, v, w = (

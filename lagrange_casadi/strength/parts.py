@@ -34,7 +34,7 @@ def looked(solution: Solution) -> Iterator[Safety]:
             yield Safety(part, (), (str(error),))
 
 
-def untold(solution: Solution) -> dict[str, str]:
+def not_evaluated(solution: Solution) -> dict[str, str]:
     """Links that have a beam and joints that have pins or bearings of which no factor of safety is
     told, and why.
     """
@@ -71,7 +71,7 @@ def part_safety(
 
 
 def fitted_in(solution: Solution) -> tuple[str, ...]:
-    """The joints that have pins or bearings whose reactions are told."""
+    """The joints that have pins or bearings whose reactions were evaluated."""
     fitted = fitted_of(solution.description)
     forces = {
         name: [o for o in solution.outputs if o.group == "reaction" and o.part == name]
@@ -81,7 +81,7 @@ def fitted_in(solution: Solution) -> tuple[str, ...]:
 
 
 def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
-    """The links whose stresses are told, and whose material has some numbers."""
+    """The links whose stresses were evaluated, and whose material has some numbers."""
     bodies = solution.description["bodies"]
     known = (link for link in solution.links_with_sections if not _reason(solution.stress, link))
     return tuple(
@@ -92,7 +92,7 @@ def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
 
 
 def bending_of(solution: Solution) -> tuple[str, ...]:
-    """The links whose deflections are told."""
+    """The links whose deflections were evaluated."""
     return tuple(
         link for link in strong_of(solution, "elasticity") if not _reason(solution.deflection, link)
     )

@@ -138,7 +138,7 @@ def _computed(series: str, k: int, bore: float, outer: float, width: float) -> R
 @public
 def read_bearings(path: str | os.PathLike[str]) -> tuple[RollingBearing, ...]:
     """Bearings of a CSV file: columns name, bore, outer, width [mm], dynamic and static [kN], and
-    ``source`` if it is told.
+    ``source`` if it is given.
 
     Cells are parted as :func:`.read_rows` says; lines that begin with ``#`` are passed over.
 

@@ -45,8 +45,9 @@ class StressPeak:
     """The stress that is largest in size, with its sign [Pa], and where: time [s], ratio xi/l, and
     the fibre's name.
 
-    ``notch`` tells whether it is the stress at a notch, its factors included. Where a peak between
-    the instants cannot be told, ``value`` is NaN, and ``least`` the largest size that was found.
+    ``notch`` says whether it is the stress at a notch, its factors included. Where a peak between
+    the instants cannot be determined, ``value`` is NaN, and ``least`` the largest size that was
+    found.
     """
 
     kind: str

@@ -79,7 +79,7 @@ class Sensitivities:
         section force (t, xi).
 
         Its unit is the quantity's over both parameters'. Raises :class:`.DeclarationError` also for
-        a motion by samples that does not tell its knots.
+        a motion by samples whose knots are not known.
         """
         row, direction = self._number(parameter), np.zeros((1, 2 + self.p.size))
         direction[0, 2 + self._number(other)] = 1.0

@@ -160,7 +160,7 @@ class _Searched:
 
     def buckled(self, sampled: Verdict, of: Column) -> Verdict | None:
         """The factor against buckling, of which that at the instants is known; None where it cannot
-        be told.
+        be determined.
 
         It jumps where compression begins: the graph knows when that is.
         """

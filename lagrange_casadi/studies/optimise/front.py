@@ -55,7 +55,7 @@ class Front:
     """Designs of which none is better in all ``minimised`` terms, from the least of the first one
     on.
 
-    ``notes`` say what is worth a word. ``stopped`` tells that the search was ended before its end.
+    ``notes`` say what is worth a word. ``stopped`` says that the search was ended before its end.
     """
 
     case: str

@@ -73,14 +73,14 @@ class Optimum:
     ``objective`` is the value of ``minimised`` there. ``start`` is the start that led there,
     ``starts`` are all, ``optima`` where they have converged, the best first. ``transmission`` is
     the least sine of a loop's transmission angle, of an iterated loop the least volume; NaN without
-    loops. ``feasible`` tells whether every constraint holds, that of the transmission angle too,
+    loops. ``feasible`` says whether every constraint holds, that of the transmission angle too,
     ``converged`` whether the conditions for an optimum do. ``residual`` is what is left of those of
     Karush, Kuhn and Tucker, over the largest of their terms or the objective. ``curvature`` is the
     least second derivative of the Lagrangian along what the active constraints leave free, over the
     bounds' widths: above zero at a strict minimum, infinite where nothing is left free, NaN where
     there is none. ``bounds`` are multipliers of the parameters' own bounds, by name: below zero at
     the low one. ``history`` (k, 4 + parameters) has a row for every step: number of the start,
-    objective, excess, 1 where that design has a result, and the values. ``stopped`` tells that the
+    objective, excess, 1 where that design has a result, and the values. ``stopped`` says that the
     search was ended before its end, ``evaluations`` how many designs were looked at. ``unit`` is
     the objective's, ``notes`` what is worth a word.
     """
