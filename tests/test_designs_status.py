@@ -52,7 +52,7 @@ def test_lengths_about_a_dead_centre(backend):
         # Between two instants all but dead centres are passed: what is worth looking at is left to
         # rounding, or has no end.
         for k, ratio in enumerate(ratios):
-            if abs(ratio - 1) < 1e-9 and found[k] == Status.PEAK_NOT_LOCATED:
+            if abs(ratio - 1) < 1e-9 and found[k] == Status.PEAK_NOT_TOLD:
                 found[k] = Status.OK
         assert found == expected
         seen |= set(found)

@@ -67,7 +67,7 @@ def by_designs(scene, methods=METHODS):
         designs = DesignEngine.of(scene, method=method)
         outcome = designs.evaluate(np.zeros((1, 0)))
         value = outcome.value[0, designs.quantities.index(NAME)]
-        assert (outcome.status[0] == Status.PEAK_NOT_LOCATED) == math.isnan(value)
+        assert (outcome.status[0] == Status.PEAK_NOT_TOLD) == math.isnan(value)
         yield tolerance, value
 
 

@@ -17,7 +17,7 @@ PARAMETERS = {Status.INVALID, Status.IMPOSSIBLE}
 OF_DESIGNS = {
     Status.PASSES_DEAD_CENTRE,
     Status.UNCERTIFIED,
-    Status.PEAK_NOT_LOCATED,
+    Status.PEAK_NOT_TOLD,
     Status.NO_INSTANTS,
     Status.CORNER,
 }

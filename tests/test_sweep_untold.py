@@ -21,9 +21,9 @@ def test_a_design_without_its_peak_is_marked(tmp_path):
     scene = Scene(m, {"pin": motion.polynomial(0.0, 1.0)}, t=(0.0, 2.0, 51), wanted=["load:push"])
     path = tmp_path / "saw.h5"
     found = sweep(scene, {"width": [10.0, 1e-5]}, out=path)
-    assert found["status"][1] == Status.PEAK_NOT_LOCATED
+    assert found["status"][1] == Status.PEAK_NOT_TOLD
     assert np.isnan(found["peak:load:push:fx"][1])
     assert not check_sweep(path)
-    assert "take more instants" in found.statuses[Status.PEAK_NOT_LOCATED][1]
+    assert "take more instants" in found.statuses[Status.PEAK_NOT_TOLD][1]
     assert found["status"][0] == Status.OK
     assert abs(found["peak:load:push:fx"][0] - 2.0) < 1e-6

@@ -21,8 +21,10 @@ PRIVATE = {
 }
 """Words that once stood for methods of evaluation, local maxima, samples, load points and more."""
 
-PUBLIC = frozenset(("Spreads", "spreads", "ball_constraint"))
-"""Names that stay: a spread of tolerances as in statistics, and an element of URDF."""
+PUBLIC = frozenset(("Spreads", "spreads", "ball_constraint", "PEAK_NOT_TOLD"))
+"""Names that stay: a spread of tolerances as in statistics, an element of URDF, and a status, which
+files have as a word.
+"""
 
 
 def names(tree: ast.AST) -> Iterator[str]:

@@ -23,7 +23,7 @@ class Status(enum.IntEnum):
     NOT_CLOSED = 12
     UNCERTIFIED = 13
     TURNED = 14
-    PEAK_NOT_LOCATED = 15
+    PEAK_NOT_TOLD = 15
     BEYOND_ENDS = 16
     NO_INSTANTS = 17
     JAMS = 18
@@ -68,7 +68,7 @@ _MEANINGS = {
     Status.TURNED: (
         "a load depends on the number of revolutions of an angle, which cannot be determined"
     ),
-    Status.PEAK_NOT_LOCATED: (
+    Status.PEAK_NOT_TOLD: (
         "a peak cannot be located: the quantity may be larger between the instants; take more"
         " instants"
     ),

@@ -341,7 +341,7 @@ static int designs_finish(designs_now* now, double* value, double* t, double* xi
     mean[k] = designs_mean(now, designs_effort[k], 0);
     rms[k] = sqrt(designs_mean(now, designs_effort[k], 1));
   }
-  if (!designs_peaks(now, value, t, xi)) return SCENE_PEAK_NOT_LOCATED;
+  if (!designs_peaks(now, value, t, xi)) return SCENE_PEAK_NOT_TOLD;
   for (k = 0; k < DESIGNS_EFFORTS; ++k) {
     if (value[designs_effort[k]] != value[designs_effort[k]]) mean[k] = rms[k] = NAN;
   }

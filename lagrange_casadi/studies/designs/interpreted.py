@@ -79,7 +79,7 @@ class InterpretedDesigns:
         if not peaks:
             return Status.OK, series
         kept = self._reduced(t, p, evaluated, method, listed)
-        return (Status.PEAK_NOT_LOCATED, None) if kept is None else (Status.OK, series | kept)
+        return (Status.PEAK_NOT_TOLD, None) if kept is None else (Status.OK, series | kept)
 
     def _parts(self, t: Array, p: Array) -> Status:
         """Return ``OK`` where there are such parts and instants, or why not."""
