@@ -32,6 +32,11 @@ def main() -> int:
         help="names, with wildcards; default: all, for about half an hour",
     )
     parser.add_argument("--list", action="store_true", help="say which there are")
+    parser.add_argument(
+        "--shared",
+        action="store_true",
+        help="the machine has other work: tell the least of many short samples, not the median",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="append JSON lines to this file")
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw what was compared")
     arguments = parser.parse_args()
@@ -59,7 +64,7 @@ def main() -> int:
     # Numerical libraries of the peers would else share the cores among themselves while one thread
     # is timed.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    rows = [*run_programs(chosen), *run_comparisons(chosen)]
+    rows = [*run_programs(chosen), *run_comparisons(chosen, arguments.shared)]
     if arguments.json:
         with arguments.json.open("a") as lines:
             lines.writelines(json.dumps(row | machine) + "\n" for row in rows)
@@ -80,12 +85,12 @@ def run_programs(chosen: set[str]) -> list[dict[str, Any]]:
     return rows
 
 
-def run_comparisons(chosen: set[str]) -> list[dict[str, Any]]:
+def run_comparisons(chosen: set[str], shared: bool = False) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = []
     for comparison in COMPARISONS:
         if comparison.name in chosen:
             print(comparisons.header(comparison), flush=True)
-            for found in comparisons.measure(comparison):
+            for found in comparisons.measure(comparison, shared):
                 print(comparisons.row(found), flush=True)
                 rows.append(found)
     return rows

@@ -217,6 +217,16 @@ METHODS = {
         largest=3e6,
     ),
     "rnea": Method("Pinocchio's rneaInParallel, one thread", "peers.pinocchio_arm", largest=3e6),
+    "pinocchio native": Method(
+        "Pinocchio's rnea by its headers, built with -O3 -march=native",
+        "peers.compiled_chains",
+        {"library": "pinocchio"},
+    ),
+    "dynibo": Method(
+        "dynibo's inverse dynamics, built by Rust for this machine",
+        "peers.compiled_chains",
+        {"library": "dynibo"},
+    ),
     "pinocchio casadi": Method(
         "Pinocchio's rnea as a graph of CasADi, in its virtual machine", "peers.pinocchio_casadi"
     ),
@@ -250,7 +260,8 @@ COMPARISONS = (
     ),
     Comparison("arm-efforts", "efforts of an arm in space of six slender links, 10 000 instants",
         "arm_efforts",
-               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea"), "rnea", "ns/instant",
+               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea", "pinocchio native",
+                   "dynibo"), "rnea", "ns/instant",
                    t=10_000),
     Comparison("arm-sections",
         "six section forces of its second link: the law and its grids, 32 ratios", "arm_sections",
@@ -268,7 +279,8 @@ COMPARISONS = (
                ("lanes", "c", "vm", *_HAND), "by hand", "ns/instant", t=128, designs=1000),
     *(
         Comparison(f"chain-{n}", f"efforts of an open chain of {n} links, 1000 instants", "efforts",
-                   (*_ENGINE, "pinocchio rnea", "pinocchio casadi"), "pinocchio rnea", "ns/instant",
+                   (*_ENGINE, "pinocchio rnea", "pinocchio native", "dynibo", "pinocchio casadi"),
+                   "pinocchio rnea", "ns/instant",
                        t=1000, links=n)
         for n in CHAINS
     ),

@@ -20,6 +20,8 @@ from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.instants.ordering import in_order
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.designs.outcome import KEPT
 
 from .peers.paper_case import Array, SliderCrank, Work
 
@@ -47,15 +49,24 @@ def instants(case: SliderCrank, t: Array, backend: Backend = "lanes", threads: i
 def designs(
     case: SliderCrank, t: Array, lengths: Array, backend: Backend = "lanes", threads: int = 1
 ) -> Work:
-    """The same for one length of the rod after another; what is left is the last one's."""
-    p = np.array(case.parameters)
-    work = columns_of(compile_scene(SCENE, ["all"]), p, t, backend, threads)
+    """The same for one length of the rod after another, by what evaluates designs; what is left is
+    the last one's.
+    """
+    span, method = (float(t[0]), float(t[-1]), t.size), EvaluationMethod(backend)
+    engine = DesignEngine.of(SCENE, ["all"], t=span, method=method)
+    program, p = engine.program, np.array([case.parameters], float)
+    out, first = (
+        np.empty((1, len(program.columns), t.size)),
+        len(program.columns) - len(program.outputs),
+    )
+    results = {"status": np.zeros(1, np.int8), **dict.fromkeys(KEPT), "history": out}
+    evaluate = engine.library.bound(t[None], np.zeros((1, 0), bool), p, results)
 
     def call() -> Array:
         for length in lengths:
-            p[1] = length
-            found = work()
-        return found
+            p[0, 1] = length
+            evaluate()
+        return out[0, first:]
 
     return call
 

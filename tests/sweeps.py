@@ -38,7 +38,7 @@ class Formula:
         "section:rod:bending",
     )
     efforts = ("effort:O",)
-    indeterminate = ()
+    indeterminate, sampled = (), False
     cost, capacity = 1 / 15, 0
     provenance = Provenance(
         "formula", "double", "", "", "(default)", {"lagrange_casadi": __version__}

@@ -114,14 +114,15 @@ def test_laws_have_the_torques_of_their_formulas():
             assert float(value) == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.parametrize("fluctuation", [0.02, 0.3])
-def test_a_flywheel_holds_a_fluctuation_by_elliptic_integrals(fluctuation):
+@pytest.mark.parametrize(("fluctuation", "speed"), [(0.02, 10.0), (0.3, -10.0)])
+def test_a_flywheel_holds_a_fluctuation_by_elliptic_integrals(fluctuation, speed):
     """Under a torque that goes with the sine w^2 = A + B cos(phi), B = 2 T/I."""
-    torque, speed = 8.0, 10.0
+    torque = 8.0
     found = flywheel(
         rotor(),
         fluctuation=fluctuation,
         load=forward.expression(lambda t, angle, speed: 5.0 + torque * ca.sin(angle)),
+        start=(0.0, speed),
         count=41,
     )
     cycle, whole = found.motion.cycle, found.inertia + 0.5
@@ -130,7 +131,7 @@ def test_a_flywheel_holds_a_fluctuation_by_elliptic_integrals(fluctuation):
     assert cycle.least**2 == pytest.approx(base - swing, rel=1e-9)
     period = 4.0 * elliptic(math.sqrt(2.0 * swing / (base + swing))) / math.sqrt(base + swing)
     assert cycle.period == pytest.approx(period, rel=1e-9)
-    assert cycle.period == pytest.approx(math.tau / speed, rel=1e-9)
+    assert cycle.period == pytest.approx(math.tau / abs(speed), rel=1e-9)
     assert cycle.fluctuation == pytest.approx(fluctuation, rel=1e-8)
     assert cycle.torque == pytest.approx(5.0, rel=1e-9)
     assert found.energy == pytest.approx(2.0 * torque, rel=1e-9)
@@ -149,10 +150,10 @@ def test_a_steady_cycle_repeats_and_its_powers_are_in_balance():
     assert cycle.lost == pytest.approx(cycle.taken, rel=1e-3)  # by trapezia
     # From another speed the machine comes to the same cycle: each turn is nearer.
     other = free(
-        scene, drive=forward.dc_motor(50.0, 30.0), load=4.9, start=(0.3, 18.0), t=(0.0, 6.0, 61)
+        scene, drive=forward.dc_motor(50.0, 30.0), load=4.9, start=(0.3, 18.0), t=(0.0, 2.0, 41)
     )
     assert other.speed.max() < cycle.largest * (1.0 + 1e-6)
-    assert other.speed[30:].min() > cycle.least * (1.0 - 1e-3)
+    assert other.speed[20:].min() > cycle.least * 0.95
 
 
 def test_friction_stops_a_block_where_it_must_and_holds_it():
@@ -324,6 +325,20 @@ def test_it_is_evaluated_without_a_compiler(monkeypatch):
     assert np.array_equal(compiled.speed, same.speed)
 
 
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "name",
+    ["beam_pump", "bricard", "cardan_shaft", "engine", "jansen_leg", "roller_cam", "rssr"],
+)
+def test_every_loop_is_followed(name):
+    """Closed forms and iterated loops, in the plane and in space, that nothing drives."""
+    scene = load_case(CASES / name).scene
+    start, stop = map(float, scene.t[:2])
+    found = free(scene, t=(start, start + 0.3 * (stop - start), 61), wanted=["all"])
+    assert found.solution.certified
+    assert found.energy.max() < 1e-10
+
+
 def press():
     return load_case(CASES / "punch_press").scene
 
@@ -371,8 +386,10 @@ def arm():
         (lambda: free(rotor(), drive=5.0, steady=True), "nothing in it depends on the speed"),
         (lambda: free(rotor(), steady=True, t=(0, 1, 5)), "t and steady exclude each other"),
         (
-            lambda: free(rotor(), drive=forward.dc_motor(5.0, 30.0), load=5.5, steady=True),
-            "'rotor'",
+            lambda: free(
+                rotor(), drive=forward.dc_motor(5.0, 30.0), load=5.5, steady=True, accuracy=1e-6
+            ),
+            "'rotor' stalls",
         ),
         (
             lambda: free(

@@ -261,8 +261,8 @@ RESULTS = """
 Bearings Belt Bent Bushes Cam CamProfile Cylinder CylindricalCam Gears Planetary Plate ProfileLift
 Choice InertiaRatio Animation Fibre Properties Course Density Slices Dwell Motion Move Column Life
 Plane Safety Stress StressPeak StressCycle Verdict Constraint Front FrontPoint Limit LocalOptimum
-Optimum Start LoadCase Term Axis Design Sweep Case Curve Peak Prepared Sensitivities Solution Keep
-Duty Spec Cycle Event Flywheel FreeMotion Law
+Optimum Start LoadCase BearingLoads Term Axis Design Sweep Case Curve Peak Prepared Sensitivities
+Solution Keep Duty Spec Cycle Event Flywheel FreeMotion Law
 """.split()
 """Classes that users are given, and make none of."""
 

@@ -14,6 +14,10 @@ Keep = Literal["peaks", "laws", "histories"]
 KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
 """Results of each design that a sweep can keep."""
 
+PeakSearch = Literal["exact", "sampled"]
+PEAK_SEARCHES: tuple[PeakSearch, ...] = ("exact", "sampled")
+"""Peaks of designs: sought between the instants, or those at them, with an error."""
+
 CRITERIA = ("goodman", "gerber", "soderberg", "morrow", "findley")
 """Treatments of a mean stress in fatigue."""
 

@@ -13,6 +13,7 @@ from ..base.space import MOST_THREADS
 from ..base.vocabulary import (
     CRITERIA,
     KEEPS,
+    PEAK_SEARCHES,
     POINTS,
     SAMPLES,
     YIELDING,
@@ -80,6 +81,13 @@ from .options import (
     help="Store of each design its peaks only, its section laws as well, or all outputs over time"
     " as"
     " well.",
+)
+@click.option(
+    "--peaks",
+    type=click.Choice(PEAK_SEARCHES),
+    default="exact",
+    show_default=True,
+    help="Seek peaks between the instants, or take those of the instants, each with an error.",
 )
 @untabled_method
 @click.option(

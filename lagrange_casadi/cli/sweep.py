@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from ..base.status import Status
-from ..base.vocabulary import Backend, Precision
+from ..base.vocabulary import Backend, PeakSearch, Precision
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.notes import drawing_notes
@@ -34,6 +34,7 @@ def sweep(
     xi: EvenPoints | None,
     want: Sequence[str],
     keep: Keep,
+    peaks: PeakSearch,
     backend: Backend,
     precision: Precision,
     newton: int | None,
@@ -70,6 +71,7 @@ def sweep(
             xi=xi,
             wanted=want or None,
             keep=keep,
+            peaks=peaks,
             backend=backend,
             precision=precision,
             newton=newton,

@@ -12,7 +12,7 @@ from ..base.table_file import TableFile
 from ..errors import NoDesignError
 from ..studies.sweep import Sweep, chosen
 from ..studies.sweep.axes import counted, grouped
-from ..studies.sweep.best import conditions_in, counts, missed
+from ..studies.sweep.best import conditions_in, counts, missed, with_errors
 from ..studies.sweep.instant_axis import in_words
 from ..studies.sweep.meanings import STATUS
 from .echo import echo
@@ -34,7 +34,9 @@ def table(
     peaks = [name for name in single if name.startswith("peak:")]
     main = [
         STATUS,
-        *sorted(peaks, key=lambda name: name.split(":")[1] not in ("effort", "section")),
+        *with_errors(
+            sweep, sorted(peaks, key=lambda name: name.split(":")[1] not in ("effort", "section"))
+        ),
     ]
     names = list(
         dict.fromkeys([*sweep.parameters, *along, *(columns or (single if csv else main[:_WIDE]))])

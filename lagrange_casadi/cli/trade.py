@@ -115,3 +115,11 @@ def _print(found: Trade) -> None:
             f"{row.refined_worst:>14.1e} {row.refined_median:>15.1e}",
         )
         echo(f"  {row.count:>8} {sampled} {refined}")
+    if found.searches:
+        echo(
+            "peaks of designs, all of them; error of the worst quantity, and its bound, relative to"
+            " its peak"
+        )
+        echo(f"  {'peaks':<8} {'ns/instant':>11} {'error':>9} {'bound':>9}")
+    for cost in found.searches:
+        echo(f"  {cost.peaks:<8} {1e9 * cost.seconds:>11.4g} {cost.error:>9.1e} {cost.bound:>9.1e}")

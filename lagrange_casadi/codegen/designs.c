@@ -12,7 +12,7 @@ typedef struct {
   double half;
   int rests;
   const signed char* bent;
-  double* tops;
+  double *tops, *error;
   casadi_real matter[DESIGNS_MATTER], terms[SCENE_SOME(DESIGNS_BOUNDS)];
 } designs_now;
 
@@ -73,10 +73,11 @@ static int designs_asked(void* of, long long count, const double* t, unsigned lo
   return 0;
 }
 
-/* All instants, as rows of curves, of their places along links, of what is checked, and of what is watched. */
+/* All instants, as rows of curves, of their places along links, of what is checked, and of what is watched; only checks need rows
+   where no peaks are sought. */
 static void designs_sample(designs_now* now) {
   const lagrange_casadi_instants* instants = &now->instants;
-  const int streams = scene_streams(instants, now->n*now->call->designs);
+  const int streams = scene_streams(instants, now->n*now->call->designs), peaks = now->call->value != 0;
   casadi_real block[SCENE_PACKS*SCENE_COLUMNS], *y = block;
   casadi_real value[DESIGNS_CURVES], place[SCENE_SOME(DESIGNS_PLACES)], most[DESIGNS_CURVES];
   const casadi_int stride = now->stride;
@@ -86,15 +87,18 @@ static void designs_sample(designs_now* now) {
   for (k = 0; k < DESIGNS_CURVES; ++k) most[k] = 0;
   for (i = 0; i < now->n; i += LANES) {
     scene_pack(&now->scene, i, y);
-    designs_curves(y, now->matter, ~0ull, value, place);
     row = now->rows + LANES + i;
-    for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
-      scene_store(row, value[k]);
-      most[k] = designs_larger(most[k], designs_size(value[k]));
+    if (peaks) {
+      designs_curves(y, now->matter, ~0ull, value, place);
+      for (k = 0; k < DESIGNS_CURVES; ++k) {
+        scene_store(row + k*stride, value[k]);
+        most[k] = designs_larger(most[k], designs_size(value[k]));
+      }
+      for (k = 0; k < DESIGNS_PLACES; ++k) scene_store(row + (DESIGNS_CURVES + k)*stride, place[k]);
     }
-    for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) scene_store(row, place[k]);
+    row += DESIGNS_CHECKED*stride;
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) scene_store(row, y[designs_checked[k]]);
-    for (k = 0; k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[SCENE_OUTPUTS + k]);
+    for (k = 0; peaks && k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[SCENE_OUTPUTS + k]);
     if (!instants->out) continue;
     y += SCENE_COLUMNS;
     if ((i + LANES)%SCENE_BLOCK != 0 && i + LANES < now->n) continue;
@@ -293,6 +297,7 @@ static int designs_peaks(designs_now* now, double* value, double* t, double* xi)
   search.way = now->call->way;
   search.share = now->call->share;
   search.tops = now->tops;
+  search.error = now->error;
   search.hiding = now->call->hiding;
   search.at = designs_asked;
   search.of = now;
@@ -360,7 +365,8 @@ static void designs_timed(designs_now* now, const double* t) {
 /* So many designs, rows of parameters p, over n instants t, those of a design t_apart values beyond those of the one before, or the
    same; iterated loops begin from the guess. value, peak_t and xi become rows of quantities, mean and rms of efforts, all of them or
    none where value is NULL; these ask for instants in equal steps. tops, unless it is NULL, becomes the local peaks of quantities that
-   way and share ask of the search. history, unless it is NULL, becomes outputs by instants, iterated likewise iterated coordinates; a
+   way and share ask of the search. Where error is not NULL, peaks are
+   those at the instants, and error becomes how much larger each may be between them. history, unless it is NULL, becomes outputs by instants, iterated likewise iterated coordinates; a
    design without a result leaves its status, and NaN. bent tells after which instants the motion bends more than they show, its rows
    are bent_apart values apart. The room is rows of stride values, of times, iterated coordinates, curves, their places, what is
    checked and what is watched, all zero; of the status stride integers that are zero, and of hiding twice as many. find searches for
@@ -395,6 +401,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     if (d == 0 || call->t_apart) designs_timed(&now, call->t + d*call->t_apart);
     now.bent = call->bent + d*call->bent_apart;
     now.tops = call->tops ? call->tops + d*4*DESIGNS_TOPS*DESIGNS_QUANTITIES : 0;
+    now.error = call->error ? call->error + d*DESIGNS_QUANTITIES : 0;
     for (k = 0; now.tops && k < 4*DESIGNS_TOPS*DESIGNS_QUANTITIES; ++k) now.tops[k] = NAN;
     instants->out = whole;
     why = designs_begin(&now, call->p + d*SCENE_NP);
@@ -407,6 +414,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     for (i = 0; closed && i < SCENE_NZ*n; ++i) closed[i] = why == SCENE_OK ? instants->z[i/n*stride + i%n] : (lanes_real) NAN;
     if (why == SCENE_OK) continue;
     for (k = 0; values && k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
+    for (k = 0; now.error && k < DESIGNS_QUANTITIES; ++k) now.error[k] = NAN;
     for (k = 0; values && k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;
     for (i = 0; whole && i < SCENE_OUTPUTS*n; ++i) whole[i] = NAN;
   }

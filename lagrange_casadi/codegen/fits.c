@@ -87,11 +87,13 @@ static search_real search_stretch(const search_real* end, int inward, search_rea
     {(search_real) -495/1024, (search_real) -3.75, (search_real) 1365/1920, (search_real) 50/60},
     {(search_real) 154/1024, (search_real) 1.2, (search_real) -443/1920, (search_real) -0.25},
     {(search_real) -21/1024, (search_real) -1/6, (search_real) 62/1920, (search_real) 2/60}};
-  search_real sum[4] = {0, 0, 0, 0}, y;
+  search_real sum[4], y;
   int k, j;
-  for (j = 0; j < SEARCH_FIT; ++j) {
-    y = end[j*inward];
-    for (k = 0; k < 4; ++k) sum[k] += weights[j][k]*y;
+  /* Each sum in a register: together they are a pack, which compilers keep in memory. */
+  for (k = 0; k < 4; ++k) {
+    y = 0;
+    for (j = 0; j < SEARCH_FIT; ++j) y += weights[j][k]*end[j*inward];
+    sum[k] = y;
   }
   *middle = sum[0];
   y = sum[1] < 0 ? -1 : 1;

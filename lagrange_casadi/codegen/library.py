@@ -178,8 +178,9 @@ class Library:
         t - 1) tells in which steps between them the motion bends more than they show; one row of
         either serves all designs. ``history`` may be None; or all but that and the status may be
         None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
-        ``tops``, of which ``listed`` tells, may be left out. The bytes of a row do not depend on
-        other rows.
+        ``tops``, of which ``listed`` tells, may be left out. With ``error`` peaks are those at the
+        instants: it becomes how much larger they may be between them. The bytes of a row do not
+        depend on other rows.
         """
         assert self.many is not None
         many, n = self.many, t.shape[1]
@@ -197,7 +198,8 @@ class Library:
             "guess": many.guess,
             "room": room,
         }
-        arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None, **results}
+        arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None}
+        arrays |= {"error": None, **results}
         single = {
             name: np.empty(array.shape, dtype)
             for name in ("history", "iterated")

@@ -52,6 +52,7 @@ CALL = Call(
         "history": "real*",
         "iterated": "real*",
         "tops": "double*",
+        "error": "double*",
     },
 )
 """Arguments of :data:`DESIGNS`; the C says which it reads and writes."""

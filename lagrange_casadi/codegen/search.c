@@ -161,12 +161,21 @@ static void search_list_steps(search_now* now, const search_panel* panel, int cu
   }
 }
 
+/* Twice how far a row reaches from a pack of its values by what bends it there. */
+LANES_INLINE lanes_pack search_reach(const search_real* row) {
+  lanes_pack before, here, after;
+  memcpy(&before, row - 1, sizeof before);
+  memcpy(&here, row, sizeof here);
+  memcpy(&after, row + 1, sizeof after);
+  return search_size(4*here - (before + after));
+}
+
 /* List where a curve may rise above what is known, a limit. From a value it reaches no further than half of what bends it there takes
    it; where that is towards zero, its neighbours are larger, and known. */
 LANES_INLINE void search_screen(search_now* now, const search_panel* panel, int curve, search_real limit, search_list* list, int depth) {
   const search_real* row = search_row(panel, curve);
   const long long n = panel->n;
-  lanes_pack here, before, after, twice[SEARCH_CHUNK], most;
+  lanes_pack twice[SEARCH_CHUNK], most;
   unsigned where;
   long long i;
   int k, many;
@@ -174,10 +183,7 @@ LANES_INLINE void search_screen(search_now* now, const search_panel* panel, int 
     many = n - i < SEARCH_CHUNK*LANES ? (int) ((n - i + LANES - 1)/LANES) : SEARCH_CHUNK;
     most = 0;
     for (k = 0; k < many; ++k) {
-      memcpy(&before, row + i + k*LANES - 1, sizeof before);
-      memcpy(&here, row + i + k*LANES, sizeof here);
-      memcpy(&after, row + i + k*LANES + 1, sizeof after);
-      twice[k] = search_size(4*here - (before + after));
+      twice[k] = search_reach(row + i + k*LANES);
       most = search_larger(most, twice[k]);
     }
     if (!lanes_where_less(2*limit, most)) continue;
@@ -311,6 +317,42 @@ static void search_largest(search_now* now) {
   for (q = 0; q < curves->quantities; ++q) search_grow(now, q, now->peaks[q].best);
 }
 
+/* How much larger than at the instants quantities may be between them: as far as what bends their curves takes these, for which a
+   panel is screened, and not known where something may hide. */
+static void search_errors(search_now* now) {
+  const search_panel* all = &now->all;
+  const long long n = now->n;
+  lanes_pack twice, other;
+  search_real far, nothing, lane[LANES];
+  long long i;
+  int hides = n > 1, j, k, q;
+  if (n >= SEARCH_FIT) {
+    search_edge(now, all);
+    search_hide(now, all, 0);
+    hides = memchr(all->hiding, SEARCH_HIDES, (size_t) (n - 1)) != 0;
+  }
+  for (q = 0; q < now->curves->quantities; ++q) {
+    search_peak* peak = now->peaks + q;
+    nothing = SEARCH_NOTHING*now->scale[now->curves->unit[q]];
+    far = peak->best;
+    twice = other = 2*far;
+    for (k = now->curves->first[q]; n > 1 && !hides && k < now->curves->first[q + 1]; ++k) {
+      const search_real* row = search_row(all, k);
+      if (!(peak->best < 3*now->call->most[k])) continue;
+      for (i = 0; i + 2*LANES <= n; i += 2*LANES) {
+        twice = search_larger(twice, search_reach(row + i));
+        other = search_larger(other, search_reach(row + i + LANES));
+      }
+      for (; i < n; ++i) far = search_upper(far, search_magnitude(4*row[i] - (row[i - 1] + row[i + 1]))/2);
+    }
+    twice = search_larger(twice, other);
+    memcpy(lane, &twice, sizeof lane);
+    for (j = 0; j < LANES; ++j) far = search_upper(far, lane[j]/2);
+    now->call->error[q] = hides ? (search_real) INFINITY : peak->best > nothing ? far - peak->best + peak->rounding : nothing;
+    if (peak->open) now->call->error[q] = NAN;
+  }
+}
+
 /* The first instant at which a quantity has a number, as large as its peak but for rounding, if it is before what was found. */
 static void search_sampled(search_now* now, int q) {
   const search_panel* all = &now->all;
@@ -319,7 +361,8 @@ static void search_sampled(search_now* now, int q) {
   const search_real* row;
   search_real size = -1, x;
   lanes_pack pack, most;
-  long long i, first = all->n;
+  long long i, at, first = all->n;
+  unsigned where;
   int k, j, curve = -1;
   if (peak->sampled < least) return;
   for (k = now->curves->first[q]; k < now->curves->first[q + 1]; ++k) {
@@ -332,12 +375,16 @@ static void search_sampled(search_now* now, int q) {
         most = search_larger(most, search_size(pack));
       }
       if (!lanes_where_less(under, most)) continue;
-      for (j = 0; j < SEARCH_CHUNK*LANES && i + j < all->n && i + j <= first; ++j) {
-        x = search_magnitude(row[i + j]);
-        if (!(x >= least) || (i + j == first && !(x > size)) || (now->call->rests && search_nothing(row[i + j]))) continue;
-        first = i + j;
-        size = x;
-        curve = k;
+      for (at = i; at < i + SEARCH_CHUNK*LANES && at < all->n && at <= first; at += LANES) {
+        memcpy(&pack, row + at, sizeof pack);
+        where = lanes_where_less(under, search_size(pack));
+        for (j = 0; where >> j && at + j < all->n && at + j <= first; ++j) {
+          x = search_magnitude(row[at + j]);
+          if (!(where >> j & 1 && x >= least) || (at + j == first && !(x > size)) || (now->call->rests && search_nothing(row[at + j]))) continue;
+          first = at + j;
+          size = x;
+          curve = k;
+        }
       }
     }
   }
@@ -431,7 +478,8 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search_room(lagrange_casadi_search_c
 }
 
 /* The peak of every quantity of n instants t in equal steps: its value, its time and its place, NaN for what is open, and whether it is
-   located. Where way is 1 or -1, the peak of a quantity is the largest of its values times that, else of its size. tops, unless it is NULL,
+   located. Where way is 1 or -1, the peak of a quantity is the largest of its values times that, else of its size. Where error is not
+   NULL, peaks are those at the instants, and it becomes how much larger quantities may be between them. tops, unless it is NULL,
    becomes for each quantity SEARCH_TOPS local peaks down to a share of the largest: the number of the curve among the quantity's own,
    which is NAN where there are no more, time, ratio and value. rows are those of curves, of their places and, at watched, of what is watched, stride values apart; most
    are the largest sizes of curves at the instants. What rests is NaN in rows. scales, unless it is NULL, tells how large others are of each unit, hiding in which
@@ -462,7 +510,8 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   now.all.kinks = call->hiding + call->stride;
   for (q = 0; call->tops && q < 4*SEARCH_TOPS*curves->quantities; ++q) call->tops[q] = NAN;
   search_largest(&now);
-  if (call->n > 1) search_panel_of(&now, &now.all, 0);
+  if (call->error) search_errors(&now);
+  else if (call->n > 1) search_panel_of(&now, &now.all, 0);
   for (q = 0; q < curves->quantities; ++q) {
     peak = now.peaks + q;
     call->located[q] = 1;

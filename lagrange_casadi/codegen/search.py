@@ -86,6 +86,7 @@ CALL = Call(
         "way": "int",
         "share": "double",
         "tops": "double*",
+        "error": "double*",
         "hiding": "signed char*",
         "at": "lagrange_casadi_at*",
         "of": "void*",
@@ -279,6 +280,7 @@ class Search:
         samples: Samples,
         hiding: Flags,
         listed: Listed | None = None,
+        sampled: bool = False,
     ) -> Peaks:
         """Find peaks as :func:`..summits.search.peaks` does; exceptions of ``source`` are
         raised.
@@ -313,6 +315,7 @@ class Search:
             rows.ctypes.data + _LINE * rows.itemsize,
         )
         tops = np.empty((quantities, TOPS, 4)) if listed else None
+        error = np.empty(quantities) if sampled else None
         most = np.fmax.reduce(np.abs(values), axis=1, initial=0.0)
         call, room = self.call(
             tables,
@@ -328,6 +331,7 @@ class Search:
             way=listed.sign if listed else 0,
             share=listed.share if listed else 0.0,
             tops=None if tops is None else tops.ctypes.data,
+            error=None if error is None else error.ctypes.data,
             hiding=hidden.ctypes.data,
             at=ctypes.cast(asked.entry, ctypes.c_void_p).value,
             value=found[0].ctypes.data,
@@ -339,7 +343,7 @@ class Search:
         del room  # until here the call has used it
         if asked.error is not None:
             raise asked.error
-        return Peaks(found[0], found[1], found[2], located.astype(bool), tops)
+        return Peaks(found[0], found[1], found[2], located.astype(bool), tops, error)
 
 
 _FUNCTION_OF_TIMES = ctypes.CFUNCTYPE(

@@ -50,9 +50,8 @@ class FreeEquation(Graphs):
     """The equation of motion of a machine: ``state(t, angle, speed, z, added, p)``, a row for
     each of :data:`COLUMNS`, and ``loops(z, t, angle, p)``, Newton's correction of z and its size.
 
-    ``added`` are a torque and the flywheel's inertia on the drive's ``joint``. ``timed``
-    tells whether anything depends on the time, ``affine`` whether the effort is affine in the
-    acceleration, ``slides`` whether the coordinate is a length.
+    ``added`` are a torque and the flywheel's inertia on the drive's ``joint``. ``timed`` tells
+    whether anything depends on the time, ``slides`` whether the coordinate is a length.
     """
 
     program: Program
@@ -60,7 +59,6 @@ class FreeEquation(Graphs):
     state: ca.Function
     loops: ca.Function | None
     timed: bool
-    affine: bool
     slides: bool
 
 
@@ -113,7 +111,7 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     )
     slides = scene.mechanism.coordinates[joint][1].kind == "slide"
     timed = bool(ca.depends_on(all_rows, t))
-    return FreeEquation(program, joint, state, _loops(program), timed, affine, slides)
+    return FreeEquation(program, joint, state, _loops(program), timed, slides)
 
 
 def one_drive(scene: Scene) -> str:

@@ -58,13 +58,13 @@ class Element:
                 return self.given[name]
         raise self.refuse(f"lacks {names[0]}=")
 
-    def number(self, stated: object, what: str) -> float:
+    def number(self, given: object, what: str) -> float:
         """Return a number of it."""
-        return number(self.model, self.where, stated, what)
+        return number(self.model, self.where, given, what)
 
-    def numbers(self, stated: object, what: str, count: int) -> Array:
+    def numbers(self, given: object, what: str, count: int) -> Array:
         """Return so many numbers of it."""
-        return numbers(self.model, self.where, stated, what, count)
+        return numbers(self.model, self.where, given, what, count)
 
     def by_name(self, *names: str) -> dict[str, Element]:
         """Return the elements in it of these names, by their attribute name."""

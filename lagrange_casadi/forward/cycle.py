@@ -163,7 +163,7 @@ def _residuals(turn: _Turn, speed: float, goal: Goal) -> tuple[Array, Array]:
         rows.append(end[_TIME] / wanted - 1.0)
         slopes.append(end[_TIME_BY] / wanted)
     if goal.fluctuation is not None:
-        swing = (turn.largest - turn.least) / goal.span
+        swing = (turn.largest - turn.least) / abs(goal.span)
         rows.append(swing[_SPEED] * end[_TIME] - goal.fluctuation)
         slopes.append(swing[_BY] * end[_TIME] + swing[_SPEED] * end[_TIME_BY])
     return np.array(rows), np.array(slopes)[:, goal.unknowns]

@@ -43,8 +43,6 @@ _RATES = [ROW[name] for name in ("acceleration", "drive", "load", "taken")]
 _SLOW = 1e-9
 """Rate at which friction has its direction, and of a machine that is nearly at rest."""
 
-STATES = ("angle", "speed", "work_drive", "work_load", "work_taken")
-
 
 @dataclass(frozen=True)
 class Event:
@@ -310,7 +308,9 @@ def hermite(t: Array, value: Array, rate: Array, acceleration: Array) -> Motion:
 def _integrated(
     machine: Machine, start: Start, times: Array, accuracy: float
 ) -> tuple[Array, list[Event]]:
-    """States (STATES, t) at the instants that are reached, and the events."""
+    """States at the instants that are reached, (5, t): coordinate, rate, works of the drive, of the
+    load and of the scene; and the events.
+    """
     from scipy.integrate import solve_ivp
 
     t, end = float(times[0]), float(times[-1])
@@ -365,8 +365,8 @@ def _integrated(
 
 @dataclass
 class _Rates:
-    """The right-hand side of :data:`STATES` for a machine that moves one ``way``: what depends on
-    that, as a friction, stays as it is up to where the machine is at rest and beyond, so that
+    """The rates of the states of a machine that moves one ``way``: what depends on that, as a
+    friction, stays as it is up to where the machine is at rest and beyond, so that
     nothing jumps before rest is found. ``last`` is the last time, coordinate and rate at which it
     was finite.
     """

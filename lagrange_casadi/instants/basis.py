@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arithmetic.interpret import interpret, numpy_arithmetic
-from ..base.arrays import Array, Operand
+from ..base.arrays import Array
 from ..base.tables import Terms
 from ..declare.density import NumericDensity
 from ..equations.section_function import along
@@ -32,23 +32,23 @@ class Basis:
     density: NumericDensity
     distributed_loads: Sequence[DistributedLoad]
 
-    @property
+    @cached_property
     def force(self) -> Array:
         """Basis of a force."""
-        return self._rows[0]
-
-    @property
-    def bending(self) -> Array:
-        """Basis of a bending moment."""
-        return self._rows[1]
+        return self._rows(bends=False)
 
     @cached_property
-    def _rows(self) -> tuple[Array, ...]:
+    def bending(self) -> Array:
+        """Basis of a bending moment."""
+        return self._rows(bends=True)
+
+    def _rows(self, *, bends: bool) -> Array:
         cells = self.density.cells
         function = along(
             self.density.breaks,
             tuple(map(len, cells)),
             tuple(load.powers for load in self.distributed_loads),
+            bends=bends,
         )
         mass_properties = [self.length, *(coefficient for cell in cells for coefficient in cell)]
         # Width and end are those of the first instant; of n laws, which have (n, t), ratios give
@@ -56,16 +56,11 @@ class Basis:
         spans = [
             values[..., :1] for load in self.distributed_loads for values in (load.width, load.end)
         ]
-        shape = np.broadcast(self.length, self.u).shape
-
-        def stacked(rows: Sequence[Operand]) -> Array:
-            found = np.empty((len(rows), *shape))
-            for row, values in zip(found, rows, strict=True):
-                row[...] = values
-            return found
-
-        each = interpret(function, [mass_properties, spans, [self.u]], _NUMPY)
-        return tuple(map(stacked, each))
+        (rows,) = interpret(function, [mass_properties, spans, [self.u]], _NUMPY)
+        found = np.empty((len(rows), *np.broadcast(self.length, self.u).shape))
+        for row, values in zip(found, rows, strict=True):
+            row[...] = values
+        return found
 
     def of(
         self, terms: Terms, law: Sequence[Array], distributed_loads: Sequence[DistributedLoad]

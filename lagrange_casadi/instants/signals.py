@@ -107,12 +107,13 @@ class Signals:
         scales: Sequence[float] = (),
         search: Search | None = None,
         listed: Listed | None = None,
+        sampled: bool = False,
     ) -> Peaks:
         """The peaks of the quantities over all times between the first instant and the last.
 
         ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are
         that have it. ``search`` is the compiled search; without it the reference serves. ``listed``
-        says which local peaks are told too.
+        says which local peaks are told too. ``sampled`` peaks are those at the instants.
         """
         samples = self.samples(self.t, self.z, np.arange(self.t.size))
         first = self.columns(self.t[:1], self.z[:, :1])
@@ -131,6 +132,7 @@ class Signals:
                 samples,
                 bent(self.interpreter.program, self.sharpness, self.t, self.p),
                 listed,
+                sampled,
             )
 
     def at(self, t: Array) -> Samples:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.quantities import Output
+from ..base.quantities import Kinds, Output
 from ..base.tables import Table
 from ..declare.description import Description, density_of, kinds_of_described
 from ..declare.limits import no_sections
@@ -121,6 +121,11 @@ class Solution:
     def table(self) -> Table:
         """Table of quantities: that of planar mechanisms, or that of spatial ones."""
         return table_of_described(self.description)
+
+    @cached_property
+    def _kinds(self) -> Kinds:
+        """Kinds of coordinates, by which units of outputs are told."""
+        return kinds_of_described(self.description)
 
     @cached_property
     def series(self) -> Mapping[str, Array]:
@@ -362,7 +367,7 @@ class Solution:
         output = self._output(name)
         if output.group not in ("certificate", "holding") and not self._over_time(output):
             self._of_section(output)
-        return output.unit(kinds_of_described(self.description))
+        return output.unit(self._kinds)
 
     def array(self, name: str | Output) -> Array:
         """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``.
@@ -483,7 +488,7 @@ class Solution:
 
     def _over_time(self, output: Output) -> bool:
         """Return whether a quantity is a series of the solution, or the size of series."""
-        return all(component in self.outputs for component in self.made_of(output))
+        return any(component in self.outputs for component in output.components(self.table))
 
     def _of_section(self, output: Output) -> Section:
         """The section that a section force is of."""

@@ -73,6 +73,19 @@ def highest(y: Array) -> Array:
     return np.where(concave, tip, np.where(convex, np.maximum(a, b), either))
 
 
+def reach(y: Array) -> Array:
+    """Return how far curves reach beside their values (..., n) at three or more times, in size.
+
+    From a value that is no further than half of what bends it there takes it; at an end, what bends
+    it twice as much as its neighbour is bent.
+    """
+    ends, near, third = y[..., [0, -1]], y[..., [1, -2]], y[..., [2, -3]]
+    beyond = 2 * ends - near - np.copysign(2 * np.abs(2 * near - ends - third), ends)
+    before = np.concatenate([beyond[..., :1], y[..., :-1]], axis=-1)
+    after = np.concatenate([y[..., 1:], beyond[..., 1:]], axis=-1)
+    return np.asarray(np.abs(4 * y - (before + after)) / 2)
+
+
 def unresolved(
     rows: Array,
     watches: Sequence[Watch],

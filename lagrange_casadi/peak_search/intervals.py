@@ -53,7 +53,8 @@ class Peaks:
 
     A peak that is not told is at least this, which was found. ``tops``, where they are asked for,
     (q, :data:`TOPS`, 4), are local peaks in no order: the number of the curve among its quantity's
-    own, NaN where there are no more, time, ratio and value.
+    own, NaN where there are no more, time, ratio and value. ``error``, of peaks that are those of
+    the instants, is how much larger each may be between them.
     """
 
     value: Array
@@ -61,6 +62,7 @@ class Peaks:
     xi: Array
     resolved: Flags
     tops: Array | None = None
+    error: Array | None = None
 
 
 class Listed(NamedTuple):

@@ -25,7 +25,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from . import fits
-from .between import Flags, highest, unresolved
+from .between import Flags, highest, reach, unresolved
 from .intervals import (
     INNER,
     SIDE,
@@ -103,6 +103,7 @@ def peaks(
     samples: Samples,
     hiding: Flags,
     listed: Listed | None = None,
+    sampled: bool = False,
 ) -> Peaks:
     """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples``
     are.
@@ -110,7 +111,8 @@ def peaks(
     ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below
     the largest sample. Of several that are as large but for rounding the first is told, for else
     rounding would choose their sign. A quantity that is no number at any instant, as friction at
-    rest leaves it, has no peak. ``listed`` says which local peaks are told too.
+    rest leaves it, has no peak. ``listed`` says which local peaks are told too. ``sampled`` peaks
+    are those at the instants, with an error.
     """
     base, direction = np.zeros(len(curves.units)), listed.sign if listed else 0
     if direction:
@@ -120,8 +122,11 @@ def peaks(
     given, lacks = samples, np.isnan(samples.values)
     samples = samples._replace(values=np.where(lacks, 0.0, samples.values))
     search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:], listed)
-    if t.size > 1:
-        search.interval(Interval(t, samples), 0, hiding)
+    interval, error = Interval(t, samples), None
+    if sampled:
+        error = search.error(interval, hiding)
+    elif t.size > 1:
+        search.interval(interval, 0, hiding)
     found = search.found(t, given)
     none = np.full(found.value.size, np.nan)
     none[search.quantity[~lacks.all(axis=1)]] = 0.0
@@ -132,7 +137,8 @@ def peaks(
     if tops is not None and direction:
         tops[tops[..., 3] < 0.0] = np.nan
         value, tops[..., 3] = direction * (value + base), direction * (tops[..., 3] + base[:, None])
-    return Peaks(value, found.t + none, found.xi + none, found.resolved, tops)
+    error = None if error is None else error + none
+    return Peaks(value, found.t + none, found.xi + none, found.resolved, tops, error)
 
 
 class _Search:
@@ -250,6 +256,22 @@ class _Search:
                 )
         resolved = (self.resolved & (self.going <= self.best / 2)) | np.isinf(self.best)
         return Peaks(np.copysign(self.best, self.sign), self.t, self.xi, resolved)
+
+    def error(self, interval: Interval, hiding: Flags) -> Array:
+        """Return how much larger each quantity may be between instants than at them; infinite where
+        something may hide there.
+        """
+        values, nothing = interval.samples.values, NOTHING * self.scale
+        if interval.t.size == 1:
+            return np.where(self.best > nothing, self.rounding, nothing)
+        if interval.t.size < fits.SEVEN:
+            return np.full(self.best.size, np.inf)
+        watched, watches = interval.samples.watched, self.curves.watches
+        if (hiding | unresolved(watched, watches, interval.step)[0]).any():
+            return np.full(self.best.size, np.inf)
+        furthest = self.best.copy()
+        np.maximum.at(furthest, self.quantity, reach(values).max(axis=1))
+        return np.where(self.best > nothing, furthest - self.best + self.rounding, nothing)
 
     def interval(self, interval: Interval, depth: int, hiding: Flags) -> None:
         """Search a panel; in ``hiding`` steps something is known to hide."""

@@ -9,6 +9,7 @@ from html import escape
 import numpy as np
 
 from ..studies.sweep.axes import counted
+from ..studies.sweep.best import with_errors
 from ..studies.sweep.meanings import STATUS
 from ..studies.sweep.reading import Sweep
 
@@ -38,7 +39,7 @@ def summary(sweep: Sweep) -> str:
         for name, column in sweep.columns.items()
         if not column.axes and name.startswith(("peak:", "mean:", "rms:"))
     ]
-    shown = [*sweep.parameters, *names[:_ROWS]]
+    shown = [*sweep.parameters, *with_errors(sweep, names)[:_ROWS]]
     ends = dict.fromkeys(shown, (np.inf, -np.inf))
     for _, values in sweep.blocks([*shown, STATUS]):
         for name in shown:

@@ -13,16 +13,18 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ..base.arrays import Array, Json
+from ..base.status import Status
 from ..base.tables import ANGLE, LENGTH
-from ..base.vocabulary import PRECISIONS
+from ..base.vocabulary import PEAK_SEARCHES, PRECISIONS, PeakSearch
 from ..codegen import find_compiler
 from ..declare.scene import Scene
-from ..declare.times import Over, Times, instants_of
+from ..declare.times import Over, Times, Timing, instants_of
 from ..equations.derive import compile_scene
 from ..equations.program import Program
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
@@ -32,6 +34,7 @@ from ..instants.from_table import columns
 from ..instants.refusal import resting, unfinished
 from ..renamed import renamed
 from ..verification.reference import reference
+from .designs.engine import DesignEngine
 from .peaks import Shortfall, shortfall
 
 INSTANTS = 10_000
@@ -42,6 +45,7 @@ COUNTS = (25, 50, 100, 200, 400, 800)
 """Instants of a cycle, for what they miss of the peaks."""
 
 ROUNDS = 7
+_Way = TypeVar("_Way")
 _NIL = 1e-9
 _LEAST = 2e-3
 
@@ -88,11 +92,26 @@ class Measurement:
 
 
 @dataclass(frozen=True)
+class PeakCost:
+    """Cost of ``exact`` or ``sampled`` peaks of designs: seconds an instant, the instants included.
+
+    ``error`` is what the peaks miss of the exact ones, and ``bound`` what they are said to miss at
+    most, of the quantity of which it is largest, relative to its peak; infinite where nothing
+    bounds it.
+    """
+
+    peaks: PeakSearch
+    seconds: float
+    error: float
+    bound: float
+
+
+@dataclass(frozen=True)
 class Trade:
     """The methods of one scene, fastest first, and those that it has not, with the reason.
 
-    ``peaks`` says how far peaks fall short, by how many instants a cycle is sampled at; empty where
-    that cannot be said.
+    ``peaks`` says how far peaks fall short, by how many instants a cycle is sampled at, and
+    ``searches`` what peaks of designs cost; empty where that cannot be said.
     """
 
     case: str
@@ -101,6 +120,7 @@ class Trade:
     measurements: tuple[Measurement, ...]
     refused: Mapping[str, str]
     peaks: tuple[Shortfall, ...] = ()
+    searches: tuple[PeakCost, ...] = ()
 
     @property
     def front(self) -> tuple[Measurement, ...]:
@@ -154,7 +174,15 @@ class Trade:
             "compared": self.compared,
             "rungs": methods,
         }
-        return found | {"refused": dict(self.refused), "peaks": [asdict(row) for row in self.peaks]}
+        searches = [
+            asdict(row) | {"bound": row.bound if math.isfinite(row.bound) else None}
+            for row in self.searches
+        ]
+        return found | {
+            "refused": dict(self.refused),
+            "peaks": [asdict(row) for row in self.peaks],
+            "searches": searches,
+        }
 
 
 def trade(
@@ -209,7 +237,39 @@ def trade(
         peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters, t=t, over=over))
     except (AssemblyError, DeclarationError):
         peaks = ()
-    return Trade(program.data.name, INSTANTS, truth.compared.size, ordered, refused, peaks)
+    try:
+        searches = _peak_costs(sampled, scene.timing(t, over), values)
+    except (AssemblyError, DeclarationError):
+        searches = ()
+    return Trade(
+        program.data.name, INSTANTS, truth.compared.size, ordered, refused, peaks, searches
+    )
+
+
+def _peak_costs(scene: Scene, timing: Timing, p: Array) -> tuple[PeakCost, ...]:
+    """Measure both kinds of peaks of one design many times; nothing where it has no result."""
+    engines = {peaks: DesignEngine.of(scene, timing=timing, peaks=peaks) for peaks in PEAK_SEARCHES}
+    designs = np.tile(p, (max(1, INSTANTS // timing.count), 1))
+    works = {
+        peaks: (partial(engine.evaluate, designs, threads=1), len(designs) * timing.count)
+        for peaks, engine in engines.items()
+    }
+    found = {peaks: engine.evaluate(p[None]) for peaks, engine in engines.items()}
+    if any(outcome.status[0] != Status.OK for outcome in found.values()):
+        return ()
+    seconds = _in_turns(works)
+    exact, sampled = (np.abs(found[peaks].value[0]) for peaks in PEAK_SEARCHES)
+    units = np.array(engines["exact"].units)
+    largest = np.array([np.nanmax(exact[units == unit], initial=0.0) for unit in units])
+    there = np.isfinite(exact) & (exact > _NIL * largest)
+    error, bound = (
+        float(np.max(missed[there] / exact[there], initial=0.0))
+        for missed in (exact - sampled, np.asarray(found["sampled"].error)[0])
+    )
+    return (
+        PeakCost("exact", seconds["exact"], 0.0, 0.0),
+        PeakCost("sampled", seconds["sampled"], error, bound),
+    )
 
 
 class _Truth:
@@ -287,13 +347,11 @@ def _work(
     return lambda: columns(program, dense, p, method, 1, into=evaluated), count
 
 
-def _in_turns(
-    works: Mapping[EvaluationMethod, tuple[Callable[[], object], int]],
-) -> dict[EvaluationMethod, float]:
-    """Seconds an instant: the median over rounds in which each method has its turn, long enough to
-    be read off a clock.
+def _in_turns(works: Mapping[_Way, tuple[Callable[[], object], int]]) -> dict[_Way, float]:
+    """Seconds an instant: the median over rounds in which each way has its turn, long enough to be
+    read off a clock.
     """
-    taken: dict[EvaluationMethod, list[float]] = {method: [] for method in works}
+    taken: dict[_Way, list[float]] = {method: [] for method in works}
     for _ in range(ROUNDS):
         for method, (work, count) in works.items():
             calls, start = 0, time.perf_counter()

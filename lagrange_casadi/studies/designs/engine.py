@@ -23,12 +23,13 @@ from ...base.quantities import Output, compared
 from ...base.space import cores, require
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
+from ...base.vocabulary import PEAK_SEARCHES, PeakSearch
 from ...codegen.stages import Stages
 from ...declare.scene import Scene
 from ...declare.times import Times, Timing
 from ...equations.derive import compile_scene
 from ...equations.program import Program
-from ...errors import DeclarationError
+from ...errors import DeclarationError, UnknownNameError
 from ...instants.backends import begun, compiled, provenance
 from ...instants.determinacy import undetermined
 from ...instants.evaluation_method import EvaluationMethod, seconds
@@ -60,7 +61,7 @@ class DesignEngine:
 
     ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``,
     and ``efforts`` those of what it gives; ``columns`` those of histories. What equilibrium leaves
-    open for a design is NaN there.
+    open for a design is NaN there. ``sampled`` peaks are those of the instants, with an error.
     """
 
     method: EvaluationMethod
@@ -70,6 +71,7 @@ class DesignEngine:
     stages: Stages
     library: codegen.Library | InterpretedDesigns
     provenance: Provenance
+    sampled: bool = False
 
     @classmethod
     def of(
@@ -80,9 +82,10 @@ class DesignEngine:
         method: EvaluationMethod | None = None,
         *,
         timing: Timing | None = None,
+        peaks: PeakSearch = "exact",
     ) -> DesignEngine:
         """Derive and compile: ``wanted`` outputs, ``t`` and ``method`` as in :func:`.evaluate`; a
-        ``timing`` in place of ``t``.
+        ``timing`` in place of ``t``; ``peaks`` exactly, or those of the instants.
         """
         method = method or EvaluationMethod()
         if method.table is not None:
@@ -92,11 +95,20 @@ class DesignEngine:
         program = compile_scene(scene, wanted)
         method.check(program)
         scene.checked(scene.values())
-        return cls.compiled(program, timing or scene.timing(t), method)
+        return cls.compiled(program, timing or scene.timing(t), method, peaks)
 
     @classmethod
-    def compiled(cls, program: Program, timing: Timing, method: EvaluationMethod) -> DesignEngine:
+    def compiled(
+        cls,
+        program: Program,
+        timing: Timing,
+        method: EvaluationMethod,
+        peaks: PeakSearch = "exact",
+    ) -> DesignEngine:
         """Compile a graph for designs at instants that are asked for."""
+        if peaks not in PEAK_SEARCHES:
+            raise UnknownNameError("choice of peaks", str(peaks), PEAK_SEARCHES)
+        sampled = peaks == "sampled"
         data = program.data
         times, p = DesignTimes(data.laws, data.values(data.defaults), timing), data.defaults
         checked_span(data.laws, timing, times.values)
@@ -118,8 +130,8 @@ class DesignEngine:
 
         found = compiled(method, build)
         made = provenance(method, found)
-        library = found[1] if found else InterpretedDesigns(program, kept, method.newton)
-        return cls(method, times, kept, program, stages, library, made)
+        library = found[1] if found else InterpretedDesigns(program, kept, method.newton, sampled)
+        return cls(method, times, kept, program, stages, library, made, sampled)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -311,6 +323,7 @@ class DesignEngine:
         """Arrays for what is kept of n designs, and the columns that histories are made of."""
         q, e = len(self.kept.quantities), len(self.efforts)
         sizes = {"value": q, "peak_t": q, "xi": q, "mean": e, "rms": e}
+        sizes |= {"error": q} if self.sampled else {}
         kept = {name: np.empty((n, size)) for name, size in sizes.items()}
         return {"status": np.zeros(n, np.int8), **kept, "history": columns}
 
@@ -379,6 +392,7 @@ class DesignEngine:
         """Gradient by all parameters of the peaks (q,) of a design (parameters,), which are at
         times ``t`` and ratios ``xi``.
         """
+        self._not_sampled()
         chosen = np.arange(value.size, dtype=np.intc)
         return self.moving(p).gradient(chosen, (value, t, xi), self._faint(value))
 
@@ -390,6 +404,11 @@ class DesignEngine:
         """
         chosen = np.arange(value.size, dtype=np.intc)
         return self.moving(p).curvature(chosen, (value, t, xi), first_order, self._faint(value))
+
+    def _not_sampled(self) -> None:
+        """Raise :class:`DeclarationError` where peaks are those of the instants."""
+        if self.sampled:
+            raise DeclarationError("peaks: 'sampled' ones have no derivatives; expected 'exact'")
 
     def tied(self, p: Array, value: Array, first_order: PeakSlopes) -> npt.NDArray[np.bool_]:
         """Return which of the peaks (q,) of a design, whose gradient is ``first_order``, tie with

@@ -32,6 +32,7 @@ class InterpretedDesigns:
     program: Program
     kept: KeptOutputs
     newton: int | None
+    sampled: bool = False
 
     def designs(
         self,
@@ -116,15 +117,18 @@ class InterpretedDesigns:
             means = np.array([_means(t, effort) for effort in efforts]).reshape(-1, 2).T
         peaks = np.full((3, len(reduction.units)), np.nan)
         tops = np.full((len(reduction.units), TOPS, 4), np.nan)
+        error = np.full(len(reduction.units), np.nan)
         if determined:
             signals = self._signals(t, p, evaluated, determined)
-            found = signals.peaks([reduction.units[k] for k in determined], listed=listed)
+            units = [reduction.units[k] for k in determined]
+            found = signals.peaks(units, listed=listed, sampled=self.sampled)
             if not found.resolved.all():
                 return None
             peaks[:, determined] = found.value, found.t, found.xi
             tops[determined] = np.nan if found.tops is None else found.tops
+            error[determined] = np.nan if found.error is None else found.error
         means[:, [effort not in determined for effort in reduction.efforts]] = np.nan
-        return dict(zip(KEPT, (*peaks, *means), strict=True)) | {"tops": tops}
+        return dict(zip(KEPT, (*peaks, *means), strict=True)) | {"tops": tops, "error": error}
 
     def _signals(self, t: Array, p: Array, evaluated: Evaluated, some: Sequence[int]) -> Signals:
         """Some quantities that are kept of a design, as curves over time."""

@@ -26,6 +26,8 @@ class Outcome:
     (n, e), those of each effort over time. ``series`` (n, columns, t) are whole histories, where
     they were asked for, and ``times`` (n, t) their instants [s], where designs may have their own.
     ``over`` (n, q) is the coordinate of the drive at the peak, where instants are asked for by one.
+    ``error`` (n, q), of peaks that are those of the instants, is how much larger each may be
+    between them.
     """
 
     status: npt.NDArray[np.int8]
@@ -37,6 +39,7 @@ class Outcome:
     series: Array | None
     over: Array | None = None
     times: Array | None = None
+    error: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,4 +73,5 @@ def rows_of(found: Results, some: slice) -> Results:
 def outcome_of(found: Results, times: Array | None = None) -> Outcome:
     """Make it from results, without histories."""
     value, t, xi, mean, rms = (found[name] for name in KEPT)
-    return Outcome(found["status"], value, t, xi, mean, rms, None, times=times)
+    error = found.get("error")
+    return Outcome(found["status"], value, t, xi, mean, rms, None, times=times, error=error)

@@ -18,7 +18,7 @@ from ...base.arrays import Array
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...base.units import Number
-from ...base.vocabulary import Backend, Precision
+from ...base.vocabulary import Backend, PeakSearch, Precision
 from ...declare.description import fitted_of
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
@@ -41,6 +41,8 @@ class Peaks:
 
     ``value``, ``t`` and ``xi``, (q,), are the peak of each quantity with its sign, its time [s] and
     its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (e,), those of each effort over time.
+    ``error`` (q,), of peaks that are those of the instants, is how much larger each may be between
+    them.
     """
 
     value: Array
@@ -48,6 +50,7 @@ class Peaks:
     xi: Array
     mean: Array
     rms: Array
+    error: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +165,9 @@ class _Answers(threading.local):
         places = {
             name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(KEPT)
         }
-        self.kept_peaks = Peaks(*(places[name][0] for name in KEPT))
+        if engine.sampled:
+            places["error"] = np.empty((1, quantities))
+        self.kept_peaks = Peaks(*(array[0] for array in places.values()))
         self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
         # Where nothing but the values changes from call to call, all that remains is the call
         # itself.
@@ -332,9 +337,10 @@ class Prepared:
         if fill is None:
             found = engine.evaluate(p, threads=1)
             self._refuse(found.status[0], p)
-            return Peaks(
-                *(array[0] for array in (found.value, found.t, found.xi, found.mean, found.rms))
-            )
+            kept = (found.value, found.t, found.xi, found.mean, found.rms)
+            value, at, xi, mean, rms = (array[0] for array in kept)
+            error = None if found.error is None else found.error[0]
+            return Peaks(value, at, xi, mean, rms, error)
         fill[1]()
         self._refuse(self._watched(answers.instants[0], answers.even), p)
         return answers.kept_peaks
@@ -397,6 +403,7 @@ def prepare(
     precision: Precision = "double",
     newton: Annotated[int | None, LATER] = None,
     flags: Annotated[str, LATER] = "",
+    peaks: PeakSearch = "exact",
 ) -> Prepared:
     """Make a scene ready for many evaluations one after another, as in an optimiser.
 
@@ -414,6 +421,9 @@ def prepare(
         The scene.
     t, over, wanted, backend, precision, newton, flags
         As in :func:`.evaluate`.
+    peaks
+        ``exact``, sought between the instants; or ``sampled``, those of the instants, each with an
+        error. These have no derivatives.
 
     Returns
     -------
@@ -438,5 +448,7 @@ def prepare(
 
         return solve(scene, replace(request, parameters=values), certificate=False)
 
-    engine = DesignEngine.of(scene, wanted, method=method, timing=scene.timing(t, over))
+    engine = DesignEngine.of(
+        scene, wanted, method=method, timing=scene.timing(t, over), peaks=peaks
+    )
     return Prepared(engine, explain)

@@ -19,7 +19,7 @@ from ...base.arrays import Array, Operand
 from ...base.numerals import real
 from ...base.units import typed
 from ...errors import DeclarationError, check_kind
-from .meanings import STATUS
+from .meanings import ERROR, STATUS
 from .reading import Sweep, Values, names_in
 from .selection import absent, near
 
@@ -125,7 +125,8 @@ def best(
     -------
     list of Design
         The designs, the best first, a front in the order of its first objective: number,
-        parameters, objectives and ``columns``, in the columns' units.
+        parameters, objectives and ``columns``, sampled peaks with their errors, in the columns'
+        units.
 
     Raises
     ------
@@ -162,8 +163,19 @@ def best(
             _front(costs) if len(objectives) == 2 else np.lexsort((kept, costs[0]))[: count or 1]
         )
         kept, costs = kept[order], costs[:, order]
-    asked = tuple(dict.fromkeys([*sweep.parameters, *names, *names_in(columns)]))
+    shown = with_errors(sweep, [*names, *names_in(columns)])
+    asked = tuple(dict.fromkeys([*sweep.parameters, *shown]))
     return [row(sweep, int(number), asked) for number in kept[:count]]
+
+
+def with_errors(sweep: Sweep, names: Sequence[str]) -> list[str]:
+    """Names of columns, each peak that is sampled followed by its error."""
+    found: list[str] = []
+    for name in names:
+        kind, _, quantity = name.partition(":")
+        error = f"{ERROR}:{quantity}"
+        found += [name, error] if kind == "peak" and error in sweep.columns else [name]
+    return found
 
 
 @public

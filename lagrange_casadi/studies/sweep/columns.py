@@ -29,7 +29,7 @@ from .chunks import encoded
 from .column import MISSING, Column
 from .instant_axis import InstantAxis
 from .link_properties import LinkProperties
-from .meanings import LEAST, LIFE, MASS, STATUS, TIMES, Meanings
+from .meanings import ERROR, LEAST, LIFE, MASS, STATUS, TIMES, Meanings
 from .strength import Kept
 
 KINDS = (
@@ -38,6 +38,7 @@ KINDS = (
     "peak_t",
     "peak_over",
     "peak_xi",
+    ERROR,
     "mean",
     "rms",
     SENSITIVITY,
@@ -214,6 +215,8 @@ class Harvest:
                 found.append(outcome.over[:, k])
             if output.group == "section":
                 found.append(outcome.xi[:, k])
+            if outcome.error is not None:
+                found.append(outcome.error[:, k])
         for k in range(len(self.engine.efforts)):
             found += [outcome.mean[:, k], outcome.rms[:, k]]
         if self.by:
@@ -299,7 +302,8 @@ class Harvest:
     def _of_peaks(self, quantity: Output) -> list[str]:
         """The kinds of columns of the peak of a quantity."""
         over = ["peak_over"] if self.axis.joint else []
-        return ["peak", "peak_t", *over, *(["peak_xi"] if quantity.group == "section" else [])]
+        xi = ["peak_xi"] if quantity.group == "section" else []
+        return ["peak", "peak_t", *over, *xi, *([ERROR] if self.engine.sampled else [])]
 
     def _along_links(self, outcome: Outcome, p: Array) -> tuple[list[Array], list[Array]]:
         """Largest values over the instants of each link and force, (designs, xi), and, if they are

@@ -33,6 +33,9 @@ STATUSES: Mapping[int, tuple[str, str]] = {
 TIMES = "history:t"
 """The times of a design's instants, where these are over anything else."""
 
+ERROR = "peak_error"
+"""Kind of columns that tell how much larger than at the instants a peak may be between them."""
+
 LEAST, LIFE, MASS = "least", "life", "mass"
 """Kinds of columns that tell of the strength of links."""
 
@@ -55,6 +58,7 @@ _OF_OUTPUTS = {
 _BESIDE = {
     "peak_t": ("instant of the peak: ", "s"),
     "peak_xi": ("ratio xi/l of the peak: ", "1"),
+    ERROR: ("bound of how much larger the peak is between the instants, infinite if none: ", ""),
     "rms": ("root of the mean square over time: ", ""),
 }
 """Kinds that have none, and their units, if these are not the quantity's."""
@@ -125,8 +129,9 @@ class Meanings:
         output = Output.of(rest)
         words = output.meant(self.table).attributes
         if kind in _OF_OUTPUTS:
+            sampled = kind == "peak" and f"{ERROR}:{rest}" in among
             return output.unit(self.kinds), words | {
-                "long_name": _OF_OUTPUTS[kind] + words["long_name"]
+                "long_name": _OF_OUTPUTS["peak_at" if sampled else kind] + words["long_name"]
             }
         if kind == "peak_over":
             return self.drive_unit, {

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...base.arrays import Array, Json
 from ...base.space import in_words, require
-from ...base.vocabulary import Keep, Precision
+from ...base.vocabulary import Keep, PeakSearch, Precision
 from ...declare.description import Description, beams_of, fitted_of, shape_of
 from ...declare.even_points import EvenPoints, checked_ratios, points
 from ...declare.scene import STRENGTH, Scene
@@ -39,12 +39,12 @@ from .columns import Harvest, check_keep
 from .instant_axis import InstantAxis
 
 SCHEMA = "lagrange-casadi-sweep"
-SCHEMA_VERSION = 5
+SCHEMA_VERSION = 6
 """Files of version 1 had no seal. Those of version 2 have one axis of time for all designs, those
-of 3 are of planar mechanisms alone, and those of 4 have no sensitivities; all three are still
-written."""
+of 3 are of planar mechanisms alone, those of 4 have no sensitivities, and those of 5 no sampled
+peaks; all four are still written."""
 
-_WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES = 2, 3, 4
+_WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES, _WITH_EXACT_PEAKS = 2, 3, 4, 5
 READ = range(_WITH_COMMON_TIMES, SCHEMA_VERSION + 1)
 
 _BOUND = (float, str)
@@ -120,22 +120,31 @@ class Task:
     safety: tuple[str, ...] = ()
     life: tuple[str, ...] = ()
     by: tuple[str, ...] = ()
+    peaks: PeakSearch = "exact"
+
+    def __post_init__(self) -> None:
+        if self.peaks != "exact" and (self.safety or self.life or self.by):
+            raise DeclarationError(
+                "peaks: safety, life and sensitivity need exact ones; leave them out of wanted="
+            )
 
     def harvest(self, program: Program, whole: Program | None = None) -> Harvest:
         """Compile the graph of what is wanted, for what is kept of its outcomes; ``whole`` has all
         outputs.
         """
         xi = np.zeros(0) if self.xi is None else points(self.xi)
-        engine, data = compiled(program, self.timing, self.method), program.data
+        engine, data = compiled(program, self.timing, self.method, self.peaks), program.data
         axis = InstantAxis.of(data, self.timing)
         return Harvest(
             engine, data, whole or program, self.keep, axis, xi, self.safety, self.life, self.by
         )
 
 
-def compiled(program: Program, timing: Timing, method: EvaluationMethod) -> DesignEngine:
+def compiled(
+    program: Program, timing: Timing, method: EvaluationMethod, peaks: PeakSearch = "exact"
+) -> DesignEngine:
     """The engine of a graph."""
-    return DesignEngine.compiled(program, timing, method)
+    return DesignEngine.compiled(program, timing, method, peaks)
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +172,7 @@ class Plan:
         request: Request,
         keep: Keep = "peaks",
         *,
+        peaks: PeakSearch = "exact",
         many: bool = False,
     ) -> Plan:
         """Check everything that can be before anything is evaluated.
@@ -197,6 +207,7 @@ class Plan:
             safety,
             life,
             by_parameters(program.data.parameters, names),
+            peaks,
         )
         method.check(program)
         scene.checked(scene.values())
@@ -277,8 +288,10 @@ class Plan:
     @property
     def _version(self) -> int:
         """The first version of the schema that has all of it."""
-        if self.harvest.by:
+        if self.task.peaks == "sampled":
             return SCHEMA_VERSION
+        if self.harvest.by:
+            return _WITH_EXACT_PEAKS
         if self.program.data.space:
             return _WITHOUT_SLOPES
         return _WITH_COMMON_TIMES if self.task.timing.shared else _PLANAR
@@ -355,7 +368,7 @@ def signature(program: Program, task: Task, provenance: Provenance) -> dict[str,
         "precision": provenance.precision,
         "compiler": provenance.compiler,
         "flags": provenance.flags,
-        "rung": provenance.method,
+        "rung": provenance.method + (", sampled peaks" if task.peaks == "sampled" else ""),
         "wanted": dataclasses.asdict(program.wanted) | ({SENSITIVITY: task.by} if task.by else {}),
         "t": task.timing.words(program.data.symbols),
         "xi": task.xi,

@@ -50,6 +50,7 @@ _KINDS = {
     "peak_t": "instant of the peak",
     "peak_over": "coordinate of the drive at the peak",
     "peak_xi": r"$\xi/l$ of the peak",
+    "peak_error": "error of the peak",
     "mean": "mean",
     "rms": "rms",
 }

@@ -13,7 +13,7 @@ from typing import Annotated
 
 from ...arguments import LATER, Outputs, ThreadCount, public
 from ...base.space import MOST_THREADS
-from ...base.vocabulary import Backend, Keep, Precision
+from ...base.vocabulary import Backend, Keep, PeakSearch, Precision
 from ...case import Case, reference, scene_of
 from ...declare.even_points import EvenPoints
 from ...declare.scene import Scene
@@ -41,6 +41,7 @@ def sweep(
     xi: EvenPoints | None = None,
     wanted: Outputs | None = None,
     keep: Keep = "peaks",
+    peaks: PeakSearch = "exact",
     backend: Backend = "auto",
     precision: Precision = "double",
     newton: Annotated[int | None, LATER] = None,
@@ -78,6 +79,9 @@ def sweep(
     keep
         ``peaks``; with ``laws`` also the section laws over time; with ``histories`` also all
         outputs over time.
+    peaks
+        ``exact``, sought between the instants; or ``sampled``, those of the instants, each with an
+        error in ``peak_error:QUANTITY``.
     backend, precision, newton, flags
         Method of evaluation: see :class:`.EvaluationMethod`.
     workers
@@ -115,7 +119,7 @@ def sweep(
     one, designs = scene_of(scene), designs_of(grid)
     method = EvaluationMethod(backend, precision, newton, None, flags)
     request = Request(parameters, t, over, xi, wanted, method)
-    plan = Plan.of(one, designs, request, keep, many=many)
+    plan = Plan.of(one, designs, request, keep, peaks=peaks, many=many)
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     if isinstance(scene, Case) and not keeper:
