@@ -30,6 +30,13 @@ from .errors import LagrangeCasadiError
 from .exports import export
 from .formats import read, save_model
 from .forward.running import flywheel, free
+from .identification import (
+    Identification,
+    Measurements,
+    excite,
+    identify,
+    read_measurements,
+)
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
 from .load_cases import (
@@ -57,9 +64,11 @@ __all__ = [
     "Case",
     "Curve",
     "Front",
+    "Identification",
     "LagrangeCasadiError",
     "LagrangeSystem",
     "LoadCase",
+    "Measurements",
     "Mechanism",
     "Optimum",
     "Peak",
@@ -84,12 +93,14 @@ __all__ = [
     "elements",
     "errors",
     "evaluate",
+    "excite",
     "export",
     "figures",
     "flywheel",
     "forward",
     "free",
     "holding",
+    "identify",
     "link_load_cases",
     "load",
     "load_case",
@@ -99,6 +110,7 @@ __all__ = [
     "prepare",
     "read",
     "read_designs",
+    "read_measurements",
     "refine",
     "save",
     "save_model",

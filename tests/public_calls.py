@@ -85,6 +85,13 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     lean = {"scene": scene, "wanted": ["effort"], "backend": "vm"}
     bare = {"scene": scene, "backend": "vm"}
     one = {"l": (0.2, 0.3, 2)}
+    t, columns = (
+        np.linspace(0.0, 1.0, 9),
+        {"O": np.linspace(0.0, 1.0, 9) ** 2, "effort:O": np.ones(9)},
+    )
+    record = root.Measurements(t, columns)
+    heads = [f"{at},{angle},1.0" for at, angle in zip(t, columns["O"], strict=True)]
+    Path("record.csv").write_text("\n".join(["t [s],O [rad],effort:O [N m]", *heads]))
     for name, given in {
         "compile_scene": {"scene": scene, "wanted": ["effort"]},
         "derive": {"scene": scene, "wanted": ["effort"]},
@@ -115,6 +122,15 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         "save_model": {"scene": scene, "path": "model.json"},
         "link_load_cases": {"solution": solution, "link": "arm"},
         "write_load_cases": {"cases": [], "folder": "load_cases"},
+        "Measurements": {"t": t, "columns": columns},
+        "read_measurements": {"path": "record.csv"},
+        "identify": {"scene": scene, "measurements": record, "backend": "vm"},
+        "excite": {
+            "scene": scene,
+            "limits": {"O": (-1.0, 1.0, 2.0, 9.0)},
+            "steps": 1,
+            "backend": "vm",
+        },
         "write_spectrum": {"solution": solution, "name": "effort:O", "path": "spectrum.csv"},
         "bearing_loads": {"solution": solution, "joint": "O"},
         "export": {"scene": scene, "out": "exported", "wanted": ["effort"], "force": True},

@@ -58,6 +58,7 @@ ORDER = (
     "cluster",
     "formats",
     "load_cases",
+    "identification",
     "forward",
     "cli",
 )
@@ -68,7 +69,7 @@ DECLARED = ORDER[: ORDER.index("equations") + 1]
 
 LEAVES = (
     *("exports", "figures", "report", "animation", "actuators", "cluster"),
-    *("formats", "load_cases", "forward", "cli"),
+    *("formats", "load_cases", "identification", "forward", "cli"),
 )
 """What nothing but the command line imports."""
 
@@ -305,6 +306,7 @@ else:
     asked |= {"report": [out], "new": [out + "_new", "--from", "model.json"]}
     asked |= {"free": [case]}
     asked |= {"loads": [case, "--link", "crank", "--out", out + "_l"]}
+    asked |= {"identify": [case, "data.csv"]}
     for word in commands:
         assert main([word, *asked[word]]) == 1
 print(json.dumps([lost, refused]))
@@ -333,6 +335,11 @@ GOES = {
             *("write_load_cases", "write_spectrum"),
         ],
         ["loads"],
+    ),
+    "identification": (
+        ["cli.identify"],
+        ["Identification", "Measurements", "excite", "identify", "read_measurements"],
+        ["identify"],
     ),
     "forward": (["cli.free"], ["flywheel", "forward", "free"], ["free"]),
     "cli": ([], [], []),

@@ -19,7 +19,18 @@ from ..base.vocabulary import (
     TIME_LIMIT,
     WIDTH,
 )
-from .design_commands import best, drive, free, optimise, size, sweep, table, tolerances, trade
+from .design_commands import (
+    best,
+    drive,
+    free,
+    identify,
+    optimise,
+    size,
+    sweep,
+    table,
+    tolerances,
+    trade,
+)
 from .echo import say_step
 from .help import command
 from .options import (
@@ -481,6 +492,7 @@ GROUPS = {
     "Run": (run, info, check, cases, new),
     "Many designs": (sweep, best, table),
     "Design": (optimise, size, drive, free, tolerances, trade),
+    "Measurements": (identify,),
     "Other programs": (export, loads),
     "Look": (plot, report, animate),
     "Cache": (cache,),

@@ -34,6 +34,7 @@ from .options import (
     instants,
     length,
     over,
+    place,
     ratios,
     resumable,
     settings_by,
@@ -534,3 +535,91 @@ def trade(**given: Any) -> None:
     from .trade import trade
 
     trade(**given)
+
+
+@command()
+@click.argument("case", type=CASE)
+@click.argument("data", metavar="DATA.csv", type=PATH)
+@click.option(
+    "--unknown",
+    multiple=True,
+    metavar="NAME",
+    help="Find this parameter; repeatable. Default: all parameters of the case.",
+)
+@settings_by("Set a known parameter, or the first value of an unknown one, as l=0.25; repeatable.")
+@click.option(
+    "--column",
+    "names",
+    type=tolerance,
+    multiple=True,
+    metavar="NAME=HEAD",
+    help="Read a drive's coordinate, or a force as effort:O, from the column of this head;"
+    " repeatable.",
+)
+@click.option(
+    "--noise",
+    type=place,
+    multiple=True,
+    metavar="NAME=NUMBER",
+    help="State the standard deviation of a column, in the unit of the file; repeatable.",
+)
+@click.option(
+    "--prior",
+    type=place,
+    multiple=True,
+    metavar="NAME=NUMBER",
+    help="State how sure the first value of a parameter is, as a standard deviation; repeatable.",
+)
+@click.option(
+    "--counts-per-turn",
+    type=float,
+    metavar="NUMBER",
+    help="Set the number of counts of an encoder in one turn.",
+)
+@click.option("--robust", is_flag=True, help="Let outliers count less, by Huber's loss.")
+@click.option(
+    "--consistent",
+    is_flag=True,
+    help="Find positive masses, inertias that a body can have, and parameters in their bounds.",
+)
+@click.option(
+    "--cutoff",
+    type=float,
+    metavar="HZ",
+    help="Filter forces without delay; half the power is left at this frequency.",
+)
+@click.option(
+    "--trim",
+    type=float,
+    default=0.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Leave out this time at both ends of the record.",
+)
+@click.option(
+    "--validate",
+    type=PATH,
+    metavar="OTHER.csv",
+    help="Compare this other record with the model that was found.",
+)
+@click.option("--out", type=PATH, help="Write to this HDF5 file; default: <case>_identified.h5.")
+@click.option(
+    "--figure",
+    type=PATH,
+    metavar="FILE",
+    help="Draw measured and model to this .png, .pdf or .svg.",
+)
+def identify(**given: Any) -> None:
+    """Find parameters of CASE from motion and forces that were measured.
+
+    The first line of DATA.csv has names and units of columns: t [s], the coordinates of all drives,
+    as O [deg], and forces, as effort:O [N m], reaction:A:fx [N], section:rod:axial@0.5 [N]. The
+    command prints combinations of parameters that the data tell, with standard errors, and the
+    values as options --set.
+
+    \b
+    lagrange-casadi identify cases/slider_crank run.csv --unknown m3 --noise 'effort:O=0.05'
+    """
+    from .identify import identify_command
+
+    identify_command(**given)

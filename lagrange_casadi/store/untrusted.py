@@ -162,8 +162,8 @@ def _is_shown(value: str) -> bool:
         return False
 
 
-def _is_real(value: Any) -> bool:
+def _is_real(value: object) -> bool:
     try:
-        return type(value) in (int, float) and isinstance(float(value), float)
+        return type(value) is float or (type(value) is int and math.isfinite(float(value)))
     except OverflowError:
         return False

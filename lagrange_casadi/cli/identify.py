@@ -1,0 +1,96 @@
+"""``lagrange-casadi identify``: parameters of a case from measurements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from ..base.publish import check_writable
+from ..case import load_case
+from ..identification import Comparison, Identification, identify, read_measurements
+from ..identification.file import plot_identification, save_identification
+from .echo import echo
+from .options import parameters
+
+
+def identify_command(
+    case: Path,
+    data: Path,
+    unknown: Sequence[str],
+    settings: Sequence[tuple[str, float | str]],
+    names: Sequence[tuple[str, str]],
+    noise: Sequence[tuple[str, float]],
+    prior: Sequence[tuple[str, float]],
+    counts_per_turn: float | None,
+    robust: bool,
+    consistent: bool,
+    cutoff: float | None,
+    trim: float,
+    validate: Path | None,
+    out: Path | None,
+    figure: Path | None,
+) -> None:
+    """See :func:`.design_commands.identify`."""
+    loaded = load_case(case)
+    out = out or Path(f"{loaded.name}_identified.h5")
+    check_writable(out, hdf5=True)
+
+    def read(path: Path) -> Comparison:
+        return found.validate(
+            read_measurements(path, names=dict(names), counts_per_turn=counts_per_turn), trim
+        )
+
+    record = read_measurements(
+        data, names=dict(names), noise=dict(noise), counts_per_turn=counts_per_turn
+    )
+    found = identify(
+        loaded.scene,
+        record,
+        unknown or None,
+        parameters=parameters(settings),
+        prior=dict(prior),
+        robust=robust,
+        consistent=consistent,
+        cutoff=cutoff,
+        trim=trim,
+    )
+    second = None if validate is None else read(validate)
+    for line in _lines(found, second):
+        echo(line)
+    save_identification(found, out, second)
+    echo(f"wrote {out}")
+    if figure is not None:
+        plot_identification(second or found.comparison, figure)
+        echo(f"wrote {figure}")
+    echo(" ".join(f"--set {word}" for word in found.setting.split()))
+
+
+def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:
+    yield (
+        f"{found.name}: {len(found.base)} combinations of {len(found.values)} parameters from"
+        f" {found.measurements}, condition {found.condition:.3g}, {found.rounds} steps"
+    )
+    width = max(len(one.words) for one in found.base)
+    yield f"  {'combination':<{width}} {'value':>12} {'error':>10} {'t':>8}"
+    for one in found.base:
+        numbers = f"{one.value:>12.6g} {one.error:>10.3g} {one.t:>8.3g}"
+        yield f"  {one.words:<{width}} {numbers} {one.unit}"
+    for name, others in found.nonlinear.items():
+        yield f"  forces are not linear in {name}, with {', '.join(others)}: found by iteration"
+    if found.absent:
+        yield f"  nothing measured depends on {', '.join(found.absent)}"
+    for words in found.unexcited:
+        yield f"  this motion does not tell {words}; other speeds and accelerations do"
+    for drive, cutoff in found.cutoffs.items():
+        if cutoff < math.inf:
+            yield f"  {drive} is smoothed, half the power at {cutoff:.3g} Hz"
+    if found.cutoff is not None:
+        yield f"  forces are filtered without delay, half the power at {found.cutoff:.3g} Hz"
+    for title, compared in (("record", found.comparison), ("validation", second)):
+        if compared is not None:
+            for name, share in compared.relative.items():
+                yield (
+                    f"  {title}: {name} differs by {compared.residual[name]:.4g}"
+                    f" {compared.units[name]} rms, {100 * share:.3g} % of measured"
+                )

@@ -1,0 +1,16 @@
+"""Parameters of a machine from measurements: regressors, base parameters, least squares."""
+
+from .excitation import Excitation, excite
+from .identification import BaseParameter, Comparison, Identification, identify
+from .measurements import Measurements, read_measurements
+
+__all__ = [
+    "BaseParameter",
+    "Comparison",
+    "Excitation",
+    "Identification",
+    "Measurements",
+    "excite",
+    "identify",
+    "read_measurements",
+]

@@ -1,0 +1,355 @@
+"""Parameters of a mechanism from measured motion and forces: :func:`identify`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arguments import NotNegative, Positive, public
+from ..base.arrays import Array
+from ..base.vocabulary import Backend
+from ..case import Case, scene_of
+from ..declare.scene import Scene
+from ..errors import DeclarationError, UnknownNameError
+from ..instants.evaluation_method import EvaluationMethod
+from .base import Ranking, base_of, triangle
+from .consistency import Consistency
+from .fit import Data, Fit, Loss, fit, nonlinear
+from .measurements import Filter, Measurements
+from .regressor import DrivenMotion, Regressor
+
+_ROUNDED = 1e-8
+"""Share of a regressor's norm that is not rounding."""
+
+
+@dataclass(frozen=True)
+class BaseParameter:
+    """A combination of parameters that the measurements determine, in words, with its value, its
+    standard error, and their ratio ``t``.
+
+    ``name`` is the parameter that stands for it, in whose unit it is.
+    """
+
+    name: str
+    words: str
+    unit: str
+    value: float
+    error: float
+
+    @property
+    def t(self) -> float:
+        """The value over its standard error."""
+        return abs(self.value) / self.error if self.error > 0.0 else math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Measured quantities beside the model of them, each (t,); NaN where one is missing."""
+
+    t: Array
+    measured: Mapping[str, Array]
+    model: Mapping[str, Array]
+    units: Mapping[str, str]
+
+    @property
+    def residual(self) -> dict[str, float]:
+        """Root mean square of measured less model, by quantity."""
+        return {name: _rms(self.measured[name] - self.model[name]) for name in self.measured}
+
+    @property
+    def relative(self) -> dict[str, float]:
+        """Residuals over the root mean square of what is measured."""
+        found = {}
+        for name, residual in self.residual.items():
+            both = np.where(np.isfinite(self.model[name]), self.measured[name], np.nan)
+            size = _rms(both)
+            found[name] = residual / size if size else math.nan
+        return found
+
+
+@public
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """Parameters that were found, and how sure they are.
+
+    ``name`` is that of the mechanism. ``values`` and ``errors`` are those of the unknown
+    parameters; the standard error is infinite for one that is told only within a combination.
+
+    ``base`` are the combinations that are told, and ``condition`` is that of their columns of norm
+    1. ``unexcited`` are combinations that only other speeds and accelerations at the same places
+    tell; ``absent`` are parameters on which nothing measured depends. ``nonlinear`` are
+    the parameters that forces are not linear in while the others are unknown too, and with which
+    each goes; their base is that at the values found.
+
+    ``noise`` are standard deviations, given or estimated, ``outliers`` the shares of instants whose
+    weight Huber's loss lowered, and ``cutoffs`` the frequencies [Hz] at which the smoothing of each
+    drive's coordinate halves the power.
+    ``covariance`` is that of the base parameters.
+    """
+
+    name: str
+    measurements: str
+    values: Mapping[str, float]
+    errors: Mapping[str, float]
+    units: Mapping[str, str]
+    base: tuple[BaseParameter, ...]
+    unexcited: tuple[str, ...]
+    absent: tuple[str, ...]
+    nonlinear: Mapping[str, tuple[str, ...]]
+    condition: float
+    noise: Mapping[str, float]
+    outliers: Mapping[str, float]
+    cutoffs: Mapping[str, float]
+    cutoff: float | None
+    rounds: int
+    comparison: Comparison
+    covariance: Array
+    regressor: Regressor
+    parameters: Mapping[str, float]
+
+    @property
+    def setting(self) -> str:
+        """The values with all digits, as ``m=1.2 k=300``."""
+        return " ".join(f"{name}={value:.17g}" for name, value in self.values.items())
+
+    def validate(self, measurements: Measurements, trim: NotNegative = 0.0) -> Comparison:
+        """Compare another record with the model.
+
+        Parameters
+        ----------
+        measurements
+            The other record, with the same columns.
+        trim
+            Time at both ends that does not count [s].
+
+        Returns
+        -------
+        Comparison
+            Measured and model over time.
+
+        Raises
+        ------
+        UnknownNameError
+            If a column is missing.
+        AssemblyError
+            If the mechanism cannot follow the measured motion.
+        """
+        regressor = self.regressor
+        motion = measurements.motion(regressor.program.driven, trim)
+        p = np.array(list((dict(self.parameters) | dict(self.values)).values()))
+        measured = _measured(measurements, regressor.quantities)
+        return _compared(regressor, motion, measured, p, regressor.follow(motion, p))
+
+
+@public
+def identify(
+    scene: Scene | Case,
+    measurements: Measurements,
+    unknown: Sequence[str] | None = None,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    prior: Mapping[str, Positive] | None = None,
+    robust: bool = False,
+    consistent: bool = False,
+    cutoff: Positive | None = None,
+    trim: NotNegative = 0.0,
+    backend: Backend = "auto",
+) -> Identification:
+    """Return the parameters of a mechanism that measured motion and forces tell.
+
+    Parameters
+    ----------
+    scene
+        The scene, or a case. Its laws of motion are not used, but for the way in which loops are
+        assembled.
+    measurements
+        Coordinates of all driven joints, and forces or strains, over time.
+    unknown
+        Names of parameters; by default all that the scene declares.
+    parameters
+        Values of parameters that are known, and first values of the unknown ones, in place of the
+        defaults.
+    prior
+        Standard deviations of unknown parameters about their first values, such as from CAD, by
+        name. They are weighed as one more measurement each.
+    robust
+        Weigh residuals by Huber's loss, so that outliers count less.
+    consistent
+        Find only positive masses and inertias that some body can have, and parameters within their
+        bounds.
+    cutoff
+        Frequency [Hz] at which a filter without delay halves the power of forces, measured and
+        modelled alike; by default nothing is filtered.
+    trim
+        Time at both ends of the record that does not count [s], for smoothed accelerations are
+        poor there.
+    backend
+        As in :func:`.evaluate`.
+
+    Returns
+    -------
+    Identification
+        Values, base parameters, standard errors, and measurements beside the model.
+
+    Raises
+    ------
+    UnknownNameError
+        For parameters or columns that there are not.
+    DeclarationError
+        If nothing that is measured depends on the unknown parameters.
+    AssemblyError
+        If the mechanism cannot follow the measured motion.
+    AccuracyError
+        If what is nonlinear does not settle.
+    """
+    scene = scene_of(scene)
+    names = tuple(scene.parameters) if unknown is None else tuple(dict.fromkeys(unknown))
+    if not names:
+        raise DeclarationError("identify: expected unknown parameters; the scene declares none")
+    if lost := [name for name in prior or {} if name not in names]:
+        raise UnknownNameError("unknown parameter of prior=", lost, names)
+    drives = tuple(scene.laws)
+    quantities = measurements.quantities(drives)
+    if not quantities:
+        raise DeclarationError(
+            f"{measurements.name}: expected a column of a force, as effort:{drives[0]}; got"
+            f" {', '.join(measurements.columns)}"
+        )
+    values = scene.values(parameters)
+    regressor = Regressor.of(scene, quantities, names, EvaluationMethod(backend))
+    p = np.array(list(values.values()))
+    numbers = tuple(list(values).index(name) for name in names)
+    motion = measurements.motion(regressor.program.driven, trim)
+    low_pass = None if cutoff is None else Filter(measurements.t, cutoff)
+    data = Data(regressor, motion, _measured(measurements, quantities), p, numbers, low_pass)
+    z = regressor.follow(motion, p)
+    ranking = Ranking.of(data.theta, [scene.parameters[name].unit for name in names])
+    spread = np.array([(prior or {}).get(name, math.inf) for name in names])
+    given = {
+        k: measurements.noise[name]
+        for k, name in enumerate(quantities)
+        if name in measurements.noise
+    }
+    if zero := [quantities[k] for k, noise in given.items() if not noise > 0.0]:
+        raise DeclarationError(
+            f"{measurements.name}: noise of '{zero[0]}': expected a number above 0"
+        )
+    consistency = None
+    if consistent:
+        consistency = Consistency.of(regressor.program, p, numbers, ranking.scales)
+    loss = Loss(given, robust, data.theta, spread, consistency)
+    curved = nonlinear(data, z, names, ranking.scales)
+    found = fit(data, z, loss, ranking)
+    return _result(scene, measurements, data, found, (names, curved, ranking), cutoff)
+
+
+def _measured(measurements: Measurements, quantities: Sequence[str]) -> Array:
+    """Return the columns of quantities, (n, quantities)."""
+    if lost := [name for name in quantities if name not in measurements.columns]:
+        raise UnknownNameError("column", lost, measurements.columns, place=measurements.name)
+    return np.stack([measurements.columns[name] for name in quantities], axis=1)
+
+
+def _rms(values: Array) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else math.nan
+
+
+def _compared(
+    regressor: Regressor, motion: DrivenMotion, measured: Array, p: Array, z: Array
+) -> Comparison:
+    model = regressor.at(motion, z, p)[0]
+    names = regressor.quantities
+    return Comparison(
+        motion.t,
+        dict(zip(names, measured.T, strict=True)),
+        dict(zip(names, model.T, strict=True)),
+        dict(zip(names, regressor.units, strict=True)),
+    )
+
+
+def _result(
+    scene: Scene,
+    measurements: Measurements,
+    data: Data,
+    found: Fit,
+    unknown: tuple[Sequence[str], Mapping[str, tuple[str, ...]], Ranking],
+    cutoff: float | None,
+) -> Identification:
+    """Return the result of a fit."""
+    names, curved, ranking = unknown
+    regressor, base = data.regressor, found.base
+    units = {name: scene.parameters[name].unit for name in names}
+    combined = np.zeros((len(base.chosen), len(names)))
+    combined[np.arange(len(base.chosen)), base.chosen] = 1.0
+    combined[:, base.dependent] = base.weights
+    covariance = combined @ found.covariance @ combined.T
+    errors = np.sqrt(np.diag(covariance)).tolist()
+    every = zip(
+        base.chosen, base.words(names), (combined @ found.theta).tolist(), errors, strict=True
+    )
+    alone = {
+        k for k, row in zip(found.sure.chosen, found.sure.weights, strict=True) if not row.any()
+    }
+    single = np.sqrt(np.diag(found.covariance)).tolist()
+    quantities = regressor.quantities
+    outliers = {
+        name: float(np.mean(found.weights[found.rows.quantity == k] < 1.0))
+        for k, name in enumerate(quantities)
+        if (found.rows.quantity == k).any()
+    }
+    p = data.parameters(found.theta)
+    return Identification(
+        name=regressor.program.data.name,
+        measurements=measurements.name,
+        values=dict(zip(names, found.theta.tolist(), strict=True)),
+        errors={n: single[k] if k in alone else math.inf for k, n in enumerate(names)},
+        units=units,
+        base=tuple(
+            BaseParameter(names[k], words, units[names[k]], value, error)
+            for k, words, value, error in every
+        ),
+        unexcited=_unexcited(data, found, ranking, names),
+        absent=tuple(names[k] for k in base.absent),
+        nonlinear=curved,
+        condition=base.condition,
+        noise=dict(zip(quantities, found.noise.tolist(), strict=True)),
+        outliers=outliers,
+        cutoffs={drive: measurements.cutoff(drive) for drive in regressor.program.driven},
+        cutoff=cutoff,
+        rounds=found.rounds,
+        comparison=_compared(regressor, data.motion, data.measured, p, found.z),
+        covariance=covariance,
+        regressor=regressor,
+        parameters=regressor.program.data.values(p),
+    )
+
+
+def _unexcited(data: Data, found: Fit, ranking: Ranking, names: Sequence[str]) -> tuple[str, ...]:
+    """Return combinations that other rates and accelerations at the measured places would tell."""
+    generator, motion, scales = np.random.default_rng(0), data.motion, ranking.scales
+    known = np.flatnonzero(np.isfinite(motion.acceleration).all(axis=1))
+    sizes = [
+        np.sqrt(np.mean(part[known] ** 2)) + 1.0 for part in (motion.rate, motion.acceleration)
+    ]
+    rate, acceleration = (size * generator.standard_normal(motion.d.shape) for size in sizes)
+    other = DrivenMotion(motion.t, motion.d, rate, acceleration)
+    slopes = (
+        data.regressor.at(other, found.z, data.parameters(found.theta))[1] / found.noise[:, None]
+    )
+    rows = slopes.reshape(-1, len(names))
+    rows = rows[np.isfinite(rows).all(axis=1)] * scales
+    here = found.rows.columns / found.noise[found.rows.quantity][:, None] * scales
+    size = np.linalg.norm(here, axis=0) + np.linalg.norm(rows, axis=0)
+    size = np.maximum(size, _ROUNDED * size.max())
+    rank = len(found.base.chosen)
+    left = np.linalg.svd(triangle(here / size), full_matrices=True)[2][rank:]
+    rows = triangle(rows / size)
+    more = rows @ left.T @ left
+    if not np.linalg.norm(more) > _ROUNDED * np.linalg.norm(rows):
+        return ()
+    more[:, np.linalg.norm(more, axis=0) <= _ROUNDED * np.linalg.norm(rows)] = 0.0
+    return base_of(more / size / scales, ranking).words(names)

@@ -1,0 +1,287 @@
+"""Measurements of a machine: motion and forces over time, with their noise, from a CSV file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from ..arguments import NotNegative, Positive, public
+from ..base.arrays import Array
+from ..base.csv_rows import headings, read_rows
+from ..base.units import UNITS
+from ..declare.curves import curve
+from ..errors import DeclarationError, UnknownNameError
+from .regressor import DrivenMotion
+
+_SIZES = {word: size for words in UNITS.values() for word, size in words.items()} | {
+    **dict.fromkeys(("", "1", "N", "N m", "Nm", "rad/s", "m/s", "rad/s^2", "m/s^2"), 1.0),
+    "kN": 1e3,
+    "kN m": 1e3,
+    "mN m": 1e-3,
+    "ustrain": 1e-6,
+    "mm/s": 1e-3,
+    "mm/s^2": 1e-3,
+    "deg/s": math.radians(1.0),
+    "deg/s^2": math.radians(1.0),
+}
+_COUNTS = ("count", "counts")
+_EMPTY = ("", "nan", "na", "n/a", "null", "-")
+"""Cells of values that are missing."""
+
+_QUANTUM = 1.0 / math.sqrt(12.0)
+"""Root mean square of what rounding to whole counts leaves."""
+
+_FEWEST = 8
+_DECAY = math.sqrt(math.log(2.0)) / (2.0 * math.pi)
+"""Width of a Gaussian kernel [s] times the frequency [Hz] at which it halves the power."""
+
+_REACH = 4.0
+"""Widths of a kernel beyond which its weight is nothing."""
+
+
+@public
+@dataclass(frozen=True, eq=False)
+class Measurements:
+    """Columns over time.
+
+    Parameters
+    ----------
+    t
+        Increasing times (n,) [s]; they need not be even.
+    columns
+        Values (n,) in SI units, NaN if missing, by name: a driven coordinate, as ``J1``, and if
+        measured its ``J1_rate`` and ``J1_acceleration``; and forces, as ``effort:J1``,
+        ``reaction:A:fx``, ``section:rod:bending@0.5``, ``strain:rod:side +y@0.5``.
+    noise
+        Standard deviation of columns, in SI units, by name. That of a coordinate smooths it; that
+        of a force weighs it. Forces that are not named have theirs estimated.
+    name
+        Name for messages.
+
+    Raises
+    ------
+    DeclarationError
+        For times that do not increase, columns of other lengths, and noise that is negative.
+    """
+
+    t: Array
+    columns: Mapping[str, Array]
+    noise: Mapping[str, NotNegative] = field(default_factory=dict)
+    name: str = "measurements"
+
+    def __post_init__(self) -> None:
+        t = np.asarray(self.t, float)
+        if t.ndim != 1 or t.size < _FEWEST or not (np.diff(t) > 0.0).all():
+            raise DeclarationError(
+                f"{self.name}: expected at least {_FEWEST} times that increase, got"
+                f" {t.size} from {t[0] if t.size else math.nan:g}"
+            )
+        columns = {name: np.asarray(values, float) for name, values in self.columns.items()}
+        for name, values in columns.items():
+            if values.shape != t.shape:
+                raise DeclarationError(
+                    f"{self.name}: column '{name}': expected {t.size} values, one a time, got"
+                    f" {values.size}"
+                )
+        if unknown := [name for name in self.noise if name not in columns]:
+            raise UnknownNameError("column of noise=", unknown, columns, place=self.name)
+        object.__setattr__(self, "t", t)
+        object.__setattr__(self, "columns", columns)
+
+    def quantities(self, drives: Sequence[str]) -> tuple[str, ...]:
+        """Return the names of the forces: the columns that are no motion of the drives."""
+        moving = {f"{drive}{end}" for drive in drives for end in ("", "_rate", "_acceleration")}
+        return tuple(name for name in self.columns if name not in moving)
+
+    def motion(self, drives: Sequence[str], trim: float = 0.0) -> DrivenMotion:
+        """Return coordinates, rates and accelerations of drives.
+
+        What is not measured comes from the smoothing spline of the coordinate, at the distance of
+        its noise from the points. NaN stands for ``trim`` [s] at both ends.
+
+        Raises :class:`.UnknownNameError` for a drive without a column, :class:`.DeclarationError`
+        for too few values of one.
+        """
+        parts = []
+        for drive in drives:
+            if drive not in self.columns:
+                raise UnknownNameError("column of a drive", drive, self.columns, place=self.name)
+            values = self.columns[drive]
+            found = [values, *(self.columns.get(f"{drive}{e}") for e in ("_rate", "_acceleration"))]
+            if any(column is None or np.isnan(column).any() for column in found):
+                spline = self._spline(drive)
+                noisy = self.noise.get(drive, 0.0) > 0.0
+                found = [
+                    spline[k]
+                    if column is None or (k == 0 and noisy)
+                    else _filled(column, spline[k])
+                    for k, column in enumerate(found)
+                ]
+            parts.append([np.asarray(column) for column in found])
+        d, rate, acceleration = (
+            np.stack([part[k] for part in parts], axis=1) if parts else np.zeros((self.t.size, 0))
+            for k in range(3)
+        )
+        outside = (self.t < self.t[0] + trim) | (self.t > self.t[-1] - trim)
+        acceleration[outside] = np.nan
+        return DrivenMotion(self.t, d, rate, acceleration)
+
+    def cutoff(self, drive: str) -> float:
+        """Return the frequency [Hz] at which smoothing a drive's coordinate halves the power;
+        infinity without smoothing.
+
+        The spline solves f + w f'''' = y with the weight w by which the jumps of its third
+        derivative are its distances from the points.
+        """
+        if not self.noise.get(drive, 0.0) > 0.0:
+            return math.inf
+        known = np.isfinite(self.columns[drive])
+        t, (smooth, _, bend) = self.t[known], (part[known] for part in self._spline(drive))
+        jumps = np.diff(np.diff(bend) / np.diff(t))[1:-1]
+        away = (self.columns[drive][known] - smooth)[2:-2]
+        weight = float(jumps @ away / (jumps @ jumps)) * float(np.diff(t).mean())
+        return float(((math.sqrt(2.0) - 1.0) / weight) ** 0.25 / math.tau)
+
+    def _spline(self, drive: str) -> list[Array]:
+        """Return coordinate, rate and acceleration of the smoothing spline of a drive."""
+        values = self.columns[drive]
+        known = np.isfinite(values)
+        if known.sum() < _FEWEST or not (known[0] and known[-1]):
+            raise DeclarationError(
+                f"{self.name}: column '{drive}': expected at least {_FEWEST} values, the first and"
+                f" the last among them, got {int(known.sum())}"
+            )
+        noise = self.noise.get(drive, 0.0)
+        found = curve(self.t[known].tolist(), values[known].tolist(), smoothing=noise)
+        starts, cells = np.array(found.starts), np.array(found.cells)
+        cell = np.clip(np.searchsorted(starts, self.t, side="right") - 1, 0, len(cells) - 1)
+        u, (a, b, c, d) = self.t - starts[cell], cells[cell].T
+        return [
+            a + u * (b + u * (c + u * d)),
+            b + u * (2.0 * c + 3.0 * u * d),
+            2.0 * c + 6.0 * u * d,
+        ]
+
+
+def _filled(column: Array, other: Array) -> Array:
+    """Return a column, in which another stands for what is missing."""
+    return np.where(np.isnan(column), other, column)
+
+
+@public
+def read_measurements(
+    path: str | Path,
+    *,
+    names: Mapping[str, str] | None = None,
+    noise: Mapping[str, NotNegative] | None = None,
+    counts_per_turn: Positive | None = None,
+    time: str = "t",
+) -> Measurements:
+    """Read measurements from a CSV file.
+
+    Parameters
+    ----------
+    path
+        The file. Its first line has the names of the columns and their units, as ``J1 [deg]``,
+        ``effort:J1 [N m]``, ``strain:rod:side +y@0.5 [ustrain]``, ``J1 [counts]``. Empty cells and
+        ``nan`` are missing values.
+    names
+        Heads of the file, by the name that they are to have: ``{"J1": "position 1"}``. Columns
+        that are not named here keep theirs.
+    noise
+        Standard deviations by name, in the units of the file. Of a column in counts it is by
+        default that of rounding to whole counts, 0.29.
+    counts_per_turn
+        Counts of an encoder in one turn.
+    time
+        The head of the times.
+
+    Returns
+    -------
+    Measurements
+        Columns in SI units.
+
+    Raises
+    ------
+    PathError
+        For a file that cannot be read.
+    DeclarationError
+        For a cell that is no number, and times that do not increase.
+    UnknownNameError
+        For unknown units, and names that the file does not have.
+    """
+    rows = read_rows(path, "columns of times, motion and forces")
+    heads = headings(next(rows).cells)
+    plain = {head: k for k, (head, _) in enumerate(heads)}
+    chosen = {**(names or {}), "t": time}
+    if lost := [head for head in chosen.values() if head not in plain]:
+        raise UnknownNameError("column", lost, plain, place=str(path))
+    named = {head: name for name, head in chosen.items()}
+    found: list[list[float]] = []
+    for row in rows:
+        found.append([])
+        for cell in row.cells:
+            value = math.nan if cell.lower() in _EMPTY else row.number(cell)
+            if math.isnan(value) and cell.lower() not in _EMPTY:
+                raise DeclarationError(f"{row.where}: expected a number, got {cell!r}")
+            found[-1].append(value)
+    columns, deviations = {}, {}
+    table = np.array(found, float).reshape(-1, len(heads)).T
+    for (head, unit), values in zip(heads, table, strict=True):
+        name = named.get(head, head)
+        size = _size(str(path), head, unit, counts_per_turn)
+        columns[name] = size * values
+        if name in (noise or {}):
+            deviations[name] = size * dict(noise or {})[name]
+        elif unit in _COUNTS:
+            deviations[name] = size * _QUANTUM
+    if unknown := [name for name in noise or {} if name not in columns]:
+        raise UnknownNameError("column of noise=", unknown, columns, place=str(path))
+    t = columns.pop("t")
+    return Measurements(t, columns, deviations, Path(path).name)
+
+
+def _size(path: str, head: str, unit: str, counts_per_turn: float | None) -> float:
+    """Return the size of a unit of a column in SI units."""
+    if unit in _COUNTS:
+        if counts_per_turn is None:
+            raise DeclarationError(
+                f"{path}: column {head} is in counts; expected counts_per_turn=, a number above 0"
+            )
+        return math.tau / counts_per_turn
+    if unit not in _SIZES:
+        raise UnknownNameError("unit", unit, [*filter(None, _SIZES), "counts"], place=path)
+    return _SIZES[unit]
+
+
+@dataclass(frozen=True, eq=False)
+class Filter:
+    """A low-pass filter without delay: means of neighbours, weighed by a Gaussian of their time.
+
+    At ``cutoff`` [Hz] it halves the power. It is linear, so what holds between columns holds
+    between filtered columns. Times need not be even.
+    """
+
+    t: Array
+    cutoff: float
+
+    def __call__(self, columns: Array, known: npt.NDArray[np.bool_]) -> Array:
+        """Filter columns (n, k), of which only rows that are ``known`` (n,) count."""
+        width = _DECAY / self.cutoff
+        total, weights = np.zeros_like(columns), np.zeros(self.t.size)
+        values = np.where(known[:, None], columns, 0.0)
+        for shift in range(self.t.size):
+            apart = self.t[shift:] - self.t[: self.t.size - shift]
+            if apart.min() > _REACH * width:
+                break
+            weight = np.exp(-0.5 * (apart / width) ** 2)
+            before, after = slice(0, self.t.size - shift), slice(shift, None)
+            for here, there in [(before, after), (after, before)][: 1 + (shift > 0)]:
+                total[here] += weight[:, None] * values[there]
+                weights[here] += weight * known[there]
+        return total / np.where(weights > 0.0, weights, 1.0)[:, None]

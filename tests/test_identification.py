@@ -1,0 +1,486 @@
+"""Parameters from measurements are the true ones, as far as measurements tell them."""
+
+import casadi as ca
+import h5py
+import numpy as np
+import pytest
+
+from lagrange_casadi import (
+    Measurements,
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    evaluate,
+    excite,
+    identify,
+    load_case,
+    read_measurements,
+)
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
+from lagrange_casadi.motion import expression, harmonic
+
+
+def swinging(middle, *amplitudes, rate=4.0):
+    """A law of several sines."""
+
+    def law(t):
+        each = enumerate(amplitudes, 1)
+        return middle + sum(a * ca.sin(k * rate * t + 0.7 * k * k) for k, a in each)
+
+    return expression(law)
+
+
+def record(scene, truth, *quantities, noise=0.0, seed=0):
+    """Motion and forces of a scene with true parameters, with or without noise."""
+    solution = evaluate(scene, parameters=truth, wanted=["all"], certificate=False)
+    columns = {}
+    for drive in scene.laws:
+        for end in ("", "_rate", "_acceleration"):
+            columns[f"{drive}{end}"] = solution.array(f"motion:{drive}{end}")
+    generator, deviations = np.random.default_rng(seed), {}
+    for name in quantities:
+        values = solution.array(name)
+        columns[name] = values + noise * generator.standard_normal(values.size)
+        if noise:
+            deviations[name] = noise
+    return Measurements(solution.t, columns, deviations)
+
+
+def two_links(length=0.5):
+    """A planar arm in moments about its joints, in which forces are linear."""
+    m = Mechanism("arm")
+    links = []
+    for k, (mass, moment, inertia) in enumerate([(3.0, 0.6, 0.3), (2.0, 0.3, 0.1)], 1):
+        mass = m.parameter(f"m{k}", mass, "kg")
+        moment = m.parameter(f"h{k}", moment, "kg m")
+        inertia = m.parameter(f"J{k}", inertia, "kg m^2")
+        centre = (moment / mass, 0.0)
+        about = inertia - moment**2 / mass
+        links.append(m.link(f"l{k}", length=length, mass=mass, centre=centre, inertia=about))
+    first, second = links
+    m.revolute("A", m.ground, first)
+    m.revolute("B", first.tip, second)
+    motion = {"A": swinging(0.3, 0.5, 0.2), "B": swinging(0.8, 0.4, 0.3, rate=5.0)}
+    return Scene(m, motion, t=(0, 3, 301))
+
+
+ARM = {"m1": 2.5, "h1": 0.5, "J1": 0.25, "m2": 1.7, "h2": 0.4, "J2": 0.16}
+
+
+def spatial_arm():
+    """Three links in space, ten parameters each, about their joints."""
+    m = SpatialMechanism("arm3")
+    link, axes, truth, motion = m.ground, [(0, 0, 1), (0, 1, 0), (0, 1, 0)], {}, {}
+    generator = np.random.default_rng(3)
+    for k, axis in enumerate(axes, 1):
+        mass = m.parameter(f"m{k}", 4.0 - k, "kg", low=0.0)
+        h = [m.parameter(f"h{x}{k}", 0.2, "kg m") for x in "xyz"]
+        names = ("xx", "xy", "xz", "yy", "yz", "zz")
+        entries = [m.parameter(f"J{n}{k}", 0.5 * (n[0] == n[1]), "kg m^2") for n in names]
+        xx, xy, xz, yy, yz, zz = entries
+        square = sum(x * x for x in h)
+        about = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+        for i in range(3):
+            for j in range(3):
+                about[i][j] = about[i][j] - ((i == j) * square - h[i] * h[j]) / mass
+        inertia = tuple(map(tuple, about))
+        body = m.link(
+            f"l{k}", length=0.4, mass=mass, centre=tuple(x / mass for x in h), inertia=inertia
+        )
+        m.revolute(f"q{k}", link if k == 1 else link.tip, body, axis=axis)
+        motion[f"q{k}"] = swinging(0.2 * k, 0.5, 0.3, 0.2, rate=3.0 + k)
+        link = body
+        centre = generator.uniform(0.05, 0.2, 3)
+        weight = generator.uniform(1.0, 3.0)
+        spread = generator.uniform(0.01, 0.05, (3, 3))
+        moments = spread @ spread.T + 0.02 * np.eye(3)
+        moments += weight * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+        truth |= {
+            f"m{k}": weight,
+            **{f"h{x}{k}": weight * c for x, c in zip("xyz", centre, strict=True)},
+        }
+        truth |= {f"J{n}{k}": moments["xyz".index(n[0]), "xyz".index(n[1])] for n in names}
+    return Scene(m, motion, t=(0, 4, 401)), truth
+
+
+def rubbing():
+    """A four-bar with a spring, friction by speed, by a torque, and by a pin's load."""
+    m = Mechanism("rubbing")
+    given = {"mass": (2.0, "kg"), "k": (100.0, "N/m"), "preload": (20.0, "N"), "c": (3.0, "N s/m")}
+    given |= {"dry": (0.2, "N m"), "mu": (0.1, "1"), "rotor": (0.02, "kg m^2")}
+    p = {name: m.parameter(name, value, unit) for name, (value, unit) in given.items()}
+    crank = m.link("crank", length=0.1, mass=1.0, centre=(0.05, 0.0), inertia=0.01 + p["rotor"])
+    coupler, rocker = (
+        m.link("coupler", length=0.4, mass=p["mass"]),
+        m.link("rocker", length=0.3, mass=1.0),
+    )
+    o = m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, coupler)
+    m.revolute("B", coupler.tip, rocker.tip)
+    c = m.revolute("C", m.ground.at(0.35, 0), rocker)
+    length = 0.2 - p["preload"] / p["k"]
+    m.spring("s", m.ground.at(0, 0.6), rocker.tip, stiffness=p["k"], length=length, damping=p["c"])
+    m.torque("dry", crank, -p["dry"] * ca.sign(m.rate(o)))
+    m.friction("pin", c, mu=p["mu"], radius=0.02)
+    return Scene(m, {"O": swinging(1.0, 0.6, 0.3)}, t=(0, 2, 402), posture={"coupler": 0.5})
+
+
+RUBBING = {
+    "mass": 2.4,
+    "k": 130.0,
+    "preload": 24.0,
+    "c": 2.0,
+    "dry": 0.35,
+    "mu": 0.17,
+    "rotor": 0.03,
+}
+
+
+LOADING = ("mass", "k", "preload", "c", "mu")
+"""The pin's friction goes with the size of its load, which is not linear in what loads it."""
+
+
+def platform():
+    """Staicu's kind of robot: three legs, six masses, and loops that are iterated."""
+    m = Mechanism("rrr")
+    mass = m.parameter("plate", 1.5, "kg")
+    plate = m.link(
+        "plate", length=0.2, mass=mass, centre=(0.0, 0.0), inertia=m.parameter("J", 0.01, "kg m^2")
+    )
+    posture, motion = {"plate": 0.0}, {}
+    for i in range(3):
+        at = 2 * np.pi * i / 3 + np.pi / 6
+        upper = m.link(f"u{i}", length=0.28, mass=m.parameter(f"mu{i}", 0.8, "kg"))
+        lower = m.link(f"l{i}", length=0.28, mass=m.parameter(f"ml{i}", 0.5, "kg"))
+        m.revolute(f"d{i}", m.ground.at(0.5 * np.cos(at), 0.5 * np.sin(at)), upper)
+        m.revolute(f"k{i}", upper.tip, lower)
+        m.revolute(f"f{i}", lower.tip, plate.at(0.12 * np.cos(at), 0.12 * np.sin(at)))
+        posture[f"u{i}"], posture[f"l{i}"] = at + np.pi - 0.8, at + np.pi + 0.8
+        motion[f"d{i}"] = harmonic(at + np.pi - 0.8, 0.2, 1.0 + 0.3 * i, i)
+    return Scene(m, motion, t=(0, 2, 201), posture=posture)
+
+
+PLATE = {
+    "plate": 1.9,
+    "J": 0.013,
+    "mu0": 0.7,
+    "mu1": 0.9,
+    "mu2": 0.85,
+    "ml0": 0.4,
+    "ml1": 0.55,
+    "ml2": 0.6,
+}
+
+
+def combined(result, truth):
+    """The true values of base parameters, by their words."""
+    found = []
+    for parameter in result.base:
+        total, sign, factor = 0.0, 1.0, 1.0
+        for word in parameter.words.split():
+            if word in truth:
+                total, sign, factor = total + sign * factor * truth[word], 1.0, 1.0
+            elif word in "+-":
+                sign = -1.0 if word == "-" else 1.0
+            else:
+                factor = float(word)
+        found.append(total)
+    return np.array(found)
+
+
+def test_base_parameters_of_a_planar_arm_are_those_of_the_textbook():
+    """J1 + l^2 m2, h1 + l m2, J2 and h2: Khalil and Dombre, Modeling, Identification and Control of
+    Robots, 2002, chapter 9.
+    """
+    scene = two_links()
+    result = identify(scene, record(scene, ARM, "effort:A", "effort:B"))
+    assert [one.words for one in result.base] == ["h1 + 0.5 m2", "J1 + 0.25 m2", "h2", "J2"]
+    values = [one.value for one in result.base]
+    np.testing.assert_allclose(values, combined(result, ARM), rtol=1e-9)
+    assert result.absent == ("m1",)
+    assert not result.nonlinear
+    assert not result.unexcited
+    assert np.isinf([result.errors[name] for name in ("m2", "h1", "J1")]).all()
+    assert max(result.comparison.relative.values()) < 1e-12
+
+
+def test_what_the_motion_does_not_tell_is_said():
+    """With the second joint at rest its links are one; other motions would tell them apart."""
+    scene = two_links()
+    still = Scene(
+        scene.mechanism,
+        dict(scene.motion) | {"B": expression(lambda t: 0.8 + 0.0 * t)},
+        t=(0, 3, 301),
+    )
+    result = identify(still, record(still, ARM, "effort:A"))
+    assert len(result.base) < 4
+    assert len(result.base) + len(result.unexcited) == 4
+    other = identify(scene, record(scene, ARM, "effort:A"))
+    assert not other.unexcited
+
+
+@pytest.mark.parametrize(
+    ("make", "quantities", "curved"),
+    [
+        (spatial_arm, ("effort:q1", "effort:q2", "effort:q3"), ()),
+        (lambda: (rubbing(), RUBBING), ("effort:O", "reaction:C:fx"), LOADING),
+        (lambda: (platform(), PLATE), ("effort:d0", "effort:d1", "effort:d2"), ()),
+    ],
+    ids=["arm in space", "friction and springs", "3-RRR"],
+)
+def test_truth_is_found_without_noise(make, quantities, curved):
+    scene, truth = make()
+    result = identify(scene, record(scene, truth, *quantities))
+    assert tuple(result.nonlinear) == curved
+    values = np.array([one.value for one in result.base])
+    true = combined(result, truth)
+    np.testing.assert_allclose(values, true, rtol=1e-9, atol=1e-9 * np.abs(true).max())
+    assert result.condition < 1e4
+    if make is spatial_arm:
+        # Of a serial arm with a vertical first axis: 10 n less what no joint feels.
+        assert len(result.base) == 15
+    else:
+        assert all(np.isfinite(result.errors[name]) for name in truth)
+
+
+def test_errors_are_as_large_as_stated():
+    """In 100 draws of noise, deviations over the covariance are those of chi-squared."""
+    scene, names = two_links(), ("effort:A", "effort:B")
+    exact = record(scene, ARM, *names)
+    generator, squares, within = np.random.default_rng(1), [], []
+    for _ in range(100):
+        columns = dict(exact.columns)
+        for name in names:
+            columns[name] = columns[name] + 0.3 * generator.standard_normal(exact.t.size)
+        result = identify(scene, Measurements(exact.t, columns))
+        away = np.array([one.value for one in result.base]) - combined(result, ARM)
+        errors = np.array([one.error for one in result.base])
+        within.append(np.abs(away) <= 1.96 * errors)
+        squares.append(away @ np.linalg.solve(result.covariance, away))
+        assert abs(result.noise["effort:A"] / 0.3 - 1.0) < 0.2
+    assert 0.92 <= np.mean(within) <= 0.98
+    assert 3.0 <= np.mean(squares) <= 5.0  # 4 degrees of freedom: 4 +- 0.28
+
+
+def noisy(scene, truth, names, noise, seed=0, **columns):
+    exact = record(scene, truth, *names)
+    generator = np.random.default_rng(seed)
+    found = {
+        name: exact.columns[name] + noise * generator.standard_normal(exact.t.size)
+        for name in names
+    }
+    return Measurements(exact.t, {**exact.columns, **found, **columns})
+
+
+def test_outliers_count_little_in_hubers_loss():
+    scene, names = two_links(), ("effort:A", "effort:B")
+    given = noisy(scene, ARM, names, 0.1)
+    effort = given.columns["effort:A"].copy()
+    effort[::25] += 40.0
+    spoilt = Measurements(given.t, {**given.columns, "effort:A": effort})
+    off = {}
+    for robust in (False, True):
+        result = identify(scene, spoilt, robust=robust)
+        off[robust] = np.abs([one.value for one in result.base] - combined(result, ARM)).max()
+    assert off[True] < 0.1 * off[False]
+    assert result.outliers["effort:A"] > result.outliers["effort:B"]
+
+
+def test_missing_values_a_filter_and_a_second_record_change_no_truth():
+    scene, names = two_links(), ("effort:A", "effort:B")
+    exact = record(scene, ARM, *names)
+    columns = {name: values.copy() for name, values in exact.columns.items()}
+    columns["effort:A"][50:90] = np.nan
+    columns["A_acceleration"][10:12] = np.nan  # from the spline of the coordinate
+    keep = np.sort(np.random.default_rng(0).permutation(exact.t.size)[:200])
+    keep[[0, -1]] = 0, exact.t.size - 1
+    uneven = Measurements(exact.t[keep], {name: values[keep] for name, values in columns.items()})
+    result = identify(scene, uneven, cutoff=10.0)
+    values = [one.value for one in result.base]
+    np.testing.assert_allclose(values, combined(result, ARM), rtol=2e-3)
+    assert max(result.validate(exact).relative.values()) < 2e-3
+    with pytest.raises(UnknownNameError, match="effort:B"):
+        result.validate(Measurements(exact.t, {"A": exact.columns["A"], "B": exact.columns["B"]}))
+
+
+def test_filtered_errors_are_those_of_filtered_noise():
+    """A filter before least squares leaves the stated errors true."""
+    scene, names = two_links(), ("effort:A", "effort:B")
+    squares = []
+    for seed in range(40):
+        result = identify(scene, noisy(scene, ARM, names, 0.3, seed), cutoff=4.0)
+        away = np.array([one.value for one in result.base]) - combined(result, ARM)
+        squares.append(away @ np.linalg.solve(result.covariance, away))
+    assert 2.7 <= np.mean(squares) <= 5.5  # 4 degrees of freedom: 4 +- 0.45
+
+
+def test_prior_values_are_one_more_measurement():
+    scene, names = two_links(), ("effort:A", "effort:B")
+    given = noisy(scene, ARM, names, 0.1)
+    free = identify(scene, given)
+    prior = identify(scene, given, parameters={"m2": 1.75}, prior={"m2": 0.1})
+    assert prior.values["m2"] == pytest.approx(1.75, rel=1e-9)
+    assert prior.errors["m2"] == pytest.approx(0.1, rel=1e-9)
+    first = free.base[0].value - 0.5 * 1.75
+    assert prior.values["h1"] == pytest.approx(first, rel=1e-6)
+    assert np.isfinite(prior.errors["J1"])
+    assert np.isinf(prior.errors["m1"])
+
+
+def test_consistent_parameters_are_those_of_some_body():
+    scene, truth = spatial_arm()
+    names = ("effort:q1", "effort:q2", "effort:q3")
+    given = noisy(scene, truth, names, 3.0)
+
+    def least(result):
+        found = []
+        for k in (2, 3):
+            v = result.values
+            h = np.array([v[f"h{x}{k}"] for x in "xyz"])
+            j = np.array([[v[f"J{min(a, b)}{max(a, b)}{k}"] for a in "xyz"] for b in "xyz"])
+            moments = np.trace(j) / 2 * np.eye(3) - j
+            whole = np.block([[moments, h[:, None]], [h[None], np.array([[v[f"m{k}"]]])]])
+            found.append(np.linalg.eigvalsh(whole).min())
+        return min(found)
+
+    assert least(identify(scene, given)) < 0.0
+    result = identify(scene, given, consistent=True)
+    assert least(result) > 0.0
+    assert max(result.comparison.relative.values()) < 1.0
+    exact = identify(scene, record(scene, truth, *names), consistent=True, parameters=truth)
+    np.testing.assert_allclose(
+        list(exact.values.values()), [truth[n] for n in exact.values], atol=1e-6
+    )
+
+
+def test_strain_gauges_tell_a_spring():
+    """A gauge on a cantilevered rocker: strain = axial / EA - bending c / EI."""
+    from lagrange_casadi import beams
+
+    m = Mechanism("gauge")
+    steel = beams.Material("steel", density=7850.0, elasticity=210e9)
+    k, rest = m.parameter("k", 100.0, "N/m"), m.parameter("preload", 5.0, "N")
+    arm = m.link("arm", length=0.4, beam=beams.Beam(beams.rectangle(0.02, 0.01), steel))
+    m.revolute("O", m.ground, arm)
+    m.spring("s", m.ground.at(0, 0.7), arm.tip, stiffness=k, length=0.3 - rest / k)
+    scene = Scene(m, {"O": swinging(0.4, 0.5, 0.2)}, t=(0, 2, 101), xi=(0, 1, 5))
+    truth = {"k": 140.0, "preload": 8.0}
+    solution = evaluate(scene, parameters=truth, wanted=["all"])
+    axial, bending = (solution.array(f"section:arm:{f}")[:, 1] for f in ("axial", "bending"))
+    area, second = 0.02 * 0.01, 0.01 * 0.02**3 / 12
+    strain = (axial / area - bending * 0.01 / second) / 210e9
+    columns = {f"O{e}": solution.array(f"motion:O{e}") for e in ("", "_rate", "_acceleration")}
+    given = Measurements(solution.t, {**columns, "strain:arm:side +y@0.25": strain})
+    result = identify(scene, given)
+    np.testing.assert_allclose([result.values[n] for n in truth], [*truth.values()], rtol=1e-9)
+    given = Measurements(solution.t, {**columns, "section:arm:bending@0.25": bending})
+    result = identify(scene, given, ["k"], parameters={"preload": 8.0})
+    assert result.values["k"] == pytest.approx(140.0, rel=1e-9)
+
+
+def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
+    path = tmp_path / "run.csv"
+    t = np.arange(200) * 5.0 + np.random.default_rng(0).uniform(0, 2, 200)  # ms
+    angle = 30.0 * np.sin(2 * np.pi * t / 1000.0)  # deg
+    counts = np.round(angle / 360.0 * 4096)
+    lines = ["t [ms],A [deg],B [counts],torque [mN m]"]
+    for k, (at, a, n) in enumerate(zip(t, angle, counts, strict=True)):
+        lines.append(f"{at:.6f},{a:.9f},{n:.0f},{'' if k == 7 else 1000 + k}")
+    path.write_text("\n".join(lines) + "\n")
+    given = read_measurements(
+        path, names={"effort:A": "torque"}, noise={"A": 0.01}, counts_per_turn=4096
+    )
+    assert np.isnan(given.columns["effort:A"][7])
+    assert given.columns["effort:A"][8] == pytest.approx(1.008)
+    assert given.noise == pytest.approx({"A": np.radians(0.01), "B": 2 * np.pi / 4096 / 12**0.5})
+    motion = given.motion(["A", "B"], trim=0.05)
+    inner = np.isfinite(motion.acceleration[:, 0])
+    true = -np.radians(30.0) * (2 * np.pi) ** 2 * np.sin(2 * np.pi * given.t)
+    off = np.abs(motion.acceleration[inner] - true[inner, None]).max(axis=0) / true.max()
+    assert off[0] < 0.1
+    assert off[1] < 0.3
+    assert 5.0 < given.cutoff("A") < 100.0
+    assert given.quantities(["A", "B"]) == ("effort:A",)
+    path.write_text("\n".join([lines[0], "0,1,x,3"]))
+    with pytest.raises(DeclarationError, match=r"line 2: expected a number, got 'x'"):
+        read_measurements(path, counts_per_turn=4096)
+
+
+def test_an_excitation_keeps_within_limits_and_tells_more():
+    scene = two_links()
+    limits = {"A": (-1.0, 1.0, 2.0, 9.0), "B": (0.0, 1.5, 3.0, 20.0)}
+    found = excite(scene, limits, period=4.0, steps=60)
+    assert found.condition < found.first
+    assert len(found.base) == 4
+    swept = Scene(scene.mechanism, found.motion, wanted=["motion"], t=(0, 4, 4001))
+    solution = evaluate(swept)
+    for drive, (low, high, speed, most) in limits.items():
+        angle, rate, acceleration = (
+            solution.array(f"motion:{drive}{end}") for end in ("", "_rate", "_acceleration")
+        )
+        shares = np.ptp(angle) / (high - low), np.abs(rate).max() / speed
+        shares = (*shares, np.abs(acceleration).max() / most)
+        assert low <= angle.min() < angle.max() <= high
+        assert 0.99 < max(shares) <= 1.0
+
+
+def test_what_cannot_be_is_refused_by_name():
+    scene = two_links()
+    given = record(scene, ARM, "effort:A", "effort:B")
+    with pytest.raises(UnknownNameError, match="unknown parameter 'mass'"):
+        identify(scene, given, ["mass"])
+    with pytest.raises(UnknownNameError, match="unknown measured quantity 'effort:C'"):
+        identify(scene, Measurements(given.t, {**given.columns, "effort:C": given.t}))
+    with pytest.raises(DeclarationError, match="nothing that is measured depends"):
+        identify(scene, given, ["m1"])
+    with pytest.raises(UnknownNameError, match="column of a drive 'B'"):
+        identify(scene, Measurements(given.t, {"A": given.columns["A"], "effort:A": given.t}))
+    far = dict(record(platform(), PLATE, "effort:d0").columns)
+    far["d0"] = far["d0"] + np.linspace(0.0, 3.0, far["d0"].size)
+    with pytest.raises(AssemblyError, match="cannot be closed at row"):
+        identify(platform(), Measurements(np.linspace(0, 2, 201), far))
+
+
+def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "arm_case.py"
+    path.write_text(
+        "from math import sin\n"
+        "from lagrange_casadi import Mechanism, Scene\n"
+        "from lagrange_casadi.motion import harmonic\n"
+        "def scene():\n"
+        "    m = Mechanism('arm')\n"
+        "    w, c = m.parameter('w', 1.0, 'kg'), m.parameter('c', 0.1, 'N m s')\n"
+        "    j = m.revolute('O', m.ground, m.link('l', length=0.5, mass=w))\n"
+        "    m.torsion_spring('d', j, stiffness=0.0, damping=c)\n"
+        "    return Scene(m, {'O': harmonic(0.0, 1.0, 0.5)}, t=(0, 4, 201))\n"
+    )
+    solution = evaluate(load_case(path).scene, parameters={"w": 1.4, "c": 0.25})
+    noise = np.random.default_rng(0).normal(0.0, 0.02, solution.t.size)
+    heads = ["t [s]", "angle [deg]", "O_rate [deg/s]", "O_acceleration [rad/s^2]", "torque [N m]"]
+    columns = [np.degrees(solution.array(f"motion:O{end}")) for end in ("", "_rate")]
+    columns += [solution.array("motion:O_acceleration"), solution.array("effort:O") + noise]
+    rows = zip(solution.t, *columns, strict=True)
+    lines = [",".join(heads), *(",".join(f"{x:.12g}" for x in row) for row in rows)]
+    (tmp_path / "run.csv").write_text("\n".join(lines))
+    given = ["--column", "O=angle", "--column", "effort:O=torque", "--noise", "effort:O=0.02"]
+    given += ["--validate", "run.csv", "--figure", "fit.svg", "--out", "found.h5"]
+    assert main(["identify", str(path), "run.csv", *given]) == 0
+    said = capsys.readouterr().out
+    settings = dict(word.split("=") for word in said.split() if word[:2] in ("w=", "c="))
+    with h5py.File("found.h5") as file:
+        for name, true in (("w", 1.4), ("c", 0.25)):
+            item = file["parameters"][name]
+            assert float(settings[name]) == item[()]
+            assert abs(item[()] - true) < 4.0 * item.attrs["error"] < 0.02
+        assert file.attrs["complete"]
+        assert sorted(file["base"].attrs["words"]) == ["c", "w"]
+        both = file["record/effort:O"]
+        left = both["measured"][()] - both["model"][()]
+        assert np.sqrt(np.mean(left**2)) == pytest.approx(0.02, rel=0.2)
+        assert file["validation/effort:O"].attrs["relative"] == both.attrs["relative"]
+    assert (tmp_path / "fit.svg").read_text().startswith("<?xml")
+    before = (tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes()
+    assert main(["identify", str(path), "run.csv", *given]) == 0
+    assert before == ((tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes())
