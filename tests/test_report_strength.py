@@ -125,7 +125,7 @@ def undrawn(monkeypatch):
         monkeypatch.setattr(
             importlib.import_module(f"lagrange_casadi.cli.{command}"),
             "draw_with_progress",
-            lambda *_: None,
+            lambda *_, **__: None,
         )
 
 
