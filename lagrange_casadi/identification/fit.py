@@ -247,7 +247,7 @@ def fit(data: Data, z: Array, loss: Loss, ranking: Ranking) -> Fit:
     weights = _weights(rows.raw / noise[rows.quantity], robust=loss.robust)
     prior = np.diag(1.0 / loss.spread)[np.isfinite(loss.spread)]
     sure = base_of(np.vstack([triangle(scaled), prior]), ranking)
-    covariance = _covariance(data, rows, noise, prior, loss)
+    covariance = _covariance(data, rows, noise, (prior, sure.absent), loss)
     return Fit(theta, z, base, sure, covariance, noise, weights, rows, count)
 
 
@@ -325,13 +325,16 @@ def _taken(
     )
 
 
-def _covariance(data: Data, rows: Rows, noise: Array, prior: Array, loss: Loss) -> Array:
+def _covariance(
+    data: Data, rows: Rows, noise: Array, beside: tuple[Array, tuple[int, ...]], loss: Loss
+) -> Array:
     """Return the covariance of the parameters, as far as they are determined.
 
     Filtered noise is not independent: its covariance goes with the filter applied once more.
     """
-    by_noise = 1.0 / noise[rows.quantity][:, None]
+    (prior, absent), by_noise = beside, 1.0 / noise[rows.quantity][:, None]
     whole = np.vstack([triangle(rows.columns * by_noise), prior])
+    whole[:, list(absent)] = 0.0  # else their rounding counts
     scale = np.linalg.norm(whole, axis=0)
     scale[scale == 0.0] = 1.0
     inner = np.linalg.pinv(triangle(whole / scale), rcond=_DETERMINED) / scale[:, None]
