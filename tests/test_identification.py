@@ -484,3 +484,8 @@ def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, ca
     before = (tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes()
     assert main(["identify", str(path), "run.csv", *given]) == 0
     assert before == ((tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes())
+    assert main(["check", "found.h5"]) == 0
+    damaged = bytearray(before[0])
+    damaged[len(damaged) // 2] ^= 1
+    (tmp_path / "found.h5").write_bytes(bytes(damaged))
+    assert main(["check", "found.h5"]) == 1

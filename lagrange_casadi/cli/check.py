@@ -12,11 +12,13 @@ from pathlib import Path
 
 import click
 
+from ..base.seal import kind_of
 from ..base.space import memory
 from ..base.vocabulary import TIME_LIMIT
 from ..codegen import programs
 from ..errors import LagrangeCasadiError, PathError, StoreError, one_line
 from ..store import runs as store
+from ..store.opening import IDENTIFICATION, check_identification
 from ..store.untrusted import parsed
 from ..studies.optimise.file import check_optimum, is_optimum
 from ..studies.sweep import is_sweep
@@ -67,6 +69,8 @@ def _findings(file: Path) -> list[str]:
         return [progress(folder), *folder.flaws()]
     if is_optimum(file):
         return check_optimum(file)
+    if kind_of(file) == IDENTIFICATION:
+        return check_identification(file)
     return check_sweep(file) if is_sweep(file) else store.check(file)
 
 

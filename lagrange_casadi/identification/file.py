@@ -14,9 +14,8 @@ from ..base.publish import PatientFile, replacing, writing
 from ..base.seal import seal
 from ..errors import DeclarationError
 from ..shapes.pictures import PICTURES, one_at_a_time, save
+from ..store.opening import IDENTIFICATION, IDENTIFICATION_VERSION
 from .identification import Comparison, Identification
-
-SCHEMA, VERSION = "lagrange-casadi-identification", 1
 
 
 @public
@@ -41,8 +40,15 @@ def save_identification(
     """
     with replacing(Path(path), hdf5=True) as draft:
         with PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
-            file.attrs.update({"schema": SCHEMA, "schema_version": VERSION, "case": found.name})
-            file.attrs.update({"measurements": found.measurements, "condition": found.condition})
+            file.attrs.update(
+                {
+                    "schema": IDENTIFICATION,
+                    "schema_version": IDENTIFICATION_VERSION,
+                    "case": found.name,
+                    "measurements": found.measurements,
+                    "condition": found.condition,
+                }
+            )
             file.attrs.update({"rounds": found.rounds, "cutoff": found.cutoff or math.inf})
             file.attrs.update({"unexcited": list(found.unexcited), "absent": list(found.absent)})
             group = file.create_group("parameters", track_order=True)
@@ -66,7 +72,7 @@ def save_identification(
             if validation is not None:
                 _write(file.create_group("validation", track_order=True), validation)
             file.attrs["complete"] = True
-        seal(draft, SCHEMA)
+        seal(draft, IDENTIFICATION)
 
 
 def _write(group: h5py.Group, compared: Comparison) -> None:

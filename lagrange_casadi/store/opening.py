@@ -13,13 +13,15 @@ import numpy as np
 
 from ..base.seal import VerifiedFile, kind_of, verify
 from ..errors import StoreError
-from .untrusted import reported_as
+from .untrusted import check_links, reported_as, shown
 
 SCHEMA = "lagrange-casadi"
+IDENTIFICATION, IDENTIFICATION_VERSION = f"{SCHEMA}-identification", 1
 _KNOWN = {
     SCHEMA: "that of a run, which `load` reads",
     f"{SCHEMA}-sweep": "that of a sweep, which `Sweep.open` reads",
     f"{SCHEMA}-optimum": "that of a search for designs, which the command check reads",
+    IDENTIFICATION: "that of an identification, which the command check reads",
 }
 
 
@@ -63,6 +65,38 @@ def opened_file(
             if not file.attrs.get("complete", False):
                 raise StoreError(f"{path}: was not written to its end")
             yield file
+
+
+def read_all(file: h5py.File) -> None:
+    """Read all of a file.
+
+    Raises what HDF5 does for one that is damaged, :class:`StoreError` for links that lead out of
+    it, and ``ValueError`` for a text that cannot be shown.
+    """
+    check_links(file)
+    _read("/", file)
+    file.visititems(_read)
+
+
+def _read(_place: str, item: h5py.Group | h5py.Dataset) -> None:
+    """Read all of a part."""
+    for value in item.attrs.values():
+        for text in np.ravel(value):
+            if not isinstance(text, np.generic) or isinstance(text, np.character):
+                shown(str(text))
+    if isinstance(item, h5py.Dataset):
+        item[()]
+
+
+def check_identification(path: str | os.PathLike[str]) -> list[str]:
+    """Faults of the file of an identification, one line each; none if it is whole.
+
+    Raises :class:`StoreError` for what is not a whole file of one, :class:`PathError` for none.
+    """
+    versions = range(1, IDENTIFICATION_VERSION + 1)
+    with opened_file(path, IDENTIFICATION, versions, "the file of an identification") as file:
+        read_all(file)
+    return []
 
 
 def _refuse_other(path: str | os.PathLike[str], found: str, schema: str, kind: str) -> None:

@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from ...base.publish import PatientFile, replacing
 from ...base.seal import kind_of, seal
-from ...store.opening import opened_file
-from ...store.untrusted import check_dataset, check_links, shown
+from ...store.opening import opened_file, read_all
+from ...store.untrusted import check_dataset, shown
 from .front import Front
 from .optimum import Optimum
 from .search_run import CONVERGED
@@ -55,9 +55,7 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
     """
     found: list[str] = []
     with opened_file(path, SCHEMA, range(VERSION, VERSION + 1), "the file of a search") as file:
-        check_links(file)
-        _read("/", file)
-        file.visititems(_read)
+        read_all(file)
         for group in file["points"].values() if "points" in file else [file]:
             found += _contradictions(group)
         if file.attrs["stopped"]:
@@ -67,20 +65,6 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
         if not file.attrs["converged"]:
             found.append("it is not known to be an optimum")
     return found
-
-
-def _read(_place: str, item: h5py.Group | h5py.Dataset) -> None:
-    """Read all of a part.
-
-    Raises what HDF5 does for one that is damaged, and ``ValueError`` for a text that cannot be
-    shown.
-    """
-    for value in item.attrs.values():
-        for text in np.ravel(value):
-            if not isinstance(text, np.generic) or isinstance(text, np.character):
-                shown(str(text))
-    if isinstance(item, h5py.Dataset):
-        item[()]
 
 
 def _contradictions(group: h5py.Group) -> Iterator[str]:
