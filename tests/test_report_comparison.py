@@ -197,6 +197,56 @@ def test_two_pictures_have_one_scale_and_one_clock(page, tmp_path):
     assert page.complaints == []
 
 
+PRINTED = """
+(() => {
+  let bars = {};
+  const { fillText, clearRect } = CanvasRenderingContext2D.prototype;
+  Object.assign(CanvasRenderingContext2D.prototype, {
+    clearRect(...box) {
+      bars = {};
+      clearRect.apply(this, box);
+    },
+    fillText(text, x, y) {
+      if (/(mm| · .*)$/.test(text)) bars[text] = x;
+      fillText.call(this, text, x, y);
+    },
+  });
+  window.addEventListener("beforeprint", () => {
+    window.printed = [document.querySelector(".readout").textContent, bars];
+  });
+})()
+"""
+
+
+@alive.NEEDS_BROWSER
+@pytest.mark.parametrize("rests", [False, True])
+def test_two_pictures_on_paper_have_one_scale_and_one_time(page, tmp_path, rests):
+    """Printed from a window so narrow that only the upper one is seen: while they move, and at an
+    instant that was chosen.
+    """
+    first, second = designs()
+    first.report(tmp_path / "both.html", beside=second)
+    page.size(400, 600)
+    page.open(tmp_path / "both.html")
+    at = "document.querySelector('.readout').textContent"
+    until = time.monotonic() + 10
+    while page.run_within(at, "run 2").startswith("t = 0") and time.monotonic() < until:
+        time.sleep(0.05)
+    if rests:
+        pause = "document.querySelector('.play[aria-label=Pause]').click();"
+        chosen = page.run_within(f"{pause} {at}", "run 1")
+        while page.run_within(at, "run 2") != chosen and time.monotonic() < until:
+            time.sleep(0.05)
+    for run in ("run 1", "run 2"):
+        page.run_within(PRINTED, run)
+    page.printed(tmp_path / "both.pdf")
+    (time_, bars), other = (page.run_within("window.printed", run) for run in ("run 1", "run 2"))
+    assert other == [time_, bars]
+    assert len(bars) == 3
+    assert time_ == (chosen if rests else "t = 0\u00a0ms")
+    assert page.complaints == []
+
+
 SAVED = """
 (async () => {
   const got = [];

@@ -29,17 +29,28 @@ function buildPage() {
   if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches && window.name !== "run 2") player.play();
 }
 
+/** Where the picture is now, by the clock of both runs. */
+const placeNow = () => [player.time, over && array(over.values)[player.instant]];
+
+/** Go to a place of the clock of both runs. */
+function goTo([time, value]) {
+  if (clock.name === "over") player.seek(nearest(array(over.values), value));
+  else player.seek(instantAt(time), time);
+}
+
 /** Show the instant of the clock of both runs: tell the other what it is, and go where it says. */
 function goTogether() {
   let following = false;
   player.watchers.add(() => {
-    if (!following) post("follow", [player.time, over && array(over.values)[player.instant]]);
+    if (following) return;
+    motion.began = player.playing ? motion.began ?? placeNow() : null;
+    post("follow", [placeNow(), motion.began]);
   });
-  acts.follow = (time, value) => {
+  acts.follow = (place, began) => {
     following = true;
+    motion.began = began;
     player.pause();
-    if (clock.name === "over") player.seek(nearest(array(over.values), value));
-    else player.seek(instantAt(time), time);
+    goTo(place);
     following = false;
   };
   acts.pause = () => player.pause();
@@ -234,7 +245,9 @@ function listenToPrinter(stage) {
   let before;
   window.addEventListener("beforeprint", () => {
     before = { theme: document.documentElement.dataset.theme, playing: player.playing };
+    const { began } = motion;
     player.pause();
+    if (began) goTo(began);
     document.documentElement.dataset.theme = "light";
     stage.paper.readInks();
     // Two pictures side by side are each half as wide, with letters of the same size.

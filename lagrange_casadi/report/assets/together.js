@@ -6,6 +6,9 @@ const together = window.parent !== window && /^run [12]$/.test(window.name);
 /** The clock of both runs: "t" or "over", and its first and last time [s]; null on a page of one run. */
 const clock = (together && contents.clock) || null;
 
+/** Where the clock was when the motion that goes on began, in either picture; null at rest. Both know it, whatever is still on its way between them. */
+const motion = { began: null };
+
 const acts = {};
 
 function post(act, given) {
