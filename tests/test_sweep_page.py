@@ -4,6 +4,7 @@ the command line.
 
 import csv
 import io
+import json
 import re
 import shutil
 import time
@@ -13,6 +14,7 @@ import alive
 import browser
 import numpy as np
 import pytest
+from forging import edit
 from internals import Sweep, best, chosen
 from reports import CASES, held
 
@@ -184,6 +186,28 @@ def test_without_a_case_the_page_says_what_it_lacks(file, tmp_path, capsys, monk
     assert main(["report", "slider_crank", "--case", "four_bar"]) == 2
     assert "--case goes with a sweep's file" in capsys.readouterr().err
     assert main(["report", str(file), "--live"]) == 2
+
+
+@pytest.mark.parametrize("lacking", ["loads", "frictions"])
+def test_a_file_that_lacks_an_output_group_is_refused_in_a_line(
+    file, lacking, tmp_path, capsys, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    path = Path(shutil.copy(file, tmp_path / "forged.h5"))
+
+    def forget(content):
+        wanted = json.loads(content.attrs["wanted"])
+        del wanted[lacking]
+        content.attrs["wanted"] = json.dumps(wanted)
+
+    edit(path, forget)
+    case = str(CASES / "slider_crank")
+    assert main(["report", path.name, "--case", case]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    place = f"the outputs of the sweep: wanted.{lacking}"
+    assert err == f"error: forged.h5: {place} is not of the expected kind\n"
+    assert not path.with_suffix(".html").exists()
 
 
 def test_a_notebook_shows_what_was_swept(file):

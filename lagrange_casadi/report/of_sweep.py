@@ -6,6 +6,7 @@ The mechanism is a live page within the page: it evaluates whatever design it is
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 import os
@@ -24,6 +25,7 @@ from ..equations.derive import compile_scene
 from ..equations.fingerprint import fingerprint, sources
 from ..equations.model_data import template
 from ..errors import DeclarationError, shown
+from ..store.untrusted import check_shape, reported_as
 from ..studies.evaluate import evaluate
 from ..studies.sweep.axes import DESIGN
 from ..studies.sweep.best import best
@@ -40,6 +42,16 @@ MOST = 300_000
 
 _LEAST = 500
 """Designs that it shows at least, where there are so many."""
+
+_FLAGS = ("effort", "motion")
+_GROUPS = {
+    "reactions": "reaction",
+    "multipliers": "multiplier",
+    "loads": "load",
+    "sections": "section",
+    "own": "output",
+}
+"""Groups of outputs that were wanted, with how the name of one begins."""
 
 _NO_SCENE = "For the mechanism in motion, make the page with the case that was swept."
 
@@ -69,11 +81,7 @@ def is_of(sweep: Sweep, scene: Scene) -> bool:
         or json.loads(json.dumps(template(scene).filled(values))) != swept
     ):
         return False
-    content: dict[str, Any] = {}
-    for name, value in sweep.identity["wanted"].items():
-        if name != SENSITIVITY:  # of which the graph knows nothing
-            content[name] = tuple(value) if isinstance(value, list) else value
-    known = fingerprint(scene, Wanted(**content))
+    known = fingerprint(scene, _wanted(sweep))
     return (
         known is None or sweep.identity["sources"] != sources() or known == sweep.identity["scene"]
     )
@@ -172,7 +180,7 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
     if first is None:
         raise DeclarationError(f"{sweep.path}: no design has a result: there is nothing to show")
     asked, design = sweep.identity["t"], sweep.design(first)
-    wanted = with_motion(_names(sweep.identity["wanted"]))
+    wanted = with_motion(_names(_wanted(sweep)))
     timing, data = scene.timing(), compile_scene(scene, wanted, parameters=design).data
     if json.loads(json.dumps(timing.words(data.symbols))) != asked:
         if any(isinstance(bound, str) for bound in (*asked[:2], *asked[4:])):
@@ -197,14 +205,24 @@ def _bounds(asked: Sequence[float]) -> tuple[float, ...]:
     return tuple(asked[:3])
 
 
-def _names(content: dict[str, Any]) -> list[str]:
+def _wanted(sweep: Sweep) -> Wanted:
+    """The outputs that were wanted. Raises :class:`.StoreError` where the file does not say."""
+    content: dict[str, Any] = sweep.identity["wanted"]
+    needed = [one.name for one in dataclasses.fields(Wanted) if one.default is dataclasses.MISSING]
+    kinds = {name: bool if name in _FLAGS else [str] for name in (*needed, *content)}
+    with reported_as("the outputs of the sweep", sweep.path):
+        check_shape(content, kinds, "wanted")
+        found: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value
+            for name, value in content.items()
+            if name != SENSITIVITY  # of which the graph knows nothing
+        }
+        return Wanted(**found)
+
+
+def _names(wanted: Wanted) -> list[str]:
     """The names of outputs that were wanted."""
-    kinds = {
-        "reactions": "reaction",
-        "multipliers": "multiplier",
-        "loads": "load",
-        "sections": "section",
-        "own": "output",
-    }
-    found = [name for name in ("effort", "motion") if content[name]]
-    return found + [f"{kind}:{part}" for group, kind in kinds.items() for part in content[group]]
+    found = [name for name in _FLAGS if getattr(wanted, name)]
+    return found + [
+        f"{kind}:{part}" for group, kind in _GROUPS.items() for part in getattr(wanted, group)
+    ]
