@@ -81,7 +81,10 @@ def test_every_table_says_where_it_is_from_and_fits_a_shape():
     for name, path in tables.items():
         text = path.read_text()
         assert text.startswith("# ")
-        assert " EN 10" in text.partition("\nname,")[0]
+        head = text.partition("\nname,")[0].replace("\n# ", " ")
+        assert " EN 10" in head
+        assert " computed " in head
+        assert "not compared with the printed standard" in head
         for profile in beams.read_profiles(name):
             shape = profile.shape(kinds.get(name, "i_section"))
             assert all(float(demand) > 0 for demand, _ in shape.parameter_constraints()), (

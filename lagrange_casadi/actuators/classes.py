@@ -4,7 +4,8 @@ product of a maker.
 The torque at rest is that of a shear stress sigma on the surface of a rotor of diameter D and
 length l = lambda D, T = sigma pi lambda D^3 / 2 (Miller, *Brushless Permanent-Magnet and Reluctance
 Motor Drives*, chapter 12, gives the stresses of machines). The rotor is a steel cylinder, so that
-J = pi rho lambda D^5 / 32.
+J = pi rho lambda D^5 / 32. The rated powers are those of a standard, not compared with the printed
+one; ratios, stresses and speeds are this project's own, one for each class.
 """
 
 from __future__ import annotations

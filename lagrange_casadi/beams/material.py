@@ -1,4 +1,6 @@
-"""Materials by their numbers, and a small table of some with its sources."""
+"""Materials by their numbers, and a small table of some with its sources, which was not compared
+with the printed standards.
+"""
 
 from __future__ import annotations
 

@@ -4,6 +4,7 @@ ISO 76 from an inner geometry that a rule gives.
 The rule: balls of 0.3 (D - d), on a circle in the middle between bore and outer diameter, as many
 as fit in with 195 degrees between the first and the last one (a Conrad bearing); grooves of 0.52
 ball diameters. A maker's ratings are some per cent higher or lower: take his, where there are.
+The dimensions, and the factors f0, were not compared with the printed standards.
 """
 
 from __future__ import annotations
