@@ -138,6 +138,14 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         "flywheel": {"scene": scene, "start": (0.0, 30.0), "count": 5, "wanted": ["effort"]},
     }.items():
         yield name, (getattr(root, name), given)
+    found = root.identify(scene, record, backend="vm")
+    yield "Identification.validate", (found.validate, {"measurements": record})
+    for name, given in {
+        "quantities": {"drives": ["O"]},
+        "motion": {"drives": ["O"]},
+        "cutoff": {"drive": "O"},
+    }.items():
+        yield f"Measurements.{name}", (getattr(record, name), given)
     for name, given in {
         "forces": {"solution": solution},
         "refine_safety": {**both, "link": "arm"},

@@ -262,7 +262,7 @@ Bearings Belt Bent Bushes Cam CamProfile Cylinder CylindricalCam Gears Planetary
 Choice InertiaRatio Animation Fibre Properties Course Density Slices Dwell Motion Move Column Life
 Plane Safety Stress StressPeak StressCycle Verdict Constraint Front FrontPoint Limit LocalOptimum
 Optimum Start LoadCase BearingLoads Term Axis Design Sweep Case Curve Peak Prepared Sensitivities
-Solution Keep Duty Spec Cycle Event Flywheel FreeMotion Law
+Solution Keep Duty Spec Cycle Event Flywheel FreeMotion Law Identification
 """.split()
 """Classes that users are given, and make none of."""
 

@@ -547,7 +547,7 @@ def test_a_certificate_says_no_more_than_was_checked(page):
     assert page(press()).run(told) == ["✓ certified", "Checked independently, and right"]
     badge, verdict = page(press(wanted=("motion", "effort"))).run(told)
     assert badge == "✓ motion certified"
-    assert verdict.endswith("its forces could not be, for want of outputs")
+    assert verdict.endswith("the forces are not checked, because outputs are missing")
     wrong = replace(press(), certificate={**press().certificate, "balance": np.full(9, 0.5)})
     badge, verdict = page(wrong).run(told)
     assert badge == "✗ the certificate fails"

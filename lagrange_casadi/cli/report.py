@@ -95,7 +95,7 @@ class Rows:
                 best[kind] = row
         order = list(dict.fromkeys(_CARDS.values()))
         kinds = [kind for kind in best if not self._nothing(best[kind])]
-        width = max(28, *(len(str(best[kind].output)) for kind in kinds))
+        width = max([28, *(len(str(best[kind].output)) for kind in kinds)])
         for words, unit in sorted(kinds, key=lambda kind: order.index(kind[0])):
             if peak := best[words, unit].peak:
                 yield card(words, peak_line(self.solution, peak, self._scales[unit], width))
