@@ -265,7 +265,8 @@ def along(curve: Curve) -> Density:
         )
     if curve.periodic or (curve.low, curve.high) != (0.0, 1.0):
         raise DeclarationError(
-            f"density along: the curve must reach from 0 to 1, and not go round, got {curve!r}"
+            "density along: the curve must reach from 0 to 1, and must not be periodic, got"
+            f" {curve!r}"
         )
     cells = []
     for start, cell in zip(curve.starts, curve.cells, strict=True):

@@ -133,8 +133,8 @@ def one_drive(scene: Scene) -> str:
         )
     if scene.weights is not None and tuple(scene.weights) != driven:
         raise DeclarationError(
-            f"a free machine is driven where its motion is, at '{driven[0]}', but drives= names"
-            f" {', '.join(scene.weights)}"
+            f"a free machine is driven at the joint whose motion is given, '{driven[0]}', but"
+            f" drives= names {', '.join(scene.weights)}"
         )
     if driven[0] not in scene.mechanism.coordinates:
         raise DeclarationError(f"a free machine: '{driven[0]}' is a guided point, not a joint")

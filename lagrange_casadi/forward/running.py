@@ -199,8 +199,8 @@ def _turning(machine: Machine, start: Sequence[float] | None) -> Start:
         )
     if equation.timed:
         raise DeclarationError(
-            f"a steady cycle of '{machine.name}': a law or load depends on the time; expected"
-            " laws of coordinates and rates"
+            f"machine '{machine.name}' has no steady cycle, because a law or load depends on the"
+            " time; expected laws of coordinates and rates"
         )
     begin = begun_at(machine, start, equation.program.data.span[0])
     if begin.speed == 0.0:

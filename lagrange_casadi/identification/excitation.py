@@ -168,8 +168,8 @@ class _Search:
         (rank, first), best = min(((self._cost(x), k) for k, x in enumerate(drawn)), key=_first)
         if not math.isfinite(first):
             raise AssemblyError(
-                f"{self.regressor.program.data.name}: it cannot follow any of {_DRAWN} motions"
-                " within the limits; expected narrower limits"
+                f"mechanism '{self.regressor.program.data.name}' cannot follow any of {_DRAWN}"
+                " random motions within the limits; expected narrower limits"
             )
         x, cost, width = drawn[best], (rank, first), 0.5
         for _ in range(steps):
@@ -228,7 +228,7 @@ class _Search:
         slopes = self.regressor.at(motion, z, self.p)[1].reshape(-1, len(self.names))
         slopes = slopes[np.isfinite(slopes).all(axis=1)]
         if len(slopes) < len(self.names):
-            raise AssemblyError("the motion leaves the reach of the mechanism")
+            raise AssemblyError("the mechanism cannot follow the motion at enough instants")
         numbers = [list(self.regressor.program.data.parameters).index(name) for name in self.names]
         units = [self.regressor.program.data.parameters[name].unit for name in self.names]
         return base_of(slopes, Ranking.of(self.p[numbers], units))
