@@ -231,7 +231,7 @@ def thick(density: Density, *, yy: Expression, zz: Expression, yz: Expression = 
 
     ``yy``, ``zz`` and ``yz`` are the sums over a slice of y y, z z and y z times mass, on the axes
     of the link's cross-section: of a homogeneous bar the density of its material times its area's
-    second moments. Each is a number or an expression in parameters, or is itself told along the
+    second moments. Each is a number or an expression of parameters, or is given along the
     link by a function of this module, whose values are then in kg m. A round bar of diameter d has
     yy = zz = d^2/16 times its mass per length.
 

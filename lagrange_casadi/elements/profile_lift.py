@@ -1,10 +1,10 @@
 """The lift of a follower from a profile of a disc cam, drawn or measured: points of the cam, to the
 law of its follower.
 
-The normal of the profile at a point tells where the follower's point is while it touches there, in
-the cam's axes: a roller's radius beyond the point. How far that is from the cam's centre tells the
-follower's place; in which direction it is, the cam's angle. A flat face touches where the normal is
-its own.
+The follower's point lies on the normal of the profile at the point of contact, at the distance of
+the roller's radius. Its distance from the cam's centre gives the follower's place, and its
+direction the cam's angle. A flat face touches the profile at the point where both have the same
+normal.
 """
 
 from __future__ import annotations

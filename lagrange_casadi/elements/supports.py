@@ -1,9 +1,9 @@
-"""Shafts in a fixed and a floating bearing, and rods in two bushes: two places that share a load as
-statics says.
+"""Shafts in a fixed and a floating bearing, and rods in two bushes: two places whose loads follow
+from statics.
 
-Two bearings that each held the direction of a shaft would be one too many, and equilibrium could
-not tell how they share its load. Here each bears a force and no moment across the axis, as a
-bearing does that is short beside the distance to the other.
+If both bearings fixed the direction of a shaft, equilibrium would not determine their loads. Here
+each transmits a force and no moment across the axis, as a bearing does if it is short compared with
+the distance to the other.
 """
 
 from __future__ import annotations

@@ -125,7 +125,7 @@ _CHECK = """\
 
 
 def _limits(description: Description) -> str:
-    """The limits of parameters, and what tells of one that is beyond."""
+    """The limits of parameters, and the message for a value beyond them."""
     c, wide = description.contract, literal("double")
     if not c.settings:
         return ""

@@ -1,7 +1,7 @@
 """A sweep as a page for browsers: maps, fronts, a table of designs, and the mechanism of the design
 that is looked at, in motion.
 
-The mechanism is a live page within the page: it evaluates whatever design it is told.
+The mechanism is a live page within the page: it evaluates the design that is chosen.
 """
 
 from __future__ import annotations
