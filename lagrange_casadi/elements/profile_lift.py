@@ -252,7 +252,7 @@ def _swinging(
     cosine = (arm**2 + reach**2 - np.sum(pitch**2, axis=1)) / (2.0 * arm * reach)
     if np.abs(cosine).max() >= 1.0:
         raise DeclarationError(
-            "profile: the follower is too short to reach all of it, or too close"
+            "profile: the follower is too short to reach the whole profile, or too close"
         )
     angle = np.arccos(cosine)
     turned = line + side * angle

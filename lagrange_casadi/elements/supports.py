@@ -182,7 +182,7 @@ def two_bushes(
             f"{what}: expected two places of one body, got '{near.body.name}' and '{far.body.name}'"
         )
     if turns and not mechanism.space:
-        raise DeclarationError(f"{what}: turns is of rods in space; a rod of a plane cannot turn")
+        raise DeclarationError(f"{what}: turns= is for space only; a rod in a plane cannot turn")
     between = minus(far.place, near.place)
     length = ca.sqrt(ca.SX(dot(between, between)))
     if length.is_constant() and float(length) == 0.0:

@@ -210,8 +210,8 @@ class Program(Graphs):
         """Send it as its text. Raises :class:`.PickleError` if the text is incomplete."""
         if self.identity is None:
             raise PickleError(
-                f"the scene of '{self.data.name}' cannot be pickled: it calls a function of this"
-                " process alone; expected expressions of CasADi's own functions"
+                f"the scene of '{self.data.name}' cannot be pickled: it calls a function"
+                " that exists in this process only; expected expressions of CasADi's own functions"
             )
         return Program.loads, (self.dumps(),)
 

@@ -82,8 +82,8 @@ def is_of(sweep: Sweep, scene: Scene) -> bool:
 def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
     if scene is not None and not is_of(sweep, scene):
         raise DeclarationError(
-            f"{sweep.path}: the sweep is not of this scene; take the case that was swept, as it was"
-            " then"
+            f"{sweep.path}: the sweep was made with another scene; give the case that was swept,"
+            " without later changes"
         )
     names = [name for name, column in sweep.columns.items() if not column.axes and name != STATUS]
     if not names:

@@ -152,7 +152,7 @@ def shortfall(
         dtype=bool,
     )
     if not there.any():
-        raise DeclarationError("shortfall: no quantity is there that is determined and not zero")
+        raise DeclarationError("shortfall: every quantity is indeterminate or zero")
     missing = [1.0 - peaks[:-1, there] / true[there] for peaks in (sampled, refined)]
     columns = [distributed(rows, axis=1) for rows in missing for distributed in (np.max, np.median)]
     return [
