@@ -47,8 +47,8 @@ Numeric: TypeAlias = Annotated[Any, "numeric"]
 """A number, or an array of numbers of any shape."""
 
 Symbolic: TypeAlias = Annotated[Any, "symbolic"]
-"""A number, a text of one with its unit, or an expression in parameters: of what is told before it
-has a mechanism.
+"""A number, a text with a unit, or an expression of parameters, for what is declared before there
+is a mechanism.
 """
 
 Outputs: TypeAlias = Annotated[Sequence[str], "outputs"]

@@ -166,8 +166,8 @@ class PostureError(DeclarationError):
     """A posture that does not determine how loops are assembled.
 
     ``assembly_modes`` are those of each loop that has several, as entries of a posture;
-    ``lacking`` tells whether others need rough values to be iterated from. ``scene`` is what it was
-    tried with, where that is known.
+    ``lacking`` is true if other loops need rough values to begin an iteration. ``scene`` is the
+    scene for which the posture was tried, if known.
     """
 
     def __init__(

@@ -390,7 +390,7 @@ def test_links_refuse_what_is_no_beam():
         m.link("a", length=1.0, beam=7)
     with pytest.raises(
         DeclarationError,
-        match="beam= excludes centre= and inertia=, with which a link has no sections",
+        match="beam= excludes centre= and inertia=, because a link with these has no sections",
     ):
         m.link(
             "a",

@@ -234,7 +234,7 @@ def test_without_a_compiler_the_virtual_machine_serves_and_says_so():
             evaluate(slider_crank(), backend=backend)
     with pytest.raises(
         CompilerError,
-        match=r"precision 'single' needs a compiler: none of c\+\+, .*, ziglang is there",
+        match=r"precision 'single' needs a compiler: none of c\+\+, .*, ziglang found",
     ):
         evaluate(slider_crank(), precision="single")
 

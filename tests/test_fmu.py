@@ -453,7 +453,7 @@ def test_the_motion_is_inside_by_the_angle_of_a_crank(unit, tmp_path):
 
 def test_a_coordinate_that_turns_back_says_no_time(tmp_path):
     scene = load_case("arm6").scene
-    with pytest.raises(errors.DeclarationError, match="'turn': this coordinate stands still or"):
+    with pytest.raises(errors.DeclarationError, match="'turn': this coordinate stops or"):
         export(scene, tmp_path / "a", fmu="turn", wanted=["effort"])
     with pytest.raises(errors.UnknownNameError, match="unknown coordinate 'twist'; valid: time"):
         export(scene, tmp_path / "a", fmu="twist", wanted=["effort"])

@@ -222,7 +222,7 @@ HOLLOW = (0.05 + 0.008 * np.cos(12 * TURN))[:, None] * np.column_stack([np.cos(T
         (
             "swinging roller",
             circle(0.3, 0.0, 40),
-            "profile: the follower is too short to reach all of it, or too close",
+            "profile: the follower is too short to reach the whole profile, or too close",
         ),
         (
             "swinging flat",

@@ -250,8 +250,7 @@ def test_what_has_no_stress(solutions, robots):
         solutions["even"].stress("crank")
     with pytest.raises(
         DeclarationError,
-        match="link 'upper' is twisted, and for torsion of a polygon there is no formula; use"
-        " beams",
+        match="link 'upper' carries torsion, and there is no formula for a polygon; use beams",
     ):
         evaluate(strong.robot(SHAPES["leaning"]), certificate=False).stress("upper")
     with pytest.raises(DeclarationError, match="were not evaluated; add section:rod"):

@@ -237,7 +237,7 @@ def test_what_cannot_be():
     side = two_bearings(m, "c", m.ground, other, other.at(0.1))
     with pytest.raises(DeclarationError, match="seen from the side does not turn"):
         bearings.fit(m, side.floating, bearings.Rolling(1e3, hours=1.0))
-    with pytest.raises(DeclarationError, match="rod of a plane cannot turn"):
+    with pytest.raises(DeclarationError, match="a rod in a plane cannot turn"):
         two_bushes(m, "a", rod, m.ground, m.ground.at(1, 0), turns=True)
     pair = two_bushes(m, "b", rod, m.ground, m.ground.at(1, 0))
     with pytest.raises(DeclarationError, match="got a prismatic one; it takes a plain bearing"):

@@ -173,7 +173,10 @@ def test_without_a_case_the_page_says_what_it_lacks(file, tmp_path, capsys, monk
     other = tmp_path / "slider_crank"
     shutil.copytree(CASES / "four_bar", other)
     assert main(["report", str(file), "--case", str(other)]) == 2
-    assert "the sweep is not of this scene; take the case that was swept" in capsys.readouterr().err
+    assert (
+        "the sweep was made with another scene; give the case that was swept"
+        in capsys.readouterr().err
+    )
     assert not (tmp_path / "swept.html").exists()
     monkeypatch.setattr("importlib.util.find_spec", lambda name, *_: None)
     assert main(["report", str(file)]) == 0

@@ -292,8 +292,8 @@ def test_columns_of_different_axes_need_a_table_each(here, capfd):
     capfd.readouterr()
     assert main(["table", "h.h5", *columns(AT[0], "history:effort:O"), "--csv", "x.csv"]) == 2
     said = (
-        f"column '{AT[0]}' has a value for every xi, 'history:effort:O' for every t: each needs a"
-        " table of its own"
+        f"column '{AT[0]}' has a value for every xi, 'history:effort:O' for every t: write a"
+        " table for each"
     )
     assert capfd.readouterr() == ("", f"error: {said}\n")
     assert main(["table", "h.h5", *columns("history:section:rod:bending"), "--csv", "x.csv"]) == 0

@@ -96,7 +96,7 @@ def test_a_mistake_is_one_line_before_anything_is_done(swept, capfd, monkeypatch
     said = {
         ("--decimal-comma",): "--decimal-comma goes with --csv FILE.csv",
         ("--csv", "x.xlsx", "--decimal-comma"): "x.xlsx: decimal commas are for CSV; a workbook"
-        " holds numbers, which spreadsheets show as they are set",
+        " has numbers, and the spreadsheet program decides how to display them",
         ("--csv", "x.ods"): "x.ods: no table is written as .ods; use .csv or .xlsx",
         ("--csv", "x.XLS"): "x.XLS: no table is written as .XLS; use .csv or .xlsx",
         ("--csv", "no/x.xlsx"): "cannot write no/x.xlsx: folder no does not exist",

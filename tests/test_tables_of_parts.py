@@ -218,7 +218,9 @@ def test_the_smallest_bearing_that_lives_long_enough(rotor):
     assert lives(best)
     assert best.bore >= 0.015
     assert not any(lives(one) for one in every if one.bore >= 0.015 and one.outer < best.outer)
-    with pytest.raises(NoDesignError, match="no bearing lives 1e\\+12 h; the strongest, '6320'"):
+    with pytest.raises(
+        NoDesignError, match="no bearing has a life of 1e\\+12 h; the strongest, '6320'"
+    ):
         bearings.select_bearing(rotor, "O", every, hours=1e12)
     with pytest.raises(NoDesignError, match="no bearing has a bore of 200 mm or more"):
         bearings.select_bearing(rotor, "O", every, hours=1.0, bore=0.2)

@@ -198,7 +198,7 @@ def test_run_writes_them(tmp_path, monkeypatch, capsys):
     capsys.readouterr()
     assert main([*asked, "--want", "sensitivity:r"]) == 2
     assert (
-        "sensitivities need other outputs; want some of these too, as effort"
+        "sensitivities need other outputs; add some to wanted, such as effort"
         in capsys.readouterr().err
     )
 

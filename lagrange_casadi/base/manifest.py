@@ -1,9 +1,9 @@
-"""Folders that are filled once more: a manifest tells which files there are ours, with a digest of
-each.
+"""Folders that are written again: a manifest lists the files that this package wrote, with a digest
+of each.
 
-It is put into its place before the files, and tells of those that are replaced their digests of
-before, too: after a kill between two files all are known. Once they are in place it tells what is
-there.
+The manifest is written before the files. For files that are replaced, it also has the old digests,
+so all files are known if the process is killed between two of them. When the files are complete,
+the manifest lists only these.
 """
 
 from __future__ import annotations

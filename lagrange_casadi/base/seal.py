@@ -1,5 +1,4 @@
-"""The seal of a file: what tells, before HDF5 sees a byte of it, that all of it is as it was
-written.
+"""The seal of a file: shows, before HDF5 reads a byte, that the file is as it was written.
 
 It is the last 256 bytes of a file, text after HDF5's own end, where no reader of HDF5 looks: what
 the file is of, how many bytes come before, and their digest, the SHA-256 of the SHA-256 of every

@@ -60,8 +60,8 @@ class TableFile:
         if self._is_workbook:
             if self.decimal_comma:
                 raise DeclarationError(
-                    f"{self.path}: decimal commas are for CSV; a workbook holds numbers, which"
-                    " spreadsheets show as they are set"
+                    f"{self.path}: decimal commas are for CSV; a workbook has numbers, and the"
+                    " spreadsheet program decides how to display them"
                 )
             check_installed("openpyxl", "a workbook", "xlsx")
         check_writable(self.path)

@@ -85,7 +85,7 @@ def typed(value: object) -> tuple[Any, str]:
 
 
 def number(value: object, unit: str = "1", *, finite: bool = True) -> float:
-    """A number in a unit: a number is one, a text is one that tells a unit, as ``"350 deg"``,
+    """A number in a unit: either a number, or a text with a unit, such as ``"350 deg"``,
     ``"100 mm"`` or ``"500 g"``.
 
     Raises :class:`.NumberError`, a ``ValueError``, for anything else, and if it must be ``finite``

@@ -43,7 +43,7 @@ _VARIABLES = {"HDF5_PLUGIN_PRELOAD": "::"}
 _ANSWER = {"findings": [str], "refused": str, "status": int}
 _LONGEST = 1e6
 _LINES, _LENGTH = 100, 1000
-"""Findings that are told at most, and characters of each."""
+"""Findings that are reported at most, and characters of each."""
 
 
 def check(file: Path, untrusted: bool, time_limit: float | None) -> int:

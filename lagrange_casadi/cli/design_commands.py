@@ -614,7 +614,7 @@ def identify(**given: Any) -> None:
 
     The first line of DATA.csv has names and units of columns: t [s], the coordinates of all drives,
     as O [deg], and forces, as effort:O [N m], reaction:A:fx [N], section:rod:axial@0.5 [N]. The
-    command prints combinations of parameters that the data tell, with standard errors, and the
+    command prints combinations of parameters that the data determine, with standard errors, and the
     values as options --set.
 
     \b

@@ -81,7 +81,7 @@ def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:
     if found.absent:
         yield f"  nothing measured depends on {', '.join(found.absent)}"
     for words in found.unexcited:
-        yield f"  this motion does not tell {words}; other speeds and accelerations do"
+        yield f"  this motion does not determine {words}; other speeds and accelerations do"
     for drive, cutoff in found.cutoffs.items():
         if cutoff < math.inf:
             yield f"  {drive} is smoothed, half the power at {cutoff:.3g} Hz"

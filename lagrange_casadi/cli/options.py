@@ -43,7 +43,7 @@ class _Path(click.Path):
         parameter: click.Parameter | None,
         context: click.Context | None,
     ) -> str | bytes | os.PathLike[str]:
-        """The path that is told."""
+        """The path that is given."""
         if value == "":
             self.fail("expected a path, got ''", parameter, context)
         return super().convert(value, parameter, context)
@@ -135,7 +135,7 @@ def length(text: str) -> float:
 
 
 def setting(text: str) -> tuple[str, float | str]:
-    """NAME=VALUE; a value with a unit stays a text, for what is set to tell whether it fits."""
+    """NAME=VALUE; a value with a unit remains a text, and is checked later."""
     name, equals, value = (word.strip() for word in text.partition("="))
     with suppress(ValueError):
         if equals:
@@ -201,7 +201,7 @@ def bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
 
 
 def tolerance(text: str) -> tuple[str, str]:
-    """NAME=VALUE; the parameter's unit tells what the value may be."""
+    """NAME=VALUE; the parameter's unit decides which values are allowed."""
     name, equals, value = (word.strip() for word in text.partition("="))
     if not (name and equals and value):
         raise click.BadParameter(f"expected NAME=VALUE, as in l=0.1mm or m1=1%, got '{text}'")

@@ -34,7 +34,7 @@ def size_command(
     beside = loaded.path.parent / "profiles.csv"
     if profiles is None and not beside.is_file():
         raise click.UsageError(
-            f"--profiles: expected a table of profiles; there is none beside the case, {beside}"
+            f"--profiles: expected a table of profiles; the folder of the case has none, {beside}"
         )
     table = read_profiles(profiles or beside)
     found = size(

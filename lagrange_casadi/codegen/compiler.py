@@ -119,7 +119,7 @@ _LINE = 300
 """Characters of a compiler's message that are quoted at most."""
 
 _ANSWER = 20
-"""Into how many parts the time limit is divided for a compiler to tell its version."""
+"""Divisor of the time limit for the query of a compiler's version."""
 
 LARGE = 20_000
 """Statements from which on a file is compiled with -O1: see ``docs/speed.md`` for what that saves

@@ -210,7 +210,7 @@ def curve(
     starts, cells = through(at, to, periodic=periodic, origin=origin)
     if not all(math.isfinite(number) for cell in cells for number in cell):
         raise DeclarationError(
-            "curve: its points are too close to each other for their values, slopes overflow;"
+            "curve: the points are so close to each other that the slopes overflow;"
             " expected fewer or more distant points"
         )
     return Curve(at[0], at[-1], periodic, origin, tuple(starts), tuple(cells))

@@ -231,7 +231,7 @@ def thick(density: Density, *, yy: Expression, zz: Expression, yz: Expression = 
 
     ``yy``, ``zz`` and ``yz`` are the sums over a slice of y y, z z and y z times mass, on the axes
     of the link's cross-section: of a homogeneous bar the density of its material times its area's
-    second moments. Each is a number or an expression in parameters, or is itself told along the
+    second moments. Each is a number or an expression of parameters, or is given along the
     link by a function of this module, whose values are then in kg m. A round bar of diameter d has
     yy = zz = d^2/16 times its mass per length.
 
@@ -265,7 +265,8 @@ def along(curve: Curve) -> Density:
         )
     if curve.periodic or (curve.low, curve.high) != (0.0, 1.0):
         raise DeclarationError(
-            f"density along: the curve must reach from 0 to 1, and not go round, got {curve!r}"
+            "density along: the curve must reach from 0 to 1, and must not be periodic, got"
+            f" {curve!r}"
         )
     cells = []
     for start, cell in zip(curve.starts, curve.cells, strict=True):

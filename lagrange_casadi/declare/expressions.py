@@ -193,5 +193,5 @@ def value_of(
         )
     except (RuntimeError, NotImplementedError):
         raise DeclarationError(
-            f"number: expected an expression in parameters alone, got {shown(expression)}"
+            f"number: expected an expression of parameters only, got {shown(expression)}"
         ) from None

@@ -110,12 +110,13 @@ class Joint:
     - ``weld`` holds the points together and the child's direction at ``angle`` from the parent's;
       it has no coordinate.
 
-    What slides on a line loads the line's carrier, the parent, where it is at the moment.
+    A child that slides on a line loads the parent, which carries the line, at its present position.
 
     In space ``directions`` are three at right angles, in the parent's axes, and :data:`IN_SPACE`
-    tells along which the joint moves; ``turned`` are the directions of the child's x and y axes, in
-    the parent's axes, where all coordinates are zero. ``pitch`` is that of a screw [m/rad].
-    ``turn_given`` says whether ``angle`` or ``turned`` was declared, and not taken by default.
+    has those along which the joint moves; ``turned`` are the directions of the child's x and y
+    axes, in the parent's axes, where all coordinates are zero. ``pitch`` is that of a screw
+    [m/rad]. ``turn_given`` says whether ``angle`` or ``turned`` was declared, and not taken by
+    default.
     """
 
     name: str

@@ -36,7 +36,8 @@ def mass_properties_of(
         raise DeclarationError(f"{what}: expected its mass or its density")
     if beam is not None and centre is not None:
         raise DeclarationError(
-            f"{what}: beam= excludes centre= and inertia=, with which a link has no sections"
+            f"{what}: beam= excludes centre= and inertia=, because a link with these has no"
+            " sections"
         )
     if (centre is None) != (inertia is None) or (centre is not None and mass is None):
         raise DeclarationError(f"{what}: expected mass, centre and inertia together")

@@ -325,8 +325,8 @@ class Mechanism(Graphs):
         place = self._load_point(name, point)
         if turning and not place.body.oriented:
             raise DeclarationError(
-                f"load '{name}': point mass '{place.body.name}' has no axes; a force that turns"
-                " needs a link"
+                f"load '{name}': point mass '{place.body.name}' has no axes; use a link, or"
+                " leave turning out"
             )
         if place.body is self.ground:
             raise DeclarationError(

@@ -183,7 +183,7 @@ def _along(name: str, joint: Description) -> dict[Output, float]:
 
 
 def _locked(joint: Description, outputs: Mapping[Output, Array]) -> Array | None:
-    """The second of a joint's three turns, where the first is not told because of gimbal lock."""
+    """The second of a joint's three turns, if the first is indeterminate because of gimbal lock."""
     rotations = [name for name, kind in joint.get("coordinates", {}).items() if kind == "angle"]
     first, second = (
         (outputs.get(Output("motion", name)) for name in rotations[:2])

@@ -85,7 +85,7 @@ class Wanted:
             _check_material(mechanism, name)
         if names and not others(names):
             raise DeclarationError(
-                f"output '{names[0]}': sensitivities need other outputs; want some of these too,"
+                f"output '{names[0]}': sensitivities need other outputs; add some to wanted, such"
                 " as effort"
             )
         chosen = set(every if "all" in names else names)

@@ -44,8 +44,8 @@ def without_fitted(fitted: Iterable[str], names: Sequence[str], what: str) -> No
 
 
 def without_life(names: Sequence[str], what: str) -> None:
-    """Raise :class:`.DeclarationError` where a life is among wanted names of what tells single
-    instants.
+    """Raise :class:`.DeclarationError` if a life is among wanted names of a study that evaluates
+    single instants.
     """
     for name in texts(names) or ():
         if name.partition(":")[0] == "life":

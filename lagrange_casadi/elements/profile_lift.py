@@ -1,10 +1,10 @@
 """The lift of a follower from a profile of a disc cam, drawn or measured: points of the cam, to the
 law of its follower.
 
-The normal of the profile at a point tells where the follower's point is while it touches there, in
-the cam's axes: a roller's radius beyond the point. How far that is from the cam's centre tells the
-follower's place; in which direction it is, the cam's angle. A flat face touches where the normal is
-its own.
+The follower's point lies on the normal of the profile at the point of contact, at the distance of
+the roller's radius. Its distance from the cam's centre gives the follower's place, and its
+direction the cam's angle. A flat face touches the profile at the point where both have the same
+normal.
 """
 
 from __future__ import annotations
@@ -252,7 +252,7 @@ def _swinging(
     cosine = (arm**2 + reach**2 - np.sum(pitch**2, axis=1)) / (2.0 * arm * reach)
     if np.abs(cosine).max() >= 1.0:
         raise DeclarationError(
-            "profile: the follower is too short to reach all of it, or too close"
+            "profile: the follower is too short to reach the whole profile, or too close"
         )
     angle = np.arccos(cosine)
     turned = line + side * angle

@@ -1,9 +1,9 @@
-"""Shafts in a fixed and a floating bearing, and rods in two bushes: two places that share a load as
-statics says.
+"""Shafts in a fixed and a floating bearing, and rods in two bushes: two places whose loads follow
+from statics.
 
-Two bearings that each held the direction of a shaft would be one too many, and equilibrium could
-not tell how they share its load. Here each bears a force and no moment across the axis, as a
-bearing does that is short beside the distance to the other.
+If both bearings fixed the direction of a shaft, equilibrium would not determine their loads. Here
+each transmits a force and no moment across the axis, as a bearing does if it is short compared with
+the distance to the other.
 """
 
 from __future__ import annotations
@@ -182,7 +182,7 @@ def two_bushes(
             f"{what}: expected two places of one body, got '{near.body.name}' and '{far.body.name}'"
         )
     if turns and not mechanism.space:
-        raise DeclarationError(f"{what}: turns is of rods in space; a rod of a plane cannot turn")
+        raise DeclarationError(f"{what}: turns= is for space only; a rod in a plane cannot turn")
     between = minus(far.place, near.place)
     length = ca.sqrt(ca.SX(dot(between, between)))
     if length.is_constant() and float(length) == 0.0:

@@ -1,6 +1,4 @@
-"""Columns that are no outputs: they tell whether there is a result, or are what the certificate
-needs.
-"""
+"""Columns that are no outputs: they show if there is a result, or the certificate needs them."""
 
 from __future__ import annotations
 

@@ -1,13 +1,13 @@
 """The equation of motion of a machine with one degree of freedom, from the effort that its drive
 needs.
 
-The effort that moves the drive's coordinate as told is tau(phi, w, a): a row of the Program's
-instant. A machine left to itself goes with the acceleration a at which
+The effort for a given motion of the drive's coordinate is tau(phi, w, a): a row of the Program's
+instant. A machine whose motion is not given has the acceleration a for which
 
     tau(phi, w, a) + J a = drive(t, phi, w) - load(t, phi, w),
 
-J the inertia of a flywheel on the drive. Where no friction follows reactions tau is affine in a,
-which its graph itself shows, and one division solves it; else Newton's method does.
+with J the inertia of a flywheel on the drive. If no friction depends on reactions, tau is affine in
+a, which its graph shows, and one division solves the equation; otherwise Newton's method does.
 """
 
 from __future__ import annotations
@@ -133,8 +133,8 @@ def one_drive(scene: Scene) -> str:
         )
     if scene.weights is not None and tuple(scene.weights) != driven:
         raise DeclarationError(
-            f"a free machine is driven where its motion is, at '{driven[0]}', but drives= names"
-            f" {', '.join(scene.weights)}"
+            f"a free machine is driven at the joint whose motion is given, '{driven[0]}', but"
+            f" drives= names {', '.join(scene.weights)}"
         )
     if driven[0] not in scene.mechanism.coordinates:
         raise DeclarationError(f"a free machine: '{driven[0]}' is a guided point, not a joint")

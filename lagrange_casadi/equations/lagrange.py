@@ -162,7 +162,7 @@ class LagrangeSystem:
         _expect("coordinate_rates", graph, self.coordinates.numel())
         if self.tangent is not None or self.drift is not None:
             raise DeclarationError(
-                "coordinate_rates: expected either it, or tangent and drift, and both are given"
+                "coordinate_rates cannot be combined with tangent and drift; leave one of them out"
             )
         if not ca.is_linear(graph, self.rates):
             raise DeclarationError("coordinate_rates must be linear in the rates")

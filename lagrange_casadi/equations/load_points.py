@@ -1,11 +1,12 @@
 """Sum of the actions on a link at one place: it may be determined although each part's share is
 not.
 
-Two bearings on one pin share their load in a way that equilibrium does not tell; the sections on
-either side feel the sum alone. So where shares may be open, stations at one place act as one: the
-first of them bears what all of them do, the others nothing. Past the tip all places are one, for no
-section is between them; and what acts at the base or before it no section feels. Every section has
-the same force as before. Places are compared at each instant, for the parameters as they are.
+Equilibrium does not determine how two bearings on one pin share their load; the sections on either
+side depend on the sum only. So, if shares may be indeterminate, load points at one place are
+treated as one: the first has the whole force, the others have none. All places past the tip are
+treated as one, because no section is between them. Forces at the base or before it act on no
+section. Every section has the same force as without this. Places are compared at each instant, for
+the parameters as they are.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A scene whose motion is solved, and what takes no force to tell: motions, poses and loads, and
+"""A scene whose motion is solved, and what depends on no force: motions, poses and loads, and
 checks of loops and curves.
 """
 

@@ -102,7 +102,7 @@ class Program(Graphs):
 
     @property
     def rules(self) -> tuple[Rule, ...]:
-        """The rules of an instant, in the order in which they are told."""
+        """The rules of an instant, in the order in which they are reported."""
         return rules_of(self)
 
     @property
@@ -176,7 +176,7 @@ class Program(Graphs):
 
     @cached_property
     def indeterminate(self) -> dict[Output, int]:
-        """The outputs that equilibrium may leave open, and the columns that tell where it does."""
+        """The outputs that may be indeterminate, and the columns that show at which instants."""
         checks = ((column, k) for k, column in enumerate(self.columns) if isinstance(column, Check))
         return {check.part: k for check, k in checks if isinstance(check.part, Output)}
 
@@ -207,11 +207,11 @@ class Program(Graphs):
         return found
 
     def __reduce__(self) -> tuple[Callable[[str], Program], tuple[str]]:
-        """Send it as its text. Raises :class:`.PickleError` where that would not tell all."""
+        """Send it as its text. Raises :class:`.PickleError` if the text is incomplete."""
         if self.identity is None:
             raise PickleError(
-                f"the scene of '{self.data.name}' cannot be pickled: it calls a function of this"
-                " process alone; expected expressions of CasADi's own functions"
+                f"the scene of '{self.data.name}' cannot be pickled: it calls a function"
+                " that exists in this process only; expected expressions of CasADi's own functions"
             )
         return Program.loads, (self.dumps(),)
 

@@ -1,11 +1,11 @@
 """Utilisation of a link with a beam at an instant, and its stresses, largest along the link.
 
-Between two stations, breaks of its density and of its cross-section, section forces are
-polynomials. Such a part is looked at at both ends and at places in between; from the summits that
-promise most, by the parabola through each and its neighbours, the largest value is followed by
-parabolas through places ever nearer. So what is told is the stress at some place, never above the
-largest. Where more than two summits of one part are as high within what the first parabolas err, a
-hundredth, it may be below by as much.
+Between two load points, or breaks of the density or of the cross-section, section forces are
+polynomials. Each such part is evaluated at both ends and at places in between. The search for the
+largest value begins at the local maxima whose parabola through three neighbours is highest. It
+continues with parabolas through ever nearer places. The result is the stress at one of the places,
+so it is never above the largest stress. If more than two local maxima of one part are equal within
+the error of the first parabolas, a hundredth, the result may be below the largest by as much.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
-"""The three turns of a joint as they are seen from its bodies' axes: told, and set by nothing.
+"""The three angles of a joint, computed from the axes of its bodies: reported, not prescribed.
 
 With the first axis u of the parent, the third one W of the child and the second one V at right
-angles to both, the relative angular velocity is a' u + b' V + c' W. Where the second turn is at a
-right angle, u and W are one (gimbal lock), and no more than the sum or difference of the other two
-is decided. What is near it is told as well as its digits allow, what is in it not at all.
+angles to both, the relative angular velocity is a' u + b' V + c' W. If the second angle is a right
+angle, u and W coincide (gimbal lock), and only the sum or difference of the other two angles is
+determined. Near gimbal lock the angles are as accurate as the digits allow; in it they are not
+reported.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from ..geometry.vectors import Expression, Vector, cross, dot, minus, times
 from .joints import orientation
 
 LOCKED = 1e-12
-"""The square of the cosine of the second turn below which the others are not told."""
+"""Square of the cosine of the second angle below which the others are indeterminate."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +58,7 @@ class ThreeRotations:
 
     @property
     def locked(self) -> Expression:
-        """Above zero where the turns are not told, else zero."""
+        """Above zero if the angles are indeterminate, otherwise zero."""
         return 1 - ca.fmin(1, self._second[1] / LOCKED)
 
     @property

@@ -125,7 +125,7 @@ _CHECK = """\
 
 
 def _limits(description: Description) -> str:
-    """The limits of parameters, and what tells of one that is beyond."""
+    """The limits of parameters, and the message for a value beyond them."""
     c, wide = description.contract, literal("double")
     if not c.settings:
         return ""
@@ -203,8 +203,8 @@ def _check_way(source: Source, p: Array, by: str) -> None:
     rates = program.motion(times[None, :], p)[1].full()[program.driven.index(by)]
     if not (np.all(rates > 0.0) or np.all(rates < 0.0)):
         raise DeclarationError(
-            f"an FMU by '{by}': this coordinate stands still or turns back, so its place does not"
-            " say when it is; use 'time'"
+            f"an FMU by '{by}': this coordinate stops or reverses, so it does not determine the"
+            " time; use 'time'"
         )
 
 

@@ -77,7 +77,7 @@ class Element:
 
 
 def parsed(model: Model, text: str, root: str) -> Element:
-    """Return the root element of a text, any where no name is told.
+    """Return the root element of a text; with an empty name, any root element.
 
     Raises :class:`.ModelFileError`.
     """

@@ -93,8 +93,8 @@ def sought(machine: Machine, begin: Start, goal: Goal, accuracy: float) -> Found
         speed *= _FASTER
     if turn is None:
         raise LagrangeCasadiError(
-            f"machine '{name}' stalls: it does not get round from {begin.angle:.6g} rad, at"
-            f" speeds from {begin.speed:.6g} to {speed:.6g} rad/s"
+            f"machine '{name}' stalls: it does not complete a turn from {begin.angle:.6g} rad, at"
+            f" initial speeds from {begin.speed:.6g} to {speed:.6g} rad/s"
         )
     signs, close = set[float](), False
     for number in range(_STEPS):
@@ -147,7 +147,7 @@ def _moved(
         )
     raise LagrangeCasadiError(
         f"machine '{machine.name}' stalls: below {speed:.6g} rad/s at {angle:.6g} rad it does"
-        " not get round, and above it slows down"
+        " not complete a turn, and above that speed it slows down"
     )
 
 
@@ -218,8 +218,8 @@ def swing(machine: Machine, begin: Start, span: float, accuracy: float) -> tuple
         energies = _over(rates, ends, np.zeros(1), accuracy, lambda x, y: rates(x, y)[0])
         if energies is None:
             raise LagrangeCasadiError(
-                f"machine '{machine.name}': its torque at the even speed {begin.speed:.6g} rad/s"
-                " is not finite all the way round"
+                f"machine '{machine.name}': the torque at the constant speed"
+                f" {begin.speed:.6g} rad/s is not finite over the whole turn"
             )
         return energies
 

@@ -193,7 +193,7 @@ def follow(
     times = times[: y.shape[1]]
     if times.size < 2:
         raise LagrangeCasadiError(
-            f"free machine '{machine.name}': {events[-1]}, before the second instant"
+            f"free machine '{machine.name}': the run ended before the second instant: {events[-1]}"
         )
     machine.begin(float(times[0]), start.angle)
     posture = {**scene.posture, **_posture(scene, machine, float(times[0]), start)}
@@ -379,8 +379,8 @@ class _Rates:
         machine, angle, speed = self.machine, float(y[0]), float(y[1])
         if machine.evaluations > _MOST_EVALUATIONS:
             raise LagrangeCasadiError(
-                f"free machine '{machine.name}': after {_MOST_EVALUATIONS} evaluations the run is"
-                f" at t = {t:.6g} s alone; expected a shorter time or a coarser accuracy"
+                f"free machine '{machine.name}': after {_MOST_EVALUATIONS} evaluations the run has"
+                f" only reached t = {t:.6g} s; expected a shorter time or a coarser accuracy"
             )
         slow = self.way * speed < _SLOW
         a, drive, load, taken = machine.at(t, angle, self.way * _SLOW if slow else speed)[_RATES]

@@ -112,7 +112,9 @@ def free(
     machine = _machine(scene, drive, load, inertia, parameters, accuracy)
     if steady:
         if t is not None:
-            raise DeclarationError("t and steady exclude each other; expected count= of a cycle")
+            raise DeclarationError(
+                "t and steady exclude each other; give count=, the instants of a cycle"
+            )
         begin = _turning(machine, start)
         goal = Goal(math.copysign(cycle, begin.speed), None if drive is not None else begin.speed)
         found = sought(machine, begin, goal, accuracy)
@@ -195,12 +197,12 @@ def _turning(machine: Machine, start: Sequence[float] | None) -> Start:
     equation = machine.equation
     if equation.slides:
         raise DeclarationError(
-            f"a steady cycle is one of a drive that turns, and '{equation.joint}' slides"
+            f"a steady cycle needs a drive that turns, and '{equation.joint}' slides"
         )
     if equation.timed:
         raise DeclarationError(
-            f"a steady cycle of '{machine.name}': a law or load depends on the time; expected"
-            " laws of coordinates and rates"
+            f"machine '{machine.name}' has no steady cycle, because a law or load depends on the"
+            " time; expected laws of coordinates and rates"
         )
     begin = begun_at(machine, start, equation.program.data.span[0])
     if begin.speed == 0.0:

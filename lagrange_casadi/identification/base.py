@@ -1,5 +1,5 @@
-"""Base parameters: the combinations of parameters that a regressor can tell, by a QR factorization
-that pivots.
+"""Base parameters: the combinations of parameters that a regressor determines, by a pivoted QR
+factorization.
 
 Gautier, *Numerical calculation of the base inertial parameters of robots*, J. Robotic Systems 8,
 1991.

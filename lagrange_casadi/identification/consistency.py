@@ -123,7 +123,7 @@ class Consistency(Graphs):
         if not solver.stats()["success"]:
             raise AccuracyError(
                 "no parameters with positive masses and realizable inertias are found near the"
-                " measurements; give other values to begin with, or bounds"
+                " measurements; give other initial values, or bounds"
             )
         return np.asarray(found["x"]).ravel()[: theta.size] * self.scales + self.first - theta
 

@@ -1,4 +1,4 @@
-"""Motions that tell parameters best: Fourier series within the limits of a machine.
+"""Motions that determine parameters best: Fourier series within the limits of a machine.
 
 Swevers et al., *Optimal robot excitation and identification*, IEEE Trans. Robotics and Automation
 13, 1997.
@@ -40,12 +40,12 @@ _GROWS, _SHRINKS = 1.5, 0.9
 @public
 @dataclass(frozen=True, eq=False)
 class Excitation:
-    """A periodic motion of drives, and how well it tells the parameters.
+    """A periodic motion of drives, and how well it determines the parameters.
 
     ``sines`` and ``cosines`` are amplitudes of each harmonic, and ``centres`` the means, by drive
     [rad or m]. ``condition`` is that of the base, in columns of norm 1, and ``first`` that of the
     best of the motions drawn at random from which the search began. ``base`` are the combinations
-    that the motion tells.
+    that the motion determines.
     """
 
     period: float
@@ -82,10 +82,10 @@ def excite(
     parameters: Mapping[str, float] | None = None,
     backend: Backend = "auto",
 ) -> Excitation:
-    """Return a motion within limits that tells unknown parameters well.
+    """Return a motion within limits that determines unknown parameters well.
 
-    The condition number of the base is made small by a random search, the same in every run; the
-    motion touches a limit of each drive.
+    A random search, the same in every run, minimises the condition number of the base. The motion
+    reaches a limit of each drive.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def excite(
     Returns
     -------
     Excitation
-        The motion, and the combinations of parameters that it tells.
+        The motion, and the combinations of parameters that it determines.
 
     Raises
     ------
@@ -168,8 +168,8 @@ class _Search:
         (rank, first), best = min(((self._cost(x), k) for k, x in enumerate(drawn)), key=_first)
         if not math.isfinite(first):
             raise AssemblyError(
-                f"{self.regressor.program.data.name}: it cannot follow any of {_DRAWN} motions"
-                " within the limits; expected narrower limits"
+                f"mechanism '{self.regressor.program.data.name}' cannot follow any of {_DRAWN}"
+                " random motions within the limits; expected narrower limits"
             )
         x, cost, width = drawn[best], (rank, first), 0.5
         for _ in range(steps):
@@ -228,7 +228,7 @@ class _Search:
         slopes = self.regressor.at(motion, z, self.p)[1].reshape(-1, len(self.names))
         slopes = slopes[np.isfinite(slopes).all(axis=1)]
         if len(slopes) < len(self.names):
-            raise AssemblyError("the motion leaves the reach of the mechanism")
+            raise AssemblyError("the mechanism cannot follow the motion at enough instants")
         numbers = [list(self.regressor.program.data.parameters).index(name) for name in self.names]
         units = [self.regressor.program.data.parameters[name].unit for name in self.names]
         return base_of(slopes, Ranking.of(self.p[numbers], units))

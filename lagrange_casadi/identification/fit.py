@@ -240,8 +240,8 @@ def fit(data: Data, z: Array, loss: Loss, ranking: Ranking) -> Fit:
             break
     else:
         raise AccuracyError(
-            f"the unknown parameters do not settle in {_ROUNDS} steps; give them nearer values to"
-            " begin with, or prior values"
+            f"the unknown parameters do not converge in {_ROUNDS} steps; give better initial"
+            " values, or prior values"
         )
     scaled = rows.columns / noise[rows.quantity][:, None]
     weights = _weights(rows.raw / noise[rows.quantity], robust=loss.robust)
@@ -320,8 +320,9 @@ def _taken(
             return theta + step, there, rows, step
         step = step / 2.0
     raise AccuracyError(
-        "the unknown parameters leave the values for which the mechanism has forces; give them"
-        " nearer values to begin with, or prior values"
+        "no step of the unknown parameters was found that reduces the difference to the"
+        " measurements and for which the mechanism has forces; give better initial values, or prior"
+        " values"
     )
 
 

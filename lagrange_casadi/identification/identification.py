@@ -73,16 +73,16 @@ class Comparison:
 @public
 @dataclass(frozen=True, eq=False)
 class Identification:
-    """Parameters that were found, and how sure they are.
+    """Parameters that were found, and their standard errors.
 
     ``name`` is that of the mechanism. ``values`` and ``errors`` are those of the unknown
-    parameters; the standard error is infinite for one that is told only within a combination.
+    parameters; the standard error is infinite for one that is determined only in a combination.
 
-    ``base`` are the combinations that are told, and ``condition`` is that of their columns of norm
-    1. ``unexcited`` are combinations that only other speeds and accelerations at the same places
-    tell; ``absent`` are parameters on which nothing measured depends. ``nonlinear`` are
-    the parameters that forces are not linear in while the others are unknown too, and with which
-    each goes; their base is that at the values found.
+    ``base`` are the combinations that are determined, and ``condition`` is the condition number of
+    their columns, scaled to norm 1. ``unexcited`` are combinations that only other speeds and
+    accelerations at the same places would determine; ``absent`` are parameters on which no measured
+    quantity depends. ``nonlinear`` are the parameters that forces are not linear in if the others
+    are unknown too, each with those other parameters; their base is that at the values found.
 
     ``noise`` are standard deviations, given or estimated, ``outliers`` the shares of instants whose
     weight Huber's loss lowered, and ``cutoffs`` the frequencies [Hz] at which the smoothing of each
@@ -158,34 +158,33 @@ def identify(
     trim: NotNegative = 0.0,
     backend: Backend = "auto",
 ) -> Identification:
-    """Return the parameters of a mechanism that measured motion and forces tell.
+    """Return the parameters of a mechanism that measured motion and forces determine.
 
     Parameters
     ----------
     scene
-        The scene, or a case. Its laws of motion are not used, but for the way in which loops are
-        assembled.
+        The scene, or a case. Its laws of motion are used only to assemble the loops.
     measurements
         Coordinates of all driven joints, and forces or strains, over time.
     unknown
         Names of parameters; by default all that the scene declares.
     parameters
-        Values of parameters that are known, and first values of the unknown ones, in place of the
+        Values of known parameters, and initial values of unknown parameters, instead of the
         defaults.
     prior
-        Standard deviations of unknown parameters about their first values, such as from CAD, by
-        name. They are weighed as one more measurement each.
+        Standard deviations of unknown parameters about their initial values, such as from CAD, by
+        name. Each has the weight of one more measurement.
     robust
         Weigh residuals by Huber's loss, so that outliers count less.
     consistent
-        Find only positive masses and inertias that some body can have, and parameters within their
-        bounds.
+        Find only positive masses, inertias that are possible for a body, and parameters within
+        their bounds.
     cutoff
         Frequency [Hz] at which a filter without delay halves the power of forces, measured and
         modelled alike; by default nothing is filtered.
     trim
-        Time at both ends of the record that does not count [s], for smoothed accelerations are
-        poor there.
+        Time at both ends of the record that is left out [s], because smoothed accelerations are
+        inaccurate there.
     backend
         As in :func:`.evaluate`.
 
@@ -329,7 +328,7 @@ def _result(
 
 
 def _unexcited(data: Data, found: Fit, ranking: Ranking, names: Sequence[str]) -> tuple[str, ...]:
-    """Return combinations that other rates and accelerations at the measured places would tell."""
+    """Return combinations that only other rates and accelerations would determine."""
     generator, motion, scales = np.random.default_rng(0), data.motion, ranking.scales
     known = np.flatnonzero(np.isfinite(motion.acceleration).all(axis=1))
     sizes = [

@@ -175,7 +175,7 @@ def compiled(
     if backend in _NEEDS:
         raise CompilerError(_NEEDS[backend])
     if method.precision == "single":
-        raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} is there")
+        raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} found")
     if backend == "auto":
         warn(
             f"no C or C++ compiler found ({_TRIED}): using CasADi's virtual machine, which is slow"

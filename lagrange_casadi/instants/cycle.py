@@ -293,8 +293,8 @@ def the_drive(program: Program) -> str:
     (joint,) = program.driven
     if program.data.kinds.coordinates[joint] != "angle":
         raise DeclarationError(
-            f"table: the driven joint '{joint}' slides; expected one that turns, for only an angle"
-            " repeats"
+            f"table: the driven joint '{joint}' slides; expected one that turns, because only"
+            " an angle repeats"
         )
     return joint
 

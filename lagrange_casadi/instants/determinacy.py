@@ -91,7 +91,8 @@ def determinate(
     """The graph without the outputs that are open at some of the instants, for parameters ``p``;
     and these outputs.
 
-    With ``telling`` it goes on to tell, for other parameters and instants, where others are open.
+    With ``telling`` the program keeps the check of the other outputs, for other parameters and
+    instants.
     """
     if not program.indeterminate:
         return program, ()

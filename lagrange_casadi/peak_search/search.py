@@ -7,7 +7,7 @@ values around a summit says where, and what it misses there says whether it is t
 step that this leaves open, or in which something may hide, becomes a panel of its own, or two where
 it is known when in it a kink or a jump is, of steps a ninth as long, and so on, until all are
 closed, or so short that nothing but a jump, a kink or a pole is left in them. Where that takes too
-many panels, or a quantity grows on slowly without an end, its peak is not told.
+many panels, or a quantity keeps growing slowly, its peak is not reported.
 
 Where friction at rest leaves a curve open at an instant, the steps beside it are searched by
 themselves from where, or up to where, it is a number.
@@ -87,7 +87,7 @@ come to its end.
 """
 
 QUIET = 10
-"""Values from whose differences rounding is told."""
+"""Number of values from whose differences rounding is estimated."""
 
 RAGGED = 0.3
 """Relative second differences of values that are nothing but rounding."""
@@ -108,11 +108,11 @@ def peaks(
     """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples``
     are.
 
-    ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below
-    the largest sample. Of several that are as large but for rounding the first is told, for else
-    rounding would choose their sign. A quantity that is no number at any instant, as friction at
-    rest leaves it, has no peak. ``listed`` says which local peaks are told too. ``sampled`` peaks
-    are those at the instants, with an error.
+    ``hiding`` (n - 1,) marks the steps in which samples are known to miss something. No peak is
+    below the largest sample. Of several peaks that are equal within rounding the first is reported;
+    otherwise rounding would choose the sign. A quantity that is NaN at all instants, because of
+    friction at rest, has no peak. ``listed`` says which local peaks are reported too. ``sampled``
+    peaks are those at the instants, with an error.
     """
     base, direction = np.zeros(len(curves.units)), listed.sign if listed else 0
     if direction:

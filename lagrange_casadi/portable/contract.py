@@ -36,7 +36,7 @@ class Member:
     """A member of a struct: its name in C, the full name of what it holds, and what a reader must
     know of it.
 
-    ``wrapped`` tells that it is an angle known up to whole turns.
+    ``wrapped`` is true for an angle that is known up to whole turns.
     """
 
     name: str
@@ -86,10 +86,10 @@ class LinkContract:
 class Contract:
     """An exported program's interface.
 
-    ``inputs`` and ``outputs`` are the members of these structs in order; ``rests`` tells that each
-    coordinate, and the time, has a second number, what rounding it to single precision left.
+    ``inputs`` and ``outputs`` are the members of these structs in order; ``rests`` is true if each
+    coordinate, and the time, has a second number, its error of rounding to single precision.
     ``settings`` are the parameters, ``links`` those with sections, ``drives`` the driven joints.
-    ``timed`` tells that the time itself matters. ``table`` says what they mean.
+    ``timed`` is true if results depend on the time. ``table`` has the description of the members.
     """
 
     prefix: str

@@ -142,8 +142,8 @@ def _rows(solutions: tuple[Solution, Solution]) -> Iterator[dict[str, Json]]:
 
 
 def _names(first: Solution, second: Solution) -> tuple[str, str]:
-    """Names by which two solutions are told apart: their cases, else the parameters that differ,
-    else numbers.
+    """Names to distinguish two solutions: their cases, otherwise the parameters that differ,
+    otherwise numbers.
     """
     if first.case != second.case:
         return first.case, second.case

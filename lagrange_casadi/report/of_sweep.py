@@ -1,7 +1,7 @@
 """A sweep as a page for browsers: maps, fronts, a table of designs, and the mechanism of the design
 that is looked at, in motion.
 
-The mechanism is a live page within the page: it evaluates whatever design it is told.
+The mechanism is a live page within the page: it evaluates the design that is chosen.
 """
 
 from __future__ import annotations
@@ -90,8 +90,8 @@ def is_of(sweep: Sweep, scene: Scene) -> bool:
 def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
     if scene is not None and not is_of(sweep, scene):
         raise DeclarationError(
-            f"{sweep.path}: the sweep is not of this scene; take the case that was swept, as it was"
-            " then"
+            f"{sweep.path}: the sweep was made with another scene; give the case that was swept,"
+            " without later changes"
         )
     names = [name for name, column in sweep.columns.items() if not column.axes and name != STATUS]
     if not names:

@@ -2,8 +2,8 @@
 
 The viewer's sources in ``assets`` are what a page holds, word for word: plain JavaScript and CSS,
 nothing is built. What a solution says goes beside them as JSON; the viewer makes the page's
-elements of it, as texts and never as markup. A page may run no other script than the viewer, whose
-digest it tells the browser, and may load nothing.
+elements of it, as texts and never as markup. A page may load nothing, and may run no script except
+the viewer: its policy gives the browser the digest of the viewer.
 """
 
 from __future__ import annotations

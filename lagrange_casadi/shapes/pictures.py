@@ -43,8 +43,8 @@ def one_at_a_time(settings: Any = None) -> Iterator[None]:
 def save(
     figure: Figure, file: BinaryIO | str | os.PathLike[str], ending: str = ".png", dpi: int = 150
 ) -> None:
-    """Write a figure into a file, of the kind that one of :data:`PICTURES` tells, in ``dpi`` pixels
-    an inch.
+    """Write a figure into a file. ``ending`` is a key of :data:`PICTURES`, ``dpi`` the pixels for
+    each inch.
     """
     # Names within an SVG are drawn at random where nothing is given.
     with one_at_a_time({"svg.hashsalt": "lagrange_casadi"}):

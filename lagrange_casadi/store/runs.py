@@ -52,7 +52,7 @@ SCHEMA_VERSION = 7
 """Files of version 1 had no seal. Those of version 2 are not over a drive's coordinate, those of 3
 of planar mechanisms alone, those of 4 have no loads along links, those of 5 no rotary inertia of
 slices, those of 6 no friction, stresses, derivatives by parameters or ranges of holding efforts,
-and nothing that elasticity tells; all from 2 on are still written."""
+and no results of elasticity; all from 2 on are still written."""
 
 _WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED, _THICK = 2, 3, 4, 5, 6
 _READ = range(_WITHOUT_OVER, SCHEMA_VERSION + 1)

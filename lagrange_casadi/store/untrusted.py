@@ -1,8 +1,8 @@
 """Checks of a file before it is believed: the shape of its JSON, the targets of its links, and the
 kinds of its datasets.
 
-HDF5 allows far more than this package writes, and JSON too. What is otherwise is told as damage, in
-one line that names the file.
+HDF5 and JSON allow far more than this package writes. Anything else is reported as damage, in one
+line that names the file.
 """
 
 from __future__ import annotations

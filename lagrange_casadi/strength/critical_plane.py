@@ -117,7 +117,7 @@ def _best(
     spans: Sequence[float],
     counts: Sequence[int],
 ) -> Plane:
-    """The worst of planes that angles tell: of many evenly, then nearer and nearer to the worst."""
+    """The worst of planes given by angles: first of an even grid, then of finer ones near it."""
     grids = [(np.arange(n) + 0.5) * span / n for span, n in zip(spans, counts, strict=True)]
     steps = np.array([grid[1] - grid[0] for grid in grids])
     angles = np.stack(np.meshgrid(*grids, indexing="ij"), -1).reshape(-1, len(grids))

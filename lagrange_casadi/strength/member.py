@@ -205,6 +205,5 @@ class Member:
             kind = self.beam.course.cells[0][0].kind
             how = "use beams.given with its properties, torsion included, or beams.analysed"
             raise DeclarationError(
-                f"link '{self.link}' is twisted, and for torsion of a {kind} there is no formula;"
-                f" {how}"
+                f"link '{self.link}' carries torsion, and there is no formula for a {kind}; {how}"
             )

@@ -35,8 +35,8 @@ def looked(solution: Solution) -> Iterator[Safety]:
 
 
 def not_evaluated(solution: Solution) -> dict[str, str]:
-    """Links that have a beam and joints that have pins or bearings of which no factor of safety is
-    told, and why.
+    """Links with beams, and joints with pins or bearings, that have no factor of safety, and the
+    reasons.
     """
     links, joints = _parts(solution)
     reasons = {

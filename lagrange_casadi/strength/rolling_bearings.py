@@ -225,6 +225,6 @@ def select_bearing(
     best = max(fitting, key=lambda one: one.dynamic)
     found = joint_safety(solution, joint, [best.rolling(hours)])
     raise NoDesignError(
-        f"joint '{joint}': no bearing lives {hours:g} h; the strongest, '{best.name}', has a factor"
-        f" of {found.governs.factor:.4g} against {found.governs.against}"
+        f"joint '{joint}': no bearing has a life of {hours:g} h; the strongest, '{best.name}',"
+        f" has a factor of {found.governs.factor:.4g} against {found.governs.against}"
     )

@@ -77,7 +77,7 @@ class Life:
     ``cycles`` and ``hours`` until it is 1, infinite where no swing is above the endurance limit;
     and where, by ratio xi/l and fibre.
 
-    A life below a thousand cycles is told by a line that begins there, and is a guess.
+    A life below a thousand cycles follows from a line that begins there, and is a rough estimate.
     """
 
     link: str

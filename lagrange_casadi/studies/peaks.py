@@ -116,15 +116,15 @@ def shortfall(
     t: Times | None = None,
     over: Over | None = None,
 ) -> list[Shortfall]:
-    """Shortfall of peaks if a span of time is cut into so many instants, a row for each of
+    """Shortfall of peaks if a span of time is divided into a number of instants, a row for each of
     ``counts``.
 
     The span is the scene's own, or that of ``t`` or ``over``, as in :func:`.evaluate`. ``names``
     are full names of quantities; by default all efforts, reactions and section forces that are
-    wanted and determined. Those that are zero but for rounding, grow without bound or are not told
-    are left out. The true peaks are the largest refined ones, of all counts and of twice as many
-    instants. Raises :class:`DeclarationError` for no counts or where no quantity is left, and what
-    :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
+    wanted and determined. Quantities that are zero within rounding, grow without bound or have no
+    reported peak are left out. The true peaks are the largest refined ones, of all counts and of
+    twice as many instants. Raises :class:`DeclarationError` for no counts or where no quantity is
+    left, and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
     """
     timing = scene.timing(t, over)
     start, stop = span_of(scene.prescribed, timing, scene.values(parameters))
@@ -152,7 +152,7 @@ def shortfall(
         dtype=bool,
     )
     if not there.any():
-        raise DeclarationError("shortfall: no quantity is there that is determined and not zero")
+        raise DeclarationError("shortfall: every quantity is indeterminate or zero")
     missing = [1.0 - peaks[:-1, there] / true[there] for peaks in (sampled, refined)]
     columns = [distributed(rows, axis=1) for rows in missing for distributed in (np.max, np.median)]
     return [

@@ -160,7 +160,7 @@ class Sensitivities:
     def _over_time(self, name: str) -> tuple[Array, Array]:
         if self._known(name).group == "section":
             raise DeclarationError(
-                f"'{name}': a section force has a mean at every ratio; take that of array(...)"
+                f"'{name}': a section force has a mean at every ratio; compute it from array(...)"
             )
         return self._all(name)
 

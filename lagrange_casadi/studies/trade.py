@@ -196,7 +196,7 @@ def trade(
     progress: Callable[[EvaluationMethod], None] = lambda method: None,
 ) -> Trade:
     """Measure every method on a scene, ``t`` or ``over`` as in :func:`.evaluate`; ``progress`` is
-    told of each before it is taken.
+    called with each before it is measured.
 
     Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for
     graphs that call functions of their own, and what :func:`.evaluate` raises where the scene has

@@ -2,12 +2,12 @@
 stays decided.
 
 Monte Carlo arithmetic (D. S. Parker, *Monte Carlo Arithmetic*, UCLA CSD-970002, 1997) gives every
-operation a random error as large as its rounding. Two things would make that a wild guess. A
-difference that rounds nothing would be given an error, which the next one magnifies. And where a
-load jumps, an error takes a trial over the jump. So the operations are first followed as they are
-computed, in numbers of the precision: that tells what each rounds, and how every comparison comes
-out. Trials then keep to that. Where errors could turn a comparison round, a result may stand on
-either side of the jump: the side that it took is found.
+operation a random error as large as its rounding. Two effects would make that far too large. A
+difference without a rounding error would be given one, which the next operation magnifies. And if a
+load jumps, an error may move a trial over the jump. So the operations are first computed in the
+precision of the result: this determines the rounding error of each operation, and the outcome of
+every comparison. Trials then use these. If errors could reverse a comparison, a result may be on
+either side of the jump: the side of the result is found.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Loads of a solution held to their laws, as they were declared: from the reported motions, and not
-from the graphs.
+"""Loads of a solution compared with their declared laws: from the reported motions, and not from
+the graphs.
 
-A law that jumps may be on either side of its jump, and a steep one tells little: what the rounding
-of reported places and rates leaves open counts for no gap. Friction has a law of its own
-(:mod:`.friction`); here is only where it acts.
+A law that jumps may be on either side of its jump. The rounding of reported places and rates also
+changes the value of a steep law: a difference that this rounding explains is not counted. The law
+of friction is in :mod:`.friction`; this module has only the points at which friction acts.
 """
 
 from __future__ import annotations

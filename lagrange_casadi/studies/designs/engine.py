@@ -90,7 +90,7 @@ class DesignEngine:
         method = method or EvaluationMethod()
         if method.table is not None:
             raise DeclarationError(
-                "designs are not read from a table: each would need a table of its own"
+                "designs are not read from a table: each would need a different table"
             )
         program = compile_scene(scene, wanted)
         method.check(program)

@@ -61,8 +61,8 @@ class Gradient:
     the derivatives of ``value``, with its sign, by each of ``parameters``, in the quantity's unit
     over the parameter's. ``kinds`` (q,) says what each peak is at: see :class:`.PeakKind`. Slopes
     are NaN where a peak has none: it is infinite, not determined, or at a kink or a jump that
-    nothing explains. Where a quantity has two peaks of one size, the slopes are those of the one
-    that is told; :attr:`tied` says where that is so.
+    nothing explains. If a quantity has two peaks of equal size, the slopes are those of the
+    reported peak; :attr:`tied` marks these quantities.
     """
 
     quantities: tuple[str, ...]

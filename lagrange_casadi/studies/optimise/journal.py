@@ -1,7 +1,7 @@
 """Journal of a search: a file beside its result, a line for every finished run, each whole or
 absent.
 
-The first line tells what they are of. Every line begins with the CRC-32 of the rest.
+The first line describes the search. Every line begins with the CRC-32 of the rest.
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ class Box:
             a, b = (declared[name].number(bound) for bound in bounds)
             if not a < b:
                 raise DeclarationError(
-                    f"over: of '{name}' the least value {a:g} must be below the largest, {b:g}"
+                    f"over: '{name}': the least value {a:g} must be below the largest, {b:g}"
                 )
             low.append(a)
             high.append(b)

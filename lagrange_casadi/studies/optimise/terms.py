@@ -144,7 +144,7 @@ class Constraint:
             raise DeclarationError(f"'{text}': {advice}")
         if not least and term.kind == "min":
             raise DeclarationError(
-                f"'{text}': use max:{term.name}, a smallest value can be limited from below only"
+                f"'{text}': a smallest value has only a lower limit; use max:{term.name}"
             )
         if term.kind == "peak" and limit < 0.0:
             raise DeclarationError(f"'{text}': a peak is a size, which is not below {limit:g}")

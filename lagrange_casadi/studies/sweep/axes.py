@@ -235,7 +235,7 @@ class Grid:
         return self.axes[name].at(np.arange(start, stop, dtype=np.int64))
 
     def describe(self) -> dict[str, str]:
-        """The axes in words, which tell one grid from another."""
+        """The axes in words, which differ for different grids."""
         return {name: str(axis) for name, axis in self.axes.items()}
 
     def outside(self, name: str, low: float, high: float) -> str:
@@ -244,17 +244,18 @@ class Grid:
 
     @property
     def units(self) -> dict[str, str]:
-        """The units in which values are told, of parameters that have some told so."""
+        """The units of values that were given with a unit, by parameter."""
         return {name: axis.unit for name, axis in self.axes.items() if axis.unit}
 
 
 @public
 @dataclass(frozen=True, eq=False)
 class Listed:
-    """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood
-    in a file ``source``.
+    """A list of designs: ``rows`` (designs, names) of values; ``lines`` are the line numbers of
+    the rows in a file ``source``.
 
-    ``units`` are those of parameters that have some values told in one, as 30 deg in rad.
+    ``units`` are those of values that were given with a unit, such as 30 deg for a parameter in
+    rad.
 
     Raises :class:`DeclarationError` for no designs, no or repeated names, or values that are not
     finite.
@@ -303,7 +304,7 @@ class Listed:
         return self.rows[start:stop, self.names.index(name)]
 
     def describe(self) -> dict[str, str]:
-        """The list in words, which tell one from another."""
+        """The list in words, which differ for different lists."""
         digest = hashlib.sha256(self.rows.tobytes()).hexdigest()
         return {DESIGN: f"{counted(self.size)} of {', '.join(self.names)}, SHA-256 {digest}"}
 
@@ -373,7 +374,7 @@ def check_designs(
 def check_known(names: Sequence[str], parameters: Collection[str], head_of: str = "") -> None:
     """Raise :class:`DeclarationError` for names that are no parameters', all of them at once.
 
-    Names that are the first line of a file, ``head_of``, are told with their columns.
+    If the names are the first line of a file, ``head_of``, the message has their columns.
     """
     unknown = {column: name for column, name in enumerate(names, 1) if name not in parameters}
 
@@ -453,7 +454,7 @@ def _named(words: Sequence[str]) -> str:
 
 
 def _one_unit(*units: str) -> str:
-    """The unit that texts tell. Raises :class:`DeclarationError` for several."""
+    """The unit of texts. Raises :class:`DeclarationError` for several."""
     found = dict.fromkeys(unit for unit in units if unit)
     if len(found) > 1:
         raise DeclarationError(

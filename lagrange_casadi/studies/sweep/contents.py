@@ -55,7 +55,7 @@ class Contents(TypedDict):
 
 
 def contents(file: h5py.File) -> Contents:
-    """The fields of a :class:`.Sweep` that its file tells.
+    """The fields of a :class:`.Sweep` that its file has.
 
     Raises ``ValueError``, ``KeyError`` and others where it is not what a sweep writes.
     """

@@ -34,10 +34,10 @@ TIMES = "history:t"
 """The times of a design's instants, where these are over anything else."""
 
 ERROR = "peak_error"
-"""Kind of columns that tell how much larger than at the instants a peak may be between them."""
+"""Kind of columns that bound how much larger a peak between instants may be than at them."""
 
 LEAST, LIFE, MASS = "least", "life", "mass"
-"""Kinds of columns that tell of the strength of links."""
+"""Kinds of columns on the strength of links."""
 
 WAYS = ("yield", "buckling", "fatigue")
 """Modes of failure of links."""

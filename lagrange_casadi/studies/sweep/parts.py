@@ -1,8 +1,8 @@
 """Committed parts of a sweep: a folder of parts, each whole or absent, and a lock on it that ends
 with its process.
 
-A part holds the columns of the designs from ``start`` to before ``stop``: a line of JSON that tells
-what is in it, a line that is the SHA-256 of that line, and then the columns one after another, as
+A part holds the columns of the designs from ``start`` to before ``stop``: a line of JSON that
+describes them, a line that is the SHA-256 of that line, and then the columns one after another, as
 chunks of the file, each with a CRC-32 of its own.
 """
 

@@ -1,5 +1,5 @@
-"""A sweep before it runs: which designs, what is kept of them, and the words that tell it from any
-other sweep.
+"""A sweep before it runs: which designs, what is kept of them, and the words that distinguish it
+from other sweeps.
 """
 
 from __future__ import annotations

@@ -222,7 +222,7 @@ class Sweep:
             every, else_every = (" and ".join(words) for words in (axes, other))
             raise DeclarationError(
                 f"column '{first}' has a value for every {every}, '{name}' for every {else_every}:"
-                " each needs a table of its own"
+                " write a table for each"
             )
         return axes
 

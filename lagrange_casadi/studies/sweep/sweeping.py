@@ -152,7 +152,7 @@ def hired(workers: int | None, dask: str | None) -> Workers:
         return Threads(workers)
     if workers is not None:
         raise DeclarationError(
-            "workers and dask exclude each other: a cluster has workers of its own"
+            "workers and dask exclude each other: the cluster provides the workers"
         )
     cluster: Workers = method("sweep.dask")(dask)
     return cluster
