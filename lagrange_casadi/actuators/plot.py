@@ -8,21 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from ..arguments import public
-from ..base.publish import check_writable, writing
-from ..errors import DeclarationError
-from ..shapes.pictures import PICTURES, one_at_a_time, save
+from ..base.publish import writing
+from ..shapes.pictures import check_picture, one_at_a_time, save
 from .duty import Duty
 from .motor import Motor
-
-
-def check_picture(path: str | Path) -> None:
-    """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and
-    :class:`.PathError`.
-    """
-    target = Path(path)
-    if target.suffix not in PICTURES:
-        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
-    check_writable(target)
 
 
 @public

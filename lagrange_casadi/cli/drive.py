@@ -13,7 +13,6 @@ import click
 
 from ..actuators import Choice, Duty, Motor, duty_of, inertia_at, plot_duty, read_motors, select
 from ..actuators.duty import slides
-from ..actuators.plot import check_picture
 from ..base.arrays import Array
 from ..case import load_case
 from ..declare.even_points import EvenPoints
@@ -21,6 +20,7 @@ from ..declare.scene import kinds
 from ..declare.times import Over
 from ..errors import CertificateError, NoDesignError, UnknownNameError
 from ..instants.solution import Solution
+from ..shapes.pictures import check_picture
 from ..studies.evaluate import evaluate
 from ..verification.certificate import failure, summary
 from .echo import echo

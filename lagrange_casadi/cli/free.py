@@ -13,8 +13,9 @@ from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..errors import CertificateError, UnknownNameError
 from ..forward import FreeMotion, Law, dc_motor, induction_motor, power, torque
-from ..forward.plot import check_picture, plot_cycle
+from ..forward.plot import plot_cycle
 from ..forward.running import flywheel, free
+from ..shapes.pictures import check_picture
 from ..store.runs import check_target, save
 from ..verification.certificate import failure, summary
 from .echo import echo

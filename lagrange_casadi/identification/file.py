@@ -12,8 +12,7 @@ import numpy as np
 from ..arguments import public
 from ..base.publish import PatientFile, replacing, writing
 from ..base.seal import seal
-from ..errors import DeclarationError
-from ..shapes.pictures import PICTURES, one_at_a_time, save
+from ..shapes.pictures import check_picture, one_at_a_time, save
 from ..store.opening import IDENTIFICATION, IDENTIFICATION_VERSION
 from .identification import Comparison, Identification
 
@@ -105,8 +104,7 @@ def plot_identification(compared: Comparison, path: str | os.PathLike[str]) -> N
         If the file cannot be written.
     """
     target = Path(path)
-    if target.suffix not in PICTURES:
-        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
+    check_picture(target)
     from matplotlib.figure import Figure
 
     names = list(compared.measured)

@@ -6,7 +6,11 @@ import os
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
+
+from ..base.publish import check_writable
+from ..errors import DeclarationError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +28,16 @@ gives the same bytes: programs, clocks.
 def ending_of(svg: bool) -> str:
     """Return the ending of a figure's name in a folder of figures."""
     return ".svg" if svg else ".png"
+
+
+def check_picture(path: str | Path) -> None:
+    """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and
+    :class:`.PathError`.
+    """
+    target = Path(path)
+    if target.suffix not in PICTURES:
+        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
+    check_writable(target)
 
 
 _drawing = threading.RLock()
