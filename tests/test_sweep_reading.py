@@ -290,7 +290,7 @@ def test_rows_along_axes_that_are_none_are_refused(histories, monkeypatch, tmp_p
         histories.blocks(["status"], ["x"])
     with pytest.raises(
         DeclarationError,
-        match="for every t, 'history:section:rod:axial' for every t and xi: each needs a table",
+        match="for every t, 'history:section:rod:axial' for every t and xi: write a table for each",
     ):
         histories.axes_of(["l", "status", "history:effort:O", "history:section:rod:axial"])
     assert histories.axes_of(["l", "status", "history:section:rod:axial"]) == ("t", "xi")
