@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import casadi as ca
 
@@ -120,6 +120,22 @@ def sound(condition: ca.SX) -> ca.SX:
     compiler has as a root.
     """
     return ca.sqrt(2.0 * condition - 1.0)
+
+
+def expressed(
+    what: str, graph: Callable[..., Expression], arguments: Sequence[ca.SX], names: str
+) -> Expression:
+    """Return a user's function of symbols, which messages call by their ``names``.
+
+    Raises :class:`.DeclarationError`, saying ``what`` it is, for whatever the function raises.
+    """
+    try:
+        return graph(*arguments)
+    except Exception as error:
+        raise DeclarationError(
+            f"{what} cannot be made as an expression of {names} (CasADi's functions, numbers"
+            f" without units): {error_text(error)[:240]}"
+        ) from None
 
 
 def error_text(error: BaseException) -> str:

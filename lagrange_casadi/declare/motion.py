@@ -20,7 +20,7 @@ from ..errors import DeclarationError, shown
 from ..renamed import renamed
 from .curves import curve, rows
 from .ends import beyond_ends
-from .expressions import coordinates, error_text, scalar, symbols_of
+from .expressions import coordinates, expressed, scalar, symbols_of
 from .kinks import Smooth
 from .parts import Expression
 from .scaled import Scaled
@@ -267,20 +267,14 @@ def ends_function(laws: Mapping[str, Motion], parameters: ca.SX) -> ca.Function 
 
 
 def _scalar(joint: str, law: Motion, t: ca.SX, parameters: ca.SX) -> Expression:
-    try:
-        value = law.graph(t)
-    except Exception as error:
-        raise DeclarationError(
-            f"the motion of joint '{joint}' cannot be made as an expression of the time t"
-            f" (CasADi's functions, numbers without units): {error_text(error)[:240]}"
-        ) from None
+    what = f"the motion of joint '{joint}'"
+    value = expressed(what, law.graph, [t], "the time t")
     if isinstance(value, float) and math.isnan(value):
         raise DeclarationError(
-            f"the motion of joint '{joint}' is not a number; use CasADi's functions, as casadi.sin"
-            " in place of math.sin"
+            f"{what} is not a number; use CasADi's functions, as casadi.sin in place of math.sin"
         )
     symbols = [t, *ca.vertsplit(parameters)] if parameters.numel() else [t]
-    return scalar(f"the motion of joint '{joint}'", value, symbols, "parameter")
+    return scalar(what, value, symbols, "parameter")
 
 
 def _derivatives(value: ca.SX, t: ca.SX) -> list[ca.SX]:

@@ -12,7 +12,7 @@ from ..base.arrays import Expression
 from ..base.symbolic import symbolic
 from ..errors import DeclarationError
 from . import curves
-from .expressions import error_text, scalar, symbols_of
+from .expressions import expressed, scalar, symbols_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,13 +38,7 @@ def torque_of(law: Law, what: str, arguments: Sequence[ca.SX], parameters: ca.SX
 
     Raises :class:`.DeclarationError`, saying ``what`` it is, for what is no such expression.
     """
-    try:
-        value = law.graph(*arguments)
-    except Exception as error:
-        raise DeclarationError(
-            f"{what} cannot be made as an expression of t, angle and speed (CasADi's functions,"
-            f" numbers without units): {error_text(error)[:240]}"
-        ) from None
+    value = expressed(what, law.graph, arguments, "t, angle and speed")
     symbols = [*arguments, *(ca.vertsplit(parameters) if parameters.numel() else [])]
     return ca.SX(scalar(what, value, symbols, "parameter", "N*m"))
 
