@@ -73,7 +73,7 @@ def fmu(source: Source, p: Array, by: str = "") -> bytes:
     archive = _archive(files)
     findings = _findings(archive)
     if findings:
-        raise StoreError(f"FMPy finds {prefix}.fmu wrong: {' '.join(findings[0].split())}")
+        raise StoreError(f"FMPy reports an error in {prefix}.fmu: {' '.join(findings[0].split())}")
     return archive
 
 

@@ -87,7 +87,7 @@ class _Robot:
         while waiting:
             ready = [one for one in waiting if self.side(one, _ONE)[0] in placed]
             if not ready:
-                words = "its links hang on nothing that leads to the root"
+                words = "its links are not connected to the root"
                 raise model.refuse(waiting[0].where, words)
             self.grow(ready[0], placed)
             waiting = [one for one in waiting if one is not ready[0]]
