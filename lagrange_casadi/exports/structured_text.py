@@ -53,6 +53,9 @@ _WRITTEN = {
     ca.OP_IF_ELSE_ZERO: "SEL({0} <> 0.0, 0.0, {1})",
 }
 
+_LEAST = 1e-37
+"""Bound of an output that is zero: matiec reads numbers of LREAL only in the range of REAL."""
+
 
 def structured_text(source: Source) -> dict[str, str]:
     """Return the file ``<prefix>.st`` of a scene, for the parameters of the export.
@@ -262,7 +265,8 @@ def _test(source: Source, given: Sequence[str], taken: Sequence[str]) -> Iterato
         for k, (name, m) in enumerate(zip(taken, c.outputs, strict=True)):
             gap = f"unit.{name} - ({_number(float(g.outputs[number, k]))})"
             gap = f"LC_DIRECTION({gap})" if m.wrapped else gap
-            yield f"IF NOT (ABS({gap}) <= {_number(float(g.outputs_off[k]))}) THEN"
+            off = max(float(g.outputs_off[k]), _LEAST)
+            yield f"IF NOT (ABS({gap}) <= {_number(off)}) THEN"
             yield from ("failed := failed + 1;", "END_IF;")
 
 
