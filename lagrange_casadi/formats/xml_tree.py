@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
+import numpy as np
+
 from ..base.arrays import Array
 from ..errors import ModelFileError, shown
 from .record import Model, number, numbers
@@ -61,6 +63,23 @@ class Element:
     def number(self, given: object, what: str) -> float:
         """Return a number of it."""
         return number(self.model, self.where, given, what)
+
+    def amount(self, name: str, usual: float | None = None, what: str = "") -> float:
+        """Return the number in an attribute; ``usual`` if there is no such attribute."""
+        given: object = usual if name not in self.given else None
+        return self.number(self.attribute(name) if given is None else given, what or name)
+
+    def triple(self, name: str, what: str = "", usual: str = "") -> Array:
+        """Return three numbers in an attribute; ``usual`` if there is no such attribute."""
+        given = self.given.get(name, usual) or self.attribute(name)
+        return numbers(self.model, self.where, given, what or name, 3)
+
+    def direction(self, given: str, what: str) -> Array:
+        """Return three numbers that are not all zero."""
+        found = numbers(self.model, self.where, given, what, 3)
+        if not np.any(found):
+            raise self.refuse("expected a direction, got zero")
+        return found
 
     def numbers(self, given: object, what: str, count: int) -> Array:
         """Return so many numbers of it."""
