@@ -69,6 +69,11 @@ class Element:
         given: object = usual if name not in self.given else None
         return self.number(self.attribute(name) if given is None else given, what or name)
 
+    def inner(self, name: str, usual: float) -> float:
+        """Return the number that is the text of an element in it, without a name its own."""
+        found = self.first(name) if name else self
+        return usual if found is None else found.number(found.text.strip(), name or self.name)
+
     def triple(self, name: str, what: str = "", usual: str = "") -> Array:
         """Return three numbers in an attribute; ``usual`` if there is no such attribute."""
         given = self.given.get(name, usual) or self.attribute(name)
