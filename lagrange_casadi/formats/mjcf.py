@@ -14,8 +14,8 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..errors import MissingPackageError, shown
+from .elements import Element, parsed
 from .record import GROUND, Body, Coupling, Frame, Joint, Model, about_axis, rotation, turned
-from .xml_tree import Element, parsed
 
 if TYPE_CHECKING:
     from types import ModuleType

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..errors import shown
+from .elements import Element, parsed
 from .record import (
     GROUND,
     MOMENTS,
@@ -21,7 +22,6 @@ from .record import (
     rotation,
     rpy,
 )
-from .xml_tree import Element, parsed
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -47,7 +47,7 @@ def read(path: Path, text: str) -> Model:
     root = parsed(model, text, "sdf")
     world = root.first("world")
     if world is not None and (line := world.first("gravity")) is not None:
-        x, y, z = line.numbers(line.text, "gravity", 3)
+        x, y, z = line.numbers("gravity", 3)
         model.gravity = (float(x), float(y), float(z))
     line = (world or root).needed("model")
     others = [one for one in (world or root).all("model") if one is not line]
@@ -118,7 +118,7 @@ class _Reader:
                     raise line.refuse("its two axes are not at right angles")
                 far = Frame(frame.place, about_axis(second))
         if kind == "screw":
-            lead = line.needed("screw_thread_pitch").inner("", 0.0)
+            lead = line.needed("screw_thread_pitch").inner()
         near, far = model.frame_of(parent).relative(near), model.frame_of(child).relative(far)
         model.add(Joint, data, line.where, kind, parent, child, near, far, lead)
 
@@ -129,7 +129,7 @@ class _Reader:
         if axis is not None and (mimic := axis.first("mimic")) is not None:
             other = mimic.attribute("joint")
             ratio, offset, reference = (
-                mimic.inner(key, 0.0) for key in ("multiplier", "offset", "reference")
+                mimic.inner(key) for key in ("multiplier", "offset", "reference")
             )
             self.coupling(mimic, f"{data}_mimic", (other, data), ratio, offset - ratio * reference)
         if line.given["type"] != "gearbox":
@@ -163,7 +163,7 @@ class _Reader:
         data = line.needed(key)
         xyz, given, on = data.first("xyz"), np.array([0.0, 0.0, 1.0]), frame
         if xyz is not None:
-            given = xyz.numbers(xyz.text, "xyz", 3)
+            given = xyz.numbers("xyz", 3)
             if expressed := xyz.given.get("expressed_in"):
                 on = self.known(xyz, expressed, ())
         legacy = data.first("use_parent_model_frame")
@@ -218,9 +218,8 @@ class _Reader:
         """Return the frame of a pose: a place, and roll, pitch and yaw."""
         if line is None or not line.text.strip():
             return Frame()
-        data = line.text
         if line.given.get("rotation_format", "euler_rpy") != "euler_rpy":
             raise line.refuse("rotation_format: expected euler_rpy")
-        six = line.numbers(data, "pose", 6)
+        six = line.numbers("pose", 6)
         angles = np.radians(six[3:]) if line.given.get("degrees") in ("true", "1") else six[3:]
         return Frame(six[:3], rotation(self.model, line.where, rpy(angles)))

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..errors import shown
+from .elements import Element, parsed
 from .record import (
     GROUND,
     MOMENTS,
@@ -27,7 +28,6 @@ from .record import (
     rotation,
     rpy,
 )
-from .xml_tree import Element, parsed
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -126,19 +126,16 @@ class _Robot:
 
     def loop(self, line: Element, placed: dict[str, Frame]) -> None:
         """Read a loop that an element of its own closes."""
-        kind = self.kind(line)
+        kind, axis = self.kind(line), line.first("parent_axis", "axis")
         (parent, near), (child, far) = self.side(line, _ONE), self.side(line, _OTHER)
         near = near.then(self.axes(line, kind, "parent_axis", "axis"))
-        if kind == "universal" or line.first("child_axis") is not None:
-            far = far.then(self.axes(line, kind, "child_axis", "axis"))
+        apart = kind == "universal" or line.first("child_axis") is not None
+        if axis is not None and axis.given.get("frame") == "parent" and not apart:
+            # The axis is given on the parent alone: the child's is where it is at zero.
+            known = placed[child].relative(placed[parent].then(near))
+            far = Frame(far.place, rotation(self.model, line.where, known.axes))
         else:
-            given = line.first("parent_axis", "axis")
-            if given is not None and given.given.get("frame") == "parent":
-                # The axis is given on the parent alone: the child's is where it is at zero.
-                known = placed[child].relative(placed[parent].then(near))
-                far = Frame(far.place, rotation(self.model, line.where, known.axes))
-            else:
-                far = far.then(self.axes(line, kind, "parent_axis", "axis"))
+            far = far.then(self.axes(line, kind, "child_axis" if apart else "parent_axis", "axis"))
         self.add(line, kind, (parent, near), (child, far))
 
     def ball_constraint(self, line: Element) -> None:
@@ -146,7 +143,7 @@ class _Robot:
         sides = []
         for letter, point in (("A", "p_AP"), ("B", "p_BQ")):
             body = line.needed(f"drake:ball_constraint_body_{letter}")
-            at = line.needed(f"drake:ball_constraint_{point}").triple("value", point)
+            at = line.needed(f"drake:ball_constraint_{point}").triple("value", what=point)
             sides.append((self.known(body, body.attribute("name")), Frame(at)))
         line.given.setdefault("name", f"ball_{len(self.model.joints)}")
         self.add(line, "spherical", sides[0], sides[1])
@@ -170,7 +167,7 @@ class _Robot:
         if len({self.side(above[link], _ONE)[0] for link in links}) > 1:
             raise line.refuse("is supported only if both its links have the same parent")
         first, second = (self.joint(above[link], "name") for link in links)
-        ratio = line.number(line.needed("ratio").attribute("value"), "ratio")
+        ratio = line.needed("ratio").amount("value", what="ratio")
         self.model.add(Coupling, line.attribute("name"), line.where, first, second, ratio)
 
     def actuators(self) -> None:
@@ -180,9 +177,8 @@ class _Robot:
                 if group.name == "transmission" or joint.first("command_interface") is not None:
                     self.model.preferred.append(self.joint(joint, "name"))
         if any(group.first("actuator") for group in self.root.all("transmission")):
-            self.model.notes.append(
-                "Reductions of transmissions are not read: efforts are at joints."
-            )
+            words = "Reductions of transmissions are not read: efforts are at joints."
+            self.model.notes.append(words)
 
     def left_out(self, joints: list[Element]) -> None:
         """Note what was not read."""
@@ -191,7 +187,7 @@ class _Robot:
             for joint in joints
             for one in joint.all("dynamics")
             for key in ("damping", "friction")
-            if one.number(one.given.get(key) or "0", key)
+            if one.given.get(key) and one.amount(key)
         }
         if losses:
             self.model.notes.append(f"Damping and friction are not read: {', '.join(losses)}.")
@@ -208,16 +204,10 @@ class _Robot:
         link, mass, centre = self.links[stated], 0.0, Frame()
         inertial, inertia = link.first("inertial"), np.zeros((3, 3))
         if inertial is not None:
-            mass, centre = (
-                inertial.needed("mass").amount("value", what="mass"),
-                self.origin(inertial),
-            )
-            moments = inertial.first("inertia")
-            inertia = (
-                None
-                if moments is None
-                else inertia_of([moments.amount(key, 0.0) for key in MOMENTS], centre.axes)
-            )
+            mass = inertial.needed("mass").amount("value", what="mass")
+            centre, moments = self.origin(inertial), inertial.first("inertia")
+            six = [0.0 if moments is None else moments.amount(key, 0.0) for key in MOMENTS]
+            inertia = inertia_of(six, centre.axes)
         return self.model.add(Body, stated, link.where, mass, centre.place, inertia, frame)
 
     def kind(self, line: Element) -> str:
@@ -232,14 +222,14 @@ class _Robot:
             return Frame()
         axis: Array = np.array([1.0, 0.0, 0.0])
         if (found := line.first(*(names or ("axis",)))) is not None:
-            axis = found.direction(found.attribute("xyz"), "axis")
+            axis = found.direction("xyz", "axis")
         return Frame(axes=about_axis(axis))
 
     def origin(self, owner: Element, name: str = "origin") -> Frame:
         """Return the frame that ``xyz`` and ``rpy`` of an element's origin give."""
         if (line := owner.first(name) if name else owner) is None:
             return Frame()
-        place, angles = line.triple("xyz", usual="0 0 0"), line.triple("rpy", usual="0 0 0")
+        place, angles = line.triple("xyz", "0 0 0"), line.triple("rpy", "0 0 0")
         return Frame(place, rotation(self.model, line.where, rpy(angles)))
 
     def side(self, line: Element, names: tuple[str, ...]) -> tuple[str, Frame]:
