@@ -47,7 +47,7 @@ from lagrange_casadi.beams.beam import beam_from_numbers, beam_to_numbers
 from lagrange_casadi.beams.profiles import Profile, read_profiles
 from lagrange_casadi.cli.report import peak_line, shown
 from lagrange_casadi.cli.report import readable as report_readable
-from lagrange_casadi.cli.slope_lines import slope_lines
+from lagrange_casadi.cli.run import slope_lines
 from lagrange_casadi.cli.strength_lines import not_evaluated_lines, strength_lines
 from lagrange_casadi.cluster import sweeps
 from lagrange_casadi.cluster.sweeps import Cluster
@@ -167,7 +167,7 @@ from lagrange_casadi.figures.trade_plot import draw_trade
 from lagrange_casadi.formats import case_of, json_model
 from lagrange_casadi.formats.laws import LawError, python
 from lagrange_casadi.formats.laws import parsed as laws_parsed
-from lagrange_casadi.formats.record import COORDINATES
+from lagrange_casadi.formats.record import MOVES
 from lagrange_casadi.geometry.frames import Frame
 from lagrange_casadi.geometry.rotation import Rotation
 from lagrange_casadi.instants import backends, cycle_table, grids, tabulate
