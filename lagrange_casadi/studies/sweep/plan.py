@@ -371,7 +371,7 @@ def signature(program: Program, task: Task, provenance: Provenance) -> dict[str,
         "t": task.timing.words(program.data.symbols),
         "xi": task.xi,
         "keep": task.keep,
-        "scene": program.identity or "cannot be told",
+        "scene": program.identity or "cannot be identified",
     }
     content: dict[str, Json] = json.loads(json.dumps(words))
     return content
