@@ -47,7 +47,7 @@ from lagrange_casadi.beams.beam import beam_from_numbers, beam_to_numbers
 from lagrange_casadi.beams.profiles import Profile, read_profiles
 from lagrange_casadi.cli.report import peak_line, shown
 from lagrange_casadi.cli.report import readable as report_readable
-from lagrange_casadi.cli.slope_lines import slope_lines
+from lagrange_casadi.cli.run import slope_lines
 from lagrange_casadi.cli.strength_lines import not_evaluated_lines, strength_lines
 from lagrange_casadi.cluster import sweeps
 from lagrange_casadi.cluster.sweeps import Cluster

@@ -396,7 +396,7 @@ def new(**given: Any) -> None:
     It is a copy of one that comes with the package, under the folder's name, or a model of another
     program that is written as a case.
     """
-    from .new import new
+    from .cases import new
 
     new(**given)
 

@@ -25,8 +25,7 @@ from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_li
 from ..studies.sweep.blocks import Queue
 from ..studies.sweep.columns import Harvest
 from ..studies.sweep.plan import Plan, Task, difference, signature
-from ..studies.sweep.thread_pool import ThreadPool
-from ..studies.sweep.workers import PATIENCE, PULSE, Blocks
+from ..studies.sweep.workers import PATIENCE, PULSE, Blocks, ThreadPool
 
 if TYPE_CHECKING:
     from types import ModuleType

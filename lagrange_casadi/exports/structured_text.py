@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.interpret import operation_name, steps
+from ..arithmetic.interpret import INFIX, operation_name, steps
 from ..base.quantities import Output
 from ..base.status import Status
 from ..errors import DeclarationError
@@ -32,15 +32,8 @@ _TWO |= {name: f"LC_{name.upper()}" for name in ("atan2", "fmod", "remainder", "
 _WRITTEN = {
     **{getattr(ca, f"OP_{name.upper()}"): f"{own}({{0}})" for name, own in _ONE.items()},
     **{getattr(ca, f"OP_{name.upper()}"): f"{own}({{0}}, {{1}})" for name, own in _TWO.items()},
-    ca.OP_ADD: "{0} + {1}",
-    ca.OP_SUB: "{0} - {1}",
-    ca.OP_MUL: "{0} * {1}",
-    ca.OP_DIV: "{0} / {1}",
-    ca.OP_NEG: "-{0}",
-    ca.OP_SQ: "{0} * {0}",
-    ca.OP_TWICE: "{0} + {0}",
+    **INFIX,
     ca.OP_INV: "1.0 / {0}",
-    ca.OP_ASSIGN: "{0}",
     ca.OP_HYPOT: "SQRT({0} * {0} + {1} * {1})",
     ca.OP_LT: "SEL({0} < {1}, 0.0, 1.0)",
     ca.OP_LE: "SEL({0} <= {1}, 0.0, 1.0)",

@@ -133,11 +133,9 @@ class Task:
         outputs.
         """
         xi = np.zeros(0) if self.xi is None else points(self.xi)
-        engine, data = compiled(program, self.timing, self.method, self.peaks), program.data
-        axis = InstantAxis.of(data, self.timing)
-        return Harvest(
-            engine, data, whole or program, self.keep, axis, xi, self.safety, self.life, self.by
-        )
+        engine = compiled(program, self.timing, self.method, self.peaks)
+        axis, kept = InstantAxis.of(program.data, self.timing), (self.safety, self.life, self.by)
+        return Harvest(engine, whole or program, self.keep, axis, xi, *kept)
 
 
 def compiled(
