@@ -179,8 +179,8 @@ def test_what_does_not_fit_into_memory_is_one_line_with_its_size():
     with pytest.raises(
         SizeError,
         match=(
-            r"no room for a grid of axial: 11 x 1 000 000 000 000 values are 8\.8e\+04 GB, and this"
-            r" machine has"
+            r"not enough memory for a grid of axial: 11 x 1 000 000 000 000 values are 8\.8e\+04"
+            r" GB, and this machine has"
         ),
     ):
         grids.empty("a grid of axial", (11, 10**12))

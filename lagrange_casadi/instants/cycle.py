@@ -148,8 +148,8 @@ class Drive:
             timed += [Check("closure", name) for name in program.newton.names]
         if timed:
             raise DeclarationError(
-                f"table: expected columns that the angle of joint '{joint}' decides, but time"
-                f" itself enters {_listed(timed)}"
+                f"table: expected outputs that depend on the angle of joint '{joint}' alone, but"
+                f" these depend on the time: {_listed(timed)}"
             )
         slope = ca.jacobian(out, rate)
         rows = [out, slope, ca.jacobian(slope, rate) / 2, ca.jacobian(out, acceleration)]
@@ -260,7 +260,7 @@ class Drive:
             near = np.abs(values[0, k]) <= limit
             if not near.all():
                 bad = angles[int(np.argmax(~near))]
-                what = f"what was found for the loop closed by '{closing}' does not close it"
+                what = f"the solution of the loop closed by '{closing}' does not close it"
                 raise DeclarationError(f"table: {what}{self._not_round(bad)}")
         found = np.argwhere(~np.isfinite(values).all(axis=0))
         if found.size:
@@ -275,8 +275,8 @@ class Drive:
 
     def _not_round(self, angle: float) -> str:
         return (
-            f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way"
-            " round"
+            f"{where([(self.joint, 'angle', angle)])}; expected a drive that can make whole"
+            " revolutions"
         )
 
 
@@ -288,7 +288,7 @@ def the_drive(program: Program) -> str:
     if len(program.driven) != 1:
         named = ", ".join(f"'{name}'" for name in program.driven) or "none"
         raise DeclarationError(
-            f"table: expected one driven joint, whose angle decides all, got {named}"
+            f"table: expected one driven joint, whose angle determines all, got {named}"
         )
     (joint,) = program.driven
     if program.data.kinds.coordinates[joint] != "angle":
