@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from internals import COORDINATES, LawError, case_of, json_model, python
+from internals import MOVES, LawError, case_of, json_model, python
 from internals import laws_parsed as parsed
 
 from lagrange_casadi import errors, evaluate, load_case, read, save_model
@@ -84,7 +84,7 @@ def test_the_schema_has_the_words_of_the_reader():
     parts |= {"coupling": json_model.COUPLING, "frame": json_model.FRAME}
     for part, words in parts.items():
         assert tuple(schema["$defs"][part]["properties"]) == words
-    assert set(schema["$defs"]["joint"]["properties"]["kind"]["enum"]) == set(COORDINATES)
+    assert set(schema["$defs"]["joint"]["properties"]["kind"]["enum"]) == set(MOVES)
 
 
 def changed(**change):

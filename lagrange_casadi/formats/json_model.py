@@ -15,7 +15,7 @@ import numpy as np
 from ..base.arrays import Json
 from ..errors import shown
 from .record import (
-    COORDINATES,
+    MOVES,
     Body,
     Coupling,
     Frame,
@@ -177,8 +177,8 @@ def _body(model: Model, where: str, data: Data) -> Body:
 def _joint(model: Model, where: str, data: Data) -> Joint:
     _keys(model, where, data, JOINT, ("name", "kind", "parent", "child"))
     name = model.name_of("joint", _text(model, where, data["name"]), where, model.joints)
-    if data["kind"] not in COORDINATES:
-        valid = ", ".join(COORDINATES)
+    if data["kind"] not in [*MOVES]:
+        valid = ", ".join(MOVES)
         words = f"joint '{name}': unknown kind {shown(data['kind'])}; valid: {valid}"
         raise model.refuse(f"{where}.kind", words)
     parent, child = (_text(model, f"{where}.{key}", data[key]) for key in ("parent", "child"))
