@@ -90,6 +90,11 @@ from .options import (
     show_default=True,
     help="Seek peaks between the instants, or take those of the instants, each with an error.",
 )
+@click.option(
+    "--fluctuation",
+    is_flag=True,
+    help="Store the fluctuation of energy of each drive as well, for which a flywheel is sized.",
+)
 @untabled_method
 @click.option(
     "--workers",
@@ -191,9 +196,8 @@ def table(**given: Any) -> None:
     required=True,
     multiple=True,
     metavar="TERM",
-    help="Minimise peak:QUANTITY, max:, mean: or rms: of one, or a parameter; repeated: find the"
-    " Pareto"
-    " front.",
+    help="Minimise peak:QUANTITY, max:, mean: or rms: of one, fluctuation:effort:JOINT, or a"
+    " parameter; repeated: find the Pareto front.",
 )
 @click.option(
     "--over",
