@@ -112,18 +112,37 @@ class Library:
         are equally far apart. ``status`` (n) tells where loops do not close, and what is not
         finite. The bytes do not depend on ``threads``.
         """
+        self.evaluation(t, p, guess, z, out, status, threads)()
+
+    def evaluation(
+        self,
+        t: Array,
+        p: Array,
+        guess: Array,
+        z: Array,
+        out: Array,
+        status: Status,
+        threads: int = 1,
+    ) -> Callable[[], None]:
+        """Return a function that does what :meth:`evaluate` does, from the contents of the arrays
+        when it is called.
+        """
         assert all(
             rows.ndim == 1 or rows.strides == out.strides or not rows.size for rows in (t, z)
         )
         n = t.shape[-1]
         call, entry = _instants(t, p, guess, z, out, status), self.entries[EVALUATE]
-        self._follow(call, guess, status)
         share = max(_CUT, self.share())
         shares = max(1, min(threads, n // share))
         # Between calls an interrupt comes through.
         pieces = shares * _DISTRIBUTED if shares > 1 else 1
         size = min(_LONGEST * share // _CUT * _CUT, -(-n // (pieces * _CUT)) * _CUT)
-        in_threads(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
+
+        def evaluate(_kept: object = (t, p, z, out)) -> None:
+            self._follow(call, guess, status)
+            in_threads(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
+
+        return evaluate
 
     def _follow(self, call: ctypes.Structure, guess: Array, status: Status) -> None:
         if not guess.size:

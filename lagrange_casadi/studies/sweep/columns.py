@@ -372,9 +372,7 @@ class Harvest:
                     law = mass_properties.law(
                         {output: series[i, k] for output, k in rows.items()}, p[i]
                     )
-                    basis = law.basis(self.xi)
-                    for force, grid in zip(self._table.forces, grids, strict=True):
-                        law.on_grid(force, basis, grid[i], threads=1)
+                    law.on_grids(self._table.forces, self.xi, grids[:, i], threads=1)
                 whole += list(grids)
         return largest, whole
 
