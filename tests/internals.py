@@ -40,6 +40,7 @@ from lagrange_casadi.base.space import cores
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.table_file import TableFile
 from lagrange_casadi.base.tables import CONVENTIONS, PLANE, QUANTITIES, SPACE, SPATIAL_QUANTITIES
+from lagrange_casadi.base.threads import in_threads
 from lagrange_casadi.base.units import angle, typed
 from lagrange_casadi.base.units import number as units_number
 from lagrange_casadi.base.vocabulary import PRECISIONS

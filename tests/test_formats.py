@@ -115,6 +115,7 @@ MISUSE = {
         changed(joints=[HINGE | {"kind": "hinge"}]),
         "unknown kind 'hinge'; valid: rev",
     ),
+    "no kind": (changed(joints=[HINGE | {"kind": ["weld"]}]), "unknown kind ['weld']; valid: rev"),
     "unknown body": (
         changed(joints=[HINGE | {"child": "leg"}]),
         "unknown body 'leg'; valid: ground",
