@@ -103,9 +103,9 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
     """
     if isinstance(mechanism, type) or not hasattr(mechanism, "own"):
         raise DeclarationError(f"fit: expected a Mechanism first, got {shown(mechanism)}")
-    mechanism.own.joint(joint)
+    mechanism.ownership.joint(joint)
     what = f"joint '{joint.name}'"
-    mechanism.own.refuse_frozen(f"fit {what}")
+    mechanism.ownership.refuse_frozen(f"fit {what}")
     turning = mechanism.turning.get(joint.name)
     if turning == "":
         raise DeclarationError(
@@ -154,7 +154,7 @@ def _checked(mechanism: Mechanism, what: str, name: str, value: float | None) ->
         return value
     if value is None and name in ("pressure", "speed", "heating", "static"):
         return None
-    number = mechanism.own.expression(f"{what}: {name}", value, _UNITS.get(name, "1"))
+    number = mechanism.ownership.expression(f"{what}: {name}", value, _UNITS.get(name, "1"))
     if isinstance(number, float) and not positive(name, number):
         raise DeclarationError(f"{what}: {name} must be positive, got {number:g}")
     return number

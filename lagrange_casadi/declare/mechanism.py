@@ -20,6 +20,7 @@ from ..base.symbolic import Graphs, symbolic
 from ..base.units import Number
 from ..beams.beam import Beam
 from ..errors import DeclarationError
+from ..renamed import renamed
 from .density import Density
 from .expressions import bound, check_line, check_name, unit_vector, value_of
 from .fitted import Fitted
@@ -54,6 +55,7 @@ from .validity import demands
 
 
 @public
+@renamed
 @symbolic
 @dataclass(eq=False)
 class Mechanism(Graphs):
@@ -131,7 +133,7 @@ class Mechanism(Graphs):
         return False
 
     @property
-    def own(self) -> Ownership:
+    def ownership(self) -> Ownership:
         """Names, points and expressions of the mechanism, as its declarations check them."""
         return Ownership(self)
 
@@ -182,7 +184,7 @@ class Mechanism(Graphs):
         ParameterError
             If the default is out of the range.
         """
-        self.own.free("parameter", name, self.parameters)
+        self.ownership.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
         default, low, high = (bound(f"parameter '{name}'", x, unit) for x in (default, low, high))
         parameter = Parameter(name, default, unit, low, high, ca.SX.sym(name))
@@ -230,8 +232,8 @@ class Mechanism(Graphs):
         DeclarationError
             If the name is taken, or the arguments do not determine the mass.
         """
-        self.own.free("link", name, self.bodies)
-        what, checked = f"link '{name}'", self.own.expression
+        self.ownership.free("link", name, self.bodies)
+        what, checked = f"link '{name}'", self.ownership.expression
         beam = beam_of(what, beam, checked)
         mass_properties = mass_properties_of(
             what, mass, density, centre, inertia, checked, beam=beam
@@ -247,8 +249,8 @@ class Mechanism(Graphs):
         """Declare a body without extent, with a mass [kg]. It has no direction; welded to a link it
         moves with the link.
         """
-        self.own.free("point mass", name, self.bodies)
-        body = PointMass(name, self.own.expression(f"point mass '{name}': mass", mass, "kg"))
+        self.ownership.free("point mass", name, self.bodies)
+        body = PointMass(name, self.ownership.expression(f"point mass '{name}': mass", mass, "kg"))
         return cast(PointMass, self.bodies.setdefault(name, body))
 
     def revolute(self, name: str, parent: Body | Point, child: Body | Point) -> Joint:
@@ -319,10 +321,15 @@ class Mechanism(Graphs):
         """
         numbers = (
             ("ratio", ratio, "1"),
-            ("offset", offset, "m" if self.own.moving_joint(second)[1].kind == "slide" else "rad"),
+            (
+                "offset",
+                offset,
+                "m" if self.ownership.moving_joint(second)[1].kind == "slide" else "rad",
+            ),
         )
         ratio, offset = (
-            self.own.expression(f"gear '{name}': {word}", value, of) for word, value, of in numbers
+            self.ownership.expression(f"gear '{name}': {word}", value, of)
+            for word, value, of in numbers
         )
         return self.constraint(
             name, self.coordinate(second) - ratio * self.coordinate(first) - offset
@@ -354,8 +361,8 @@ class Mechanism(Graphs):
         The force is + lambda dPhi/dq (paper, eq. 2). Along a joint's coordinate it acts between the
         bodies of the joint, along a place or a direction from the ground.
         """
-        self.own.free("constraint", name, self.constraints)
-        phi = self.own.expression(f"constraint '{name}'", phi, moving=True)
+        self.ownership.free("constraint", name, self.constraints)
+        phi = self.ownership.expression(f"constraint '{name}'", phi, moving=True)
         if not isinstance(phi, ca.SX) or not ca.depends_on(phi, self.measures.places):
             raise DeclarationError(
                 f"constraint '{name}' depends on no coordinate; expected an expression of"
@@ -390,9 +397,9 @@ class Mechanism(Graphs):
         DeclarationError
             If it is not linear in rates, or another one replaces the same drive.
         """
-        self.own.free("non-holonomic constraint", name, self.rows)
+        self.ownership.free("non-holonomic constraint", name, self.rows)
         what, rates = f"non-holonomic constraint '{name}'", self.measures.rates
-        expression = self.own.expression(what, expression, moving=True)
+        expression = self.ownership.expression(what, expression, moving=True)
         if not isinstance(expression, ca.SX) or not ca.depends_on(expression, rates):
             raise DeclarationError(
                 f"{what} depends on no rate; expected an expression of rate(JOINT) or"
@@ -400,7 +407,7 @@ class Mechanism(Graphs):
             )
         if ca.depends_on(ca.jacobian(expression, rates), rates):
             raise DeclarationError(f"{what} must be linear in the rates")
-        found = Row(name, expression, self.own.joint(replaces).name)
+        found = Row(name, expression, self.ownership.joint(replaces).name)
         for other in self.rows.values():
             if other.replaces == found.replaces:
                 raise DeclarationError(
@@ -477,7 +484,9 @@ class Mechanism(Graphs):
         """
         return cast(
             LineLoad,
-            self.loads.setdefault(name, line_load(self.own, name, link, (x, y), between, turning)),
+            self.loads.setdefault(
+                name, line_load(self.ownership, name, link, (x, y), between, turning)
+            ),
         )
 
     def spring(
@@ -519,7 +528,7 @@ class Mechanism(Graphs):
         """Put a torsion spring on a revolute joint, with stiffness [N m/rad], the angle without
         torque [rad] and damping [N m s/rad]. The joint's angle counts revolutions.
         """
-        if self.own.joint(joint).coordinate != "angle":
+        if self.ownership.joint(joint).coordinate != "angle":
             raise DeclarationError(
                 f"load '{name}': joint '{joint.name}' has no angle for a torsion spring"
             )
@@ -586,7 +595,8 @@ class Mechanism(Graphs):
         numbers = {"mu": mu, "radius": radius, "length": length, "viscous": viscous}
         numbers |= {"static": static, "stribeck": stribeck, "smooth": smooth}
         return cast(
-            Friction, self.loads.setdefault(name, friction(self.own, name, joint, along, numbers))
+            Friction,
+            self.loads.setdefault(name, friction(self.ownership, name, joint, along, numbers)),
         )
 
     def output(self, name: str, expression: Expression, *, unit: str = "1") -> UserOutput:
@@ -595,10 +605,10 @@ class Mechanism(Graphs):
         The expression may use everything that loads may use, and :attr:`results`: accelerations,
         efforts, reactions, loads, friction, multipliers and section forces.
         """
-        self.own.free("output", name, self.outputs)
+        self.ownership.free("output", name, self.outputs)
         check_line(f"output '{name}': its unit", unit)
         expression = ca.SX(
-            self.own.expression(f"output '{name}'", expression, moving=True, found=True)
+            self.ownership.expression(f"output '{name}'", expression, moving=True, found=True)
         )
         made_of = tuple(asked for asked in self.asked if ca.depends_on(expression, asked.symbol))
         self.outputs[name] = UserOutput(name, expression, unit, made_of)
@@ -608,8 +618,8 @@ class Mechanism(Graphs):
         """Declare a point whose motion is an output, and may be prescribed by a scene. Its outputs
         in SI units are NAME_x, NAME_vx, NAME_ax, and the same for y.
         """
-        self.own.free("path", name, self.paths)
-        path = Path(name, self.own.point(f"path '{name}'", point))
+        self.ownership.free("path", name, self.paths)
+        path = Path(name, self.ownership.point(f"path '{name}'", point))
         if path.point.body is self.ground:
             raise DeclarationError(
                 f"path '{name}': a point of the ground does not move; expected a point of a link"
@@ -631,29 +641,29 @@ class Mechanism(Graphs):
         An angle counts revolutions from the start of the scene. If a joint has several coordinates,
         ``axis`` names one, as ``turn_1``.
         """
-        return self.measures.joint(*self.own.moving_joint(joint, axis)).places[0]
+        return self.measures.joint(*self.ownership.moving_joint(joint, axis)).places[0]
 
     def rate(self, joint: Joint, axis: str = "") -> Expression:
         """Return the symbol of a joint's rate, for loads and non-holonomic constraints."""
-        return self.measures.joint(*self.own.moving_joint(joint, axis)).rates[0]
+        return self.measures.joint(*self.ownership.moving_joint(joint, axis)).rates[0]
 
     def place(self, point: Body | Point) -> tuple[Expression, ...]:
         """Return the symbols of a point's x and y, in space also z, on ground axes [m], for loads
         and constraints.
         """
-        return self.measures.point(self.own.point("place", point)).places
+        return self.measures.point(self.ownership.point("place", point)).places
 
     def velocity(self, point: Body | Point) -> tuple[Expression, ...]:
         """Return the symbols of a point's velocity on ground axes [m/s], for loads and
         non-holonomic constraints.
         """
-        return self.measures.point(self.own.point("velocity", point)).rates
+        return self.measures.point(self.ownership.point("velocity", point)).rates
 
     def direction(self, link: Link) -> Expression:
         """Return the symbol of the angle of a link's axis from the ground's x axis [rad]. It counts
         revolutions as a coordinate does.
         """
-        if not isinstance(body := self.own.point("direction", link).body, Link):
+        if not isinstance(body := self.ownership.point("direction", link).body, Link):
             raise DeclarationError(f"direction: expected a link, got '{body.name}'")
         return self.measures.link(body).places[0]
 
@@ -661,8 +671,12 @@ class Mechanism(Graphs):
         """Set the acceleration of gravity [m/s^2] on ground axes, as numbers or expressions of
         parameters.
         """
-        self.own.refuse_frozen("set gravity")
-        self.gravity = (self.own.expression("gravity", x), self.own.expression("gravity", y), 0.0)
+        self.ownership.refuse_frozen("set gravity")
+        self.gravity = (
+            self.ownership.expression("gravity", x),
+            self.ownership.expression("gravity", y),
+            0.0,
+        )
 
     def freeze(self) -> None:
         """Check the whole mechanism and end the declaration.
@@ -701,7 +715,7 @@ class Mechanism(Graphs):
         axis: tuple[Expression, Expression] | None = None,
         angle: Expression | None = None,
     ) -> Joint:
-        own, what = self.own, f"joint '{name}'"
+        own, what = self.ownership, f"joint '{name}'"
         own.free("joint", name, self.joints)
         start, end = own.point(what, parent), own.point(what, child)
         if start.body is end.body:
@@ -722,8 +736,8 @@ class Mechanism(Graphs):
         return self.joints.setdefault(name, joint)
 
     def _load_point(self, name: str, place: Body | Point) -> Point:
-        self.own.free("load", name, self.loads)
-        return self.own.point(f"load '{name}'", place)
+        self.ownership.free("load", name, self.loads)
+        return self.ownership.point(f"load '{name}'", place)
 
     def _load(self, name: str, value: Expression, unit: str = "1") -> Expression:
-        return self.own.expression(f"load '{name}'", value, unit, moving=True)
+        return self.ownership.expression(f"load '{name}'", value, unit, moving=True)

@@ -137,7 +137,7 @@ class SpatialMechanism(Mechanism):
         y axis is the component of ``beside``, fixed in the ground, across the link. Without
         ``beside`` its stresses are evaluated only if its cross-section is round.
         """
-        self.own.free("link", name, self.bodies)
+        self.ownership.free("link", name, self.bodies)
         what = f"link '{name}'"
         if (length is None) == (between is None):
             raise DeclarationError(f"{what}: expected its length, or between=, its two ends")
@@ -148,14 +148,14 @@ class SpatialMechanism(Mechanism):
             )
         reference, aside = None, None
         if between is not None:
-            reference, length, aside = lying(what, between, beside, self.own.expression)
+            reference, length, aside = lying(what, between, beside, self.ownership.expression)
 
         def rigid(
             centre: Expression, inertia: Expression
         ) -> tuple[Vector, tuple[Vector, Vector, Vector]]:
             place, moments = (
                 self._vector(f"{what}: centre", centre, "m"),
-                tensor(what, inertia, self.own.expression),
+                tensor(what, inertia, self.ownership.expression),
             )
             return (
                 (place, moments)
@@ -163,13 +163,13 @@ class SpatialMechanism(Mechanism):
                 else (reference.local(place), rotated(moments, reference))
             )
 
-        beam = beam_of(what, beam, self.own.expression)
+        beam = beam_of(what, beam, self.ownership.expression)
         mass_properties = mass_properties_of(
-            what, mass, density, centre, inertia, self.own.expression, rigid, beam
+            what, mass, density, centre, inertia, self.ownership.expression, rigid, beam
         )
         link = Link(
             name,
-            self.own.expression(f"{what}: length", length, "m"),
+            self.ownership.expression(f"{what}: length", length, "m"),
             mass_properties,
             beam,
             beside=aside,
@@ -281,7 +281,7 @@ class SpatialMechanism(Mechanism):
         """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] for each revolution.
         The coordinate is the angle.
         """
-        pitch = self.own.expression(f"joint '{name}': lead", lead, "m") / math.tau
+        pitch = self.ownership.expression(f"joint '{name}': lead", lead, "m") / math.tau
         return self._spatial(name, "screw", (parent, child), (axis, None), at, turned, pitch)
 
     def planar(
@@ -391,7 +391,7 @@ class SpatialMechanism(Mechanism):
         """Declare a non-holonomic constraint, as in a plane; ``replaces`` is a driven joint of one
         coordinate.
         """
-        if self.own.joint(replaces).coordinate is None:
+        if self.ownership.joint(replaces).coordinate is None:
             found = ", ".join(axis.coordinate for axis in replaces.axes) or "none"
             raise DeclarationError(
                 f"non-holonomic constraint '{name}': expected a joint of one coordinate, those of"
@@ -419,14 +419,14 @@ class SpatialMechanism(Mechanism):
         """Apply a load [N/m] along a link, as in a plane, on ground axes; if ``turning``, on the
         link's axes.
         """
-        self.loads[name] = load = line_load(self.own, name, link, (x, y, z), between, turning)
+        self.loads[name] = load = line_load(self.ownership, name, link, (x, y, z), between, turning)
         return load
 
     def set_gravity(self, x: Expression, y: Expression, z: Expression = 0.0) -> None:
         """Set the acceleration of gravity [m/s^2] on ground axes, as numbers or expressions of
         parameters.
         """
-        self.own.refuse_frozen("set gravity")
+        self.ownership.refuse_frozen("set gravity")
         self.gravity = self._vector("gravity", (x, y, z))
 
     def direction(self, link: Link) -> Expression:
@@ -446,13 +446,13 @@ class SpatialMechanism(Mechanism):
         turned: Turns,
         pitch: Expression = 0.0,
     ) -> Joint:
-        self.own.free("joint", name, self.joints)
+        self.ownership.free("joint", name, self.joints)
         what, (parent, child) = f"joint '{name}'", bodies
-        directions: Triad = triad_of(what, *axes, self.own)
+        directions: Triad = triad_of(what, *axes, self.ownership)
         placed = at is not None
         if at is None:
-            start, end = self.own.point(what, parent), self.own.point(what, child)
-            zero = turned_by(what, turned, self.own)
+            start, end = self.ownership.point(what, parent), self.ownership.point(what, child)
+            zero = turned_by(what, turned, self.ownership)
             near, far = (self.references.get(point.body.name) for point in (start, end))
             if not turned and near and far and start.body.oriented and end.body.oriented:
                 zero, placed = near.directions_of(far), True
@@ -518,7 +518,7 @@ class SpatialMechanism(Mechanism):
                 self.references[body.name] = Reference(place)
         first, second = self._reference(what, parent), self._reference(what, child)
         start, end = (
-            self.own.point(what, one.point(body, place))
+            self.ownership.point(what, one.point(body, place))
             for one, body in ((first, parent), (second, child))
         )
         return start, end, first.directions(directions), first.directions_of(second)
@@ -532,7 +532,7 @@ class SpatialMechanism(Mechanism):
         return self.references[body.name]
 
     def _vector(self, what: str, value: object, unit: str = "1") -> Vector:
-        return vector(what, value, self.own.expression, unit)
+        return vector(what, value, self.ownership.expression, unit)
 
 
 def reference_posture(mechanism: Mechanism) -> dict[str, float]:

@@ -148,7 +148,7 @@ def disc_cam(
         For joints of other kinds, a lift that is no function, and a profile that is undercut with
         the default parameters.
     """
-    what, ownership = f"cam '{name}'", mechanism.own
+    what, ownership = f"cam '{name}'", mechanism.ownership
     ownership.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
@@ -221,7 +221,7 @@ def layout_of(
 
     Raises :class:`.DeclarationError` as that does.
     """
-    ownership = mechanism.own
+    ownership = mechanism.ownership
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
         if (
             ownership.joint(joint).kind not in kinds
@@ -377,7 +377,7 @@ def _contact(
     if here.turned is not None:
         lean = mechanism.direction(cast(Link, touched.body))
         gap = gap + here.moment * _cross(here.turned, (ca.cos(lean), ca.sin(lean)))
-    phi = mechanism.own.expression(f"cam '{name}'", gap, moving=True)
+    phi = mechanism.ownership.expression(f"cam '{name}'", gap, moving=True)
     return mechanism.constraints.setdefault(
         name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
     )

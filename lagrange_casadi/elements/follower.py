@@ -75,7 +75,7 @@ def largest_pressure(
 
     Raises :class:`.DeclarationError` for a width that is not positive.
     """
-    wide = mechanism.own.expression(f"{what}: width", width, "m")
+    wide = mechanism.ownership.expression(f"{what}: width", width, "m")
     if isinstance(wide, ca.SX):
         wide = wide * sound(wide > 0.0)
     elif wide <= 0.0:
