@@ -267,7 +267,7 @@ def test_exported_c_tells_of_them(tmp_path):
         "link rocker, load flow, power 2: load along the link 90 deg counter-clockwise of the axis"
     )
     assert said in header
-    assert "And then loads along the link, of which a section feels what acts beyond it" in header
+    assert "And then loads along the link; those beyond a section act on it" in header
 
 
 @pytest.mark.sampled(2)
