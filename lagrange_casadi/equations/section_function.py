@@ -21,6 +21,7 @@ from typing import Any, Literal
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression, Operand
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
@@ -286,5 +287,5 @@ def along(
         PLANE.forces.index("bending" if bends else "axial")
     ]
     rows = ca.densify(ca.jacobian(force, ca.vertcat(*given)))
-    inputs = [mass_properties, ca.vertcat(ca.SX(0, 1), *(loads[k] for k in spans)), xi]
+    inputs = [mass_properties, column(loads[k] for k in spans), xi]
     return ca.Function("along", inputs, [rows], ["matter", "spans", "xi"], ["rows"], {"cse": True})
