@@ -89,6 +89,10 @@ from .options import (
     "exact",
     "Seek peaks between the instants, or take those of the instants, each with an error.",
 )
+@flag(
+    "--fluctuation",
+    "Store the fluctuation of energy of each drive as well, for which a flywheel is sized.",
+)
 @untabled_method
 @value(
     "--workers",
@@ -168,8 +172,8 @@ def table(**given: Any) -> None:
 @several(
     "--minimise",
     "TERM",
-    "Minimise peak:QUANTITY, max:, mean: or rms: of one, or a parameter; repeated: find the"
-    " Pareto front.",
+    "Minimise peak:QUANTITY, max:, mean: or rms: of one, fluctuation:effort:JOINT, or a"
+    " parameter; repeated: find the Pareto front.",
     required=True,
 )
 @several(

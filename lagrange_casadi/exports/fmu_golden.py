@@ -45,4 +45,4 @@ def golden_vectors(description: Description) -> str:
 def golden_script(description: Description) -> str:
     """Return the text of the script ``<prefix>_fmu_test.py``."""
     turning = [m.path for m in description.contract.outputs if m.wrapped]
-    return template("fmu_test.py", **description.source.words, file=FILE, turning=turning)
+    return template("fmu_test.py.in", **description.source.words, file=FILE, turning=turning)

@@ -84,9 +84,8 @@ def structured_text(source: Source) -> dict[str, str]:
         "body": "\n".join(body),
         "motion": "\n".join(motion),
         "taken": "\n".join(outputs),
-        "start": _number(float(source.golden.times[0])),
-        "test": "\n".join(_test(source, given, taken)),
     }
+    words |= _test(source, given, taken)
     return {f"{c.prefix}.st": template("structured.st", **words)}
 
 
@@ -105,11 +104,9 @@ class _Block:
             start = f" := [{', '.join(map(_number, self.source.guess))}]" if name == "z" else ""
             yield f"{name} : ARRAY[0..{max(size, 1) - 1}] OF LREAL{start};"
         if "z" in self.arrays:
-            yield from ("size : LREAL;", "before : LREAL;")
+            yield from ("k : DINT;", "size : LREAL;", "before : LREAL;")
         for name, numbers in self.tables.items():
-            yield f"{name} : ARRAY[0..{len(numbers) - 1}] OF LREAL := ["
-            rows = [numbers[k : k + 6] for k in range(0, len(numbers), 6)]
-            yield ",\n    ".join("  " + ", ".join(map(_number, row)) for row in rows) + "];"
+            yield from _table(name, numbers)
 
     def array(self, name: str, size: int) -> list[str]:
         """Declare an array; return its elements."""
@@ -160,23 +157,24 @@ class _Block:
         """Yield the statements that close loops from where they stood."""
         exported, newton = self.source.exported, self.source.exported.program.newton
         assert newton is not None
+        stood, c, turn = self.array("z", len(z)), self.array("c", len(z)), _number(math.tau)
+        step, given = exported.functions["loops"], [z, counted, self.parameters()]
+        moved = [f"{now} := {now} + {more};" for now, more in zip(z, c, strict=True)]
+        whole = [
+            f" - {turn} * LC_FLOOR({now} / {turn} + 0.5)" if turning else ""
+            for now, turning in zip(z, newton.turning, strict=True)
+        ]
         rule = {key: _number(float(value)) for key, value in exported.rule.items()}
-        stood, c = self.array("z", len(z)), self.array("c", len(z))
-        yield from (f"{now} := {then};" for now, then in zip(z, stood, strict=True))
-        yield from ("size := 1.0;", "before := 1.0;")
-        step = exported.functions["loops"]
         body = [f"IF NOT (size < {rule['done']}) THEN", "before := size;"]
-        body += self.lines(step, [z, counted, self.parameters()], [c, ["size"]], within="k")
-        body += [f"{now} := {now} + {more};" for now, more in zip(z, c, strict=True)]
-        yield from _loop("n", 1, int(exported.rule["steps"]), [*body, "END_IF;"])
-        yield f"IF size < {rule['lost']} THEN"
-        turn = _number(math.tau)
-        for then, now, turning in zip(stood, z, newton.turning, strict=True):
-            whole = f" - {turn} * LC_FLOOR({now} / {turn} + 0.5)" if turning else ""
-            yield f"{then} := {now}{whole};"
-        yield from ("ELSE", "valid := FALSE;", "END_IF;")
-        yield f"IF size > {rule['rate']} * before AND size > {rule['rounding']} THEN"
-        yield from (f"iterated := {_number(float(Status.SLOW))};", "END_IF;")
+        body += [*self.lines(step, given, [c, ["size"]], within="k"), *moved, "END_IF;"]
+        yield template(
+            "structured_loops.st",
+            **rule,
+            begin="\n".join(f"{now} := {then};" for now, then in zip(z, stood, strict=True)),
+            iterate="\n".join(_loop("n", 1, int(exported.rule["steps"]), body)),
+            keep="\n".join(map("{} := {}{};".format, stood, z, whole)),
+            slow=_number(float(Status.SLOW)),
+        ).rstrip()
 
     def parameters(self) -> list[str]:
         """Return the parameters as numbers."""
@@ -242,30 +240,40 @@ class _Block:
         yield from _loop(counter, 0, len(numbers) - 1, test)
 
 
+def _table(name: str, numbers: Iterable[float]) -> Iterator[str]:
+    """Yield the declaration of an array of numbers."""
+    texts = [_number(float(one)) for one in numbers]
+    yield f"{name} : ARRAY[0..{len(texts) - 1}] OF LREAL := ["
+    rows = (", ".join(texts[k : k + 6]) for k in range(0, len(texts), 6))
+    yield ",\n    ".join(f"  {row}" for row in rows) + "];"
+
+
 def _loop(counter: str, first: int, last: int, body: Sequence[str]) -> list[str]:
     """Return a loop; of one turn its body alone, which matiec would leave out."""
     head = f"FOR {counter} := {first} TO {last} DO"
     return [f"{counter} := {first};", *body] if last == first else [head, *body, "END_FOR;"]
 
 
-def _test(source: Source, given: Sequence[str], taken: Sequence[str]) -> Iterator[str]:
-    """Yield a program that follows the motion and compares outputs at golden instants."""
-    g, c = source.golden, source.contract
-    before = float(g.times[0])
-    for number, t in enumerate(g.times.tolist()):
-        count = g.steps if number else 1
-        step = f"t := SEL(n = {count}, t + {_number((t - before) / count)}, {_number(t)});"
-        inputs = ", ".join(f"{name} := drive.{name}" for name in given)
-        yield from _loop("n", 1, count, [step, "drive(t := t);", f"unit({inputs});"])
-        before = t
-        yield from ("IF NOT unit.valid THEN", "failed := failed + 1;", "END_IF;")
-        for k, (name, m) in enumerate(zip(taken, c.outputs, strict=True)):
-            value = float(g.outputs[number, k])
-            gap = f"unit.{name} - ({_number(value if abs(value) > _LEAST else 0.0)})"
-            gap = f"LC_DIRECTION({gap})" if m.wrapped else gap
-            off = max(float(g.outputs_off[k]), _LEAST)
-            yield f"IF NOT (ABS({gap}) <= {_number(off)}) THEN"
-            yield from ("failed := failed + 1;", "END_IF;")
+def _test(source: Source, given: Sequence[str], taken: Sequence[str]) -> dict[str, str]:
+    """Return words of a program that follows the motion and compares outputs at golden instants."""
+    g, c, count = source.golden, source.contract, len(taken)
+    numbers = np.where(np.abs(g.outputs) > _LEAST, g.outputs, 0.0)
+    inputs = ", ".join(f"{name} := drive.{name}" for name in given)
+    share = f"DINT_TO_LREAL(n) / {_number(float(g.steps))}"
+    step = f"t := SEL(n = {g.steps}, before + {share} * (times[k] - before), times[k]);"
+    body = [step, "drive(t := t);", f"unit({inputs});"]
+    body = [*_loop("n", 1, g.steps, body), "before := t;"]
+    body += ["IF NOT unit.valid THEN", "failed := failed + 1;", "END_IF;"]
+    for j, (name, m) in enumerate(zip(taken, c.outputs, strict=True)):
+        gap = f"unit.{name} - golden[k * {count} + {j}]"
+        gap = f"LC_DIRECTION({gap})" if m.wrapped else gap
+        off = _number(max(float(g.outputs_off[j]), _LEAST))
+        body += [f"IF NOT (ABS({gap}) <= {off}) THEN", "failed := failed + 1;", "END_IF;"]
+    return {
+        "start": _number(float(g.times[0])),
+        "golden": indented([*_table("times", g.times), *_table("golden", numbers.ravel())]),
+        "test": "\n".join(_loop("k", 0, g.times.size - 1, body)),
+    }
 
 
 def _number(value: float) -> str:

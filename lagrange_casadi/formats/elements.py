@@ -60,21 +60,22 @@ class Element:
             raise self.refuse(f"lacks {self.form.format(names[0])}")
         return found
 
-    def attribute(self, name: str) -> Any:
+    def attribute(self, name: str) -> str:
         """Return an attribute, which there must be."""
-        if name not in self.given:
+        return str(self._stated(name, None))
+
+    def _stated(self, name: str, usual: object) -> object:
+        if usual is None and name not in self.given:
             raise self.refuse(f"lacks {name}=")
-        return self.given[name]
+        return self.given.get(name, usual)
 
     def amount(self, name: str, usual: float | None = None, what: str = "") -> float:
         """Return the number in an attribute; ``usual`` if there is no such attribute."""
-        given = self.attribute(name) if usual is None else self.given.get(name, usual)
-        return number(self.model, self.at(name), given, what or name)
+        return number(self.model, self.at(name), self._stated(name, usual), what or name)
 
     def triple(self, name: str, usual: object = None, what: str = "") -> Array:
         """Return three numbers in an attribute; ``usual`` if there is no such attribute."""
-        given = self.attribute(name) if usual is None else self.given.get(name, usual)
-        return numbers(self.model, self.at(name), given, what or name, 3)
+        return numbers(self.model, self.at(name), self._stated(name, usual), what or name, 3)
 
     def direction(self, name: str, what: str = "") -> Array:
         """Return three numbers in an attribute that are not all zero."""

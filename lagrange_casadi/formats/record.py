@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -226,12 +226,12 @@ class Model:
         self.named[kind, stated] = name
         return name
 
-    def add(self, part: type[Part], stated: str, where: str, *given: Any, **more: Any) -> str:
+    def add(self, part: type[Part], stated: str, where: str, *given: Any) -> str:
         """Add a body, joint, coupling or tie under its name of the file; return its name here."""
         kind = "joint" if part is Tie else part.__name__.lower()
         taken = {**self.joints, **self.ties} if kind == "joint" else self._parts[part]
         name = self.name_of(kind, stated, where, taken)
-        self._parts[part][name] = part(name, *given, where=where, **more)
+        self._parts[part][name] = replace(part(name, *given), where=where)
         return name
 
     def find(self, kind: str, stated: str, where: str) -> str:

@@ -145,8 +145,8 @@ class Drive:
             timed += [Check("closure", name) for name in program.newton.names]
         if timed:
             raise DeclarationError(
-                f"table: expected columns that the angle of joint '{joint}' decides, but time"
-                f" itself enters {_listed(timed)}"
+                f"table: expected outputs that depend on the angle of joint '{joint}' alone, but"
+                f" these depend on the time: {_listed(timed)}"
             )
         slope = ca.jacobian(out, rate)
         rows = [out, slope, ca.jacobian(slope, rate) / 2, ca.jacobian(out, acceleration)]
@@ -269,8 +269,8 @@ class Drive:
 
     def _not_round(self, angle: float) -> str:
         return (
-            f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way"
-            " round"
+            f"{where([(self.joint, 'angle', angle)])}; expected a drive that can make whole"
+            " revolutions"
         )
 
 
@@ -282,7 +282,7 @@ def the_drive(program: Program) -> str:
     if len(program.driven) != 1:
         named = ", ".join(f"'{name}'" for name in program.driven) or "none"
         raise DeclarationError(
-            f"table: expected one driven joint, whose angle decides all, got {named}"
+            f"table: expected one driven joint, whose angle determines all, got {named}"
         )
     (joint,) = program.driven
     if program.data.kinds.coordinates[joint] != "angle":

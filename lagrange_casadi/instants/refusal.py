@@ -168,7 +168,7 @@ def _beyond(program: Program, p: Array, precision: Precision, at: str) -> str | 
         length = body["length"]
         if length is not None and not low <= length <= high:
             what = (
-                f"link '{name}' is {length:.3g} m long, and {precision} precision can only square"
+                f"link '{name}' is {length:.3g} m long, but squares in {precision} precision need"
                 f" {low:.1g} to {high:.1g} m"
             )
             return f"the mechanism has no result {at}: {what}"
