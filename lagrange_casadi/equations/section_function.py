@@ -21,6 +21,7 @@ from typing import Any, Literal
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression, Operand
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
@@ -283,7 +284,7 @@ def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int]) 
     spans = (loads[k] for k, output in enumerate(acting) if output.power is None)
     return ca.Function(
         "along",
-        [mass_properties, ca.vertcat(ca.SX(0, 1), *spans), xi],
+        [mass_properties, column(spans), xi],
         [rows("axial", "qn"), rows("bending", "qf")],
         ["matter", "spans", "xi"],
         ["force", "bending"],
