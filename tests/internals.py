@@ -40,6 +40,7 @@ from lagrange_casadi.base.space import cores
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.table_file import TableFile
 from lagrange_casadi.base.tables import CONVENTIONS, PLANE, QUANTITIES, SPACE, SPATIAL_QUANTITIES
+from lagrange_casadi.base.threads import in_threads
 from lagrange_casadi.base.units import angle, typed
 from lagrange_casadi.base.units import number as units_number
 from lagrange_casadi.base.vocabulary import PRECISIONS
@@ -197,7 +198,7 @@ from lagrange_casadi.peak_search.search import peaks
 from lagrange_casadi.peak_search.sharpness import Kind, Sharpness, Watch
 from lagrange_casadi.portable import naming, stack, text
 from lagrange_casadi.portable.golden import ALLOWED
-from lagrange_casadi.portable.statuses import SHARED, STATUSES
+from lagrange_casadi.portable.statuses import ANSWERS, SHARED, STATUSES
 from lagrange_casadi.renamed import RENAMED, renamed
 from lagrange_casadi.report import instants, maps, write_report
 from lagrange_casadi.report import page as report_page

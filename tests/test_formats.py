@@ -126,7 +126,7 @@ MISUSE = {
     ),
     "disconnected": (
         changed(bodies=[ROD, ROD | {"name": "leg"}]),
-        "bodies[1]: body 'leg' is joined to nothing that hangs on the ground",
+        "bodies[1]: body 'leg' is not connected to the ground",
     ),
     "twice": (changed(bodies=[ROD, ROD]), "bodies[1]: body 'arm': the name is taken"),
     "skew axes": (

@@ -1,9 +1,12 @@
 """Parameters from measurements are the true ones, as far as measurements tell them."""
 
+import runpy
+
 import casadi as ca
 import h5py
 import numpy as np
 import pytest
+from conftest import CASES
 
 from lagrange_casadi import (
     Measurements,
@@ -407,11 +410,55 @@ def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
         read_measurements(path, counts_per_turn=4096)
 
 
+def test_a_unit_of_another_quantity_is_refused(tmp_path):
+    scene, path = two_links(), tmp_path / "run.csv"
+    given = record(scene, ARM, "effort:A", "effort:B")
+    columns = [given.t, *(given.columns[name] for name in ("A", "B", "effort:A"))]
+    rows = [",".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True)]
+
+    def read(*heads):
+        path.write_text("\n".join([",".join(heads), *rows]))
+        return read_measurements(path)
+
+    good = ("t [s]", "A [rad]", "B", "effort:A [N m]")
+    found = identify(scene, read(*good), ["J2"])
+    for k, head, unit in ((1, "A [mm]", "rad"), (3, "effort:A [mm]", "N m")):
+        wrong = read(*(head if k == place else one for place, one in enumerate(good)))
+        name, word = head[:-1].split(" [")
+        for refused in (lambda given: identify(scene, given), found.validate):
+            with pytest.raises(DeclarationError, match=f"'{name}' is in {word}; expected {unit}"):
+                refused(wrong)
+    with pytest.raises(DeclarationError, match="'t' is in deg; expected s"):
+        read("t [deg]", *good[1:])
+
+
+def test_the_shipped_records_are_those_of_the_arm_that_is_measured():
+    """An arm with a parallelogram, a spring and friction: truth within the stated errors."""
+    folder = CASES / "parallelogram_arm"
+    made, case = runpy.run_path(str(folder / "measure.py")), load_case(folder)
+    for name, text in made["records"]().items():
+        rows = [
+            np.loadtxt(lines, delimiter=",", skiprows=1)
+            for lines in (folder / name, text.split("\n"))
+        ]
+        np.testing.assert_allclose(*rows, rtol=0.0, atol=1.1e-3)  # a digit may round otherwise
+    noise = dict.fromkeys(case.scene.laws, made["ANGLE"])
+    run, check = (read_measurements(folder / f"{n}.csv", noise=noise) for n in ("run", "check"))
+    found = identify(case, run, trim=0.1)
+    assert found.absent == ("m_upper", "m_crank")
+    true = combined(found, case.scene.values(None) | made["TRUTH"])
+    away = [abs(one.value - t) / one.error for one, t in zip(found.base, true, strict=True)]
+    assert len(away) == 10
+    assert max(away) < 4.0
+    for left in found.validate(check, trim=0.1).residual.values():
+        assert left == pytest.approx(made["TORQUE"], rel=0.3)
+
+
 def test_an_excitation_keeps_within_limits_and_tells_more():
     scene = two_links()
     limits = {"A": (-1.0, 1.0, 2.0, 9.0), "B": (0.0, 1.5, 3.0, 20.0)}
     found = excite(scene, limits, period=4.0, steps=60)
-    assert found.condition < found.first
+    assert found.error < 0.9  # of random motions' best, at which the search begins
     assert len(found.base) == 4
     swept = Scene(scene.mechanism, found.motion, wanted=["motion"], t=(0, 4, 4001))
     solution = evaluate(swept)
@@ -436,6 +483,19 @@ def test_what_cannot_be_is_refused_by_name():
         identify(scene, given, ["m1"])
     with pytest.raises(UnknownNameError, match="column of a drive 'B'"):
         identify(scene, Measurements(given.t, {"A": given.columns["A"], "effort:A": given.t}))
+    for bad, words in (
+        ({"t": given.t[::-1]}, "times that increase, got 3 s and then 2.99 s in rows 1 and 2"),
+        ({"t": given.t[:0]}, "at least 8 rows of measurements, got 0"),
+        ({"columns": {"A": np.full(301, np.nan)}}, "column 'A' has no values"),
+    ):
+        with pytest.raises(DeclarationError, match=words):
+            Measurements(**{"t": given.t, "columns": {}} | bad)
+    few = {name: given.columns[name][:8] for name in ("A", "B", "effort:A")}
+    few["effort:A"] = np.where(np.arange(8) < 4, few["effort:A"], np.nan)
+    with pytest.raises(DeclarationError, match="4 measured values do not determine 5 unknown"):
+        identify(scene, Measurements(given.t[:8], few))
+    with pytest.raises(DeclarationError, match="trim=5: expected less than half of the 3 s"):
+        identify(scene, given, trim=5.0)
     far = dict(record(platform(), PLATE, "effort:d0").columns)
     far["d0"] = far["d0"] + np.linspace(0.0, 3.0, far["d0"].size)
     with pytest.raises(AssemblyError, match="cannot be closed at row"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 from ..base.publish import check_writable
@@ -36,14 +37,10 @@ def identify_command(
     out = out or Path(f"{loaded.name}_identified.h5")
     check_writable(out, hdf5=True)
 
-    def read(path: Path) -> Comparison:
-        return found.validate(
-            read_measurements(path, names=dict(names), counts_per_turn=counts_per_turn), trim
-        )
-
-    record = read_measurements(
-        data, names=dict(names), noise=dict(noise), counts_per_turn=counts_per_turn
+    read = partial(
+        read_measurements, names=dict(names), noise=dict(noise), counts_per_turn=counts_per_turn
     )
+    record, other = read(data), None if validate is None else read(validate)
     found = identify(
         loaded.scene,
         record,
@@ -55,7 +52,7 @@ def identify_command(
         cutoff=cutoff,
         trim=trim,
     )
-    second = None if validate is None else read(validate)
+    second = None if other is None else found.validate(other, trim)
     for line in _lines(found, second):
         echo(line)
     save_identification(found, out, second)

@@ -75,7 +75,7 @@ def fmu(source: Source, p: Array, by: str = "") -> dict[str, bytes]:
     archive = _archive(files)
     findings = _findings(archive)
     if findings:
-        raise StoreError(f"FMPy finds {prefix}.fmu wrong: {' '.join(findings[0].split())}")
+        raise StoreError(f"FMPy reports an error in {prefix}.fmu: {' '.join(findings[0].split())}")
     return {
         f"{prefix}.fmu": archive,
         f"{prefix}_fmu_test.py": golden_script(description).encode(),

@@ -37,7 +37,7 @@ MANIFEST = Manifest(
     "lagrange-casadi export",
     "export into",
     "an export",
-    "choose another folder, or say force=True, which touches no other file",
+    "choose another folder, or set force=True, which changes no other file",
 )
 _BUILD = "build"
 """Build folder in README: a new export neither stops at it nor touches it."""

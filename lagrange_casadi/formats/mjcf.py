@@ -192,7 +192,7 @@ class _Reader:
             "Armature, the inertia of motors at joints": np.any(m.dof_armature),
             "Contacts": m.npair > 0 or (np.any(m.geom_contype) and m.ngeom > 1),
             "Tendons": m.ntendon > 0,
-            "Actuators, but for the joints that they drive": m.nu > 0,
+            "Actuators, except which joints they drive": m.nu > 0,
             "Keyframes": m.nkey > 0,
         }
         notes += [f"{what}: not read." for what, there in data.items() if there]

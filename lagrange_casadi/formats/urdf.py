@@ -85,7 +85,7 @@ class _Robot:
         while waiting:
             ready = [one for one in waiting if self.side(one, _ONE)[0] in placed]
             if not ready:
-                raise waiting[0].refuse("its links hang on nothing that leads to the root")
+                raise waiting[0].refuse("its links are not connected to the root")
             self.grow(ready[0], placed)
             waiting = [one for one in waiting if one is not ready[0]]
         for loop in self.root.all(*_LOOPS):

@@ -138,9 +138,9 @@ class Identification:
             If the mechanism cannot follow the measured motion.
         """
         regressor = self.regressor
+        measured = _measured(measurements, regressor)
         motion = measurements.motion(regressor.program.driven, trim)
         p = np.array(list((dict(self.parameters) | dict(self.values)).values()))
-        measured = _measured(measurements, regressor.quantities)
         return _compared(regressor, motion, measured, p, regressor.follow(motion, p))
 
 
@@ -198,7 +198,8 @@ def identify(
     UnknownNameError
         For parameters or columns that there are not.
     DeclarationError
-        If nothing that is measured depends on the unknown parameters.
+        If nothing that is measured depends on the unknown parameters, for a column in a unit of
+        another quantity, and if there are not more measured values than combinations to determine.
     AssemblyError
         If the mechanism cannot follow the measured motion.
     AccuracyError
@@ -207,9 +208,9 @@ def identify(
     scene = scene_of(scene)
     names = tuple(scene.parameters) if unknown is None else tuple(dict.fromkeys(unknown))
     if not names:
-        raise DeclarationError("identify: expected unknown parameters; the scene declares none")
+        raise DeclarationError("identify: expected at least one unknown parameter, got none")
     if lost := [name for name in prior or {} if name not in names]:
-        raise UnknownNameError("unknown parameter of prior=", lost, names)
+        raise UnknownNameError("parameter of prior=", lost, names)
     drives = tuple(scene.laws)
     quantities = measurements.quantities(drives)
     if not quantities:
@@ -221,9 +222,10 @@ def identify(
     regressor = Regressor.of(scene, quantities, names, EvaluationMethod(backend))
     p = np.array(list(values.values()))
     numbers = tuple(list(values).index(name) for name in names)
+    measured = _measured(measurements, regressor)
     motion = measurements.motion(regressor.program.driven, trim)
     low_pass = None if cutoff is None else Filter(measurements.t, cutoff)
-    data = Data(regressor, motion, _measured(measurements, quantities), p, numbers, low_pass)
+    data = Data(regressor, motion, measured, p, numbers, low_pass)
     z = regressor.follow(motion, p)
     ranking = Ranking.of(data.theta, [scene.parameters[name].unit for name in names])
     spread = np.array([(prior or {}).get(name, math.inf) for name in names])
@@ -245,8 +247,10 @@ def identify(
     return _result(scene, measurements, data, found, (names, curved, ranking), cutoff)
 
 
-def _measured(measurements: Measurements, quantities: Sequence[str]) -> Array:
-    """Return the columns of quantities, (n, quantities)."""
+def _measured(measurements: Measurements, regressor: Regressor) -> Array:
+    """Return the columns of quantities, (n, quantities), whose units are checked."""
+    quantities = regressor.quantities
+    measurements.check_units(regressor.expected)
     if lost := [name for name in quantities if name not in measurements.columns]:
         raise UnknownNameError("column", lost, measurements.columns, place=measurements.name)
     return np.stack([measurements.columns[name] for name in quantities], axis=1)

@@ -41,6 +41,9 @@ _STRIDE = 0.1
 _STEPS, _CLOSED = 60, 1e-13
 """Steps of Newton's method at most, and the relative correction at which a loop is closed."""
 
+MOTION = ("", "_rate", "_acceleration")
+"""Ends of the names of a drive's coordinate, rate and acceleration."""
+
 _NAMES = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
 
 
@@ -126,6 +129,14 @@ class Regressor(Graphs):
         batch = Batch.of(function, method)
         return cls(program, tuple(quantities), units, tuple(unknown), batch)
 
+    @property
+    def expected(self) -> dict[str, str]:
+        """SI units of all that may be measured: the motion of the drives, and the quantities."""
+        moving = [f"{drive}{end}" for drive in self.program.driven for end in MOTION]
+        kinds = self.program.data.kinds
+        found = {name: Output.of(f"motion:{name}").unit(kinds) for name in moving}
+        return found | dict(zip(self.quantities, self.units, strict=True))
+
     def at(self, motion: DrivenMotion, z: Array, p: Array) -> tuple[Array, Array]:
         """Return values (n, quantities), and their derivatives (n, quantities, unknown)."""
         given = {"t": (motion.t[:, None], 1), "d": (motion.d, 1), "d_rate": (motion.rate, 1)}
@@ -194,7 +205,8 @@ def _wanted(scene: Scene, quantities: Sequence[str]) -> list[str]:
             wanted.append("effort" if kind == "effort" else f"{kind}:{part.partition(':')[0]}")
     for name, want in zip(quantities, wanted, strict=True):
         if want.partition(":")[0] not in (*_FORCES, "section") or want not in scene.outputs:
-            forces = [one for one in scene.outputs if one.partition(":")[0] in _FORCES]
+            forces = [one for one in scene.outputs if one.partition(":")[0] in _FORCES[1:]]
+            forces = [f"effort:{drive}" for drive in scene.laws] + forces
             raise UnknownNameError("measured quantity", name, forces)
     return list(dict.fromkeys(wanted))
 

@@ -321,7 +321,7 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
             yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
     yield from unlike(dataset, solution.unit(name), quantity.attributes)
     if strange := dataset.attrs.keys() - {*quantity.attributes, *_BESIDE}:
-        yield f"{place}: {min(strange)} is not the schema's"
+        yield f"{place}: {min(strange)} is not in the schema"
     for axis, scale in enumerate(quantity.axes):
         if file[scale] not in dataset.dims[axis].values():
             yield f"{place}: axis {axis} has no scale /{scale}"

@@ -221,7 +221,11 @@ class Question:
             if term.kind == "peak" and (link := tired_link(term.output)):
                 scene.wants([f"safety:{link}"])
                 continue
-            there = engine.efforts if term.averaged else engine.quantities
+            if term.kind == "fluctuation" and term.output not in engine.drives:
+                raise UnknownNameError(
+                    "effort of a joint whose motion is given", term.name, map(str, engine.drives)
+                )
+            there = engine.quantities if term.pointed else engine.efforts
             if term.output is not None and term.name not in there:
                 raise UnknownNameError(f"quantity with a {term.kind}", term.name, there)
         return engine

@@ -27,12 +27,13 @@ from ...errors import DeclarationError, UnknownNameError
 from ...instants.laws import law_of
 from ...instants.section_law import SectionLaw
 from ...instants.statistics import of_counted
+from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
 from .chunks import encoded
 from .column import MISSING, Column
 from .instant_axis import InstantAxis
-from .meanings import ERROR, LEAST, LIFE, MASS, STATUS, TIMES, Meanings
+from .meanings import ERROR, FLUCTUATION, LEAST, LIFE, MASS, STATUS, TIMES, Meanings
 from .strength import Kept
 
 KINDS = (
@@ -44,6 +45,7 @@ KINDS = (
     ERROR,
     "mean",
     "rms",
+    FLUCTUATION,
     SENSITIVITY,
     "peak_at",
     "history",
@@ -59,6 +61,9 @@ _MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
 _AT_HAND = 1 << 22
 _GRID_COST = 5e-10
 """Seconds of a section force at an instant and a ratio."""
+
+_FLUCTUATION_COST = 3e-3
+"""Seconds of a fluctuation of energy."""
 
 _SLOPES_COST = 3e-4
 """Seconds of the derivatives of a design's peaks."""
@@ -78,7 +83,7 @@ class Harvest:
     By the ``whole`` graph designs are looked at closely.
 
     ``safety`` and ``life`` are the links of which these are kept. By the parameters ``by`` the
-    derivatives of peaks are kept too.
+    derivatives of peaks are kept too, and with ``fluctuation`` that of the energy of drives.
     """
 
     engine: DesignEngine
@@ -89,9 +94,15 @@ class Harvest:
     safety: tuple[str, ...] = ()
     life: tuple[str, ...] = ()
     by: tuple[str, ...] = ()
+    fluctuation: bool = False
 
     def __post_init__(self) -> None:
         check_keep(self.keep)
+        if self.fluctuation and not self.engine.drives:
+            raise DeclarationError(
+                "fluctuation: it is that of the energy of efforts of joints whose motion is given,"
+                " and none is in wanted=; want effort"
+            )
         if self.xi.size and not self._links:
             raise DeclarationError("xi: ratios apply to section forces, and none is in wanted=")
         if self.keep == "laws" and not self._links:
@@ -115,6 +126,7 @@ class Harvest:
             for kind in self._of_peaks(quantity)
         }
         names |= {f"{kind}:{name}": () for name in engine.efforts for kind in _MEANS}
+        names |= {f"{FLUCTUATION}:{name}": () for name in self._drives}
         for parameter in self.by:
             names |= {f"{SENSITIVITY}:{parameter}:peak:{name}": () for name in engine.quantities}
             names |= {
@@ -175,6 +187,7 @@ class Harvest:
         """
         grids = len(self._table.forces) * len(self._links) * self.axis.values.size * self.xi.size
         seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.by else 0.0)
+        seconds += _FLUCTUATION_COST * len(self._drives)
         return max(
             1,
             min(
@@ -226,6 +239,7 @@ class Harvest:
                 found.append(outcome.error[:, k])
         for k in range(len(self.engine.efforts)):
             found += [outcome.mean[:, k], outcome.rms[:, k]]
+        found += self._fluctuations(outcome, p)
         if self.by:
             peaks, means = self.engine.slopes_at(p, outcome), self.engine.mean_slopes_at(p, outcome)
             for number in map(list(self.data.parameters).index, self.by):
@@ -306,6 +320,21 @@ class Harvest:
             if self.keep == "histories" or Output.of(name).along
         )
 
+    @property
+    def _drives(self) -> tuple[Output, ...]:
+        """The efforts of which the fluctuation of energy is kept."""
+        return self.engine.drives if self.fluctuation else ()
+
+    def _fluctuations(self, outcome: Outcome, p: Array) -> list[Array]:
+        """The fluctuation of energy of each drive, (designs,)."""
+        found = []
+        for drive in self._drives:
+            energy, column = DriveEnergy(self.engine, drive), np.full(len(p), np.nan)
+            for k in np.flatnonzero(outcome.status == Status.OK):
+                column[k] = energy.fluctuation(p[k])
+            found.append(column)
+        return found
+
     def _of_peaks(self, quantity: Output) -> list[str]:
         """The kinds of columns of the peak of a quantity."""
         over = ["peak_over"] if self.axis.joint else []
@@ -343,9 +372,7 @@ class Harvest:
                     law = mass_properties.law(
                         {output: series[i, k] for output, k in rows.items()}, p[i]
                     )
-                    basis = law.basis(self.xi)
-                    for force, grid in zip(self._table.forces, grids, strict=True):
-                        law.on_grid(force, basis, grid[i], threads=1)
+                    law.on_grids(self._table.forces, self.xi, grids[:, i], threads=1)
                 whole += list(grids)
         return largest, whole
 
