@@ -609,6 +609,12 @@ def trade(**given: Any) -> None:
     metavar="FILE",
     help="Draw measured and model to this .png, .pdf or .svg.",
 )
+@click.option(
+    "--report",
+    type=PATH,
+    metavar="FILE.html",
+    help="Write a page with all tables and pictures.",
+)
 def identify(**given: Any) -> None:
     """Find parameters of CASE from motion and forces that were measured.
 
