@@ -113,7 +113,7 @@ def test_a_curve_of_numbers_is_numbers():
     assert isinstance(found(1.5), float)
     np.testing.assert_allclose(found([0.5, 2.5]), [0.125, 15.625])
     assert repr(found) == "<Curve of 4 points, from 0 to 3>"
-    with pytest.raises(DeclarationError, match=r"curve: 3\.5 is beyond its ends, 0 and 3"):
+    with pytest.raises(DeclarationError, match=r"curve: 3\.5 is outside its range, 0 to 3"):
         found(3.5)
     with pytest.raises(
         DeclarationError, match=r"expected a scalar casadi\.SX expression or finite numbers"

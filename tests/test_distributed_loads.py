@@ -423,7 +423,7 @@ def test_exported_c_tells_of_them(tmp_path):
         "link b, load lift, power 2: load along the link 90 deg counter-clockwise of the axis"
         in header
     )
-    assert "And then loads along the link, of which a section feels what acts beyond it" in header
+    assert "And then loads along the link; those beyond a section act on it" in header
 
 
 @pytest.mark.long

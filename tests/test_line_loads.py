@@ -305,13 +305,11 @@ def test_what_bears_no_line_load_is_refused_by_name():
     ):
         with pytest.raises(DeclarationError, match=no_polynomial):
             m.line_load("wind", rod, y=function)
-    with pytest.raises(
-        DeclarationError, match="load 'wind': its function of the distance fails: ZeroDivisionError"
-    ):
+    with pytest.raises(DeclarationError, match=r"load 'wind' cannot be made .*: ZeroDivisionError"):
         m.line_load("wind", rod, y=lambda xi: xi * (1 / 0))
     with pytest.raises(
         DeclarationError,
-        match="load 'wind': its function of the distance fails: a symbol has no truth value",
+        match=r"load 'wind' cannot be .* of the distance from the base .*: a symbol has no truth",
     ):
         m.line_load("wind", rod, y=lambda xi: xi if xi > 0 else 0)
     with pytest.raises(

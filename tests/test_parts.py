@@ -303,7 +303,7 @@ def test_a_station_outside_its_link_is_named():
     m.weld("W", a.at(m.parameter("x", 0.5, "m")), m.point_mass("p", 1))
     scene = Scene(m, {"J": polynomial(0)})
     with pytest.raises(
-        ParameterError, match=r"joint 'W': station 1\.5 m is outside link 'a', 0 to 1 m"
+        ParameterError, match=r"joint 'W': its point at 1\.5 m is outside link 'a', 0 to 1 m"
     ):
         evaluate(scene, parameters={"x": 1.5})
 

@@ -189,7 +189,7 @@ def test_designs_have_the_same_peaks(scene, fine, half, method, tolerance):
 def test_a_sweep_keeps_peaks_along_links(scene, solution):
     engine, timing, xi = DesignEngine.of(scene), scene.timing(None), np.linspace(0, 1, 7)
     data = engine.program.data
-    harvest = Harvest(engine, data, engine.program, "histories", InstantAxis.of(data, timing), xi)
+    harvest = Harvest(engine, engine.program, "histories", InstantAxis.of(data, timing), xi)
     found = dict(
         zip(
             (column.name for column in harvest.columns),

@@ -121,7 +121,7 @@ def test_check_passes_a_whole_file(file):
         ),
         (
             lambda h: h["effort/O"].attrs.__setitem__("sign", "whatever"),
-            "effort/O: sign is not the schema's",
+            "effort/O: sign differs from the schema",
         ),
         (lambda h: h["effort/O"].dims[0].detach_scale(h["t"]), "effort/O: axis 0 has no scale /t"),
         (lambda h: h.__delitem__("effort"), "effort/O: missing"),

@@ -390,7 +390,7 @@ def _first(h, status):
         ),
         (
             lambda h: h["status"].__setitem__(_first(h, 1), 99),
-            "status: 1 of the designs have a status that is none",
+            "status: 1 of the designs have an unknown status",
         ),
         (
             lambda h: h["peak/effort/O"].dims[1].detach_scale(h["r"]),

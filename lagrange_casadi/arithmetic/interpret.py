@@ -42,6 +42,18 @@ class Step:
     looked_up: Lookup | None = None
 
 
+INFIX = {
+    ca.OP_ADD: "{0} + {1}",
+    ca.OP_SUB: "{0} - {1}",
+    ca.OP_MUL: "{0} * {1}",
+    ca.OP_DIV: "{0} / {1}",
+    ca.OP_NEG: "-{0}",
+    ca.OP_SQ: "{0} * {0}",
+    ca.OP_TWICE: "{0} + {0}",
+    ca.OP_ASSIGN: "{0}",
+}
+"""Operations that C and structured text write alike."""
+
 REMAINDERS = {ca.OP_FMOD, ca.OP_REMAINDER}
 """Operations that take whole multiples of their second operand from the first."""
 

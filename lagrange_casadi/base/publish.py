@@ -64,8 +64,9 @@ def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) ->
 
 
 def settled(target: Path) -> Path:
-    """Resolve a file's path: a symbolic link stays, its target is written."""
-    return Path(os.path.realpath(target)) if os.path.islink(target) else target
+    """Resolve a path: a symbolic link stays, its target is written; ``.`` and ``..`` get a name."""
+    nameless = target.name in ("", "..")
+    return Path(os.path.realpath(target)) if nameless or os.path.islink(target) else target
 
 
 def is_hdf5(path: Path) -> bool:

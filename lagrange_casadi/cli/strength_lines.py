@@ -161,10 +161,10 @@ def _peak(link: str, peak: StressPeak) -> str:
 def _life(found: Life) -> str:
     if math.isinf(found.cycles):
         return (
-            f"  {f'life:{found.link}':<28}  endless: no stress cycle is above the endurance limit;"
+            f"  {f'life:{found.link}':<28}  infinite: no stress cycle is above the endurance limit;"
             f" nearest at xi/l = {ratio(found.xi)}, {found.fibre}"
         )
-    guess = ", a guess: the S-N line begins at 1000 cycles" if found.cycles < _GUESS else ""
+    guess = ", an estimate: the S-N line begins at 1000 cycles" if found.cycles < _GUESS else ""
     return (
         f"  {f'life:{found.link}':<28} {found.cycles:>12.4g} cycles, {found.hours:.4g} h, at xi/l ="
         f" {ratio(found.xi)}, {found.fibre}{guess}"

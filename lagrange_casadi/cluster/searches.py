@@ -67,7 +67,7 @@ def _descend(sent: bytes, words: Mapping[str, Json], task: SearchTask) -> Search
             solver = _built(sent)
             found = difference(words, solver.question.words(solver.engine))
             if found:
-                raise ClusterError(f"a worker would not give the same numbers: {found} there")
+                raise ClusterError(f"a worker would give other numbers: {found} there")
             run = solver.descend(task, lambda *_: None)
     except ClusterError:
         raise

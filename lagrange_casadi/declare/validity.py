@@ -492,7 +492,7 @@ def _of_load_point(what: str, point: Any, precision: Precision, *, space: bool) 
     def refusal(number: Evaluator) -> str:
         x, length, link = number(point.x), number(point.body.length), point.body.name
         there = (
-            f"station {readable(x, 0.0, length)} m is outside link '{link}', 0 to"
+            f"its point at {readable(x, 0.0, length)} m is outside link '{link}', 0 to"
             f" {readable(length, x)} m"
         )
         end, beyond, turned = ("", -x, back) if x < 0.0 else (".tip", x - length, "")

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import casadi as ca
 import numpy as np
 
-from ..declare.expressions import error_text, sound
+from ..declare.expressions import expressed, sound
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression
 from ..errors import DeclarationError
@@ -28,13 +28,7 @@ def rise_of(
     Raises :class:`.DeclarationError` for what is no function of expressions, and where it is no
     finite number.
     """
-    try:
-        rise = ca.SX(lift(angle))
-    except Exception as error:  # whatever a user's function raises
-        raise DeclarationError(
-            f"{what}: lift must be a function of the cam's angle, of CasADi's expressions:"
-            f" {error_text(error)}"
-        ) from None
+    rise: ca.SX = expressed(f"{what}: lift", lambda x: ca.SX(lift(x)), [angle], "the cam's angle")
     defaults = [parameter.default for parameter in mechanism.parameters.values()]
     angles = np.linspace(0.0, math.tau, _SAMPLED)
     values = (

@@ -235,6 +235,27 @@ class FibreStresses:
         return _parts(self.form, still)
 
 
+@dataclass(frozen=True, eq=False)
+class LinkStress(Graphs):
+    """The stresses in a link of a :class:`.Program`: functions at its ``fibres``, of its section
+    law and its numbers, and these ``numbers(p)`` of the parameters.
+    """
+
+    fibres: FibreStresses
+    numbers: ca.Function
+
+    @classmethod
+    def of(cls, outputs: Iterable[Output], link: Link, p: ca.SX) -> LinkStress:
+        """Make them for a link, whose section law is among some outputs, and whose numbers are
+        expressions of parameters ``p``.
+        """
+        assert isinstance(link.mass, Density)
+        assert link.beam is not None
+        numbers = ca.densify(ca.vertcat(*numbers_of(link.length, link.mass, link.beam)))
+        fibres = FibreStresses.of(outputs, link.name, link.mass, link.beam)
+        return cls(fibres, ca.Function("numbers", [p], [numbers]))
+
+
 def _is_place(member: Output) -> bool:
     return member.member == "station" or (member.group == "spread" and member.power is None)
 

@@ -248,25 +248,22 @@ def section(
 
 @functools.cache
 @symbolic
-def along(
-    breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int], *, bends: bool
-) -> ca.Function:
-    """``along(matter, spans, xi) -> rows`` of a link: what coefficients of an axial force, or of a
-    moment, go with.
+def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int]) -> ca.Function:
+    """``along(matter, spans, xi) -> force, bending`` of a link: what coefficients of an axial force
+    and of a moment go with.
 
     First are those of the law, then those of loads along the link, which have so many ``powers``;
-    ``spans`` are width and end of each. It ``bends`` where the moment is meant. Other forces have
-    the same rows: a shear force those of an axial one, a moment that has an arm of -1 the same but
-    for the sign, and the couples of slices those of a force.
+    ``spans`` are width and end of each. Other forces have the same rows: a shear force those of an
+    axial one, a moment that has an arm of -1 the same but for the sign, and the couples of slices
+    those of a force.
     """
-    coefficient = "qf" if bends else "qn"
     acting = [
         Output("spread", "", member, str(load), power)
         for load, many in enumerate(powers)
         for member, power in (
             ("width", None),
             ("end", None),
-            *((coefficient, power) for power in range(many)),
+            *((coefficient, power) for coefficient in ("qn", "qf") for power in range(many)),
         )
     ]
     function = section(
@@ -276,15 +273,19 @@ def along(
         0.0,
     )
     law, loads, mass_properties, xi = function.sx_in()
-    terms = PLANE.sections["bending" if bends else "axial"].coefficients
-    spans = [k for k, output in enumerate(acting) if output.power is None]
-    given = [
-        *(law[PLANE.law.index(term)] for term in terms),
-        *(loads[k] for k in range(len(acting)) if k not in spans),
-    ]
-    force = function(law, loads, mass_properties, xi)[
-        PLANE.forces.index("bending" if bends else "axial")
-    ]
-    rows = ca.densify(ca.jacobian(force, ca.vertcat(*given)))
-    inputs = [mass_properties, ca.vertcat(ca.SX(0, 1), *(loads[k] for k in spans)), xi]
-    return ca.Function("along", inputs, [rows], ["matter", "spans", "xi"], ["rows"], {"cse": True})
+    forces = function(law, loads, mass_properties, xi)
+
+    def rows(force: str, coefficient: str) -> Expression:
+        given = [law[PLANE.law.index(term)] for term in PLANE.sections[force].coefficients]
+        given += [loads[k] for k, output in enumerate(acting) if output.member == coefficient]
+        return ca.densify(ca.jacobian(forces[PLANE.forces.index(force)], ca.vertcat(*given)))
+
+    spans = (loads[k] for k, output in enumerate(acting) if output.power is None)
+    return ca.Function(
+        "along",
+        [mass_properties, ca.vertcat(ca.SX(0, 1), *spans), xi],
+        [rows("axial", "qn"), rows("bending", "qf")],
+        ["matter", "spans", "xi"],
+        ["force", "bending"],
+        {"cse": True},
+    )

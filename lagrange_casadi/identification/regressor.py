@@ -19,13 +19,13 @@ from ..base.arrays import Array, Expression
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
-from ..declare.limits import END
 from ..declare.scene import Scene
 from ..equations.checks import Column
 from ..equations.derive import compile_scene
+from ..equations.multibody import column
 from ..equations.program import Program
 from ..equations.reciprocals import differentiable
-from ..equations.section_function import Place
+from ..equations.section_function import SectionInputs
 from ..equations.stress import CrossSections
 from ..errors import AssemblyError, UnknownNameError
 from ..instants.backends import begun
@@ -241,13 +241,15 @@ def _quantity(
     if place is None:
         output = Output.of(name)
         return columns[output], output.unit(data.kinds)
-    table, section = table_of(data.space), data.section(place.link, columns, p)
-    if place.kind == "section" and place.member not in table.forces:
-        raise UnknownNameError("section force", place.member, table.forces)
-    at = Place(ca.SX(place.ratio))
+    names, inputs = table_of(data.space).forces, SectionInputs.of(program.outputs, place.link)
+    if place.kind == "section" and place.member not in names:
+        raise UnknownNameError("section force", place.member, names)
+    law, acting = (column(columns[one] for one in some) for some in (inputs.law, inputs.acting))
+    values = program.section[place.link](law, acting, p, place.ratio)
+    section = dict(zip(names, ca.vertsplit(values), strict=True))
     if place.kind == "section":
         output = Output("section", place.link, place.member)
-        return section.at(place.member, at, END["double"]), output.unit(data.kinds)
+        return section[place.member], output.unit(data.kinds)
     if place.link not in data.materials:
         raise UnknownNameError("link with a beam", place.link, data.materials)
     link = data.link(place.link, p)
@@ -258,7 +260,7 @@ def _quantity(
     fibres = sections.fibres(cell).names
     if place.member not in fibres:
         raise UnknownNameError("fibre", place.member, fibres)
-    forces = [section.at(force, at, END["double"]) for force in sections.forces]
+    forces = [section[force] for force in sections.forces]
     normal, _, _ = sections.stresses(cell, place.ratio, [fibres.index(place.member)], forces)
     elasticity = link.beam.material.needs(f"quantity '{name}'", "elasticity")[0]
     return normal / elasticity, "1"

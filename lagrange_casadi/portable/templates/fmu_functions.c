@@ -26,7 +26,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   (void) type;
   (void) resources;
   (void) visible;
-  (void) logging; /* what fails is told in any case */
+  (void) logging; /* failures are always logged */
   if (!functions || !functions->allocateMemory || !functions->freeMemory || !name) return NULL;
   reset(&made.state);
   made.logger = functions->logger;

@@ -133,7 +133,7 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[s
         missing += int(np.sum(~there & (states == 0)))
         surplus += int(np.sum(there & (states != Status.OK)))
     if unknown:
-        yield f"{kept.name}: {unknown} of the designs have a status that is none"
+        yield f"{kept.name}: {unknown} of the designs have an unknown status"
     if wrong:
         yield (
             f"{counted(wrong)}, of those that were checked in full, without a certificate: others"

@@ -242,7 +242,7 @@ class Folder:
                 flaw = (
                     part.flaw()
                     if part
-                    else "its head or length, or an earlier one holds the same designs"
+                    else "its header or length, or an earlier one has the same designs"
                 )
             except FileNotFoundError:  # a sweep at work has come to its end
                 continue

@@ -1,10 +1,15 @@
-"""XML as elements that know their line, read as data: no document types, no entities."""
+"""Elements of files, which know their place: what is missing or wrong in one is a
+:class:`.ModelFileError` that names it. XML is read as data: no document types, no entities.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Any, ClassVar
 from xml.parsers import expat
+
+import numpy as np
 
 from ..base.arrays import Array
 from ..errors import ModelFileError, shown
@@ -16,14 +21,14 @@ _MOST = 500_000
 
 @dataclass(eq=False)
 class Element:
-    """An element of a model's file: its name, attributes, text, and what is in it. What is missing
-    or wrong in it is a :class:`.ModelFileError`.
-    """
+    """An element of a model's file: its name, line, attributes, text, and what is in it."""
+
+    form: ClassVar[str] = "<{}>"
 
     model: Model
     name: str
     line: int
-    given: dict[str, str] = field(default_factory=dict)
+    given: dict[str, Any] = field(default_factory=dict)
     text: str = ""
     inside: list[Element] = field(default_factory=list)
 
@@ -31,7 +36,11 @@ class Element:
     def where(self) -> str:
         """Line and start of the element, for messages."""
         named = f" name={shown(self.given['name'])}" if "name" in self.given else ""
-        return f"line {self.line}, <{self.name}{named}>"
+        return f"line {self.line}, {self.form.format(self.name[:40] + named)}"
+
+    def at(self, _name: str) -> str:
+        """Return the place of an attribute, for messages."""
+        return self.where
 
     def all(self, *names: str) -> Iterator[Element]:
         """Yield the elements in it of these names."""
@@ -48,23 +57,42 @@ class Element:
     def needed(self, *names: str) -> Element:
         """Return the first element in it of these names, of which there must be one."""
         if (found := self.first(*names)) is None:
-            raise self.refuse(f"lacks <{names[0]}>")
+            raise self.refuse(f"lacks {self.form.format(names[0])}")
         return found
 
-    def attribute(self, *names: str) -> str:
-        """Return the first attribute of these names, of which there must be one."""
-        for name in names:
-            if name in self.given:
-                return self.given[name]
-        raise self.refuse(f"lacks {names[0]}=")
+    def attribute(self, name: str) -> str:
+        """Return an attribute, which there must be."""
+        return str(self._stated(name, None))
 
-    def number(self, given: object, what: str) -> float:
-        """Return a number of it."""
-        return number(self.model, self.where, given, what)
+    def _stated(self, name: str, usual: object) -> object:
+        if usual is None and name not in self.given:
+            raise self.refuse(f"lacks {name}=")
+        return self.given.get(name, usual)
 
-    def numbers(self, given: object, what: str, count: int) -> Array:
-        """Return so many numbers of it."""
-        return numbers(self.model, self.where, given, what, count)
+    def amount(self, name: str, usual: float | None = None, what: str = "") -> float:
+        """Return the number in an attribute; ``usual`` if there is no such attribute."""
+        return number(self.model, self.at(name), self._stated(name, usual), what or name)
+
+    def triple(self, name: str, usual: object = None, what: str = "") -> Array:
+        """Return three numbers in an attribute; ``usual`` if there is no such attribute."""
+        return numbers(self.model, self.at(name), self._stated(name, usual), what or name, 3)
+
+    def direction(self, name: str, what: str = "") -> Array:
+        """Return three numbers in an attribute that are not all zero."""
+        if not np.any(found := self.triple(name, what=what)):
+            raise self.model.refuse(self.at(name), "expected a direction, got zero")
+        return found
+
+    def inner(self, name: str = "", usual: float = 0.0) -> float:
+        """Return the number that is the text of an element in it, without a name its own."""
+        found = self.first(name) if name else self
+        if found is None:
+            return usual
+        return number(self.model, found.where, found.text.strip(), name or self.name)
+
+    def numbers(self, what: str, count: int) -> Array:
+        """Return so many numbers of its text."""
+        return numbers(self.model, self.where, self.text, what, count)
 
     def by_name(self, *names: str) -> dict[str, Element]:
         """Return the elements in it of these names, by their attribute name."""
