@@ -117,9 +117,8 @@ class Library:
         are equally far apart. ``status`` (n) tells where loops do not close, and what is not
         finite. The bytes do not depend on ``threads``.
         """
-        assert all(
-            rows.ndim == 1 or rows.strides == out.strides or not rows.size for rows in (t, z)
-        )
+        assert t.ndim == 1 or t.strides == out.strides
+        assert not z.size or z.strides == out.strides
         n = t.shape[-1]
         call, entry = _instants(t, p, guess, z, out, status), self.entries[EVALUATE]
         self._follow(call, guess, status)
@@ -128,11 +127,14 @@ class Library:
         # Between calls an interrupt comes through.
         pieces = min(shares * _DISTRIBUTED, 2 * n // share) if shares > 1 else 1
         size = min(_LONGEST * share // _CUT * _CUT, -(-n // (pieces * _CUT)) * _CUT)
+        if size >= n:
+            entry(call, 0, n)
+            return
         in_threads(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
 
     def _follow(self, call: ctypes.Structure, guess: Array, status: Status) -> None:
         if not guess.size:
-            status[:] = 0
+            status.fill(0)
             return
         reach = max(1, _LONGEST * _WORTH_A_THREAD // (self.weight * self.steps * _SLOWER))
         for i in range(0, call.n, reach):
@@ -247,8 +249,8 @@ def _instants(
         stride=apart,
         t=t.ctypes.data,
         p=p.ctypes.data,
-        guess=guess.ctypes.data,
-        z=z.ctypes.data,
+        guess=guess.ctypes.data if guess.size else None,
+        z=z.ctypes.data if z.size else None,
         out=None if out is None else out.ctypes.data,
         apart=apart,
         status=status.ctypes.data,
