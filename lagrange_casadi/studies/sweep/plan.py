@@ -136,9 +136,8 @@ class Task:
         xi = np.zeros(0) if self.xi is None else points(self.xi)
         engine, data = compiled(program, self.timing, self.method, self.peaks), program.data
         axis = InstantAxis.of(data, self.timing)
-        graphs = (engine, data, whole or program)
-        kept = (self.safety, self.life, self.by, self.fluctuation)
-        return Harvest(*graphs, self.keep, axis, xi, *kept)
+        graphs, links = (engine, data, whole or program), (self.safety, self.life)
+        return Harvest(*graphs, self.keep, axis, xi, *links, self.by, self.fluctuation)
 
 
 def compiled(
