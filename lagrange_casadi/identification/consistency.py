@@ -18,6 +18,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.symbolic import Graphs, symbolic
 from ..equations.program import Program
@@ -79,7 +80,7 @@ class Consistency(Graphs):
             if inertia is not None and _depends(matrix := _second_moments(inertia), theta):
                 matrices[name] = matrix
         rows = [*masses.values(), *(x for matrix in matrices.values() for x in _lower(matrix))]
-        function = ca.Function("positive", [theta], [ca.densify(ca.vertcat(ca.SX(0, 1), *rows))])
+        function = ca.Function("positive", [theta], [ca.densify(column(rows))])
         parameters = [list(program.data.parameters.values())[k] for k in numbers]
         return cls(
             function,
@@ -162,7 +163,7 @@ class Consistency(Graphs):
                     lower[i, j] = ca.exp(free[start]) if i == j else free[start]
                     start += 1
             rows += _lower(lower @ lower.T)
-        return ca.vertcat(ca.SX(0, 1), *rows)
+        return column(rows)
 
     def _begin(self, theta: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
         """Return free numbers near values of the parameters, the sizes of the conditions, and which
