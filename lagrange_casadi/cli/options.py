@@ -30,7 +30,7 @@ BOUNDS = "NAME=LEAST:LARGEST"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 Number = TypeVar("Number")
-Kind: TypeAlias = "click.ParamType | Callable[[str], object]"
+Kind: TypeAlias = "click.ParamType[Any] | Callable[[str], object]"
 """Reader of an option's value."""
 
 
