@@ -108,6 +108,10 @@ SIGNALS = {
         lambda x: tent(x, 1.013, 4e-3) + 1.1 * tent(x, 1.023, 4e-3) + 0.2 * x,
         [1.013, 1.023],
     ),
+    "two bells between two instants": (
+        lambda x: 0.97 * bell(x, 1.013, 0.3 * STEP) + 1.04 * bell(x, 1.035, 0.3 * STEP),
+        [],
+    ),
     "a jump": (lambda x: x * (x < 1.0137), [np.nextafter(1.0137, 0)]),
     "two jumps between two instants": (lambda x: (x > 1.013) * (x < 1.0133) + 0.1 * ca.cos(x), []),
     "the sign of a rate": (lambda x: (1 + 0.3 * x) * ca.sign(ca.sin(5 * x - 1.3)), []),

@@ -86,7 +86,7 @@ def coordinates(
     what: str, terms: Iterable[tuple[Expression | str, str]]
 ) -> tuple[list[Expression], str]:
     """Numbers or expressions of a joint's coordinate, each with what it is per, as ``"/s"``; and in
-    which unit texts tell them.
+    which unit texts give them.
 
     That is rad or m, or nothing without a text. Raises :class:`DeclarationError` for what is none
     of these, or in both units.

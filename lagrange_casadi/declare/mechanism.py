@@ -1,8 +1,8 @@
 """The declaration of a mechanism: parameters, links and point masses, joints, loads, constraints
 and gravity.
 
-A :class:`Mechanism` is filled part by part and freezes when a scene is made of it. What a number
-can tell is checked when a part is declared, what depends on the whole when it freezes, and what
+A :class:`Mechanism` is filled part by part and freezes when a scene is made of it. Numbers are
+checked when a part is declared, what depends on the whole when the mechanism freezes, and what
 depends on the parameters' values by :meth:`Mechanism.values`.
 """
 

@@ -239,7 +239,7 @@ def _peeled(
     """A part that has too many equations, loop by loop: in space a planar loop has, but says all of
     what it leaves no other.
 
-    A loop that tells its coordinates by the rank of its own equations is solved by itself, the
+    A loop that determines its coordinates by the rank of its own equations is solved by itself, the
     fewest coordinates first.
     """
     rows, columns = part
@@ -399,7 +399,7 @@ def solve_line(
     unknown: Sequence[Coordinate],
     multibody: Multibody,
 ) -> tuple[ClosedForm, ...]:
-    """The closed forms, one after another, of the ``rows`` of a joint that are Phi, told in the
+    """The closed forms, one after another, of the ``rows`` of a joint that are Phi, given in the
     plane in which its line moves.
 
     A slot or a cylindrical joint that closes a loop holds its points together along two lines

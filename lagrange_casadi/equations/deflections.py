@@ -1,9 +1,9 @@
 """Deflection of a link at an instant: the largest transverse deflection along it, as an expression.
 
-Strains of Timoshenko's beam, turn' = M/EI and across' = turn + V/GAs, are told at Chebyshev's nodes
-of each part between two stations, and the polynomials through them are integrated: exactly where
-the cross-section is constant. In space turn_z' and turn_y' are those of bending about any axes, and
-shear twists about the shear centre.
+Strains of Timoshenko's beam, turn' = M/EI and across' = turn + V/GAs, are taken at Chebyshev's
+nodes of each part between two stations, and the polynomials through them are integrated: exactly
+where the cross-section is constant. In space turn_z' and turn_y' are those of bending about any
+axes, and shear twists about the shear centre.
 """
 
 from __future__ import annotations

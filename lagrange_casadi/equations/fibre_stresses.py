@@ -313,8 +313,8 @@ def _parts(form: LinkForm, still: bool) -> tuple[FibrePart, ...]:
 def _places(
     body: Loaded, spans: Sequence[Part], x: ca.SX, *, still: bool
 ) -> Iterator[tuple[Part, Any, Any, Notch | None]]:
-    """Parts, ratios in them, beyond which ratio loads are felt there, and notches with the factors
-    that count in fatigue.
+    """Parts, ratios in them, beyond which ratio loads are carried there, and notches with the
+    factors that count in fatigue.
     """
     for part in spans:
         u = part.low + part.width * x

@@ -22,7 +22,7 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
     """The hash of the declaration, its expressions, laws of motion, what is wanted, and the code
     that derives.
 
-    None where the declaration holds something whose content cannot be told.
+    None if the declaration holds something whose content cannot be known.
     """
     declared = declaration(scene, wanted)
     if declared is None:
@@ -34,8 +34,8 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
 
 @symbolic
 def declaration(scene: Scene, wanted: Wanted) -> str | None:
-    """All that is declared and wanted, as text; None where it holds something whose content cannot
-    be told.
+    """All that is declared and wanted, as text; None if it holds something whose content cannot
+    be known.
     """
     mechanism = scene.mechanism
     expressions: list[Any] = []

@@ -54,7 +54,7 @@ class Course:
         on its radius of one.
         """
         generator, size = np.random.default_rng(1), self.coordinates.numel()
-        # A few ways to move tell as much as every rate by itself.
+        # A few ways to move show as much as every rate by itself.
         directions = ca.DM(generator.normal(size=(self.rates.numel(), _WAYS)))
         moved = ca.densify(ca.jtimes(ca.SX(self.coordinate_rates), self.rates, directions))
         others = _others(moved, self.coordinates)
@@ -90,7 +90,7 @@ def no_rates(
     n, p, k = course.rates.numel(), course.coordinates.numel(), graphs.numel()
     if not k or not n + mobilities.numel():
         return []
-    # All of them at once, each with a weight: one sweep tells whether any is wrong.
+    # All of them at once, each with a weight: one sweep shows whether any is wrong.
     weights = ca.SX.sym("weights", k)
     slopes = ca.gradient(ca.dot(weights, graphs), ca.vertcat(course.coordinates, course.rates))
     by_place, by_rate = ca.vertsplit(slopes, [0, p, p + n])

@@ -59,7 +59,7 @@ class InternalForces:
     parameters.
 
     ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism. Among
-    the columns, a check tells how far drives are from a place where they cannot make the motion,
+    the columns, a check measures how far drives are from a place where they cannot make the motion,
     where they are others than the joints whose motion is given. ``friction`` are the forces of
     frictions.
     """

@@ -233,7 +233,7 @@ def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Colum
     the third axis is the first.
 
     There (gimbal lock) loops cannot set them, and they cannot give every couple. Their motion is
-    told where it is given.
+    evaluated where it is given.
     """
     found: dict[Column, Any] = {}
     for joint in mechanism.joints.values():

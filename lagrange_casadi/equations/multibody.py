@@ -197,7 +197,7 @@ class Multibody:
 
     The mobilities are in ground axes, those of the joints in ``own_axes`` in the axes of the body
     that hangs on the joint. ``frames`` are without mobilities; ``accelerated`` are with them, and
-    their accelerations are less that of gravity, as matter feels them. ``efforts`` are the symbols
+    their accelerations are less that of gravity. ``efforts`` are the symbols
     of efforts along other coordinates than those whose motion is given, and ``along`` what a unit
     of effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the
     directions in ground axes about which turns relative to a body turn, by coordinate;

@@ -2,8 +2,8 @@
 these with those of the drives.
 
 With E = q'.M q'/2 for the rates q' whose laws are given, and v = R q' for those of the drives, a
-drive alone feels the inertia e.(R^-T M R^-1) e, the other drives at rest. Nothing depends on how
-fast the mechanism moves.
+drive alone accelerates the inertia e.(R^-T M R^-1) e, the other drives at rest. Nothing depends on
+how fast the mechanism moves.
 """
 
 from __future__ import annotations

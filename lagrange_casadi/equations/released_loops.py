@@ -44,7 +44,7 @@ class ReleasedLoops:
 
     ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u, and then by each of
     ``by``; ``turned(u, q)`` the quaternions after the small rotations u of balls, which ``resting``
-    tells. ``first`` is the rough posture.
+    marks. ``first`` is the rough posture.
     """
 
     residuals: Any

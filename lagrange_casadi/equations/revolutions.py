@@ -5,7 +5,7 @@ A loop gives the cosine and sine of an angle, and so the angle but for whole tur
 from what counts turns of itself: the angles of drives, and those that gears and constraints tie to
 them. While the drives go round, the angle goes round as often as some sum of theirs, K . beta with
 whole numbers K, and about that it swings. So the angle is K . beta + centre + swing, where cosine
-and sine tell the swing, which is less than half a turn either way; and no instant needs to know
+and sine give the swing, which is less than half a turn either way; and no instant needs to know
 another. K and the centre are found once, by following the motion of the scene and a whole turn of
 its drive. Wherever a swing is evaluated it is held to :data:`REACH`.
 """
@@ -127,7 +127,7 @@ class _Rule:
             )
             low, high = float(deviation.min()), float(deviation.max())
             if high - low <= 2.0 * (REACH - 10.0**-_DIGITS):
-                # In few digits, lest the last ones of some library's sines be told in the graph.
+                # In few digits, lest the last ones of some library's sines be seen in the graph.
                 return cls(counts, round((low + high) / 2.0, _DIGITS))
         return None
 

@@ -2,7 +2,7 @@
 them holds at all.
 
 So a pattern is verified before a rule is applied that needs it, and what rounding leaves of a
-coefficient is told from a coefficient. The points are the same in every process.
+coefficient is distinguished from a coefficient. The points are the same in every process.
 """
 
 from __future__ import annotations

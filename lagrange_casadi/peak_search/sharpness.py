@@ -4,7 +4,7 @@ rotations and powers of its graph, to be watched.
 Every quantity is made of time by a graph of operations. Sums and products make nothing sharp; what
 does is a divisor that nearly vanishes, a comparison that changes, an angle that turns far between
 two instants, or a steep function. The arguments of all such operations are smooth wherever those
-inside them are, so their values at the instants tell between which of them something may rise and
+inside them are, so their values at the instants show between which of them something may rise and
 fall unseen. :mod:`.between` reads them.
 """
 

@@ -34,8 +34,8 @@ class ExportedProgram:
 
     ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all
     vectors. ``cycle`` is a table to be read instead of an instant, and ``still`` are stations that
-    are told beside it, for they do not move. ``sections`` are, of each link that has them, the name
-    of the function that gives its section forces, and what that takes.
+    are given beside it, for they do not move. ``sections`` are, of each link that has them, the
+    name of the function that gives its section forces, and what that takes.
     """
 
     program: Program

@@ -35,7 +35,7 @@ def stages_of(
     """Stages that evaluate all designs: in pairs if angles count many turns, or may for some
     parameters.
 
-    ``alike`` tells that all designs have the instants ``t``.
+    ``alike`` says that all designs have the instants ``t``.
     """
     time, p = program.laws.motion.sx_in()
     if method.precision == "single" or (
