@@ -50,8 +50,8 @@ def compared(units: Sequence[str]) -> list[int]:
     """Number of each unit with which sizes are compared: lengths beside angles, moments beside
     forces.
 
-    Of a mechanism all of whose slides stand still, lengths are nothing but rounding, which angles
-    tell.
+    Of a mechanism all of whose slides stand still, lengths are nothing but rounding, so angles
+    count.
     """
     kinds = [_LIKE.get(unit, unit) for unit in units]
     numbers = {kind: k for k, kind in enumerate(dict.fromkeys(kinds))}
@@ -144,7 +144,7 @@ class Output:
         """Row of the table of planar mechanisms, or, if these have none, of spatial ones: axes and
         unit are the same in both.
 
-        What it means in either is told by :meth:`meant`. Raises ``KeyError`` where there is none.
+        :meth:`meant` has its meaning in either. Raises ``KeyError`` where there is none.
         """
         return (PLANE if (self.group, self.member) in PLANE else SPACE).row(self.group, self.member)
 

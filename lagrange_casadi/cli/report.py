@@ -140,7 +140,7 @@ class Rows:
         return scales
 
     def _nothing(self, row: Row) -> bool:
-        """Tell what is zero but for rounding, or indeterminate."""
+        """Mark what is zero within rounding, or indeterminate."""
         return readable(_size(row.peak), row.error, self._scales[row.unit]) == "0"
 
     def _first(self, count: int) -> tuple[Row, ...]:
@@ -163,7 +163,7 @@ class Rows:
         return tuple(row for row in self.rows if id(row) in chosen)
 
     def _component(self, output: Output) -> bool:
-        """Tell a component of a resultant from a quantity of its own."""
+        """Distinguish a component of a resultant from a quantity of its own."""
         table = self.solution.table
         if output.group == "reaction":
             planar_moment = output.member == "mz" and "moment" not in table.reactions
@@ -226,7 +226,7 @@ def shown(peak: Peak, error: float | None, scale: float) -> str:
 
 
 def _matters(value: str, error: float) -> bool:
-    """Tell whether an error reaches the last digit shown of a value."""
+    """Return whether an error reaches the last digit shown of a value."""
     size = abs(float(value))
     if not (math.isfinite(error) and math.isfinite(size)):
         return False

@@ -33,7 +33,7 @@ class Workers:
     def go(
         self, solver: Solver, tasks: Sequence[SearchTask], progress: Progress
     ) -> Iterator[tuple[int, SearchRun]]:
-        """The ways of errands, as they are done. What was not done after an interrupt is not told.
+        """Runs of tasks, as they are done; those that an interrupt stopped are left out.
 
         Raises :class:`ClusterError` where the cluster cannot serve.
         """

@@ -38,7 +38,7 @@ _PATIENCE = 10.0
 _ADDRESS = re.compile(r"(tcp|tls|ws|wss|ucx)://\S+:\d{1,5}/?")
 _GLANCE, _ROLL, _PROBED, _GOODBYE = 2e-3, 1.0, 3.0, 0.3
 """Seconds between looks for a block, and between questions who the workers are; in which these must
-say what they have; and in which the scheduler is told that all is over."""
+say what they have; and in which the scheduler learns that all is over."""
 
 _PROBE = "__import__('importlib.util').util.find_spec('lagrange_casadi') is not None"
 """Question to a worker, in words that need nothing of this package."""

@@ -114,7 +114,7 @@ class Library:
         :meth:`follow` does.
 
         ``t`` is (n,), in single precision (2, n): rounded, and the rest; ``p`` likewise. All rows
-        are equally far apart. ``status`` (n) tells where loops do not close, and what is not
+        are equally far apart. ``status`` (n) says where loops do not close, and what is not
         finite. The bytes do not depend on ``threads``.
         """
         self.evaluation(t, p, guess, z, out, status, threads)()
@@ -200,10 +200,10 @@ class Library:
         contents of the arrays when it is called.
 
         They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n,
-        t - 1) tells in which steps between them the motion bends more than they show; one row of
+        t - 1) says in which steps between them the motion bends more than they show; one row of
         either serves all designs. ``history`` may be None; or all but that and the status may be
         None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
-        ``tops``, of which ``listed`` tells, may be left out. With ``error`` peaks are those at the
+        ``tops``, which ``listed`` describes, may be left out. With ``error`` peaks are those at the
         instants: it becomes how much larger they may be between them. The bytes of a row do not
         depend on other rows.
         """

@@ -45,7 +45,7 @@ class Density:
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """The breaks at which it may jump, as far as numbers tell."""
+        """The breaks at which it may jump, as far as numbers show."""
         return _jumps(self.breaks, self.cells)
 
     def ends(self, length: Expression) -> tuple[Expression, Expression, Expression]:
@@ -286,8 +286,8 @@ def along(curve: Curve) -> Density:
 
 
 def _jumps(breaks: Sequence[float], cells: Sequence[Sequence[Expression]]) -> tuple[float, ...]:
-    """The inner breaks at which neighbouring cells have two values, or values that numbers do not
-    tell.
+    """The inner breaks at which neighbouring cells have two values, or values that are not
+    numbers.
     """
     found = []
     for u, before, after in zip(breaks[1:], cells, cells[1:], strict=False):

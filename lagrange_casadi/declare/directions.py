@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .ownership import Ownership
 
 Checked = Callable[..., Expression]
-"""Takes what is said of an expression, the expression, and its unit if a text may tell it."""
+"""Takes what is said of an expression, the expression, and its unit if a text may state it."""
 
 RIGHT = 1e-9
 """A cosine that is smaller is that of a right angle."""

@@ -163,7 +163,7 @@ class Smooth:
 
     @symbolic_property
     def clearance(self) -> Clearance:
-        """Tells along which paths no mark comes near to where it passes, at a small part of the
+        """Return along which paths no mark comes near to where it passes, at a small part of the
         cost of looking for kinks.
         """
         return Clearance(self.marks, self.whole, self.open)

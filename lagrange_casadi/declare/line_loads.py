@@ -107,8 +107,8 @@ def _of_function(
         return [checked(value)]
     if value.numel() != 1:
         raise DeclarationError(f"{what} must be a scalar, got one of shape {value.shape}")
-    # With numbers for ends the polynomial is rounded once; a symbol that is foreign is told by the
-    # coefficients.
+    # With numbers for ends the polynomial is rounded once; a symbol that is foreign is refused by
+    # the coefficients.
     found = powers(value, distance, (ca.SX(end), ca.SX(start - end)))
     if found is None or len(found) > HIGHEST + 1:
         raise DeclarationError(

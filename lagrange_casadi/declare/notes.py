@@ -24,7 +24,7 @@ def notes(
     resting: npt.NDArray[np.bool_],
 ) -> Iterator[str]:
     """More drives than motions; slender links that slide across their axes, as nobody said; where a
-    joint that rubs is ``resting``; joints in gimbal lock, whose turns are not told; and each joint
+    joint that rubs is ``resting``; joints in gimbal lock, whose turns are not known; and each joint
     whose point slides beyond the end of a link that has sections, and how far it goes.
 
     As far as efforts, the motion of the joint, or the sections of the link, are among the outputs:

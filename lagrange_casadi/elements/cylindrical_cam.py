@@ -4,7 +4,7 @@ follower that slides or swings.
 The centre A of the roller is at a(theta) where the drum has turned by theta, and the roller turns
 about p, across the groove. The groove is what the roller leaves of the drum: its flanks touch the
 roller along the normal n, at right angles to p and to the way of A on the drum, a' - u x (a - c),
-with u the drum's axis through c. So the contact pushes along n through A. On the drum that is told
+with u the drum's axis through c. So the contact pushes along n through A. On the drum that is given
 by two points of its axis, c and q = c + h u, and the drum's angle: forces g1 + g2 = n there, with h
 u x g2 that part of the moment (a - c) x n that is across the axis. The part about the axis is the
 slope of the equation of contact by theta,
@@ -290,7 +290,7 @@ def _check(
         ca.vertcat(*map(ca.SX, minus(seat, times(dot(seat, design.axis), design.axis))))
     )
     angles = np.linspace(0.0, math.tau, 181)
-    checks = ca.Function("told", [x, p], [ca.SX(cosine), *ends, rise, radius])
+    checks = ca.Function("checks", [x, p], [ca.SX(cosine), *ends, rise, radius])
     lean, first, last, direction, reach = (
         np.broadcast_to(row.full().ravel(), angles.shape) for row in checks(angles[None], values)
     )

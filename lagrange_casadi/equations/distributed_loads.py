@@ -3,7 +3,7 @@ link's mass.
 
 A load acts up to ``end``, a ratio u = xi/l, on so much of the link as ``width`` says, with the
 value c_0 + c_1 s + c_2 s^2 + ... per length, where s = (end - u)/width. With x = s kept from 0 to
-1, L = l width and a = l max(end - width - u, 0), the section at u feels of each coefficient
+1, L = l width and a = l max(end - width - u, 0), the section at u carries of each coefficient
 
     c_j L x^(j+1)/(j+1)                              of a force,
     c_j L x^(j+1)/(j+1) (L x/(j+2) + a)              of a moment.
@@ -146,8 +146,8 @@ def _force_of_load(
     *,
     arm: bool,
 ) -> Expression:
-    """The force of a link's load along it, the part that a section at a ratio feels in a direction,
-    or with ``arm`` its moment.
+    """The force of a link's load along it, the part that a section at a ratio carries in a
+    direction, or with ``arm`` its moment.
     """
     link, load = of
 

@@ -130,7 +130,7 @@ class Program(Graphs):
         return np.asarray(out[..., self.seen_columns(constraint), :], float)
 
     def seen_columns(self, constraint: str) -> list[int]:
-        """The rows of ``out`` that tell it."""
+        """The rows of ``out`` that have it."""
         return [
             k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint
         ]

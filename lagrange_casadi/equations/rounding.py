@@ -4,9 +4,9 @@ over-constrained mechanism close.
 A loop that closes because axes are parallel, or meet, closes no more where a CAD program has
 rounded them: it has more equations than its mobility leaves room for, and these miss by that
 rounding. In any posture the misses are seen along the left null space N of the loops' Jacobian,
-whose rank is told within the tolerance: N'(Phi + Phi_x x) = 0 is linear in small corrections x of
-axes and places. The least x is taken for which it holds in many postures, and for other parameters
-too where it can, by the method of Gauss and Newton.
+whose rank is determined within the tolerance: N'(Phi + Phi_x x) = 0 is linear in small corrections
+x of axes and places. The least x is taken for which it holds in many postures, and for other
+parameters too where it can, by the method of Gauss and Newton.
 
 Joints that must be moved are first tried without what is beside a coordinate axis, or an end of a
 link, by rounding: where loops close so, their graphs are as small as those of exact axes. And a
@@ -51,8 +51,8 @@ _OTHER = 0.05
 _ROUNDS = 8
 _CLOSING_STEPS = 30
 _APART = 100.0
-"""Between a rank that is told and what rounding within the tolerance leaves: so much lies between
-singular values.
+"""Between a rank that is determined and what rounding within the tolerance leaves: so much lies
+between singular values.
 """
 
 _SEEN = 1e-4, 1e-10

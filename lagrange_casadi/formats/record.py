@@ -37,18 +37,17 @@ ROWS: dict[str, str] = {
 has the axes x, y, z; the child's is at q and has u, v, w; e and f are one of each.
 """
 
+_AXES = {"spherical": "xyz", "free": "xyz", "universal": "zw"}
+
 MOVES: dict[str, tuple[tuple[str, str, str], ...]] = {
     kind: tuple(
-        (name or "", move, ("xyz" if kind in ("spherical", "free") else "zxy")[direction])
-        for name, move, direction in freedoms
+        (name or "", move, _AXES.get(kind, "zxy")[direction]) for name, move, direction in freedoms
     )
     for kind, freedoms in IN_SPACE.items()
 }
 """The name of each coordinate of a kind of joint, empty for one alone, how it moves, and along or
-about which axis of the parent's frame.
+about which axis of the parent's frame; w is z of the child's.
 """
-
-MOVES["universal"] = (MOVES["universal"][0], ("turn_2", "turn", "w"))  # z of the child's frame
 
 
 @dataclass(frozen=True, eq=False)

@@ -93,7 +93,7 @@ def in_words(table: Table) -> str:
 
 
 def about(table: Table, force: str) -> str:
-    """A force as the header tells it: its unit, sign and range."""
+    """A force as the header describes it: its unit, sign and range."""
     row = table.row("section", force)
     sign = row.sign.removeprefix(f"{ON_INBOARD}, ").partition(f": {ON_INBOARD}")[0]
     signed = len(table.parts("section", force)) == 1

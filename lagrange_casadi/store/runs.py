@@ -328,7 +328,9 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
 
 
 def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
-    """Times and ratios: finite, and said to be these; and the parameters, which are told twice."""
+    """Times and ratios: finite, and said to be these; and the parameters, which are stated
+    twice.
+    """
     for axis, values in (("t", solution.t), ("xi", solution.xi)):
         if not np.isfinite(values).all():
             yield f"{axis}: holds values that are not finite"

@@ -37,8 +37,8 @@ def refine_stress(
     its span.
 
     It is exact to rounding, and not below that of the instants. Where the search would take too
-    long its value is NaN, and ``least`` the largest size that was found. What elasticity tells has
-    the peak of the instants.
+    long its value is NaN, and ``least`` the largest size that was found. What elasticity determines
+    has the peak of the instants.
 
     Raises what :func:`.strength.stress` does, :class:`.UnknownNameError` for a kind that is none,
     and :class:`.DeclarationError` where the solution is not of this scene.
@@ -111,7 +111,7 @@ class _Along:
         )
 
     def curves(self, columns: Array) -> tuple[Array, Array]:
-        """Ratios, which are not told, and sizes, each (1, t)."""
+        """Ratios, which are not known, and sizes, each (1, t)."""
         found = np.full((1, columns.shape[1]), np.nan)
         whole = np.isfinite(columns[list(self.columns.values())]).all(axis=0)
         if whole.any():

@@ -238,7 +238,7 @@ class Question:
             "versions": made.versions,
             "sources": sources(),
             "compiler": f"{made.backend} {made.compiler} {made.flags} {made.method}",
-            "scene": program.identity or "cannot be told",
+            "scene": program.identity or "cannot be identified",
             "mechanism": program.data.at(program.data.defaults),
             "t": self.timing.words(program.data.symbols),
             "minimise": list(map(str, self.objectives)),

@@ -90,7 +90,7 @@ def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
 
 
 def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
-    """Compare what a file tells twice: the case and its parameters, and the axes with what was
+    """Compare what a file states twice: the case and its parameters, and the axes with what was
     asked for.
     """
     identity: Mapping[str, Any] = sweep.identity

@@ -376,7 +376,7 @@ def signature(program: Program, task: Task, provenance: Provenance) -> dict[str,
         "xi": task.xi,
         "keep": task.keep,
         **({"fluctuation": True} if task.fluctuation else {}),
-        "scene": program.identity or "cannot be told",
+        "scene": program.identity or "cannot be identified",
     }
     content: dict[str, Json] = json.loads(json.dumps(words))
     return content
