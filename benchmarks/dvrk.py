@@ -17,8 +17,10 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+from scipy.signal import butter, filtfilt
 
 from lagrange_casadi import Measurements, Scene, SpatialMechanism, identify
+from lagrange_casadi.base.arrays import Array
 from lagrange_casadi.identification import Comparison
 from lagrange_casadi.identification.measurements import Filter
 from lagrange_casadi.motion import polynomial
@@ -41,14 +43,23 @@ SPRING, LEVER, REST, OFFSET = 0.0075, 0.1035, 0.0613, np.radians(23.0)
 DRIVES = ("q1", "q2", "q3", "q4", "q5", "q6", "q7")
 """The joints that motors move, in the order of the records."""
 
-NOISE, CUTOFF, TRIM, SHOWN = 1.5, 5.0, 1.0, 10.0
-"""Noise of angles, over what third differences say; the filter of torques [Hz]; seconds that are
-left out at both ends, and seconds by which the paper judges.
+TRIM, SHOWN = 1.0, 10.0
+"""Seconds that are left out at both ends, and seconds by which the paper judges."""
+
+FILTER = butter(6, 1.8 * 2 * np.pi / RATE)
+"""Filter of the paper, there and back, of motion and torques."""
+
+NOISE, CUTOFF = 1.5, 5.0
+"""Smoothing without it: noise of angles over what third differences say, and a filter of torques
+[Hz].
 """
 
-PUBLISHED = (8.2, 16.3, 19.1, 20.9, 26.3, 23.5, 34.0)
-"""Differences on the second record by weighted least squares in `main_mtm.ipynb`, over measured, of
-root mean squares [%].
+PUBLISHED = {
+    "fitted": (7.9, 15.6, 11.8, 18.6, 24.2, 18.3, 28.0),
+    "other": (8.2, 16.3, 19.1, 20.9, 26.3, 23.5, 34.0),
+}
+"""Differences over measured torques, of root mean squares [%], by weighted least squares in
+`main_mtm.ipynb`.
 """
 
 
@@ -127,47 +138,59 @@ def arm() -> Scene:
     return Scene(m, still, wanted=["effort", "motion"], t=(0, 1, 3), posture={"rear": 0.0})
 
 
-def record(path: Path) -> Measurements:
-    """Read angles and torques of the motors; speeds are derived from angles."""
-    table = np.loadtxt(path, delimiter=",")
-    columns = dict(zip(DRIVES, table[:, :7].T, strict=True))
-    columns |= {f"effort:{name}": table[:, 14 + k] for k, name in enumerate(DRIVES)}
+def filtered(table: Array) -> Measurements:
+    """Return a record that is filtered as in the paper."""
+    t = np.arange(len(table)) / RATE
+    speeds = np.gradient(table[:, 7:14], t, axis=0)
+    parts = [filtfilt(*FILTER, part, axis=0) for part in (*np.split(table, 3, axis=1), speeds)]
+    ends = ("{}", "{}_rate", "effort:{}", "{}_acceleration")
+    columns = {
+        end.format(drive): part[:, k]
+        for end, part in zip(ends, parts, strict=True)
+        for k, drive in enumerate(DRIVES)
+    }
+    return Measurements(t, columns)
+
+
+def smoothed(table: Array) -> Measurements:
+    """Return angles and torques as they are, and the noise of angles, by which a spline smooths."""
     rough = np.std(np.diff(table[:, :7], 3, axis=0), axis=0) / np.sqrt(20.0)
+    columns = dict(zip(DRIVES, table[:, :7].T, strict=True))
+    columns |= {f"effort:{drive}": table[:, 14 + k] for k, drive in enumerate(DRIVES)}
     noise = dict(zip(DRIVES, NOISE * rough, strict=True))
-    return Measurements(np.arange(len(table)) / RATE, columns, noise, path.name)
+    return Measurements(np.arange(len(table)) / RATE, columns, noise)
 
 
-def shares(compared: Comparison) -> list[float]:
-    """Return root mean squares of differences over those of filtered torques [%], by motor."""
-    found, low_pass = [], Filter(compared.t, CUTOFF)
-    for name in (f"effort:{drive}" for drive in DRIVES):
+def row(title: str, compared: Comparison, low_pass: Filter | None) -> str:
+    """Return differences over measured torques, of root mean squares [%], by motor."""
+    found = []
+    for name in compared.measured:
         both = np.column_stack([compared.measured[name], compared.model[name]])
-        known = np.isfinite(both).all(axis=1)
+        known = np.asarray(np.isfinite(both).all(axis=1))
+        both = both if low_pass is None else low_pass(both, known)
         shown = known & (compared.t >= TRIM) & (compared.t < TRIM + SHOWN)
-        measured, model = low_pass(both, known)[shown].T
+        measured, model = both[shown].T
         found.append(100.0 * float(np.linalg.norm(measured - model) / np.linalg.norm(measured)))
-    return found
+    return f"| {title} | {' | '.join(f'{x:.1f}' for x in found)} |"
 
 
 def report(clone: Path) -> str:
     """Identify by the first record, and judge by both."""
-    first, second = (
-        record(clone / "data/mtm/measured_trajectory" / f"{name}_results.csv")
-        for name in ("one", "two")
-    )
-    found = identify(arm(), first, cutoff=CUTOFF, trim=TRIM)
-    rows = [
-        f"{len(found.base)} combinations of {len(found.values)} parameters",
-        "",
-        "| motor | 1 | 2 | 3 | 4 | 5 | 6 | 7 |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- |",
-    ]
-    columns = {"fitted record": shares(found.comparison)}
-    columns["other record"] = shares(found.validate(second, TRIM))
-    columns["other record, published"] = list(PUBLISHED)
-    for title, numbers in columns.items():
-        rows.append("| ".join([f"| {title} ", *(f"{x:.1f} " for x in numbers)]) + "|")
-    return "\n".join(rows)
+    folder, scene = clone / "data/mtm/measured_trajectory", arm()
+    tables = [np.loadtxt(folder / f"{n}_results.csv", delimiter=",") for n in ("one", "two")]
+    rows = ["| record, how smoothed | 1 | 2 | 3 | 4 | 5 | 6 | 7 |", "| --- " * 8 + "|"]
+    for words, prepared, cutoff in (
+        ("as in the paper", filtered, None),
+        ("spline, 5 Hz", smoothed, CUTOFF),
+    ):
+        first, second = map(prepared, tables)
+        found = identify(scene, first, cutoff=cutoff, trim=TRIM)
+        low_pass = None if cutoff is None else Filter(first.t, cutoff)
+        rows.append(row(f"fitted, {words}", found.comparison, low_pass))
+        rows.append(row(f"other, {words}", found.validate(second, TRIM), low_pass))
+    for name, numbers in PUBLISHED.items():
+        rows.append(f"| {name}, published | {' | '.join(map(str, numbers))} |")
+    return "\n".join([f"{len(found.base)} of {len(found.values)} parameters", "", *rows])
 
 
 if __name__ == "__main__":

@@ -263,6 +263,7 @@ from lagrange_casadi.strength.rainflow import rainflow, reversals
 from lagrange_casadi.strength.safety import as_column
 from lagrange_casadi.strength.stress import maxima
 from lagrange_casadi.strength.worst import LinkHistories
+from lagrange_casadi.studies.designs.energy import DriveEnergy
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
 from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of

@@ -36,9 +36,9 @@ def written(name, folder, **options):
     return scene, export(scene, folder, name=name, **options).prefix
 
 
-@pytest.mark.parametrize("name", ["slider_crank", "roller_cam", "cardan_shaft"])
+@pytest.mark.parametrize("name", ["slider_crank", "scara", "cardan_shaft"])
 def test_structured_text_passes_its_test(name, tmp_path):
-    """The second has a table and the third iterates; each number that is changed is noticed."""
+    """The second has tables and the third iterates; each number that is changed is noticed."""
     scene, prefix = written(name, tmp_path, structured_text=True)
     text = (tmp_path / f"{prefix}.st").read_text()
     test = blocks(text)[f"mechanism_{prefix}_test"]()
@@ -59,7 +59,7 @@ def test_structured_text_passes_its_test(name, tmp_path):
 
 
 @pytest.mark.skipif(not (MATIEC / "iec2c").is_file(), reason="needs matiec, on PATH or as MATIEC")
-@pytest.mark.parametrize("name", ["slider_crank", "roller_cam", "cardan_shaft"])
+@pytest.mark.parametrize("name", ["slider_crank", "scara", "cardan_shaft"])
 def test_structured_text_passes_its_test_compiled_by_matiec(name, tmp_path):
     _, prefix = written(name, tmp_path, structured_text=True)
     (tmp_path / "run.c").write_text(RUN.format(f"mechanism_{prefix}_test".upper()))

@@ -8,15 +8,12 @@ import casadi as ca
 import numpy as np
 import pytest
 from conftest import CASES
+from internals import DesignEngine, DriveEnergy, EvaluationMethod, Output
 
 from lagrange_casadi import Mechanism, Scene, flywheel, load_case, optimise, sweep
-from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.studies.designs.energy import DriveEnergy
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 TERM = "fluctuation:effort:O"

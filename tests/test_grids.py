@@ -208,7 +208,7 @@ def test_an_array_of_another_layout_is_filled_too(monkeypatch):
     law.on_grid("bending", xi, wide[:, ::2])
     assert np.array_equal(wide[:, ::2], plain)
     assert np.all(wide[:, 1::2] == -1.0)
-    assert np.array_equal(law.on_grid("bending", xi, np.zeros((60, 41), order="F")), plain)
+    assert np.array_equal(law.on_grid("bending", xi, np.full((60, 41), np.nan, order="F")), plain)
     np.testing.assert_allclose(law.on_grid("bending", xi.astype(np.float32)), plain, atol=1e-5)
     with pytest.raises(
         DeclarationError, match=r"out: expected an array of shape \(60, 41\), got \(59, 41\)"

@@ -329,6 +329,7 @@ def test_prior_values_are_one_more_measurement():
     assert prior.values["h1"] == pytest.approx(first, rel=1e-6)
     assert np.isfinite(prior.errors["J1"])
     assert np.isinf(prior.errors["m1"])
+    assert prior.values["m1"] == prior.initial["m1"] == 3.0  # nothing depends on it
 
 
 def test_consistent_parameters_are_those_of_some_body():
@@ -526,6 +527,7 @@ def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, ca
     (tmp_path / "run.csv").write_text("\n".join(lines))
     given = ["--column", "O=angle", "--column", "effort:O=torque", "--noise", "effort:O=0.02"]
     given += ["--validate", "run.csv", "--figure", "fit.svg", "--out", "found.h5"]
+    given += ["--report", "page.html"]
     assert main(["identify", str(path), "run.csv", *given]) == 0
     said = capsys.readouterr().out
     settings = dict(word.split("=") for word in said.split() if word[:2] in ("w=", "c="))
@@ -541,9 +543,15 @@ def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, ca
         assert np.sqrt(np.mean(left**2)) == pytest.approx(0.02, rel=0.2)
         assert file["validation/effort:O"].attrs["relative"] == both.attrs["relative"]
     assert (tmp_path / "fit.svg").read_text().startswith("<?xml")
-    before = (tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes()
+    page = (tmp_path / "page.html").read_text()
+    for words in (f"<td>{settings['w'][:5]}", "standard error", "The record", "Another record"):
+        assert words in page
+    assert page.count("<img") == 4
+    files = [tmp_path / name for name in ("found.h5", "fit.svg", "page.html")]
+    before = [file.read_bytes() for file in files]
     assert main(["identify", str(path), "run.csv", *given]) == 0
-    assert before == ((tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes())
+    assert before == [file.read_bytes() for file in files]
+    assert main(["identify", str(path), "run.csv", *given, "--report", "page.pdf"]) == 2
     assert main(["check", "found.h5"]) == 0
     damaged = bytearray(before[0])
     damaged[len(damaged) // 2] ^= 1

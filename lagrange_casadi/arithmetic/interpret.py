@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression, Operand
 from ..errors import DeclarationError
 from .lookups import Lookup, lookup
@@ -233,7 +234,7 @@ def _written_out(function: ca.Function, inputs: Sequence[ca.SX]) -> list[Operand
 
 
 def _filled(sparsity: ca.Sparsity, nonzeros: Iterable[Expression]) -> ca.SX:
-    return ca.SX(sparsity, ca.vertcat(ca.SX(0, 1), *nonzeros))
+    return ca.SX(sparsity, column(nonzeros))
 
 
 def operation_name(operation: int) -> str:

@@ -465,6 +465,7 @@ def trade(**given: Any) -> None:
 @file("--validate", "Compare this other record with the model that was found.", metavar="OTHER.csv")
 @file("--out", "Write to this HDF5 file; default: <case>_identified.h5.")
 @file("--figure", "Draw measured and model to this .png, .pdf or .svg.", metavar="FILE")
+@file("--report", "Write a page with all tables and pictures.", metavar="FILE.html")
 def identify(**given: Any) -> None:
     """Find parameters of CASE from motion and forces that were measured.
 

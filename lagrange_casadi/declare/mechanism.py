@@ -16,6 +16,7 @@ from typing import Any, cast
 import casadi as ca
 
 from ..arguments import public
+from ..arithmetic.scalars import column
 from ..base.symbolic import Graphs, symbolic
 from ..base.units import Number
 from ..beams.beam import Beam
@@ -145,9 +146,7 @@ class Mechanism(Graphs):
     @property
     def symbols(self) -> Expression:
         """The parameters' symbols as one column, in the order of declaration."""
-        return ca.vertcat(
-            ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values())
-        )
+        return column(parameter.symbol for parameter in self.parameters.values())
 
     def parameter(
         self,

@@ -18,11 +18,11 @@ import casadi as ca
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..declare.mechanism import Mechanism
 from .checks import Column
-from .multibody import column
 from .strains import Moduli, moduli_of, strains
 from .strength import Loaded, Part, most, sampled
 

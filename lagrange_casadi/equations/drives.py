@@ -15,9 +15,9 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from .linear import LinearSystem
-from .multibody import column
 
 _ROUNDING = 1e-24
 """A ``hold`` below it is the square of a rounding."""

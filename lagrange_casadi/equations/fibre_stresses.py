@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import interpret, numpy_arithmetic
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
@@ -83,7 +84,7 @@ class LinkForm:
         course = Course(self.breaks, tuple((shapes[a], shapes[b]) for a, b in self.cells))
         density = Density(breaks, cells, per_length=False)
         beam = Beam(course, Material("", 1.0), self.notches)
-        numbers = ca.vertcat(ca.SX(0, 1), *numbers_of(length, density, beam))
+        numbers = column(numbers_of(length, density, beam))
         return Link("", length, density, beam), numbers
 
 

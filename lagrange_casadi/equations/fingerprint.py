@@ -12,6 +12,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.symbolic import symbolic
 from ..declare.scene import Scene, Wanted
 
@@ -59,7 +60,7 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
     laws = scene.prescribed.motion
     if any(f.class_name() in _UNKNOWN for f in [laws, *laws.find_functions()]):
         return None
-    written = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.vec(ca.densify(e)) for e in expressions)))
+    written = ca.densify(column(ca.vec(ca.densify(e)) for e in expressions))
     declared = ca.Function("declared", ca.symvar(written), [written])
     if any(f.class_name() in _UNKNOWN for f in declared.find_functions()):
         return None

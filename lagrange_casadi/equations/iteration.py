@@ -9,9 +9,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from .linear import LinearSystem
-from .multibody import Coordinate, Multibody, column
+from .multibody import Coordinate, Multibody
 from .spherical import SphericalCoordinates, axes_of, quaternion_of, turn
 from .substitution import Numbers
 

@@ -25,6 +25,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output, force_members
 from ..base.tables import table_of
@@ -37,7 +38,6 @@ from ..declare.scene import Wanted
 from ..errors import DeclarationError, one_line
 from .checks import Column
 from .indeterminate import Forces
-from .multibody import column
 from .residuals import extent
 from .section_function import Place, Section
 from .strains import Moduli, moduli_of, resultants

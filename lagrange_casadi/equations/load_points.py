@@ -16,13 +16,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..declare.limits import END
 from ..declare.parts import Link
 from .checks import Column
 from .mobility import load_points_of
-from .multibody import Coordinate, column
+from .multibody import Coordinate
 from .sampling import drawn, vanish
 
 _IN_PLANE = ((("n0",), ("n",), 1), (("f0", "m0"), ("f", "m"), 1))

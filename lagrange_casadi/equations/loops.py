@@ -27,9 +27,10 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from .linear import LinearSystem
-from .multibody import Coordinate, column
+from .multibody import Coordinate
 from .sampling import vanish
 
 

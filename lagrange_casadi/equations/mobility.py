@@ -26,6 +26,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output, force_members, law_members, load_point_members, local_members
 from ..declare.density import Density
@@ -45,7 +46,7 @@ from .joints import carried, orientation, reaction, supported
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .meshes import braking, pressing_apart, transmissions_of
-from .multibody import Multibody, column, own_coordinate
+from .multibody import Multibody, own_coordinate
 from .multipliers import multipliers_of
 from .pressing import frictions_of, joint_friction
 from .residuals import reach

@@ -12,6 +12,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
@@ -206,9 +207,7 @@ class ModelData(Graphs):
     @symbolic
     def symbols(self) -> ca.SX:
         """The parameters' symbols, in a column."""
-        return ca.vertcat(
-            ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values())
-        )
+        return column(parameter.symbol for parameter in self.parameters.values())
 
     @symbolic
     def mass(self, part: str, p: ca.SX) -> ca.SX:

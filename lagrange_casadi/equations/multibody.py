@@ -10,13 +10,13 @@ rotations.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
@@ -372,8 +372,3 @@ def change(expression: ca.SX, coordinates: tuple[Coordinate, ...], time: ca.SX) 
     moving = column([*(c.variables for c in coordinates), *(c.rate for c in coordinates), time])
     speed = column([*(c.change for c in coordinates), *(c.acceleration for c in coordinates), 1])
     return ca.jtimes(ca.SX(expression), moving, speed)
-
-
-def column(parts: Iterable[Expression]) -> ca.SX:
-    """Parts one below the other; an empty column where there are none."""
-    return ca.vertcat(ca.SX(0, 1), *parts)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.quantities import Output
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
@@ -22,7 +23,6 @@ from .checks import Column
 from .derive import assembled
 from .kinematics import Start
 from .model_data import ModelData
-from .multibody import column
 from .program import Program
 from .tree import span
 

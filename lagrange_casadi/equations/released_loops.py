@@ -11,9 +11,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from .iteration import place_roughly
-from .multibody import Coordinate, Multibody, column
+from .multibody import Coordinate, Multibody
 from .spherical import axes_of, turn
 from .substitution import Numbers
 

@@ -23,11 +23,12 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..errors import DeclarationError
 from .iteration import NewtonLoop
 from .kinematics import Kinematics, Start
-from .multibody import Multibody, Turned, column
+from .multibody import Multibody, Turned
 
 REACH = math.pi - 0.35
 """Largest swing of an angle [rad] from its middle for which its revolution is certain."""
@@ -264,7 +265,7 @@ def depends_on_turns(expression: Expression, angle: Expression) -> bool:
     others = [
         symbol for symbol in ca.symvar(expression) if symbol.element_hash() != angle.element_hash()
     ]
-    function = ca.Function("seen", [angle, ca.vertcat(ca.SX(0, 1), *others)], [expression])
+    function = ca.Function("seen", [angle, column(others)], [expression])
     if not followable(function):
         return True
     operations = {

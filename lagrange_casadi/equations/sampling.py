@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
-from .multibody import Coordinate, column
+from .multibody import Coordinate
 from .spherical import SphericalCoordinates, axes_of
 
 COUNT = 64

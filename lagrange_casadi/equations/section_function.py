@@ -21,8 +21,9 @@ from typing import Any, Literal
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression, Operand
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, Terms, table_of
 from ..beams.properties import larger, smaller
@@ -163,9 +164,7 @@ class SectionInputs:
     @classmethod
     def of(cls, outputs: Iterable[Output], link: str) -> SectionInputs:
         """Make it for a link, among others; for a distributed load with its directions."""
-        of_link = dict.fromkeys(
-            output for output in outputs if output.along and output.part == link
-        )
+        of_link = parts_along(dict.fromkeys(outputs), link)
         table = table_of(Output("law", link, "mx0") in of_link)
         acting = [
             Output("station", link, member, name)
@@ -283,7 +282,7 @@ def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int]) 
     spans = (loads[k] for k, output in enumerate(acting) if output.power is None)
     return ca.Function(
         "along",
-        [mass_properties, ca.vertcat(ca.SX(0, 1), *spans), xi],
+        [mass_properties, column(spans), xi],
         [rows("axial", "qn"), rows("bending", "qf")],
         ["matter", "spans", "xi"],
         ["force", "bending"],

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.status import Status
@@ -172,7 +173,7 @@ def beside_of(program: Program) -> ca.Function:
         elif bound.kind == "ROW":
             # Where all stands still, what rounding leaves of rates violates nothing.
             found[k] = most
-    out = ca.densify(ca.vertcat(ca.SX(0, 1), *found))
+    out = ca.densify(column(found))
     return ca.Function("beside", inputs, [out], names, ["beside"], {"cse": True})
 
 

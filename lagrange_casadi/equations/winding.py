@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from .multibody import Coordinate
 from .substitution import Numbers
 
@@ -48,7 +49,7 @@ def _turns(angle: ca.SX, other: Coordinate, numbers: Numbers) -> int:
     start = numbers.of(other.value)[0]
     placed = ca.substitute(angle, other.variables, other.placed(other.value, turn))
     remaining = [symbol for symbol in ca.symvar(placed) if not ca.is_equal(symbol, turn)]
-    row = ca.Function("row", [turn, ca.vertcat(ca.SX(0, 1), *remaining)], [placed])
+    row = ca.Function("row", [turn, column(remaining)], [placed])
     known = [numbers.of(symbol)[0] for symbol in remaining]
     angles = [float(row(start + math.tau * k / _STEPS, known)) for k in range(_STEPS + 1)]
     gone = np.unwrap(angles)

@@ -84,7 +84,7 @@ class _Line(Element):
 
     def below(self, name: str) -> Iterator[_Line]:
         """Yield what stands below the lines of a text below it."""
-        return (_line(one) for group in self.all(name) for one in group.inside)
+        return (one for group in self.all(name) for one in group.inside)
 
     def value(self, name: str) -> str:
         """Return the text below the line of a text."""
@@ -106,11 +106,6 @@ class _Line(Element):
         if len(axes) != 3:
             raise rows.refuse("expected three rows")
         return Frame(place, rotation(self.model, rows.where, np.array(axes)))
-
-
-def _line(element: Element) -> _Line:
-    assert isinstance(element, _Line)
-    return element
 
 
 def read(path: Path, text: str) -> Model:
@@ -137,7 +132,7 @@ def _tree(model: Model, text: str) -> _Line:
         del above[depth + 1 :]
         above[-1].inside.append(one := _Line(model, data.strip(), at))
         above.append(one)
-    return _line(above[0].needed("Assembly"))
+    return above[0].needed("Assembly")
 
 
 class _Reader:
@@ -161,7 +156,7 @@ class _Reader:
             if part.name != "Part":
                 raise part.refuse("is not supported here; expected a Part")
             self.part(part, f"/{stated}")
-        sets = _line(root.needed("ConstraintSets"))
+        sets = root.needed("ConstraintSets")
         for joint in sets.below("Joints"):
             self.joint(joint, f"/{stated}")
         for motion in sets.below("Motions"):
@@ -184,7 +179,7 @@ class _Reader:
 
     def part(self, line: _Line, path: str) -> None:
         """Read a body."""
-        stated, mass = line.value("Name"), _line(line.needed("PrincipalMassMarker"))
+        stated, mass = line.value("Name"), line.needed("PrincipalMassMarker")
         centre, heavy = mass.frame(), mass.number("Mass")
         inertia = centre.axes @ np.diag(mass.vector("MomentOfInertias")) @ centre.axes.T
         given, where = (heavy, centre.place, inertia, line.frame()), f"{line.where} {stated}"
@@ -256,9 +251,8 @@ class _Reader:
 
     def times(self) -> None:
         """Read the instants, where the file has a simulation."""
-        if self.root.first("SimulationParameters") is None:
+        if (data := self.root.first("SimulationParameters")) is None:
             return
-        data = _line(self.root.needed("SimulationParameters"))
         start, stop, step = (data.number(key) for key in ("tstart", "tend", "hout"))
         count = round((stop - start) / step) + 1 if step > 0.0 else 101
         self.model.span = (start, stop, count if 1 < count <= 100_001 else 101)

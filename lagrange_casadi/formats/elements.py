@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 from xml.parsers import expat
 
 import numpy as np
@@ -14,6 +14,9 @@ import numpy as np
 from ..base.arrays import Array
 from ..errors import ModelFileError, shown
 from .record import Model, number, numbers
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 _DEEPEST = 200
 _MOST = 500_000
@@ -30,7 +33,7 @@ class Element:
     line: int
     given: dict[str, Any] = field(default_factory=dict)
     text: str = ""
-    inside: list[Element] = field(default_factory=list)
+    inside: list[Self] = field(default_factory=list)
 
     @property
     def where(self) -> str:
@@ -42,11 +45,11 @@ class Element:
         """Return the place of an attribute, for messages."""
         return self.where
 
-    def all(self, *names: str) -> Iterator[Element]:
+    def all(self, *names: str) -> Iterator[Self]:
         """Yield the elements in it of these names."""
         return (one for one in self.inside if one.name in names)
 
-    def first(self, *names: str) -> Element | None:
+    def first(self, *names: str) -> Self | None:
         """Return the first element in it of these names."""
         return next(self.all(*names), None)
 
@@ -54,7 +57,7 @@ class Element:
         """Return the error of this element."""
         return self.model.refuse(self.where, words)
 
-    def needed(self, *names: str) -> Element:
+    def needed(self, *names: str) -> Self:
         """Return the first element in it of these names, of which there must be one."""
         if (found := self.first(*names)) is None:
             raise self.refuse(f"lacks {self.form.format(names[0])}")
@@ -83,6 +86,13 @@ class Element:
             raise self.model.refuse(self.at(name), "expected a direction, got zero")
         return found
 
+    def choice(self, name: str, valid: Mapping[str, str], more: str = "") -> str:
+        """Return what a word in an attribute means."""
+        if (word := self.attribute(name)) not in valid:
+            words = ", ".join([*valid, *more.split()])
+            raise self.refuse(f"unknown {name} {shown(word)}; valid: {words}")
+        return valid[word]
+
     def inner(self, name: str = "", usual: float = 0.0) -> float:
         """Return the number that is the text of an element in it, without a name its own."""
         found = self.first(name) if name else self
@@ -94,9 +104,9 @@ class Element:
         """Return so many numbers of its text."""
         return numbers(self.model, self.where, self.text, what, count)
 
-    def by_name(self, *names: str) -> dict[str, Element]:
+    def by_name(self, *names: str) -> dict[str, Self]:
         """Return the elements in it of these names, by their attribute name."""
-        found: dict[str, Element] = {}
+        found: dict[str, Self] = {}
         for one in self.all(*names):
             if (name := one.attribute("name")) in found:
                 raise one.refuse("the name is taken")

@@ -37,18 +37,17 @@ ROWS: dict[str, str] = {
 has the axes x, y, z; the child's is at q and has u, v, w; e and f are one of each.
 """
 
+_AXES = {"spherical": "xyz", "free": "xyz", "universal": "zw"}
+
 MOVES: dict[str, tuple[tuple[str, str, str], ...]] = {
     kind: tuple(
-        (name or "", move, ("xyz" if kind in ("spherical", "free") else "zxy")[direction])
-        for name, move, direction in freedoms
+        (name or "", move, _AXES.get(kind, "zxy")[direction]) for name, move, direction in freedoms
     )
     for kind, freedoms in IN_SPACE.items()
 }
 """The name of each coordinate of a kind of joint, empty for one alone, how it moves, and along or
-about which axis of the parent's frame.
+about which axis of the parent's frame; w is z of the child's.
 """
-
-MOVES["universal"] = (MOVES["universal"][0], ("turn_2", "turn", "w"))  # z of the child's frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,10 +227,12 @@ class Model:
 
     def add(self, part: type[Part], stated: str, where: str, *given: Any) -> str:
         """Add a body, joint, coupling or tie under its name of the file; return its name here."""
+        parts: dict[type[Part], dict[str, Any]] = {Body: self.bodies, Coupling: self.couplings}
+        parts |= {Joint: self.joints, Tie: self.ties}
         kind = "joint" if part is Tie else part.__name__.lower()
-        taken = {**self.joints, **self.ties} if kind == "joint" else self._parts[part]
+        taken = {**self.joints, **self.ties} if kind == "joint" else parts[part]
         name = self.name_of(kind, stated, where, taken)
-        self._parts[part][name] = replace(part(name, *given), where=where)
+        parts[part][name] = replace(part(name, *given), where=where)
         return name
 
     def find(self, kind: str, stated: str, where: str) -> str:
@@ -240,10 +241,6 @@ class Model:
             return self.named[kind, stated]
         valid = ", ".join(name for of, name in self.named if of == kind)
         raise self.refuse(where, f"unknown {kind} {shown(stated)}; valid: {valid}")
-
-    @property
-    def _parts(self) -> dict[type, dict[str, Any]]:
-        return {Body: self.bodies, Joint: self.joints, Coupling: self.couplings, Tie: self.ties}
 
     def frame_of(self, body: str) -> Frame:
         """Return where a body is in the reference posture."""

@@ -104,9 +104,7 @@ class _Reader:
     def joint(self, line: Element) -> None:
         """Declare a joint, whose frames coincide as the model stands."""
         model, data, lead = self.model, line.attribute("name"), 0.0
-        if (kind := KINDS.get(line.attribute("type"))) is None:
-            words = f"unknown type {shown(line.given['type'])}; valid: {', '.join(KINDS)}, gearbox"
-            raise line.refuse(words)
+        kind = line.choice("type", KINDS, "gearbox")
         parent, child = self.end(line, "parent"), self.end(line, "child")
         near = far = frame = self.frame(data, ())
         if kind in ("revolute", "prismatic", "screw", "universal"):

@@ -102,7 +102,7 @@ class _Robot:
 
     def grow(self, line: Element, placed: dict[str, Frame]) -> None:
         """Read a joint: its link is placed by it, or closes a loop."""
-        kind = self.kind(line)
+        kind = line.choice("type", KINDS)
         (parent, _), (child, _) = self.side(line, _ONE), self.side(line, _OTHER)
         origin, again = self.origin(line), child in placed
         massless = self.links[child].first("inertial") is None
@@ -126,7 +126,7 @@ class _Robot:
 
     def loop(self, line: Element, placed: dict[str, Frame]) -> None:
         """Read a loop that an element of its own closes."""
-        kind, axis = self.kind(line), line.first("parent_axis", "axis")
+        kind, axis = line.choice("type", KINDS), line.first("parent_axis", "axis")
         (parent, near), (child, far) = self.side(line, _ONE), self.side(line, _OTHER)
         near = near.then(self.axes(line, kind, "parent_axis", "axis"))
         apart = kind == "universal" or line.first("child_axis") is not None
@@ -152,7 +152,8 @@ class _Robot:
         """Read that a joint follows another one."""
         if (mimic := joint.first("mimic")) is None:
             return
-        first, second = self.joint(mimic, "joint"), self.joint(joint, "name")
+        first = self.model.find("joint", mimic.attribute("joint"), mimic.where)
+        second = self.model.find("joint", joint.attribute("name"), joint.where)
         ratio, offset = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
         stated = f"{second}_mimic"
         self.model.couplings[stated] = Coupling(stated, first, second, ratio, offset, mimic.where)
@@ -166,7 +167,9 @@ class _Robot:
                 raise line.refuse(f"link {shown(link)} has no joint")
         if len({self.side(above[link], _ONE)[0] for link in links}) > 1:
             raise line.refuse("is supported only if both its links have the same parent")
-        first, second = (self.joint(above[link], "name") for link in links)
+        first, second = (
+            self.model.find("joint", above[link].attribute("name"), line.where) for link in links
+        )
         ratio = line.needed("ratio").amount("value", what="ratio")
         self.model.add(Coupling, line.attribute("name"), line.where, first, second, ratio)
 
@@ -175,7 +178,8 @@ class _Robot:
         for group in self.root.all("transmission", "ros2_control"):
             for joint in group.all("joint"):
                 if group.name == "transmission" or joint.first("command_interface") is not None:
-                    self.model.preferred.append(self.joint(joint, "name"))
+                    name = self.model.find("joint", joint.attribute("name"), joint.where)
+                    self.model.preferred.append(name)
         if any(group.first("actuator") for group in self.root.all("transmission")):
             words = "Reductions of transmissions are not read: efforts are at joints."
             self.model.notes.append(words)
@@ -210,12 +214,6 @@ class _Robot:
             inertia = inertia_of(six, centre.axes)
         return self.model.add(Body, stated, link.where, mass, centre.place, inertia, frame)
 
-    def kind(self, line: Element) -> str:
-        """Return the kind of a joint."""
-        if (data := line.attribute("type")) not in KINDS:
-            raise line.refuse(f"unknown type {shown(data)}; valid: {', '.join(KINDS)}")
-        return KINDS[data]
-
     def axes(self, line: Element, kind: str, *names: str) -> Frame:
         """Return a frame whose z is the axis of a joint, where its kind has one."""
         if kind in ("weld", "free", "spherical"):
@@ -242,10 +240,6 @@ class _Robot:
         if found.first("origin") is None and line.first(beside) is not None:
             return link, self.origin(line, beside)
         return link, self.origin(found, "origin" if found.first("origin") is not None else "")
-
-    def joint(self, line: Element, key: str) -> str:
-        """Return a joint's name in the record."""
-        return self.model.find("joint", line.attribute(key), line.where)
 
     def known(self, line: Element, link: str) -> str:
         """Return a link's name. Raises :class:`.ModelFileError` for one that is not there."""

@@ -286,6 +286,8 @@ def _step(columns: Array, right: Array, base: Base, theta: Array, loss: Loss) ->
     """Return the change of the parameters that makes linear residuals least."""
     step = np.zeros(theta.size)
     if loss.whole:
+        columns = columns.copy()
+        columns[:, list(base.absent)] = 0.0  # else their rounding counts
         prior = np.isfinite(loss.spread)
         rows = np.diag(1.0 / loss.spread)[prior]
         columns = np.vstack([columns, rows])

@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
@@ -22,7 +23,6 @@ from ..base.tables import table_of
 from ..declare.scene import Scene
 from ..equations.checks import Column
 from ..equations.derive import compile_scene
-from ..equations.multibody import column
 from ..equations.program import Program
 from ..equations.reciprocals import differentiable
 from ..equations.section_function import SectionInputs

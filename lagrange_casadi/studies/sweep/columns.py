@@ -14,6 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ...arithmetic.scalars import column
 from ...base.arrays import Array, Operand
 from ...base.quantities import Output
 from ...base.status import Status
@@ -395,9 +396,7 @@ class LinkProperties:
         """Make it for a link."""
         length, density = data.mass_properties(name, data.symbols)
         cells = [c for cell in density.cells for c in cell]
-        numbers = ca.Function(
-            "matter", [data.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), length, *cells))]
-        )
+        numbers = ca.Function("matter", [data.symbols], [ca.densify(column([length, *cells]))])
         return cls(name, density, numbers, precision)
 
     def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
