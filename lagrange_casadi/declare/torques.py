@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ..arguments import Symbolic, public
+from ..arithmetic.scalars import entries
 from ..base.arrays import Expression
 from ..base.symbolic import symbolic
 from ..errors import DeclarationError
@@ -39,7 +40,7 @@ def torque_of(law: Law, what: str, arguments: Sequence[ca.SX], parameters: ca.SX
     Raises :class:`.DeclarationError`, saying ``what`` it is, for what is no such expression.
     """
     value = expressed(what, law.graph, arguments, "t, angle and speed")
-    symbols = [*arguments, *(ca.vertsplit(parameters) if parameters.numel() else [])]
+    symbols = [*arguments, *entries(parameters)]
     return ca.SX(scalar(what, value, symbols, "parameter", "N*m"))
 
 

@@ -98,8 +98,8 @@ class FreeMotion:
 
     ``angle``, ``speed`` and ``acceleration`` are those of the drive's ``joint`` [rad or m, and per
     s and s^2], ``drive`` and ``load`` the torques of the laws [N m or N], and ``reflected`` is the
-    inertia that the drive feels, without the flywheel's [kg m^2 or kg], each (t,). Since the first
-    instant the drive has done ``work_drive`` [J], the load has taken ``work_load``, and the
+    inertia reflected to the drive, without the flywheel's [kg m^2 or kg], each (t,). Since the
+    first instant the drive has done ``work_drive`` [J], the load has taken ``work_load``, and the
     scene's own loads, springs, weights and frictions ``work_taken``; ``kinetic`` is the kinetic
     energy [J], that of the flywheel's ``inertia`` [kg m^2 or kg] too. ``energy`` is what is missing
     in their balance, over the largest of them: a residual of the certificate of ``solution``, which

@@ -179,7 +179,7 @@ class NonlinearProgram:
     def solve(
         self, x: Array, held: Sequence[Held], closures: Sequence[Point], averages: Sequence[Point]
     ) -> Found:
-        """The best design near shares ``x``, as far as points tell: those of ``held`` terms,
+        """The best design near shares ``x``, as far as points show: those of ``held`` terms,
         objective first, and of ``closures``.
 
         ``averages`` are all instants, for means.

@@ -52,7 +52,7 @@ class Solver:
         solver = cls(question, engine, evaluator)
         solver.program(
             Problem(question.objectives[0], question.constraints)
-        )  # what cannot be differentiated is told at once
+        )  # what cannot be differentiated is refused at once
         if idle := [name for name in question.box.names if not solver._matters(name)]:
             named = ", ".join(f"'{name}'" for name in idle)
             raise DeclarationError(

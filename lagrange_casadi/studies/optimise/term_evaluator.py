@@ -49,7 +49,7 @@ class TermEvaluator:
         return self._evaluated(p, sampled.history.outcome, 0, sampled)
 
     def screen(self, rows: Array) -> list[EvaluatedDesign]:
-        """Many designs (n, parameters) at once, by what lanes of designs tell alone where that is
+        """Many designs (n, parameters) at once, by what lanes of designs give alone where that is
         enough.
         """
         self.evaluations += len(rows)
@@ -123,7 +123,7 @@ class TermEvaluator:
         """A peak at a kink or a jump that goes with the chosen parameters, seen by designs beside
         this one.
 
-        The told peak of each is by the same switch where it is near. What does not move is the
+        The reported peak of each is by the same switch where it is near. What does not move is the
         point itself.
         """
         x, size = box.share(p), len(box.names)

@@ -160,7 +160,9 @@ class Constraint:
                 f"'{text}': a smallest value has only a lower limit; use max:{term.name}"
             )
         if term.kind == "peak" and limit < 0.0:
-            raise DeclarationError(f"'{text}': a peak is a size, which is not below {limit:g}")
+            raise DeclarationError(
+                f"'{text}': a peak is a magnitude, so it cannot be {limit:g} or less"
+            )
         return cls(term, limit, least)
 
     def excess(self, value: float) -> float:

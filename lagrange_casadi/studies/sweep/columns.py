@@ -6,22 +6,27 @@ A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
+from ...arithmetic.scalars import column
 from ...base.arrays import Array, Operand
 from ...base.quantities import Output
 from ...base.status import Status
 from ...base.tables import Table, table_of
 from ...base.vocabulary import KEEPS, Keep
+from ...declare.density import Density
 from ...declare.wanted_names import SENSITIVITY
 from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...errors import DeclarationError, UnknownNameError
+from ...instants.laws import law_of
+from ...instants.section_law import SectionLaw
 from ...instants.statistics import of_counted
 from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
@@ -29,7 +34,6 @@ from ..designs.outcome import Outcome
 from .chunks import encoded
 from .column import MISSING, Column
 from .instant_axis import InstantAxis
-from .link_properties import LinkProperties
 from .meanings import ERROR, FLUCTUATION, LEAST, LIFE, MASS, STATUS, TIMES, Meanings
 from .strength import Kept
 
@@ -77,14 +81,13 @@ class Harvest:
     """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the
     ratios kept, none where empty.
 
-    ``data`` are those of the mechanism; by the ``whole`` graph designs are looked at closely.
+    By the ``whole`` graph designs are looked at closely.
 
     ``safety`` and ``life`` are the links of which these are kept. By the parameters ``by`` the
     derivatives of peaks are kept too, and with ``fluctuation`` that of the energy of drives.
     """
 
     engine: DesignEngine
-    data: ModelData
     whole: Program
     keep: Keep
     axis: InstantAxis
@@ -107,6 +110,11 @@ class Harvest:
             raise DeclarationError(
                 "keep laws: laws describe section forces, and none is in wanted="
             )
+
+    @property
+    def data(self) -> ModelData:
+        """Data of the mechanism."""
+        return self.engine.program.data
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
@@ -271,7 +279,7 @@ class Harvest:
             if output.group == "section"
         }
         made = (engine.quantities, engine.columns)
-        return Kept(self.data, self.safety, self.life, *made, indeterminate)
+        return Kept(self.engine.program, self.safety, self.life, *made, indeterminate)
 
     @property
     def _histories(self) -> bool:
@@ -365,8 +373,42 @@ class Harvest:
                     law = mass_properties.law(
                         {output: series[i, k] for output, k in rows.items()}, p[i]
                     )
-                    basis = law.basis(self.xi)
-                    for force, grid in zip(self._table.forces, grids, strict=True):
-                        law.on_grid(force, basis, grid[i], threads=1)
+                    law.on_grids(self._table.forces, self.xi, grids[:, i], threads=1)
                 whole += list(grids)
         return largest, whole
+
+
+@dataclass(frozen=True, eq=False)
+class LinkProperties:
+    """A link's length and density over the parameters, without deriving either anew for each
+    design.
+
+    Laws are made of what was evaluated in a ``precision``.
+    """
+
+    link: str
+    density: Density
+    numbers: Any
+    precision: str
+
+    @classmethod
+    def of(cls, data: ModelData, name: str, precision: str) -> LinkProperties:
+        """Make it for a link."""
+        length, density = data.mass_properties(name, data.symbols)
+        cells = [c for cell in density.cells for c in cell]
+        numbers = ca.Function("matter", [data.symbols], [ca.densify(column([length, *cells]))])
+        return cls(name, density, numbers, precision)
+
+    def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
+        """The law from its coefficients and loads, (t,), of a design (parameters,).
+
+        Or the laws of n designs: members are (n, t), length and density (n, 1).
+        """
+        length, *cells = (
+            self.numbers(p.T).full()[..., None]
+            if p.ndim > 1
+            else self.numbers(p).full().ravel().tolist()
+        )
+        rest = iter(cells)
+        density = self.density.at(lambda _: next(rest), length)
+        return law_of(self.link, members, length, density, self.precision)

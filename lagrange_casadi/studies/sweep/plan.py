@@ -15,7 +15,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from ...base.arrays import Array, Json
+from ...base.arrays import Array, Json, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import Keep, PeakSearch, Precision
 from ...declare.description import Description, beams_of, fitted_of, shape_of
@@ -135,10 +135,10 @@ class Task:
         outputs.
         """
         xi = np.zeros(0) if self.xi is None else points(self.xi)
-        engine, data = compiled(program, self.timing, self.method, self.peaks), program.data
-        axis = InstantAxis.of(data, self.timing)
-        graphs, links = (engine, data, whole or program), (self.safety, self.life)
-        return Harvest(*graphs, self.keep, axis, xi, *links, self.by, self.fluctuation)
+        engine = compiled(program, self.timing, self.method, self.peaks)
+        axis = InstantAxis.of(program.data, self.timing)
+        kept = (self.safety, self.life, self.by, self.fluctuation)
+        return Harvest(engine, whole or program, self.keep, axis, xi, *kept)
 
 
 def compiled(
@@ -328,9 +328,7 @@ def _assembly(
     try:
         compile_scene(scene, wanted)
     except (AssemblyError, MobilityError):
-        for number in np.unique(
-            np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)
-        ):
+        for number in spread(designs.size, _TRIED):
             row = dict(
                 zip(
                     designs.names,
@@ -380,7 +378,7 @@ def signature(program: Program, task: Task, provenance: Provenance) -> dict[str,
         "t": task.timing.words(program.data.symbols),
         "xi": task.xi,
         "keep": task.keep,
-        "scene": program.identity or "cannot be told",
+        "scene": program.identity or "cannot be identified",
     }
     content: dict[str, Json] = json.loads(json.dumps(words))
     return content
