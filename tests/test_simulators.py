@@ -254,7 +254,7 @@ def test_a_loop_that_an_equality_connects(reading):
     path = reading(mjcf(LINKS, f"<equality>{connect}</equality>{motor}"), "robot.xml")
     text = case_of(path)
     assert '"C": polynomial(0.0)' in text
-    assert "# Actuators, but for the joints that they drive: not read." in text
+    assert "# Actuators, except which joints they drive: not read." in text
     laws = {"O": harmonic(0.0, 0.3, 0.5)}
     solution = evaluate(Scene(read(path).mechanism, laws, t=(0.0, 1.0, 9), wanted=["effort"]))
     assert np.allclose(solution.effort("O"), four_bar().effort("O"), rtol=1e-10, atol=1e-11)

@@ -18,7 +18,15 @@ import packer
 import pytest
 import spying
 import threaded
-from internals import Film, Peaks, TimePlot, draw_sweep, pictures, write_animation
+from internals import (
+    Film,
+    Peaks,
+    TimePlot,
+    draw_sweep,
+    in_threads,
+    pictures,
+    write_animation,
+)
 from matplotlib import rcParams
 from stepped import pinned
 
@@ -324,3 +332,42 @@ def test_many_threads_draw_the_pictures_of_one(tmp_path):
     assert not hammered(drawn, ["svg", "sweep", "gif"], 1)
     assert dict(rcParams) == settings
     assert warnings.filters == filters
+
+
+def test_each_piece_of_shared_work_is_done_once_or_its_error_is_raised():
+    done, main = [], threading.get_ident()
+    for _ in range(50):
+        done.clear()
+        in_threads(lambda i: done.append((i, threading.get_ident())), range(100), 3)
+        assert sorted(i for i, _ in done) == list(range(100))
+    barrier, others = threading.Barrier(3, timeout=60), set()
+
+    def meet(_):
+        barrier.wait()
+        others.add(threading.get_ident())
+
+    in_threads(meet, range(3), 3)
+    assert len(others) == 3
+    assert main in others
+
+    def fail(i):
+        barrier.wait()
+        raise ValueError(i)
+
+    with pytest.raises(ValueError, match=r"[012]"):
+        in_threads(fail, range(300), 3)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_a_child_process_does_not_wait_for_threads_of_its_parent():
+    barrier = threading.Barrier(2, timeout=60)
+    in_threads(lambda _: barrier.wait(), range(2), 2)  # a thread now waits for more
+    child = os.fork()
+    if not child:
+        try:
+            in_threads(lambda _: barrier.wait(), range(2), 2)
+        except BaseException:
+            os._exit(1)
+        os._exit(0)
+    assert os.waitpid(child, 0)[1] == 0

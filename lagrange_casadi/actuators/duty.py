@@ -40,8 +40,8 @@ class Duty:
     The motor turns ``ratio`` times as fast as the drive. Its gearbox loses a share of what passes
     it, whichever way: 1 less its ``efficiency``. The torque turns the motor's own ``inertia`` [kg
     m^2] too. Of a drive that slides the ratio is in rad/m; a ``linear`` motor has speeds in m/s,
-    forces in N and a mass in kg in their place. ``carried`` is the inertia that the drive feels [kg
-    m^2 or kg], (t,), where it is known: see :func:`.inertia_at`.
+    forces in N and a mass in kg in their place. ``carried`` is the inertia reflected to the drive
+    [kg m^2 or kg], (t,), where it is known: see :func:`.inertia_at`.
     """
 
     joint: str
@@ -108,7 +108,7 @@ class Duty:
 
     @property
     def inertia_ratio(self) -> InertiaRatio:
-        """The inertia of what is driven, as the motor feels it, over the motor's own.
+        """The inertia of what is driven, reflected to the motor, over the motor's own.
 
         Raises :class:`.DeclarationError` where the inertia of what is driven is not known, or the
         motor's is zero.

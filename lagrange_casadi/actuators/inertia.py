@@ -1,4 +1,4 @@
-"""The inertia of what a drive moves, as the drive feels it, at every instant of a motion."""
+"""The inertia of what a drive moves, reflected to the drive, at every instant of a motion."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def inertia_at(
     t: Times | None = None,
     over: Over | None = None,
 ) -> Array:
-    """The inertia that a drive feels at the scene's instants, or at others, (t,) [kg m^2; kg of a
+    """The inertia reflected to a drive at the scene's instants, or at others, (t,) [kg m^2; kg of a
     drive that slides].
 
     It is twice the kinetic energy of all that moves where the drive moves at unit rate and other

@@ -27,12 +27,17 @@ Array = npt.NDArray[Any]
 """Array in the precision of the emitted code."""
 Status = npt.NDArray[np.int32]
 
-_WORTH_A_THREAD = 1 << 24
-"""Statements, those of an instant times the instants: about a millisecond, some times what it takes
-to start a thread.
+_WORTH_A_THREAD = 1 << 21
+"""Statements, those of an instant times the instants: about a twentieth of a millisecond, some
+times what it takes to wake a thread.
 """
 
-_LONGEST, _SLOWER = 128, 4
+_BOUND = 8
+"""Factor on that where each piece makes its own arguments, which takes as long as to wake some
+threads.
+"""
+
+_LONGEST, _SLOWER = 1024, 4
 """Into how many threads' worth a call is cut, some tenths of a second; and how much slower is what
 is done by the instant.
 """
@@ -85,9 +90,9 @@ class Library:
     steps: int
     many: Designs | None = None
 
-    def share(self, instants: int = 1) -> int:
-        """Number of runs of so many instants that are worth a thread of their own."""
-        return max(1, _WORTH_A_THREAD // (self.weight * instants))
+    def share(self, instants: int = 1, worth: int = 1) -> int:
+        """Number of runs of so many instants that are ``worth`` threads of their own."""
+        return max(1, worth * _WORTH_A_THREAD // (self.weight * instants))
 
     def follow(self, t: Array, p: Array, guess: Array, z: Array, status: Status) -> None:
         """Fill the iterated coordinates ``z`` (k, n), each instant from the one before, the first
@@ -109,7 +114,7 @@ class Library:
         :meth:`follow` does.
 
         ``t`` is (n,), in single precision (2, n): rounded, and the rest; ``p`` likewise. All rows
-        are equally far apart. ``status`` (n) tells where loops do not close, and what is not
+        are equally far apart. ``status`` (n) says where loops do not close, and what is not
         finite. The bytes do not depend on ``threads``.
         """
         self.evaluation(t, p, guess, z, out, status, threads)()
@@ -127,26 +132,28 @@ class Library:
         """Return a function that does what :meth:`evaluate` does, from the contents of the arrays
         when it is called.
         """
-        assert all(
-            rows.ndim == 1 or rows.strides == out.strides or not rows.size for rows in (t, z)
-        )
+        assert t.ndim == 1 or t.strides == out.strides or not t.size
+        assert not z.size or z.strides == out.strides
         n = t.shape[-1]
         call, entry = _instants(t, p, guess, z, out, status), self.entries[EVALUATE]
         share = max(_CUT, self.share())
         shares = max(1, min(threads, n // share))
         # Between calls an interrupt comes through.
-        pieces = shares * _DISTRIBUTED if shares > 1 else 1
+        pieces = min(shares * _DISTRIBUTED, 2 * n // share) if shares > 1 else 1
         size = min(_LONGEST * share // _CUT * _CUT, -(-n // (pieces * _CUT)) * _CUT)
 
         def evaluate(_kept: object = (t, p, z, out)) -> None:
             self._follow(call, guess, status)
+            if size >= n:
+                entry(call, 0, n)
+                return
             in_threads(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
 
         return evaluate
 
     def _follow(self, call: ctypes.Structure, guess: Array, status: Status) -> None:
         if not guess.size:
-            status[:] = 0
+            status.fill(0)
             return
         reach = max(1, _LONGEST * _WORTH_A_THREAD // (self.weight * self.steps * _SLOWER))
         for i in range(0, call.n, reach):
@@ -165,9 +172,10 @@ class Library:
 
         The bytes of a row do not depend on ``threads``.
         """
-        n, share = p.shape[0], self.share(t.shape[1])
-        shares = max(1, min(threads, n // share))
-        size = max(1, min(_LONGEST * share, -(-n // (_DISTRIBUTED * shares)) if shares > 1 else n))
+        n, instants = p.shape[0], t.shape[1]
+        shares = max(1, min(threads, n // self.share(instants, _BOUND)))
+        size = -(-n // (_DISTRIBUTED * shares)) if shares > 1 else n
+        size = max(1, min(_LONGEST * self.share(instants), size))
 
         def run(start: int) -> None:
             cut = slice(start, start + size)
@@ -194,10 +202,10 @@ class Library:
         contents of the arrays when it is called.
 
         They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n,
-        t - 1) tells in which steps between them the motion bends more than they show; one row of
+        t - 1) says in which steps between them the motion bends more than they show; one row of
         either serves all designs. ``history`` may be None; or all but that and the status may be
         None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
-        ``tops``, of which ``listed`` tells, may be left out. With ``error`` peaks are those at the
+        ``tops``, which ``listed`` describes, may be left out. With ``error`` peaks are those at the
         instants: it becomes how much larger they may be between them. The bytes of a row do not
         depend on other rows.
         """
@@ -260,8 +268,8 @@ def _instants(
         stride=apart,
         t=t.ctypes.data,
         p=p.ctypes.data,
-        guess=guess.ctypes.data,
-        z=z.ctypes.data,
+        guess=guess.ctypes.data if guess.size else None,
+        z=z.ctypes.data if z.size else None,
         out=None if out is None else out.ctypes.data,
         apart=apart,
         status=status.ctypes.data,

@@ -147,7 +147,7 @@ LANES_INLINE void scene_taken(const lagrange_casadi_instants* call, const lanes_
 }
 
 /* The columns y of the pack of instants that begins at i, where iterated coordinates are z. Where a value is not finite, and nothing
-   else was to be said, status[i] tells so. */
+   else was to be said, status[i] says so. */
 LANES_INLINE void scene_pack(const scene_design* now, casadi_int i, casadi_real* y) {
   const lagrange_casadi_instants* call = now->call;
   const casadi_int many = call->n - i < LANES ? call->n - i : LANES;
@@ -172,7 +172,7 @@ static int scene_streams(const lagrange_casadi_instants* call, casadi_int many) 
 }
 
 /* Write the columns y of packs, one pack after another: out[k*apart + i] and on become column k at so many instants from i on. Where
-   told so, lines are streamed past the caches. */
+   asked to, lines are streamed past the caches. */
 LANES_INLINE void scene_write(const lagrange_casadi_instants* call, casadi_int i, casadi_int many, const casadi_real* y,
                               const int streams) {
   lanes_real* to = call->out + i;

@@ -1,8 +1,8 @@
 """The declaration of a mechanism: parameters, links and point masses, joints, loads, constraints
 and gravity.
 
-A :class:`Mechanism` is filled part by part and freezes when a scene is made of it. What a number
-can tell is checked when a part is declared, what depends on the whole when it freezes, and what
+A :class:`Mechanism` is filled part by part and freezes when a scene is made of it. Numbers are
+checked when a part is declared, what depends on the whole when the mechanism freezes, and what
 depends on the parameters' values by :meth:`Mechanism.values`.
 """
 
@@ -16,6 +16,7 @@ from typing import Any, cast
 import casadi as ca
 
 from ..arguments import public
+from ..arithmetic.scalars import column
 from ..base.symbolic import Graphs, symbolic
 from ..base.units import Number
 from ..beams.beam import Beam
@@ -143,9 +144,7 @@ class Mechanism(Graphs):
     @property
     def symbols(self) -> Expression:
         """The parameters' symbols as one column, in the order of declaration."""
-        return ca.vertcat(
-            ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values())
-        )
+        return column(parameter.symbol for parameter in self.parameters.values())
 
     def parameter(
         self,

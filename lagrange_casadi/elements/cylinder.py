@@ -78,7 +78,8 @@ def cylinder(
     what, ownership = f"cylinder '{name}'", mechanism.own
     if mechanism.space:
         raise DeclarationError(
-            f"{what}: cylinders lie in a plane; in space declare two links and a prismatic joint"
+            f"{what}: only a mechanism in a plane has cylinders; in space declare two links and a"
+            " prismatic joint"
         )
     bore, rod = (
         ownership.expression(f"{what}: bore", bore, "m"),

@@ -88,7 +88,7 @@ def planetary(
     what, ownership = f"planetary set '{name}'", mechanism.own
     if mechanism.space:
         raise DeclarationError(
-            f"{what}: it lies in a plane; in space declare planets, pins and gears"
+            f"{what}: only a mechanism in a plane has it; in space declare planets, pins and gears"
         )
     if (
         not isinstance(teeth, (list, tuple))

@@ -75,7 +75,8 @@ def plate(
     what = f"plate '{name}'"
     if mechanism.space:
         raise DeclarationError(
-            f"{what}: plates lie in a plane; in space declare a link with mass, centre and inertia"
+            f"{what}: only a mechanism in a plane has plates; in space declare a link with mass,"
+            " centre and inertia"
         )
     if not isinstance(corners, Sequence) or len(corners) < 3:
         raise DeclarationError(f"{what}: expected three corners or more")

@@ -172,11 +172,7 @@ def two_bushes(
         If the bushes are on two bodies or at one place, and as declaring joints does.
     """
     what, ownership = f"bushes '{name}'", mechanism.own
-    start, near, far = (
-        ownership.point(what, rod),
-        ownership.point(what, first),
-        ownership.point(what, second),
-    )
+    start, near, far = (ownership.point(what, place) for place in (rod, first, second))
     if near.body is not far.body:
         raise DeclarationError(
             f"{what}: expected two places of one body, got '{near.body.name}' and '{far.body.name}'"

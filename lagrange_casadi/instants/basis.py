@@ -67,7 +67,7 @@ class Basis:
         """Columns and rows of a force, by the coefficients of its ``law`` and of what acts along
         the link.
 
-        Of that each force feels its own: loads by their arms, and couples of slices without. The
+        Of that each force carries its own: loads by their arms, and couples of slices without. The
         two planes of bending are of the same rows: where signs differ, columns have them.
         """
         sign, k, width = (terms.arm, 1, 4) if terms.arm else (1, 0, 3)

@@ -65,7 +65,7 @@ LARGEST = Call(
 """Arguments of the functions of ``grids.c``, which describes each."""
 
 Load = tuple[Array, Array, Array]
-"""Station, constant and slope of what acts there: sections on its base side feel constant + slope
+"""Station, constant and slope of what acts there: sections on its base side carry constant + slope
 (station - u).
 """
 

@@ -119,7 +119,7 @@ class SectionLaw(Brief):
         )
 
     def at(self, force: str, xi: Operand, side: Side = "tip") -> Array:
-        """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is
+        """A force at ratios of shape (t, ...), one row an instant; ``side`` says which value is
         meant at a station.
         """
         u = np.asarray(xi, dtype=float)

@@ -149,7 +149,7 @@ class MovingPeaks:
     def gradient(self, chosen: Numbers, peaks: Peaks, nothing: Flags) -> PeakSlopes:
         """The derivatives of peaks of what is ``chosen``.
 
-        ``nothing`` (q,) tells which peaks are zero but for rounding: with them nothing moves.
+        ``nothing`` (q,) marks the peaks that are zero within rounding: with them nothing moves.
         """
         value, t, _ = peaks
         sound = np.isfinite(value) & np.isfinite(t)
@@ -194,7 +194,7 @@ class MovingPeaks:
 
         A search by values knows the place of a smooth peak to the root of its rounding only. What
         is known to ``stay`` (q,) where it is lacks nothing. How derivatives change along time and
-        along the link is told by differences.
+        along the link is found by differences.
         """
         value, t, xi = peaks
         free = ~stay
@@ -257,7 +257,7 @@ class MovingPeaks:
     def _on_their_side(self, chosen: Numbers, peaks: Peaks, off: Array) -> Array:
         """The times (q,) at which derivatives of peaks are those of their side of a jump.
 
-        A peak that is at a jump is so near to it that rounding tells on which side its time is:
+        A peak that is at a jump is so near to it that rounding decides on which side its time is:
         what was found there, ``off`` (q,) by so much, may be of the other one. It is as large as
         the peak a little before or after.
         """

@@ -327,7 +327,7 @@ class Score:
     equals the next of its numbers decides.
 
     ``bound`` has for every place of designs numbers that it is not above, (n, places, numbers).
-    Where it is ``exact`` it is the score of fibres that have normal stress alone. ``swing`` tells
+    Where it is ``exact`` it is the score of fibres that have normal stress alone. ``swing`` says
     how bad a swing is by its amplitude and its mean.
     """
 

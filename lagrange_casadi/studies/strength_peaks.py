@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..declare.even_points import are_even
 from ..declare.scene import Scene
 from ..equations.buckling import Column
@@ -37,8 +37,8 @@ def refine_stress(
     its span.
 
     It is exact to rounding, and not below that of the instants. Where the search would take too
-    long its value is NaN, and ``least`` the largest size that was found. What elasticity tells has
-    the peak of the instants.
+    long its value is NaN, and ``least`` the largest size that was found. What elasticity determines
+    has the peak of the instants.
 
     Raises what :func:`.strength.stress` does, :class:`.UnknownNameError` for a kind that is none,
     and :class:`.DeclarationError` where the solution is not of this scene.
@@ -111,7 +111,7 @@ class _Along:
         )
 
     def curves(self, columns: Array) -> tuple[Array, Array]:
-        """Ratios, which are not told, and sizes, each (1, t)."""
+        """Ratios, which are not known, and sizes, each (1, t)."""
         found = np.full((1, columns.shape[1]), np.nan)
         whole = np.isfinite(columns[list(self.columns.values())]).all(axis=0)
         if whole.any():
@@ -184,10 +184,4 @@ class _Searched:
         return replace(along.at(signals.columns(times, z)), t=times)
 
     def _along(self, size: Callable[[Member], Array]) -> _Along:
-        link = self.member.link
-        of_link = {
-            output: k
-            for output, k in self.over_time.rows.items()
-            if output.along and output.part == link
-        }
-        return _Along(self.member, of_link, size)
+        return _Along(self.member, parts_along(self.over_time.rows, self.member.link), size)

@@ -181,6 +181,12 @@ class DesignEngine:
         return tuple(map(str, self.outputs))
 
     @cached_property
+    def drives(self) -> tuple[Output, ...]:
+        """The efforts of joints whose motion is given."""
+        efforts = self.kept.efforts
+        return tuple(o for o in efforts if o.group == "effort" and o.part in self.program.driven)
+
+    @cached_property
     def outputs(self) -> tuple[Output, ...]:
         """The outputs that histories have."""
         return tuple(self.program.outputs)

@@ -15,7 +15,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from ...base.arrays import Array, Json
+from ...base.arrays import Array, Json, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import Keep, PeakSearch, Precision
 from ...declare.description import Description, beams_of, fitted_of, shape_of
@@ -110,7 +110,7 @@ class Task:
     designs themselves.
 
     ``safety`` and ``life`` are the links of which these are kept, ``by`` the parameters by which
-    derivatives are.
+    derivatives are, and with ``fluctuation`` that of the energy of drives is.
     """
 
     timing: Timing
@@ -121,6 +121,7 @@ class Task:
     life: tuple[str, ...] = ()
     by: tuple[str, ...] = ()
     peaks: PeakSearch = "exact"
+    fluctuation: bool = False
 
     def __post_init__(self) -> None:
         if self.peaks != "exact" and (self.safety or self.life or self.by):
@@ -133,11 +134,10 @@ class Task:
         outputs.
         """
         xi = np.zeros(0) if self.xi is None else points(self.xi)
-        engine, data = compiled(program, self.timing, self.method, self.peaks), program.data
-        axis = InstantAxis.of(data, self.timing)
-        return Harvest(
-            engine, data, whole or program, self.keep, axis, xi, self.safety, self.life, self.by
-        )
+        engine = compiled(program, self.timing, self.method, self.peaks)
+        axis = InstantAxis.of(program.data, self.timing)
+        kept = (self.safety, self.life, self.by, self.fluctuation)
+        return Harvest(engine, whole or program, self.keep, axis, xi, *kept)
 
 
 def compiled(
@@ -173,6 +173,7 @@ class Plan:
         keep: Keep = "peaks",
         *,
         peaks: PeakSearch = "exact",
+        fluctuation: bool = False,
         many: bool = False,
     ) -> Plan:
         """Check everything that can be before anything is evaluated.
@@ -208,6 +209,7 @@ class Plan:
             life,
             by_parameters(program.data.parameters, names),
             peaks,
+            fluctuation,
         )
         method.check(program)
         scene.checked(scene.values())
@@ -323,9 +325,7 @@ def _assembly(
     try:
         compile_scene(scene, wanted)
     except (AssemblyError, MobilityError):
-        for number in np.unique(
-            np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)
-        ):
+        for number in spread(designs.size, _TRIED):
             row = dict(
                 zip(
                     designs.names,
@@ -373,7 +373,8 @@ def signature(program: Program, task: Task, provenance: Provenance) -> dict[str,
         "t": task.timing.words(program.data.symbols),
         "xi": task.xi,
         "keep": task.keep,
-        "scene": program.identity or "cannot be told",
+        **({"fluctuation": True} if task.fluctuation else {}),
+        "scene": program.identity or "cannot be identified",
     }
     content: dict[str, Json] = json.loads(json.dumps(words))
     return content
