@@ -87,7 +87,7 @@ class Functions:
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """What changes over time in a grid: ``columns`` that go with functions along a link, and
+    """Parts of a grid that change over time: ``columns`` that go with functions along a link, and
     ``loads``.
 
     With two ``planes`` there are as many columns and loads for each, one plane's after the other's,
