@@ -166,7 +166,7 @@ def row(title: str, compared: Comparison, low_pass: Filter | None) -> str:
     found = []
     for name in compared.measured:
         both = np.column_stack([compared.measured[name], compared.model[name]])
-        known = np.isfinite(both).all(axis=1)
+        known = np.asarray(np.isfinite(both).all(axis=1))
         both = both if low_pass is None else low_pass(both, known)
         shown = known & (compared.t >= TRIM) & (compared.t < TRIM + SHOWN)
         measured, model = both[shown].T

@@ -455,6 +455,14 @@ def arm():
             lambda: free(rotor(), drive=forward.power(9.0), start=(0.0, 0.0)),
             "its drive is without bound at the start",
         ),
+        (
+            lambda: free(
+                rotor(), drive=forward.expression(lambda t, a, w: -50.0 * ca.sign(w - 9.0))
+            ),
+            "reached t = 0.01.* s, rate 9; a law is stiff or jumps back and forth",
+        ),
+        (lambda: forward.dc_motor(5.0, -30.0), "torque and speed must have one sign"),
+        (lambda: forward.induction_motor(5.0, 0.0, 30.0), "breakdown_slip must be positive"),
         (lambda: free(rotor(), drive=5.0, steady=True), "nothing in it depends on the speed"),
         (lambda: free(rotor(), steady=True, t=(0, 1, 5)), "t and steady exclude each other"),
         (

@@ -23,9 +23,10 @@ def series(mean: float, sines: tuple[float, ...], cosines: tuple[float, ...]) ->
     def law(t: ca.SX) -> ca.SX:
         angle = 2 * ca.pi / PERIOD * t
         terms = zip(sines, cosines, strict=True)
-        return mean + sum(
-            a * ca.sin(k * angle) + b * ca.cos(k * angle) for k, (a, b) in enumerate(terms, 1)
-        )
+        found = ca.SX(mean)
+        for k, (a, b) in enumerate(terms, 1):
+            found += a * ca.sin(k * angle) + b * ca.cos(k * angle)
+        return found
 
     return expression(law)
 

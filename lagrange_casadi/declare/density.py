@@ -84,9 +84,9 @@ class Density:
         ):
             high, low = 1.0 - u if b == 1.0 else larger(b - u), 0.0 if a == 0.0 else larger(a - u)
             parts = _differences(high, low, len(cell) + 2)
-            for j, shifted in enumerate(_shift(cell, u)):
+            for j, term in enumerate(shifted(cell, u)):
                 for k in range(3):
-                    found[k] = found[k] + shifted * (parts[j + k] / (j + k + 1))
+                    found[k] = found[k] + term * (parts[j + k] / (j + k + 1))
         return found[0] * scale, found[1] * scale, found[2] * scale
 
     def cell_at(self, u: float) -> tuple[Expression, ...]:
@@ -167,9 +167,9 @@ class NumericDensity:
             zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True
         ):
             parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
-            for j, shifted in enumerate(_shift(cell, u) if len(cell) > 1 else cell):
+            for j, term in enumerate(shifted(cell, u) if len(cell) > 1 else cell):
                 for k in range(3):
-                    found[k] = found[k] + shifted * parts[j + k] / (j + k + 1)
+                    found[k] = found[k] + term * parts[j + k] / (j + k + 1)
         return tuple(found)
 
     def at(self, u: Array) -> Array:
@@ -272,15 +272,7 @@ def along(curve: Curve) -> Density:
     for start, cell in zip(curve.starts, curve.cells, strict=True):
         # In powers of the ratio, not of what is beyond the start; by fractions, for these terms
         # nearly cancel.
-        about = Fraction(start)
-        powers = [
-            sum(
-                Fraction(c) * math.comb(j, k) * (-about) ** (j - k)
-                for j, c in enumerate(cell)
-                if j >= k
-            )
-            for k in range(4)
-        ]
+        powers = shifted([Fraction(c) for c in cell], -Fraction(start))
         cells.append(tuple(float(power) for power in powers))
     return Density((*curve.starts, 1.0), tuple(cells), per_length=True)
 
@@ -315,7 +307,7 @@ def _differences(high: Operand, low: Operand, count: int) -> list[Operand]:
     return found
 
 
-def _shift(cell: Sequence[Expression], u: Operand) -> list[Operand]:
+def shifted(cell: Sequence[Expression], u: Operand) -> list[Operand]:
     """Coefficients of p(u + x) as a polynomial in x."""
     return [
         sum(c * math.comb(n, j) * u ** (n - j) for n, c in enumerate(cell) if n >= j)

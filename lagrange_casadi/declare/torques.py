@@ -85,9 +85,13 @@ def torque_curve(speeds: Sequence[float], torques: Sequence[float]) -> Law:
 def dc_motor(stall_torque: Symbolic, no_load_speed: Symbolic) -> Law:
     """A DC motor at constant voltage: its torque falls on a line from ``stall_torque`` [N m] at
     rest to nothing at ``no_load_speed`` [rad/s].
+
+    Both are negative for a motor that turns backwards. Raises :class:`.DeclarationError` for
+    numbers of different signs, and for zero.
     """
     stall = _number("dc_motor: stall_torque", stall_torque, "N*m")
     free = _number("dc_motor: no_load_speed", no_load_speed, "rad/s")
+    _check_direction("dc_motor", stall, free)
     return Law(lambda t, angle, speed: stall * (1.0 - speed / free))
 
 
@@ -105,16 +109,24 @@ def induction_motor(
     breakdown_slip
         Slip s_b at which it is reached.
     synchronous_speed
-        Speed of the field [rad/s].
+        Speed of the field [rad/s]; negative as the torque is for a motor that turns backwards.
 
     Returns
     -------
     Law
         The torque over speed; above the synchronous speed the motor brakes.
+
+    Raises
+    ------
+    DeclarationError
+        For torque and speed of different signs, for a slip that is not positive, and for zero.
     """
     most = _number("induction_motor: breakdown_torque", breakdown_torque, "N*m")
     at = _number("induction_motor: breakdown_slip", breakdown_slip, "1")
     field = _number("induction_motor: synchronous_speed", synchronous_speed, "rad/s")
+    _check_direction("induction_motor", most, field)
+    if not isinstance(at, ca.SX) and not at > 0.0:
+        raise DeclarationError(f"induction_motor: breakdown_slip must be positive, got {at:g}")
 
     def graph(_t: Expression, _angle: Expression, speed: Expression) -> Expression:
         slip = 1.0 - speed / field
@@ -139,3 +151,15 @@ def expression(law: Callable[[Expression, Expression, Expression], Expression]) 
 
 def _number(what: str, value: object, unit: str) -> Expression:
     return scalar(what, value, symbols_of(value), "parameter", unit)
+
+
+def _check_direction(motor: str, torque: Expression, speed: Expression) -> None:
+    """Raise :class:`.DeclarationError` if a torque and a speed have different signs, or are zero;
+    expressions of parameters are not known.
+    """
+    known = not isinstance(torque, ca.SX) and not isinstance(speed, ca.SX)
+    if known and not torque * speed > 0.0:
+        raise DeclarationError(
+            f"{motor}: torque and speed must have one sign, because a motor drives in the direction"
+            f" in which it turns; got {torque:g} N m and {speed:g} rad/s"
+        )

@@ -39,6 +39,7 @@ _INSTANTS = 96
 _DRAWN, _STARTS = 64, 3
 """Motions that are drawn, and how many of the best are improved."""
 
+_QUIET = ("print_time", "error_on_fail", "show_eval_warnings")
 _IPOPT = {"print_level": 0, "sb": "yes", "tol": 1e-4, "hessian_approximation": "limited-memory"}
 
 
@@ -233,15 +234,12 @@ class _Search:
         """Return the series of deviates (drives, 2, harmonics) that reaches limits of drives."""
         x = x / np.arange(1, self.harmonics + 1)
         series = np.vstack([np.zeros((1, len(x))), x[:, 0].T, x[:, 1].T])
-        d, rate, acceleration = self._rows(_SAMPLES * self.harmonics) @ series
-        low, high, speed, most = self.limits.T
-        scale = np.minimum(
-            speed / np.abs(rate).max(axis=0), most / np.abs(acceleration).max(axis=0)
-        )
-        scale = _MARGIN * np.minimum(scale, (high - low) / np.ptp(d, axis=0))
+        d = self._rows(_SAMPLES * self.harmonics)[0] @ series
+        low, high = self.limits.T[:2]
+        scale = (high - low) / np.ptp(d, axis=0)
         series *= scale
         series[0] = (low + high) / 2.0 - scale * (d.max(axis=0) + d.min(axis=0)) / 2.0
-        return series
+        return self._within(series)
 
     def _within(self, series: Array) -> Array:
         """Return a series whose amplitudes are reduced to the limits."""
@@ -304,7 +302,7 @@ class _Search:
             below.append(np.zeros(z.numel()))
             above.append(np.zeros(z.numel()))
         program = {"x": ca.veccat(x, z), "f": error(ca.mtimes(slopes, slopes.T))}
-        options = {"print_time": False, "error_on_fail": False, "show_eval_warnings": False}
+        options: dict[str, object] = dict.fromkeys(_QUIET, False)
         options |= {"ipopt": {**_IPOPT, "max_iter": steps}}
         program["g"] = ca.veccat(*limited)
         solver = ca.nlpsol("excitation", "ipopt", program, options)

@@ -18,7 +18,7 @@ from ..instants.evaluation_method import EvaluationMethod
 from .base import Ranking, base_of, triangle
 from .consistency import Consistency
 from .fit import Data, Fit, Loss, fit, nonlinear
-from .measurements import Filter, Measurements
+from .measurements import Filter, Measurements, check_units
 from .regressor import DrivenMotion, Regressor
 
 _ROUNDED = 1e-8
@@ -284,7 +284,7 @@ def identify(
 def _measured(measurements: Measurements, regressor: Regressor) -> Array:
     """Return the columns of quantities, (n, quantities), whose units are checked."""
     quantities = regressor.quantities
-    measurements.check_units(regressor.expected)
+    check_units(measurements, regressor.expected)
     if lost := [name for name in quantities if name not in measurements.columns]:
         raise UnknownNameError("column", lost, measurements.columns, place=measurements.name)
     return np.stack([measurements.columns[name] for name in quantities], axis=1)

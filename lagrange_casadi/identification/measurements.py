@@ -114,18 +114,6 @@ class Measurements:
         moving = {f"{drive}{end}" for drive in drives for end in MOTION}
         return tuple(name for name in self.columns if name not in moving)
 
-    def check_units(self, expected: Mapping[str, str]) -> None:
-        """Raise :class:`.DeclarationError` for a column in a unit of another quantity than that of
-        its ``expected`` SI unit.
-        """
-        for name, unit in expected.items():
-            word = self.units.get(name, unit)
-            if (_SIZES[word][0] if word in _SIZES else word) != unit:
-                some = ", ".join(_UNITS.get(unit, [unit]))
-                raise DeclarationError(
-                    f"{self.name}: column '{name}' is in {word}; expected {some}"
-                )
-
     def motion(self, drives: Sequence[str], trim: float = 0.0) -> DrivenMotion:
         """Return coordinates, rates and accelerations of drives.
 
@@ -202,6 +190,19 @@ class Measurements:
             b + u * (2.0 * c + 3.0 * u * d),
             2.0 * c + 6.0 * u * d,
         ]
+
+
+def check_units(measurements: Measurements, expected: Mapping[str, str]) -> None:
+    """Raise :class:`.DeclarationError` for a column in a unit of another quantity than that of its
+    ``expected`` SI unit.
+    """
+    for name, unit in expected.items():
+        word = measurements.units.get(name, unit)
+        if (_SIZES[word][0] if word in _SIZES else word) != unit:
+            some = ", ".join(_UNITS.get(unit, [unit]))
+            raise DeclarationError(
+                f"{measurements.name}: column '{name}' is in {word}; expected {some}"
+            )
 
 
 def _filled(column: Array, other: Array) -> Array:
@@ -283,7 +284,7 @@ def read_measurements(
     if unknown := [name for name in noise or {} if name not in columns]:
         raise UnknownNameError("column of noise=", unknown, columns, place=str(path))
     found_in = Measurements(columns.pop("t"), columns, deviations, Path(path).name, units)
-    found_in.check_units({"t": "s"})
+    check_units(found_in, {"t": "s"})
     return found_in
 
 

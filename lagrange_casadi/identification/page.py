@@ -28,6 +28,7 @@ td { white-space: nowrap; }
 td.unit { text-align: left; }
 main { margin-top: 14px; }
 li { overflow-wrap: anywhere; }
+@media (max-width: 600px) { table { font-size: 13px; } th, td { padding-right: 8px; } }
 """
 
 
@@ -84,28 +85,22 @@ def _parts(found: Identification, validation: Comparison | None) -> Iterator[str
     rows = [(o.words, f"{o.value:.6g}", f"{o.error:.2g}", f"{o.t:.3g}", o.unit) for o in found.base]
     yield _table(("combination", "value", "standard error", "t", ""), rows)
     yield "<h2>Parameters</h2>\n"
-    yield _table(
-        ("parameter", "before", "prior", "found", "standard error", ""),
-        [
-            (
-                name,
-                f"{found.initial[name]:.6g}",
-                f"± {found.prior[name]:.3g}" if name in found.prior else "",
-                f"{value:.6g}",
-                f"{found.errors[name]:.2g}"
-                if math.isfinite(found.errors[name])
-                else "not measured"
-                if name in found.absent
-                else "in a sum only",
-                found.units[name],
-            )
-            for name, value in found.values.items()
-        ],
-    )
+    yield _table(("parameter", "before", "found", "standard error", ""), list(_values(found)))
     for title, compared in (("The record", found.comparison), ("Another record", validation)):
         if compared is not None:
             yield f"<h2>{title}</h2>\n"
             yield from _compared(found, compared)
+
+
+def _values(found: Identification) -> Iterator[tuple[str, ...]]:
+    """Yield a row of the table of parameters for each."""
+    for name, value in found.values.items():
+        before, error = f"{found.initial[name]:.6g}", f"{found.errors[name]:.2g}"
+        if name in found.prior:
+            before += f" ± {found.prior[name]:.3g}"
+        if not math.isfinite(found.errors[name]):
+            error = "not measured" if name in found.absent else "in a sum only"
+        yield name, before, f"{value:.6g}", error, found.units[name]
 
 
 def _compared(found: Identification, compared: Comparison) -> Iterator[str]:

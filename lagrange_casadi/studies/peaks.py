@@ -18,7 +18,7 @@ import numpy as np
 
 from ..arguments import Count, public
 from ..base.arrays import Array
-from ..base.quantities import Output, compared
+from ..base.quantities import Output, compared, parts_along
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
 from ..codegen.stages import stages_for
@@ -389,10 +389,8 @@ class ContinuousSolution:
         if output.group != "section":
             return tuple(self.rows[component] for component in self.solution.made_of(output))
         link, law = output.part, self.solution.section(output.part).law
-        of_link = {
-            column: k for column, k in self.rows.items() if column.along and column.part == link
-        }
-        return SectionForce(output.member, link, of_link, law.length, law.density)
+        rows = parts_along(self.rows, link)
+        return SectionForce(output.member, link, rows, law.length, law.density)
 
     def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
         """The units of quantities, by number, and the largest size of anything that has each."""
@@ -488,11 +486,7 @@ class ContinuousSolution:
         """A link's law with columns of the graph, or of their rates, for its coefficients, loads
         and stations.
         """
-        of_link = {
-            output: columns[k]
-            for output, k in self.rows.items()
-            if output.along and output.part == link
-        }
+        of_link = {output: columns[k] for output, k in parts_along(self.rows, link).items()}
         return self.solution.section(link).law.of(link, of_link)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..declare.even_points import are_even
 from ..declare.scene import Scene
 from ..equations.buckling import Column
@@ -184,10 +184,4 @@ class _Searched:
         return replace(along.at(signals.columns(times, z)), t=times)
 
     def _along(self, size: Callable[[Member], Array]) -> _Along:
-        link = self.member.link
-        of_link = {
-            output: k
-            for output, k in self.over_time.rows.items()
-            if output.along and output.part == link
-        }
-        return _Along(self.member, of_link, size)
+        return _Along(self.member, parts_along(self.over_time.rows, self.member.link), size)

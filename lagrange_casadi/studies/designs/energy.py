@@ -27,7 +27,7 @@ from ...base.symbolic import symbolic
 from ...errors import DeclarationError
 from ...sensitivity.ends import Ends
 from .engine import DesignEngine
-from .outcome import KEPT
+from .outcome import KEPT, Results
 
 _CLOSE = {"double": 1e-13, "single": 1e-5}
 """Error of a panel, over the work of all, at which it is not halved, by precision."""
@@ -128,7 +128,7 @@ class DriveEnergy:
         path, back = np.unique(np.concatenate([first, t]), return_inverse=True)
         columns = np.empty((1, len(program.columns), path.size))
         status = np.zeros(1, np.int8)
-        found = {"status": status, "history": columns} | dict.fromkeys(KEPT)
+        found: Results = {"status": status, "history": columns} | dict.fromkeys(KEPT)
         engine.library.designs(path[None], np.zeros((1, 0), bool), p[None], found, 1)
         if status[0] != Status.OK:
             return None

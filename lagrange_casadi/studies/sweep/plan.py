@@ -15,7 +15,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from ...base.arrays import Array, Json
+from ...base.arrays import Array, Json, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import Keep, PeakSearch, Precision
 from ...declare.description import Description, beams_of, fitted_of, shape_of
@@ -325,9 +325,7 @@ def _assembly(
     try:
         compile_scene(scene, wanted)
     except (AssemblyError, MobilityError):
-        for number in np.unique(
-            np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)
-        ):
+        for number in spread(designs.size, _TRIED):
             row = dict(
                 zip(
                     designs.names,
