@@ -20,7 +20,7 @@ _ROUNDING = 5e-7
 """Errors below this share of the largest value of their unit are rounding."""
 _DIGITS = 6
 NOT_FOUND = "; the peak between the instants was not found, use more instants"
-"""What follows a peak of which only the ``least`` size is known."""
+"""End of the line of a peak of which only the ``least`` size is known."""
 
 _INDETERMINATE = "indeterminate"
 _CARDS = {

@@ -148,7 +148,7 @@ def disc_cam(
         For joints of other kinds, a lift that is no function, and a profile that is undercut with
         the default parameters.
     """
-    what, ownership = f"cam '{name}'", mechanism.own
+    what, ownership = f"cam '{name}'", mechanism.ownership
     ownership.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
@@ -228,7 +228,7 @@ def layout_of(
         raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
     radius: Expression = 0.0
     if roller is not None:
-        wide = mechanism.own.expression(f"{what}: roller", roller, "m")
+        wide = mechanism.ownership.expression(f"{what}: roller", roller, "m")
         radius = _positive(f"{what}: roller", wide)
     return Layout(cam, follower, held, radius, side)
 
@@ -359,7 +359,7 @@ def _contact(
     if here.turned is not None:
         lean = mechanism.direction(cast(Link, touched.body))
         gap = gap + here.moment * _cross(here.turned, (ca.cos(lean), ca.sin(lean)))
-    phi = mechanism.own.expression(f"cam '{name}'", gap, moving=True)
+    phi = mechanism.ownership.expression(f"cam '{name}'", gap, moving=True)
     return mechanism.constraints.setdefault(
         name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
     )

@@ -147,7 +147,7 @@ def cylindrical_cam(
         For joints of other kinds, a roller on the drum's axis or too large for the groove's bends,
         and a lift that is not periodic by a turn.
     """
-    what, ownership = f"cam '{name}'", mechanism.own
+    what, ownership = f"cam '{name}'", mechanism.ownership
     ownership.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
     held = held_by(what, mechanism, cam, follower, point, space=True)
@@ -312,7 +312,7 @@ def _contact(
         position = mechanism.place(point)
         off = minus((position[0], position[1], position[2]), there)
         gap = gap + dot(arm, off)
-    phi = mechanism.own.expression(
+    phi = mechanism.ownership.expression(
         f"cam '{name}'", ca.substitute(gap, design.angle, turn), moving=True
     )
     return mechanism.constraints.setdefault(

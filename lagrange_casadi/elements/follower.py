@@ -61,13 +61,16 @@ def held_by(
     in ``space``, and for a point of another body.
     """
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
-        kind, on_ground = mechanism.own.joint(joint).kind, isinstance(joint.parent.body, Ground)
+        kind, on_ground = (
+            mechanism.ownership.joint(joint).kind,
+            isinstance(joint.parent.body, Ground),
+        )
         if kind not in kinds or mechanism.space is not space or not on_ground:
             raise DeclarationError(
                 f"{what}: expected a {' or '.join(kinds)} joint whose parent is the ground, in"
                 f" {'space' if space else 'a plane'}, got '{joint.name}'"
             )
-    held = follower.child if point is None else mechanism.own.point(what, point)
+    held = follower.child if point is None else mechanism.ownership.point(what, point)
     if held.body is not follower.child.body:
         raise DeclarationError(
             f"{what}: its point must be on '{follower.child.body.name}', which joint"
@@ -106,7 +109,7 @@ def largest_pressure(
 
     Raises :class:`.DeclarationError` for a width that is not positive.
     """
-    wide = mechanism.own.expression(f"{what}: width", width, "m")
+    wide = mechanism.ownership.expression(f"{what}: width", width, "m")
     if isinstance(wide, ca.SX):
         wide = wide * sound(wide > 0.0)
     elif wide <= 0.0:

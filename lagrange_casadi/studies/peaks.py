@@ -116,15 +116,34 @@ def shortfall(
     t: Times | None = None,
     over: Over | None = None,
 ) -> list[Shortfall]:
-    """Shortfall of peaks if a span of time is divided into a number of instants, a row for each of
-    ``counts``.
+    """Return by how much peaks at instants are below the true peaks, by the number of instants.
 
-    The span is the scene's own, or that of ``t`` or ``over``, as in :func:`.evaluate`. ``names``
-    are full names of quantities; by default all efforts, reactions and section forces that are
-    wanted and determined. Quantities that are zero within rounding, grow without bound or have no
-    reported peak are left out. The true peaks are the largest refined ones, of all counts and of
-    twice as many instants. Raises :class:`DeclarationError` for no counts or where no quantity is
-    left, and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
+    Parameters
+    ----------
+    scene : Scene
+        A mechanism and its motion.
+    counts : sequence of int
+        Numbers of instants into which the span is divided.
+    names : iterable of str, optional
+        Full names of quantities; by default all efforts, reactions and section forces that are
+        wanted and determinate.
+    parameters : mapping, optional
+        Values of parameters, by name.
+    t, over : tuple, optional
+        The span, as of :func:`.evaluate`; by default that of the scene.
+
+    Returns
+    -------
+    list of Shortfall
+        A row for each of ``counts``. The true peaks are the largest refined ones, of all counts and
+        of twice as many instants. Quantities that are zero within rounding, grow without bound or
+        have no reported peak are left out.
+
+    Raises
+    ------
+    DeclarationError
+        Without counts, if no quantity is left, and as :func:`.evaluate` does, as for so few
+        instants that loops cannot be followed.
     """
     timing = scene.timing(t, over)
     start, stop = span_of(scene.prescribed, timing, scene.values(parameters))
@@ -172,8 +191,18 @@ def resultants(solution: Solution) -> list[str]:
 
 @public
 def forces(solution: Solution) -> list[str]:
-    """The full names of a solution's efforts, reactions, section forces, what is largest along
-    links, and own outputs: those that equilibrium determines.
+    """Return the names of the quantities whose peaks :func:`refine` finds by default.
+
+    Parameters
+    ----------
+    solution : Solution
+        Result of :func:`.evaluate`.
+
+    Returns
+    -------
+    list of str
+        Full names of efforts, reactions, section forces, stresses, deflections and user-defined
+        outputs, without those that are indeterminate.
     """
     wanted = (
         output

@@ -36,8 +36,7 @@ _STILL = 1e-9
 """Share of its way within which a coordinate ends where it began."""
 
 _ROUNDS, _MORE = 30, 64
-"""Number of halvings at most; and how many times as many nodes as instants there may be.
-"""
+"""Most halvings of panels; and most nodes for each instant."""
 
 
 @dataclass(frozen=True, eq=False)
