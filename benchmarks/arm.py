@@ -11,6 +11,7 @@ from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.base.vocabulary import Backend
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.program import Program
+from lagrange_casadi.instants.grids import empty
 from lagrange_casadi.instants.ordering import in_order
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution
@@ -62,12 +63,10 @@ def arm_resultants(t: Array, xi: Array, threads: int = 1) -> Work:
 
 
 def _fills(law: SectionLaw, forces: tuple[str, ...], t: Array, xi: Array, threads: int) -> Work:
-    out = np.empty((len(forces), t.size, xi.size))
+    out = empty("the grids", (len(forces), t.size, xi.size))
 
     def call() -> Array:
-        basis = law.basis(xi)
-        for force, grid in zip(forces, out, strict=True):
-            law.on_grid(force, basis, grid, threads or None)
+        law.on_grids(forces, xi, out, threads or None)
         return out
 
     return call

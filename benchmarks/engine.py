@@ -17,6 +17,7 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.program import Program
 from lagrange_casadi.instants.backends import rows, run
 from lagrange_casadi.instants.evaluation_method import EvaluationMethod
+from lagrange_casadi.instants.grids import empty
 from lagrange_casadi.instants.ordering import in_order
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution
@@ -93,12 +94,10 @@ def fill(case: SliderCrank, t: Array, xi: Array, threads: int = 1) -> Work:
 
 
 def _fills(law: SectionLaw, t: Array, xi: Array, threads: int) -> Work:
-    out = np.empty((3, t.size, xi.size))
+    out = empty("the grids", (3, t.size, xi.size))
 
     def call() -> Array:
-        basis = law.basis(xi)
-        for force, grid in zip(FORCES, out, strict=True):
-            law.on_grid(force, basis, grid, threads or None)
+        law.on_grids(FORCES, xi, out, threads or None)
         return out
 
     return call
@@ -122,12 +121,13 @@ def columns_of(program: Program, p: Array, t: Array, backend: Backend, threads: 
     out, status = rows(len(program.columns), t.size), np.zeros(t.size, dtype=np.int32)
     library, z = codegen.load(codegen.emit(program), compiler), np.empty((0, t.size))
     first = len(program.columns) - len(program.outputs)
+    evaluate = library.evaluation(t, p, z, z, out, status, threads or cores())
 
     def call() -> Array:
         if backend == "vm":
             out[:] = run(program, t, p, EvaluationMethod("vm"))[0].out
         else:
-            library.evaluate(t, p, z, z, out, status, threads or cores())
+            evaluate()
         return out[first:]
 
     return call

@@ -106,8 +106,8 @@ _NONE: Any = object()
 
 @dataclass(frozen=True)
 class _Asked:
-    """Arguments that a function asks for: its ``signature``, the ``kinds`` that are known, and what
-    tells that a call fits.
+    """Arguments that a function asks for: its ``signature``, the ``kinds`` that are known, and a
+    key that shows that a call fits.
 
     ``positional`` are the names of arguments that may be given by their place; there are none if
     some of its arguments are not of these two simple sorts.
@@ -453,7 +453,7 @@ _NAMED = {
     "elastic": _Kind("Young's modulus [Pa] and Poisson's ratio", _pair),
     "numeric": _Kind("a number or an array of numbers", _array),
     "symbolic": _Kind("a number, or an expression in parameters", _symbolic),
-    # What is none is told by who knows which outputs there are.
+    # What is no output is refused by who knows which outputs there are.
     "outputs": _Kind(
         "a list of texts", lambda value: value if (found := texts(value)) is None else found
     ),

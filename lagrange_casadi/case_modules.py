@@ -1,5 +1,5 @@
-"""The files of cases as modules: with a name that any process can import them by, for it tells
-where the file is.
+"""The files of cases as modules: any process can import them, because their name has the path of
+the file.
 
 So dataclasses find the module that they are defined in, and what a case defines can be sent to
 another process. Beside its file a case may have modules of its own; they are imported by their

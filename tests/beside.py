@@ -320,7 +320,32 @@ def _planetary_gear(arithmetic, values):
     return {"loads": [stirred], "extras": [first, *(outer(k) for k in (1, 2, 3))]}
 
 
+def _parallelogram_arm(arithmetic, values):
+    """A spring from the base to the upper arm, and friction of both motors."""
+    number, sqrt = arithmetic.number, arithmetic.sqrt
+    base, point = (-number(15) / 100, number(25) / 100), ("upper", number(2) / 10, 0)
+
+    def spring(place):
+        x, y = (at.v - of for at, of in zip(place(point)[:2], base, strict=True))
+        length = sqrt(x * x + y * y)
+        pull = number(values["k_balance"]) * (length - number(1) / 10) / length
+        return [(point, -pull * x, -pull * y, 0)]
+
+    def friction(joint, link):
+        viscous, dry = (number(values[f"{kind}_{joint}"]) for kind in ("viscous", "dry"))
+
+        def part(place):
+            speed = place((link, 0, 0))[2].d
+            size = viscous + dry / sqrt(speed * speed + number(4) / 10000)
+            return [((link, 0, 0), 0, 0, -size * speed)]
+
+        return part
+
+    return {"loads": [spring, friction("shoulder", "upper"), friction("motor", "crank")]}
+
+
 _CASES = {
+    "parallelogram_arm": _parallelogram_arm,
     "planetary_gear": _planetary_gear,
     "connecting_rod": _connecting_rod,
     "v_twin": _v_twin,

@@ -106,7 +106,7 @@ def interpreted():
     """Let CasADi's virtual machine evaluate doubles where no backend is asked for: for what is not
     about compiled code.
 
-    Compiled code has the same numbers: test_codegen, test_lanes and test_machine_ways show that.
+    Compiled code has the same numbers: test_codegen, test_lanes and test_every_way show that.
     """
     compiled = backends.compiled
 

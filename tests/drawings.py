@@ -5,8 +5,6 @@ numbers is off by rounding.
 import runpy
 
 import numpy as np
-import pytest
-import spatial_twin
 from conftest import CASES
 from internals import Link, Point
 
@@ -54,10 +52,3 @@ def drawn(case, noise, seed=1):
     scene = runpy.run_path(str(CASES / case / "case.py"))["scene"]
     scene.__globals__["SpatialMechanism"] = drawing(noise, seed)
     return scene()
-
-
-def drawn_twin(scene, flat, R, noise, seed=1):
-    """A planar scene told in space, as it was drawn."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(spatial_twin, "SpatialMechanism", drawing(noise, seed))
-        return spatial_twin.twin(scene, flat, R)

@@ -1,5 +1,5 @@
 """Functions of a number drawn from all operations that a graph may hold, and whether they have a
-kink: by halving steps alone.
+kink: by halving steps alone. Scenes whose motion, constraint or lift is such a function.
 """
 
 from __future__ import annotations
@@ -8,7 +8,11 @@ from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
+from internals import disc_cam
 from operations import EACH, X, Y
+
+from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.motion import expression, polynomial
 
 T, K = ca.SX.sym("t"), ca.SX.sym("k")
 _STEPS, _HALVINGS, _LARGEST = 20000, 26, 100
@@ -131,3 +135,31 @@ def told_by_limits(expression, k, place=0.0):
         return "kink"
     low, high = np.minimum(before, after), np.maximum(before, after)
     return "isolated" if ((here < low - 1e-4) | (here > high + 1e-4)).any() else "smooth"
+
+
+def slide(law, t=(0.0, 1.0, 101)):
+    """A slide whose motion is a law of time and of a parameter k."""
+    m = Mechanism("slide")
+    body, k = m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    m.prismatic("way", m.ground, body, axis=(1, 0))
+    return Scene(m, {"way": expression(lambda t: law(t, k))}, t=t, wanted=("effort",))
+
+
+def constraint(law, t=(0.0, 1.0, 101)):
+    """A slide whose place is a law of a crank's angle and of a parameter k."""
+    m = Mechanism("constraint")
+    crank, body = m.link("crank", length=0.1, mass=1.0), m.point_mass("body", 2.0)
+    k, turn = m.parameter("k", 0.0), m.revolute("turn", m.ground, crank)
+    way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
+    m.constraint("profile", m.coordinate(way) - law(m.coordinate(turn), k))
+    return Scene(m, {"turn": polynomial(0.0, 1.0)}, t=t, wanted=("effort",))
+
+
+def cam(law, t=(0.0, 1.0, 101), turn=None):
+    """A cam whose lift is a law of its angle and of a parameter k."""
+    m = Mechanism("cam")
+    wheel, rod = (m.link(name, length=0.1, mass=1.0) for name in ("wheel", "rod"))
+    k, main = m.parameter("k", 0.0), m.revolute("turn", m.ground, wheel)
+    lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
+    disc_cam(m, "profile", main, lead, lambda x: law(x, k), base_radius=0.1, roller=0.01)
+    return Scene(m, {"turn": turn or polynomial(0.0, 1.0)}, t=t, wanted=("effort",))

@@ -1,5 +1,7 @@
 """Mechanisms that are over-constrained, of links that give way."""
 
+import functools
+
 import numpy as np
 import pytest
 from internals import Compliance, Member, nodes
@@ -9,8 +11,9 @@ from lagrange_casadi import (
     Scene,
     SpatialMechanism,
     beams,
+    evaluate,
 )
-from lagrange_casadi.motion import harmonic
+from lagrange_casadi.motion import harmonic, polynomial
 
 STEEL = beams.material("S235")
 LIGHT = STEEL.but(density=1e-9)
@@ -96,3 +99,12 @@ def three_cranks(beam, bar=None, elastic=True):
         m.revolute(f"B{k}", link.tip, (bar.base, bar.at(0.5), bar.tip)[k])
     posture = {"a": 1.2, "b": 1.2, "c": 1.2, "bar": 0.0}
     return Scene(m, {"G0": harmonic(1.2, 0.3, 1.0)}, posture=posture, t=(0, 1, 5), elastic=elastic)
+
+
+@functools.cache
+def moving():
+    """The four-bar in motion, completed by elasticity: mechanism and solution."""
+    m = four_bar()
+    law = {"O": polynomial(0.2, 30.0, 40.0)}
+    scene = Scene(m, law, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9), elastic=True)
+    return m, evaluate(scene)

@@ -1,6 +1,7 @@
-"""A mechanism of two freedoms: two cranks and two rods that meet at a tool."""
+"""Five-bars: two cranks and two rods that meet at a tool, and one whose rods are geared."""
 
 from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.elements import gears
 from lagrange_casadi.motion import polynomial
 
 
@@ -34,3 +35,27 @@ def five_bar(drives=None, wanted=("all",), path=False, power=False, **keywords):
         drives=drives,
         **({"posture": {"b": 1.0, "c": 2.0}, "t": (0, 1, 41)} | keywords),
     )
+
+
+def geared_five_bar(order, rubs=False):
+    """A five-bar with gears over its coupler, whose pin at B closes the loop in some orders of
+    declaration.
+    """
+    m = Mechanism("five")
+    first, coupler = m.link("first", length=0.1, mass=1.0), m.link("coupler", length=0.25, mass=0.6)
+    third, fourth = m.link("third", length=0.2, mass=0.8), m.link("fourth", length=0.22, mass=0.8)
+    pins = {
+        "O": (m.ground, first),
+        "A": (first.tip, coupler),
+        "B": (coupler.tip, third),
+        "C": (third.tip, fourth.tip),
+        "D": (m.ground.at(0.35, 0), fourth),
+    }
+    joints = {name: m.revolute(name, *pins[name]) for name in order}
+    if rubs:
+        m.friction("rub_A", joints["A"], mu=0.1, radius=0.02)
+        m.friction("rub_B", joints["B"], mu=0.1, radius=0.02)
+    gears(m, "mesh", first.tip, third, radii=(0.1, 0.15))
+    m.force("cut", fourth.at(0.1), x=-30.0)
+    posture = {"coupler": 0.8, "third": -0.5, "fourth": 1.5}
+    return Scene(m, {"O": polynomial(0.3, 20)}, t=(0, 0.05, 11), posture=posture)

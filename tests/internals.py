@@ -48,7 +48,7 @@ from lagrange_casadi.beams.beam import beam_from_numbers, beam_to_numbers
 from lagrange_casadi.beams.profiles import Profile, read_profiles
 from lagrange_casadi.cli.report import peak_line, shown
 from lagrange_casadi.cli.report import readable as report_readable
-from lagrange_casadi.cli.slope_lines import slope_lines
+from lagrange_casadi.cli.run import slope_lines
 from lagrange_casadi.cli.strength_lines import not_evaluated_lines, strength_lines
 from lagrange_casadi.cluster import sweeps
 from lagrange_casadi.cluster.sweeps import Cluster
@@ -168,7 +168,7 @@ from lagrange_casadi.figures.trade_plot import draw_trade
 from lagrange_casadi.formats import case_of, json_model
 from lagrange_casadi.formats.laws import LawError, python
 from lagrange_casadi.formats.laws import parsed as laws_parsed
-from lagrange_casadi.formats.record import COORDINATES
+from lagrange_casadi.formats.record import MOVES
 from lagrange_casadi.geometry.frames import Frame
 from lagrange_casadi.geometry.rotation import Rotation
 from lagrange_casadi.instants import backends, cycle_table, grids, tabulate
@@ -198,7 +198,7 @@ from lagrange_casadi.peak_search.search import peaks
 from lagrange_casadi.peak_search.sharpness import Kind, Sharpness, Watch
 from lagrange_casadi.portable import naming, stack, text
 from lagrange_casadi.portable.golden import ALLOWED
-from lagrange_casadi.portable.statuses import SHARED, STATUSES
+from lagrange_casadi.portable.statuses import ANSWERS, SHARED, STATUSES
 from lagrange_casadi.renamed import RENAMED, renamed
 from lagrange_casadi.report import instants, maps, write_report
 from lagrange_casadi.report import page as report_page
@@ -263,6 +263,7 @@ from lagrange_casadi.strength.rainflow import rainflow, reversals
 from lagrange_casadi.strength.safety import as_column
 from lagrange_casadi.strength.stress import maxima
 from lagrange_casadi.strength.worst import LinkHistories
+from lagrange_casadi.studies.designs.energy import DriveEnergy
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
 from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of

@@ -63,20 +63,10 @@ def _open(exact: oracle.Result, name: str) -> bool:
 
 
 class Comparison:
-    """A solution beside the oracle; a quantity may also be off by ``claims`` times what the
-    solution says it may be.
-    """
+    """A solution beside the oracle."""
 
-    def __init__(
-        self, drawn: Drawn, solution, tolerance: float = TOLERANCE, claims: float = 0.0
-    ) -> None:
-        self.drawn, self.d, self.solution, self.tolerance, self.claims = (
-            drawn,
-            drawn.draft,
-            solution,
-            tolerance,
-            claims,
-        )
+    def __init__(self, drawn: Drawn, solution) -> None:
+        self.drawn, self.d, self.solution = drawn, drawn.draft, solution
         self.rng = np.random.default_rng(drawn.seed)
         self.notes: list[str] = []
         self.faults: list[str] = []
@@ -351,11 +341,8 @@ class Comparison:
         for name, gaps in self.found.items():
             kind, scale = self._kind(name)
             most, kin = peaks[name.partition("@")[0]], largest[kind] / scale
-            claimed = self.claims * self.solution.errors.get(name.partition("@")[0], 0.0)
             for gap in gaps:
-                if abs(gap.gap) <= claimed:
-                    continue
-                part = max(self.tolerance, gap.rounding)
+                part = max(TOLERANCE, gap.rounding)
                 allowed = max(part * most, part * SMALL * kin, gap.rounding * kin)
                 if not abs(gap.gap) <= allowed and not abs(gap.gap) <= self._blur(name, gap):
                     off = f"off by {abs(gap.gap) / (most or 1.0):.2g} of its peak"

@@ -12,7 +12,7 @@ import traceback
 import warnings
 from dataclasses import dataclass, field
 
-from random_comparison import TOLERANCE, Comparison
+from random_comparison import Comparison
 from random_mechanisms import Drawn
 from random_path import NEAR
 
@@ -42,17 +42,8 @@ class Verdict:
     details: list[str] = field(default_factory=list)
 
 
-def judge(
-    drawn: Drawn,
-    seconds: float = 120.0,
-    tolerance: float = TOLERANCE,
-    claims: float = 0.0,
-    **method,
-) -> Verdict:
-    """Evaluate a random mechanism, and compare with the oracle.
-
-    A quantity may also be off by ``claims`` times what the solution itself says it may be.
-    """
+def judge(drawn: Drawn, seconds: float = 120.0, **method) -> Verdict:
+    """Evaluate a random mechanism, and compare with the oracle."""
     said = {"seed": drawn.seed, "regular": is_regular(drawn)}
     try:
         with _within(seconds), warnings.catch_warnings():
@@ -71,7 +62,7 @@ def judge(
             details=[traceback.format_exc()],
             **said,
         )
-    return compare(drawn, solution, tolerance, claims)
+    return compare(drawn, solution)
 
 
 def is_regular(drawn: Drawn) -> bool:
@@ -88,14 +79,14 @@ def is_regular(drawn: Drawn) -> bool:
     )
 
 
-def compare(drawn: Drawn, solution, tolerance: float = TOLERANCE, claims: float = 0.0) -> Verdict:
+def compare(drawn: Drawn, solution) -> Verdict:
     """A solution beside the oracle."""
     said = {"seed": drawn.seed, "regular": is_regular(drawn)}
     if not drawn.draft.fits:
         return Verdict(
             kind="wrong", why="there is a result, but the drives do not fit the freedoms", **said
         )
-    found = Comparison(drawn, solution, tolerance, claims)
+    found = Comparison(drawn, solution)
     found.look()
     kind = "wrong" if found.faults else "right"
     return Verdict(

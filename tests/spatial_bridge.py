@@ -1,6 +1,4 @@
-"""Mechanisms of the spatial oracle declared to the package, and the
-package's graphs at instants.
-"""
+"""Mechanisms of the spatial oracle declared to the package."""
 
 from __future__ import annotations
 
@@ -16,7 +14,7 @@ from spatial_bodies import GROUND, Rigid, Rod
 from spatial_draft import Drawn
 from spatial_rubbing import Rub
 
-from lagrange_casadi import Scene, SpatialMechanism, density, derive, motion
+from lagrange_casadi import Scene, SpatialMechanism, density, motion
 
 _SIZE = 0.3
 BESIDE = (0.3, 3.0, 0.0)
@@ -174,25 +172,6 @@ def postures(drawn: Drawn, t: float) -> dict[str, float]:
         for k, value in enumerate(_coordinates(joint, turned, apart)):
             found[coordinate(joint, k)] = float(value)
     return found
-
-
-def instants(scene: Scene, times, wanted=None):
-    """The columns of a scene's graph at times, by name: loops are
-    followed from the scene's start.
-    """
-    program = derive(scene, wanted)
-    p = [parameter.default for parameter in scene.mechanism.parameters.values()]
-    z = np.array(program.newton.guess) if program.newton else np.zeros(0)
-    rows = []
-    for t in times:
-        d, rate, acceleration = program.motion(t, p)
-        for _ in range(60 if program.newton else 0):
-            correction, size = program.newton.step(z, t, d, p)
-            z = z + correction.full().ravel()
-            if float(size) < 1e-13:
-                break
-        rows.append(program.instant(t, d, rate, acceleration, z, p).full().ravel())
-    return dict(zip(program.names, np.array(rows).T, strict=True))
 
 
 def _body(m, body, pose=None, beam=None):

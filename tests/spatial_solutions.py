@@ -5,6 +5,7 @@ import functools
 from spatial_anyhow import anyhow
 from spatial_bridge import declared, plain
 from spatial_mechanisms import FAMILIES
+from spatial_wheels import wheel
 
 from lagrange_casadi import evaluate
 
@@ -14,7 +15,7 @@ RATIOS = 5
 @functools.cache
 def evaluated(name, seed):
     """What was drawn, and its solution."""
-    drawn = plain((FAMILIES | {"anyhow": anyhow})[name](seed))
+    drawn = plain((FAMILIES | {"anyhow": anyhow, "wheel": wheel})[name](seed))
     return drawn, evaluate(declared(drawn), xi=(0, 1, RATIOS))
 
 

@@ -94,7 +94,7 @@ class _Twin:
             return self.space.ground.at(*self._ground([x, y, 0.0]))
         own = self.parts[point.body.name]
         if not isinstance(point.body, Link):
-            return self.space.own.point("point", own)
+            return self.space.ownership.point("point", own)
         return getattr(own, point.end) if point.end is not None else own.at(x, y)
 
     def _body(self, body):

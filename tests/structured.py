@@ -3,6 +3,13 @@
 import math
 import re
 
+
+def truncated(x):
+    """A number as one of DINT."""
+    assert abs(x) < 2**31, x
+    return math.trunc(x)
+
+
 KNOWN = {
     "SQRT": math.sqrt,
     "SIN": math.sin,
@@ -18,9 +25,9 @@ KNOWN = {
     "MIN": min,
     "MAX": max,
     "SEL": lambda choice, no, yes: yes if choice else no,
-    "TRUNC": math.trunc,
+    "TRUNC": truncated,
     "DINT_TO_LREAL": float,
-    "LREAL_TO_DINT": round,
+    "LREAL_TO_DINT": lambda x: truncated(round(x)),
 }
 WORDS = {"AND": "and", "OR": "or", "NOT": "not", "TRUE": "True", "FALSE": "False", "=": "=="}
 WORDS |= {"<>": "!=", ":=": "="}

@@ -321,9 +321,7 @@ def test_markers_that_a_drawing_has_rounded(tmp_path):
     """Off by 1e-8: taken for one place, and said."""
     path = tmp_path / "press.asmt"
     path.write_text(refusal(FOUR_BAR, ("2.0\t0.0\t0.0", "2.00000001\t0.0\t0.0")))
-    assert "joint 'C': its two frames miss each other by 1.0e-08 m" in case_of(path).replace(
-        "\n#  ", ""
-    )
+    assert "joint 'C': its two frames differ by 1.0e-08 m" in case_of(path).replace("\n#  ", "")
     assert evaluate(read(path), t=(0.0, 1.0, 3)).certified
 
 

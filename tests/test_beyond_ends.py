@@ -32,7 +32,7 @@ def told(station):
     """The place that the lines of the refusal make."""
     with pytest.raises(
         ParameterError,
-        match=rf"joint 'bolt': station {station} m is outside link 'arm', 0 to 0\.1 m; for a point",
+        match=rf"joint 'bolt': its point at {station} m is outside link 'arm', 0 to 0\.1 m; for a",
     ) as error:
         crank(station)
     lines = re.search(

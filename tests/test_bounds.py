@@ -40,29 +40,33 @@ REFUSED = {
     "t": (
         ["run", CASE, "--t", "0:0.08:100000000000"],
         1,
-        f"no room for the outputs over time: .* {FREE}",
+        f"not enough memory for the outputs over time: .* {FREE}",
     ),
     "t-huge": (["run", CASE, "--t", f"0:0.08:{HUGE}"], 2, COUNT + HUGE),
     "t-swept": (
         ["sweep", CASE, *GRID, "--t", "0:0.08:100000000000"],
         1,
-        f"no room for the points from 0 to 0.08: .* {FREE}",
+        f"not enough memory for the points from 0 to 0.08: .* {FREE}",
     ),
     "t-swept-huge": (
         ["sweep", CASE, *GRID, "--t", f"0:0.08:{HUGE}"],
         2,
         COUNT,
     ),
-    "t-traded": (["trade", CASE, "--t", "0:0.08:100000000000"], 1, f"no room for .* {FREE}"),
+    "t-traded": (
+        ["trade", CASE, "--t", "0:0.08:100000000000"],
+        1,
+        f"not enough memory for .* {FREE}",
+    ),
     "xi": (
         ["run", CASE, "--xi", "0:1:100000000000", "--t", "0:0.08:9"],
         1,
-        f"no room for the points from 0 to 1: .* {FREE}",
+        f"not enough memory for the points from 0 to 1: .* {FREE}",
     ),
     "xi-swept": (
         ["sweep", CASE, *GRID, "--xi", "0:1:100000000000"],
         1,
-        f"no room for the points from 0 to 1: .* {FREE}",
+        f"not enough memory for the points from 0 to 1: .* {FREE}",
     ),
     "table": (
         ["run", CASE, "--table", "1000000000"],
@@ -146,7 +150,8 @@ def test_points_are_refused_before_they_are_made(monkeypatch):
     monkeypatch.setattr(space, "memory", lambda: 2e7)
     assert points((0.0, 1.0, 100)).size == 100
     with pytest.raises(
-        SizeError, match=r"no room for the points from 0 to 1: 3 x 1 000 000 values are 0\.024 GB"
+        SizeError,
+        match=r"not enough memory for the points from 0 to 1: 3 x 1 000 000 values are 0\.024 GB",
     ):
         points((0.0, 1.0, 10**6))
 

@@ -237,7 +237,7 @@ def test_what_others_may_have_put_there_is_not_read(fresh_cache, foreign, capsys
     why = rf"{foreign} belongs to another user|others may write into {foreign}"
     with pytest.warns(
         UserWarning,
-        match=rf"^the cache folder {fresh_cache} is not used, for ({why}); a temporary one is$",
+        match=rf"^the cache folder {fresh_cache} is not used, because ({why}); a temporary one is$",
     ):
         own = cache.folder()
     assert own != fresh_cache
@@ -247,7 +247,7 @@ def test_what_others_may_have_put_there_is_not_read(fresh_cache, foreign, capsys
     assert cache.read(f"{NAMES[1]}.graph") == "mine"
     assert left(fresh_cache) == NAMES[:1]
     assert main(["cache"]) == 0
-    assert capsys.readouterr().err.startswith(f"note: {fresh_cache} is not used, for ")
+    assert capsys.readouterr().err.startswith(f"note: {fresh_cache} is not used, because ")
 
 
 @pytest.mark.parametrize(
@@ -302,8 +302,8 @@ def test_nothing_is_built_where_others_may_change_it(fresh_cache, tmp_path, monk
                 assert work.parent == shared
             continue
         why = (
-            rf"in the temporary folder {shared}, for others may write into .*; set \$TMPDIR to a"
-            r" folder of your own$"
+            rf"in the temporary folder {shared}, because others may write into .*; set \$TMPDIR to"
+            r" a folder of your own$"
         )
         with pytest.raises(PathError, match=why), cache.working_folder():
             pass

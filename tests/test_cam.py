@@ -308,7 +308,7 @@ def broken(**options):
             "its lift must be the same after a turn of the cam; expected a period of 2 pi",
         ),
         ({"lift": SHORT, "roller": 0.02}, "is undercut at"),
-        ({"lift": lambda x: "high"}, "lift must be a function of the cam's angle"),
+        ({"lift": lambda x: "high"}, "lift cannot be made as an expression of the cam's angle"),
         ({"base_radius": -0.05}, r"base_radius must be positive, got -0\.05 m"),
         ({"roller": 0.0}, r"roller must be positive, got 0 m"),
     ],

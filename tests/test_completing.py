@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from elastic_mechanisms import four_bar, held, made, three_cranks
+from elastic_mechanisms import four_bar, held, made, moving, three_cranks
 
 from lagrange_casadi import (
     Mechanism,
@@ -25,22 +25,8 @@ from lagrange_casadi.motion import polynomial
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 
-@pytest.fixture(scope="module")
-def moving():
-    m = four_bar()
-    return m, evaluate(
-        Scene(
-            m,
-            {"O": polynomial(0.2, 30.0, 40.0)},
-            posture={"A": 0.5, "C": 1.5},
-            t=(0, 8e-3, 9),
-            elastic=True,
-        )
-    )
-
-
-def test_what_equilibrium_determines_is_what_it_was(moving):
-    m, solution = moving
+def test_what_equilibrium_determines_is_what_it_was():
+    m, solution = moving()
     plain = evaluate(
         Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9))
     )
@@ -71,11 +57,11 @@ def test_a_file_keeps_what_elasticity_told(tmp_path):
     np.testing.assert_array_equal(back.reaction("A").mz, solution.reaction("A").mz)
 
 
-def test_what_knows_equilibrium_alone_leaves_it_open(moving, tmp_path):
+def test_what_knows_equilibrium_alone_leaves_it_open(tmp_path):
     """Peaks of what is told are those of the instants, and it has no derivatives of peaks: neither
     takes the one for the other.
     """
-    _, solution = moving
+    _, solution = moving()
     m = four_bar()
     scene = Scene(
         m,

@@ -165,4 +165,4 @@ def test_run_prints_every_part(here, capsys):
         assert f"\n  {part:<20} " in out
     assert out.count("| fatigue governs\n") == 2
     assert out.count("| pressure governs\n") == 2
-    assert out.count("endless: no stress cycle is above the endurance limit") == 2
+    assert out.count("infinite: no stress cycle is above the endurance limit") == 2

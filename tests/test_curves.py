@@ -25,7 +25,6 @@ from lagrange_casadi import (
     evaluate,
     export,
     motion,
-    refine,
     table,
 )
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, SizeError
@@ -113,7 +112,7 @@ def test_a_curve_of_numbers_is_numbers():
     assert isinstance(found(1.5), float)
     np.testing.assert_allclose(found([0.5, 2.5]), [0.125, 15.625])
     assert repr(found) == "<Curve of 4 points, from 0 to 3>"
-    with pytest.raises(DeclarationError, match=r"curve: 3\.5 is beyond its ends, 0 and 3"):
+    with pytest.raises(DeclarationError, match=r"curve: 3\.5 is outside its range, 0 to 3"):
         found(3.5)
     with pytest.raises(
         DeclarationError, match=r"expected a scalar casadi\.SX expression or finite numbers"
@@ -248,33 +247,6 @@ def test_newton_and_euler_agree_on_a_cam(t):
     assert_balanced(
         sampled_cam(), t=t, extras=[contact], loads=[loads], nudge=1e-4, rough={"disc": turned}
     )
-
-
-def test_every_way_of_evaluating_agrees():
-    scene = sampled_cam()
-    ways = {backend: evaluate(scene, backend=backend) for backend in ("vm", "c", "lanes")}
-    for name in ways["c"].names():
-        size = np.abs(ways["c"].array(name)).max()
-        np.testing.assert_array_equal(ways["c"].array(name), ways["vm"].array(name), err_msg=name)
-        np.testing.assert_allclose(
-            ways["lanes"].array(name),
-            ways["c"].array(name),
-            rtol=0,
-            atol=1e-13 * size,
-            err_msg=name,
-        )
-    for other in (
-        {"precision": "single"},
-        {"table": 1e-4},
-        {"precision": "single", "backend": "c"},
-    ):
-        found = evaluate(scene, **other)
-        assert found.certified
-        for name in ("effort:main", "multiplier:contact", "motion:guide_acceleration"):
-            gap = np.abs(found.array(name) - ways["c"].array(name)).max()
-            assert gap <= 10.0 * found.errors[name] + 1e-15, (other, name, gap, found.errors[name])
-            if "precision" in other:
-                assert gap <= 1e-4 * np.abs(ways["c"].array(name)).max()
 
 
 def test_errors_are_estimated_beside_50_digits():
@@ -446,22 +418,6 @@ def test_a_density_along_a_curve():
         density.along(curve([0, 1, 2, 3], [1, 1, 1, 1]))
     with pytest.raises(DeclarationError, match="along: curve: expected a Curve"):
         density.along([1, 2, 3])
-
-
-def test_peaks_between_instants_are_those_of_many_instants():
-    scene = sampled_cam(25, t=(0.0, 0.16, 61))
-    fine = evaluate(scene, t=(0.0, 0.16, 20001))
-    peaks = {peak.name: peak for peak in refine(scene, evaluate(scene))}
-    designs = DesignEngine.of(scene).evaluate(np.array([[0.03]]))
-    assert designs.status.tolist() == [Status.OK]
-    quantities = DesignEngine.of(scene).quantities
-    for name in ("effort:main", "multiplier:contact"):
-        size = np.abs(fine.array(name)).max()
-        assert abs(abs(peaks[name].value) - size) <= 1e-5 * size
-        assert (
-            abs(abs(designs.value[0, [str(q) for q in quantities].index(name)]) - size)
-            <= 1e-5 * size
-        )
 
 
 def test_interpolants_of_casadis_are_refused_with_the_way_out():

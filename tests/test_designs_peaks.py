@@ -15,11 +15,10 @@ from internals import (
     Samples,
     Status,
     forces,
-    refine,
 )
-from mechanisms import crank_and_rod, lobes, pendulum
+from mechanisms import crank_and_rod, pendulum
 
-from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, load_case, motion
+from lagrange_casadi import Mechanism, Scene, codegen, evaluate, load_case, motion
 from lagrange_casadi.motion import polynomial
 
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
@@ -56,26 +55,6 @@ def test_any_density_and_any_station(matter):
             assert min(abs(value - side) for side in sides) <= 1e-11 * abs(value)
 
 
-@pytest.mark.quick
-@both
-def test_peaks_of_a_turning_pendulum_are_exact(backend):
-    """The effort is m g l/2 cos theta; its mean over a whole turn is zero and its rms the peak over
-    the root of two.
-    """
-    speed, start, turn = 3.0, 0.1, 2 * math.pi / 3.0
-    scene = pendulum(polynomial(start, speed), t=(0, turn, 41))
-    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
-    outcome = designs.evaluate(np.zeros((1, 0)))
-    value, t, _ = peaks_of(designs, outcome, 0)["effort:pin"]
-    peak = 1.2 * 9.81 * 0.5 / 2
-    assert abs(value) == pytest.approx(peak, rel=1e-13)
-    assert (start + speed * t) % math.pi == pytest.approx(0.0, abs=1e-6) or (
-        start + speed * t
-    ) % math.pi == pytest.approx(math.pi)
-    assert outcome.mean[0, 0] == pytest.approx(0.0, abs=1e-13)
-    assert outcome.rms[0, 0] == pytest.approx(peak / math.sqrt(2), rel=1e-13)
-
-
 @both
 def test_of_peaks_as_large_the_first_is_told(backend):
     """Else rounding would choose between tops and troughs of many turns, and the sign with them."""
@@ -86,74 +65,6 @@ def test_of_peaks_as_large_the_first_is_told(backend):
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["effort:pin"]
     assert value == pytest.approx(-1.2 * 9.81 * 0.25, rel=1e-12)
     assert t == pytest.approx((math.pi - 0.1) / 3.0, abs=1e-6)
-
-
-@both
-@pytest.mark.sampled(7)
-@pytest.mark.parametrize("count", [1, 2, 3, 4, 6, 7, 8, 9, 15, 16, 17])
-def test_any_number_of_instants(count, backend):
-    """The peak of one instant is its own; of two and more the refined one where a rise between them
-    can be told.
-    """
-    scene = pendulum(polynomial(0.1, 1.0))
-    grid = (0.2, 0.2, 1) if count == 1 else (0.0, 4.0, count)
-    designs = DesignEngine.of(scene, t=grid, method=EvaluationMethod(backend))
-    outcome = designs.evaluate(np.zeros((1, 0)))
-    assert outcome.status.tolist() == [Status.OK]
-    found = peaks_of(designs, outcome, 0)
-    solution = evaluate(scene, t=grid, backend="vm", certificate=False)
-    for peak in refine(scene, solution, forces(solution)):
-        assert abs(found[peak.name][0]) >= abs(solution.peak(peak.name).value) * (1 - 1e-14)
-        if count not in (2, 3):
-            assert abs(found[peak.name][0]) == pytest.approx(abs(peak.value), rel=1e-10), peak.name
-
-
-@both
-def test_the_higher_of_two_peaks_is_found_where_the_instants_tell_otherwise(backend):
-    scene = pendulum(motion.expression(lobes), t=(0, 3.0, 31), wanted=["motion"])
-    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
-    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin"]
-    assert t == pytest.approx(2.05, abs=1e-7)
-    assert value == pytest.approx(1 + 1e-5, rel=1e-11)
-
-
-@both
-def test_a_kink_and_a_jump(backend):
-    """A cubic spline's acceleration is a polygon, whose peak is a knot's; a load that is gone from
-    a radian on peaks there.
-    """
-    times = np.linspace(0, 2, 9)
-    scene = pendulum(motion.samples(times, np.sin(2.3 * times)), gravity=0.0, t=(0.3, 1.9, 24))
-    bends = np.array([float(derive(scene).motion(t, [])[2]) for t in times])
-    k = 1 + int(np.argmax(np.abs(bends[1:-1])))
-    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
-    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["effort:pin"]
-    assert value == pytest.approx(1.2 * 0.25 / 3 * bends[k], rel=1e-12)
-    assert t == pytest.approx(times[k], abs=1e-11)
-    scene = pendulum(polynomial(0.0, 2.0), load=lambda angle: 7 * angle * (angle < 1), t=(0, 1, 12))
-    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
-    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["load:push:fx"]
-    assert 7 * (1 - 1e-11) < value < 7
-    assert 0.5 * (1 - 1e-11) < t < 0.5
-
-
-@both
-def test_two_summits_between_the_same_instants(backend):
-    """The higher one is found, though a polynomial through the instants may point at the other."""
-    lower, upper = 0.97, 1.04
-
-    def law(t):
-        bells = [(1.0, lower, 0.03), (1.1, upper, 0.03), (0.3, 1.0, 0.3)]
-        return sum(height * ca.exp(-(((t - place) / width) ** 2)) for height, place, width in bells)
-
-    scene = pendulum(motion.expression(law), t=(0, 2.0, 21), wanted=["motion"])
-    fine = evaluate(scene, t=(0.9, 1.1, 200_001), backend="vm", certificate=False).peak(
-        "motion:pin"
-    )
-    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
-    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin"]
-    assert value == pytest.approx(fine.value, rel=1e-9)
-    assert t == pytest.approx(fine.t, abs=1e-4)
 
 
 @pytest.mark.sampled(9)

@@ -8,7 +8,16 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from internals import QUANTITIES, SCHEMA_VERSION, SPATIAL_QUANTITIES, Status, find_compiler
+from internals import (
+    ANSWERS,
+    QUANTITIES,
+    SCHEMA_VERSION,
+    SHARED,
+    SPATIAL_QUANTITIES,
+    STATUSES,
+    Status,
+    find_compiler,
+)
 
 import lagrange_casadi
 from lagrange_casadi import errors, export, load_case
@@ -240,8 +249,15 @@ def test_every_error_and_every_status_has_a_cure():
             assert cells[name][0] == str(error.exit_status)
             assert all(cells[name])
     for status in Status:
-        assert cells[status.name][0] == str(status.value)
-        assert all(cells[status.name]) or status == Status.OK
+        number, meaning, cure, exported = cells[status.name]
+        assert number == str(status.value)
+        assert meaning
+        assert cure or status == Status.OK
+        assert exported == ("OK" if status == Status.OK else ANSWERS.get(status, "-"))
+    for number, name in enumerate(STATUSES):
+        if name not in {"OK", *SHARED}:
+            assert cells[name][0] == str(number)
+            assert all(cells[name])
 
 
 def test_every_case_has_a_picture():

@@ -7,14 +7,11 @@ import casadi as ca
 import numpy as np
 import pytest
 from balance import assert_balanced
-from design_rows import around, assert_refined
-from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from internals import DesignEngine, EvaluationMethod, Status, check, load
+from internals import DesignEngine, EvaluationMethod, Status
 from internals import derive_derive as derive
-from internals import runs_save as save
 from mechanisms import block, four_bar, slider_crank, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion
@@ -150,25 +147,6 @@ def test_over_constrained_mechanisms_are_driven_elsewhere():
         assert np.abs(power[1] - power[0]).max() < 1e-10 * np.abs(power[0]).max()
 
 
-def test_all_ways_of_evaluating_agree():
-    scene = five_bar(["A", "P"])
-    exact = evaluate(scene, backend="vm")
-    ways = [
-        ({"backend": "c"}, 1e-12),
-        ({"backend": "lanes"}, 1e-12),
-        ({"precision": "single"}, 1e-4),
-    ]
-    for keywords, close in ways:
-        found = evaluate(scene, **keywords)
-        for joint in "AP":
-            gap, size = (
-                np.abs(found.effort(joint) - exact.effort(joint)).max(),
-                np.abs(exact.effort(joint)).max(),
-            )
-            assert gap < close * size
-            assert gap <= 1.01 * float(np.max(found.errors[f"effort:{joint}"])) + 1e-13
-
-
 def two_loops():
     """Two four-bars that have nothing to do with each other."""
     m = Mechanism("two_loops")
@@ -274,19 +252,6 @@ def test_a_four_bar_driven_by_its_coupler():
     assert_balanced(other)
 
 
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize(
-    "drives", [["A", "P"], {"O": 1.0, "C": 2.0, "P": 3.0}], ids=["two", "three"]
-)
-def test_sweeps_have_the_peaks_of_the_api(drives):
-    scene = five_bar(drives, t=(0, 1, 64))
-    designs, p = DesignEngine.of(scene, method=EvaluationMethod("c")), around(scene, 2)
-    outcome = designs.evaluate(p)
-    assert outcome.status.tolist() == [Status.OK] * 2
-    for row in range(2):
-        assert_refined(scene, designs, outcome, row, p[row])
-
-
 def test_sweeps_refuse_what_the_api_refuses():
     made = slider_crank()
     scene = Scene(
@@ -297,28 +262,6 @@ def test_sweeps_refuse_what_the_api_refuses():
             np.array([list(scene.mechanism.values().values())])
         )
         assert outcome.status.tolist() in ([Status.DEAD_CENTRE], [Status.PASSES_DEAD_CENTRE])
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("precision", ["double", "single"])
-def test_exported_c_has_the_efforts(precision, tmp_path):
-    scene = five_bar({"O": 1.0, "C": 2.0, "P": 3.0})
-    made, told = exported(scene, tmp_path, precision=precision)
-    solution = solve(scene, precision)
-    found = by_c99(tmp_path, told, instants(solution.t, precision))
-    assert {"effort/O", "effort/C", "effort/P"} <= {row["path"] for row in told["outputs"]}
-    compare(
-        found, expected(scene, told, solution), told, made, solution, exact=precision == "double"
-    )
-
-
-def test_a_file_keeps_who_drives(tmp_path):
-    solution = evaluate(five_bar({"O": 1.0, "C": 2.0, "P": 3.0}))
-    save(solution, tmp_path / "x.h5")
-    loaded = load(tmp_path / "x.h5")
-    assert loaded.description == solution.description
-    assert loaded.notes == solution.notes
-    assert not [*check(tmp_path / "x.h5")]
 
 
 @pytest.mark.sampled(5)

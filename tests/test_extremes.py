@@ -143,7 +143,7 @@ def test_lengths_beyond_numbers_are_named(precision):
     for size in (1e-160, 1e160):
         with pytest.raises(
             AssemblyError,
-            match=rf"link '\w+' is [12]e[-+]16\d m long, and {precision} precision can only square",
+            match=rf"link '\w+' is [12]e[-+]16\d m long, but squares in {precision} precision need",
         ):
             evaluate(slider_crank(), parameters={"r": size, "l": 2 * size}, precision=precision)
 

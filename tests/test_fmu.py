@@ -2,7 +2,12 @@
 file, and loud where it fails.
 """
 
+import csv
 import math
+import shutil
+import subprocess
+import sys
+import zipfile
 
 import numpy as np
 import pytest
@@ -449,6 +454,28 @@ def test_the_motion_is_inside_by_the_angle_of_a_crank(unit, tmp_path):
             str(path), **steps, input=table, fmi_type="ModelExchange", output=names
         )
         assert_alike(found, solution, names)
+
+
+@pytest.mark.parametrize(
+    ("name", "by"), [("robot", True), ("windy", "time"), ("slider_crank", "O")]
+)
+def test_a_script_compares_a_unit_with_its_golden_vectors(unit, name, by, tmp_path):
+    """The first iterates its loops; each number that is changed is noticed."""
+    path = unit(name, fmu=by)[1]
+    script = f"{path.stem}_fmu_test.py"
+    shutil.copy(path.with_name(script), tmp_path)
+    with zipfile.ZipFile(path) as there, zipfile.ZipFile(tmp_path / path.name, "w") as wrong:
+        for file in there.namelist():
+            data = there.read(file)
+            if file == "resources/golden.csv":
+                rows = list(csv.reader(data.decode().splitlines()))
+                rows[2][-1] = str(float(rows[2][-1]) + 2 * float(rows[1][-1]) + 1e-300)
+                data = "\n".join(map(",".join, rows)).encode()
+            wrong.writestr(file, data)
+    for folder, count in ((path.parent, 0), (tmp_path, 1)):
+        done = subprocess.run([sys.executable, script], cwd=folder, capture_output=True, text=True)
+        assert done.stdout.splitlines()[-1] == f"{path.name}: {count} failures", done.stderr
+        assert done.returncode == count
 
 
 def test_a_coordinate_that_turns_back_says_no_time(tmp_path):

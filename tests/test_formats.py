@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from internals import COORDINATES, LawError, case_of, json_model, python
+from internals import MOVES, LawError, case_of, json_model, python
 from internals import laws_parsed as parsed
 
 from lagrange_casadi import errors, evaluate, load_case, read, save_model
@@ -84,7 +84,7 @@ def test_the_schema_has_the_words_of_the_reader():
     parts |= {"coupling": json_model.COUPLING, "frame": json_model.FRAME}
     for part, words in parts.items():
         assert tuple(schema["$defs"][part]["properties"]) == words
-    assert set(schema["$defs"]["joint"]["properties"]["kind"]["enum"]) == set(COORDINATES)
+    assert set(schema["$defs"]["joint"]["properties"]["kind"]["enum"]) == set(MOVES)
 
 
 def changed(**change):
@@ -115,6 +115,7 @@ MISUSE = {
         changed(joints=[HINGE | {"kind": "hinge"}]),
         "unknown kind 'hinge'; valid: rev",
     ),
+    "no kind": (changed(joints=[HINGE | {"kind": ["weld"]}]), "unknown kind ['weld']; valid: rev"),
     "unknown body": (
         changed(joints=[HINGE | {"child": "leg"}]),
         "unknown body 'leg'; valid: ground",
@@ -125,7 +126,7 @@ MISUSE = {
     ),
     "disconnected": (
         changed(bodies=[ROD, ROD | {"name": "leg"}]),
-        "bodies[1]: body 'leg' is joined to nothing that hangs on the ground",
+        "bodies[1]: body 'leg' is not connected to the ground",
     ),
     "twice": (changed(bodies=[ROD, ROD]), "bodies[1]: body 'arm': the name is taken"),
     "skew axes": (

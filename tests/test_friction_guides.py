@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
+from lagrange_casadi import Scene, SpatialMechanism, evaluate
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
 
@@ -52,109 +52,6 @@ def test_a_bead_on_a_wire_bears_no_moment():
     assert solution.effort("X") == pytest.approx(
         -0.2 * math.hypot(MASS * G, 30.0) - 3.0 * 0.5, rel=1e-12
     )
-
-
-def slider_crank(space):
-    """The same slider-crank in the plane x-z of space, and in the plane x-y; its guide rubs."""
-    m = SpatialMechanism("rubbed") if space else Mechanism("rubbed")
-    numbers = {"mu": m.parameter("mu", 0.3), "length": 0.05, "static": 0.4, "stribeck": 0.2}
-    crank, rod = m.link("crank", length=0.05, mass=0.8), m.link("rod", length=0.16, mass=0.6)
-    if not space:
-        piston = m.link("piston", length=0.06, mass=0.5, centre=(0.01, 0.0), inertia=4e-4)
-        m.revolute("main", m.ground, crank)
-        m.revolute("pin", crank.tip, rod)
-        m.revolute("wrist", rod.tip, piston)
-        bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
-        m.force("gas", piston, x=-2000.0)
-        posture = {"rod": 0.0}
-    else:
-        m.set_gravity(0.0, 0.0, -G)
-        piston = m.link(
-            "piston", length=0.06, mass=0.5, centre=(0.01, 0.0, 0.0), inertia=(4e-4, 4e-4, 4e-4)
-        )
-        m.revolute("main", m.ground, crank, axis=(0, -1, 0))
-        m.spherical("pin", crank.tip, rod)
-        m.spherical("wrist", rod.tip, piston)
-        bore = m.prismatic("bore", m.ground, piston, axis=(1, 0, 0))
-        m.force("gas", piston, x=-2000.0)
-        numbers |= {"radius": 0.02}
-        posture = {"bore": 0.2}
-    m.friction("rings", bore, **numbers)
-    return Scene(m, {"main": polynomial(0.1, 60.0)}, t=(0, 0.1, 61), posture=posture)
-
-
-@pytest.fixture(scope="module")
-def spatial():
-    return evaluate(slider_crank(True))
-
-
-def test_a_guide_in_space_rubs_as_in_the_plane(spatial):
-    flat = evaluate(slider_crank(False))
-    assert spatial.certified
-    assert flat.certified
-    for name in ("friction:rings:along", "friction:rings:loss", "effort:main"):
-        size = np.abs(flat.series[name]).max()
-        assert spatial.series[name] == pytest.approx(flat.series[name], rel=0, abs=1e-11 * size)
-
-
-def test_the_drive_gives_what_the_guide_takes(spatial):
-    """The motion is the same with and without: at every instant the drive's power is more by the
-    loss, and so over a turn.
-    """
-    smooth = evaluate(slider_crank(True), parameters={"mu": 0.0})
-    # Without the part that static adds, none is dry.
-    assert smooth.certified
-    lost = [found.series["friction:rings:loss"] for found in (spatial, smooth)]
-    power = [found.effort("main") * found.motion("main").rate for found in (spatial, smooth)]
-    assert (lost[0] >= 0.0).all()
-    assert power[0] - lost[0] == pytest.approx(
-        power[1] - lost[1], rel=0, abs=1e-10 * np.abs(power[0]).max()
-    )
-
-
-def press(pushed=None):
-    """A rod in space between a crank and an eccentric slider, whose tilted guide rubs; or which is
-    ``pushed`` along its line.
-    """
-    m = SpatialMechanism("press")
-    crank, rod = m.link("crank", length=0.1, mass=0.4), m.link("rod", length=0.4, mass=0.8)
-    slider = m.link(
-        "slider", length=0.05, mass=2.0, centre=(0.02, 0.03, -0.01), inertia=(1e-3, 2e-3, 3e-3)
-    )
-    m.revolute("O", m.ground, crank, axis=(0, 0, 1))
-    m.spherical("A", crank.tip, rod)
-    m.spherical("B", rod.tip, slider.at(0.01, 0.02, 0.03))
-    line = (0.96, 0.0, 0.28)
-    guide = m.prismatic("guide", m.ground.at(0.0, 0.05, 0.1), slider, axis=line)
-    m.force("work", slider.at(0.05, 0.0, 0.04), x=-300.0, y=40.0, z=60.0)
-    if pushed is None:
-        m.friction("rub", guide, mu=0.15, length=0.3, radius=0.2)
-    else:
-        m.force("push", slider, **{axis: pushed * x for axis, x in zip("xyz", line, strict=True)})
-    return Scene(m, {"O": polynomial(0.4, 10.0)}, t=(0, 0.3, 7), posture={"guide": 0.4})
-
-
-def test_beside_reactions_to_which_the_law_is_applied_from_outside():
-    """The same slider pushed along its line by the force that the law makes of its reactions, again
-    and again until it stays.
-    """
-    rubbed, pushed = evaluate(press()), []
-    assert rubbed.certified
-    reactions = []
-    for force in (0.0, 1.0):  # reactions are linear in it
-        found = evaluate(press(force), wanted=["reaction:guide", "motion"])
-        reactions.append(
-            np.stack([found.series[f"reaction:guide:{x}"] for x in ("fv", "fw", "mu", "mv", "mw")])
-        )
-    sign = np.sign(found.motion("guide").rate)
-    force = np.zeros(7)
-    for _ in range(200):
-        v, w, about, tilt, lean = reactions[0] + (reactions[1] - reactions[0]) * force
-        sides = sum(np.hypot(v / 2 + k * lean / 0.3, w / 2 - k * tilt / 0.3) for k in (1, -1))
-        force = -sign * 0.15 * (sides + np.abs(about) / 0.2)
-    pushed = rubbed.series["friction:rub:along"]
-    assert pushed == pytest.approx(force, rel=1e-10)
-    assert np.abs(force).min() > 1.0
 
 
 def sleeve(turn, slide, **options):

@@ -102,28 +102,6 @@ def test_two_bearings_of_a_shaft_that_carries_a_wheel_beside_them(arm):
     assert solution.effort("O") == pytest.approx(0.05 * 0.015 * 12.0 * G * share, rel=1e-11)
 
 
-def test_a_plane_in_space_rubs_as_in_the_plane():
-    """A pendulum that is driven about a level axis, its weight in
-    the middle between two bearings.
-    """
-    m = SpatialMechanism("level")
-    arm = m.link("arm", length=0.5, mass=2.0)
-    m.friction(
-        "rub",
-        m.revolute("O", m.ground, arm, axis=(0, 1, 0)),
-        mu=0.1,
-        radius=0.02,
-        length=0.2,
-        viscous=0.3,
-    )
-    solution = evaluate(Scene(m, {"O": polynomial(0.2, 3.0, 5.0)}, t=(0, 0.5, 11)))
-    assert solution.certified
-    reaction, rate = solution.reaction("O"), solution.motion("O").rate
-    assert solution.series["friction:rub:along"] == pytest.approx(
-        -0.1 * 0.02 * np.sqrt(reaction.fx**2 + reaction.fz**2) - 0.3 * rate, rel=1e-11
-    )
-
-
 def test_a_file_holds_it(tmp_path):
     scene = Scene(jack(0.02, 0.1), {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0})
     solution = evaluate(scene, backend="vm")

@@ -96,7 +96,7 @@ def test_what_cannot_be_tabulated_is_refused_with_the_reason():
     with pytest.raises(
         DeclarationError,
         match=(
-            "table: expected one driven joint, whose angle decides all, got 'shoulder', 'elbow',"
+            "table: expected one driven joint, whose angle determines all, got 'shoulder', 'elbow',"
             " 'wrist'"
         ),
     ):

@@ -7,10 +7,11 @@ import random
 
 import numpy as np
 import pytest
+from five_bars import geared_five_bar
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load, prepare, save
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import gears, wheel
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import harmonic, polynomial
@@ -228,30 +229,6 @@ def test_random_trains_on_an_arm_that_turns(seed):
         )
 
 
-def geared_five_bar(order, rubs=False):
-    """A five-bar with gears over its coupler, whose pin at B closes the loop in some orders of
-    declaration.
-    """
-    m = Mechanism("five")
-    first, coupler = m.link("first", length=0.1, mass=1.0), m.link("coupler", length=0.25, mass=0.6)
-    third, fourth = m.link("third", length=0.2, mass=0.8), m.link("fourth", length=0.22, mass=0.8)
-    pins = {
-        "O": (m.ground, first),
-        "A": (first.tip, coupler),
-        "B": (coupler.tip, third),
-        "C": (third.tip, fourth.tip),
-        "D": (m.ground.at(0.35, 0), fourth),
-    }
-    joints = {name: m.revolute(name, *pins[name]) for name in order}
-    if rubs:
-        m.friction("rub_A", joints["A"], mu=0.1, radius=0.02)
-        m.friction("rub_B", joints["B"], mu=0.1, radius=0.02)
-    gears(m, "mesh", first.tip, third, radii=(0.1, 0.15))
-    m.force("cut", fourth.at(0.1), x=-30.0)
-    posture = {"coupler": 0.8, "third": -0.5, "fourth": 1.5}
-    return Scene(m, {"O": polynomial(0.3, 20)}, t=(0, 0.05, 11), posture=posture)
-
-
 @pytest.mark.parametrize("rubs", [False, True])
 def test_pins_that_close_loops_bear_teeth_too(rubs):
     """Balance, power, and the sections of the carrier at its base hold; and no order of declaration
@@ -312,29 +289,6 @@ def test_a_rack_is_pushed_where_its_gear_is():
     before = solution.section("bar").law.at("axial", (place / 0.6 - 0.01)[:, None])[:, 0]
     assert beyond == pytest.approx(np.full(9, -100.0), rel=1e-12)
     assert before == pytest.approx(np.zeros(9), abs=1e-11)
-
-
-def test_every_way_to_evaluate_gives_the_same():
-    """Compiled code, SIMD, prepared scenes, single precision and files."""
-    scene = geared_five_bar("OABCD", rubs=True)
-    exact = evaluate(scene)
-    for backend in ("c", "lanes"):
-        again = evaluate(scene, backend=backend)
-        assert again.certified
-        for output, values in exact.outputs.items():
-            assert again.outputs[output] == pytest.approx(
-                values, rel=0, abs=1e-10 * (1e-3 + np.abs(values).max())
-            )
-    assert evaluate(scene, precision="single").certified
-    assert prepare(scene, wanted=["multiplier"])().keys() == {"multiplier:mesh"}
-
-
-def test_a_file_keeps_the_forces(tmp_path):
-    m, _ = pair()
-    solution = evaluate(Scene(m, {"A": polynomial(0, 3)}, t=(0, 1, 4)))
-    save(solution, tmp_path / "pair.h5")
-    again = load(tmp_path / "pair.h5")
-    assert again.output("mesh_radial") == pytest.approx(solution.output("mesh_radial"), rel=1e-15)
 
 
 def refused(told, **more):

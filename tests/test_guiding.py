@@ -5,10 +5,8 @@ elsewhere.
 import numpy as np
 import pytest
 from balance import assert_balanced
-from design_rows import around, assert_refined
-from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
-from internals import DesignEngine, EvaluationMethod, Status, figures
+from internals import DesignEngine, EvaluationMethod, figures
 
 from lagrange_casadi import Mechanism, Scene, check, derive, evaluate, load, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
@@ -146,24 +144,6 @@ def test_a_point_mass_may_be_guided():
         + 2.0 / 3.0 * found.motion("swing").acceleration
     )
     assert np.abs(found.effort("swing") - weight).max() < 1e-12
-
-
-def test_sweeps_and_exported_c_have_it(tmp_path):
-    scene = guided(t=(0, 1, 64), wanted=("effort", "motion", "section:b", "output:tool_vx"))
-    designs, p = DesignEngine.of(scene, method=EvaluationMethod("c")), around(scene, 2)
-    outcome = designs.evaluate(p)
-    assert outcome.status.tolist() == [Status.OK] * 2
-    for row in range(2):
-        assert_refined(scene, designs, outcome, row, p[row])
-    made, told = exported(scene, tmp_path)
-    solution = solve(scene, "double")
-    compare(
-        by_c99(tmp_path, told, instants(solution.t, "double")),
-        expected(scene, told, solution),
-        told,
-        made,
-        solution,
-    )
 
 
 @pytest.mark.sampled(2)

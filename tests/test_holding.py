@@ -186,7 +186,7 @@ def in_space(kind):
 @pytest.mark.parametrize(
     ("scene", "joint", "why"),
     [
-        (carried_along(), "X", "friction 'ways' slides, and changes with those at rest"),
+        (carried_along(), "X", "friction 'ways' slides, and depends on those at rest"),
         (
             in_space("bush"),
             "C:slide",

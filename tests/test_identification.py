@@ -1,9 +1,12 @@
 """Parameters from measurements are the true ones, as far as measurements tell them."""
 
+import runpy
+
 import casadi as ca
 import h5py
 import numpy as np
 import pytest
+from conftest import CASES
 
 from lagrange_casadi import (
     Measurements,
@@ -326,6 +329,7 @@ def test_prior_values_are_one_more_measurement():
     assert prior.values["h1"] == pytest.approx(first, rel=1e-6)
     assert np.isfinite(prior.errors["J1"])
     assert np.isinf(prior.errors["m1"])
+    assert prior.values["m1"] == prior.initial["m1"] == 3.0  # nothing depends on it
 
 
 def test_consistent_parameters_are_those_of_some_body():
@@ -407,11 +411,55 @@ def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
         read_measurements(path, counts_per_turn=4096)
 
 
+def test_a_unit_of_another_quantity_is_refused(tmp_path):
+    scene, path = two_links(), tmp_path / "run.csv"
+    given = record(scene, ARM, "effort:A", "effort:B")
+    columns = [given.t, *(given.columns[name] for name in ("A", "B", "effort:A"))]
+    rows = [",".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True)]
+
+    def read(*heads):
+        path.write_text("\n".join([",".join(heads), *rows]))
+        return read_measurements(path)
+
+    good = ("t [s]", "A [rad]", "B", "effort:A [N m]")
+    found = identify(scene, read(*good), ["J2"])
+    for k, head, unit in ((1, "A [mm]", "rad"), (3, "effort:A [mm]", "N m")):
+        wrong = read(*(head if k == place else one for place, one in enumerate(good)))
+        name, word = head[:-1].split(" [")
+        for refused in (lambda given: identify(scene, given), found.validate):
+            with pytest.raises(DeclarationError, match=f"'{name}' is in {word}; expected {unit}"):
+                refused(wrong)
+    with pytest.raises(DeclarationError, match="'t' is in deg; expected s"):
+        read("t [deg]", *good[1:])
+
+
+def test_the_shipped_records_are_those_of_the_arm_that_is_measured():
+    """An arm with a parallelogram, a spring and friction: truth within the stated errors."""
+    folder = CASES / "parallelogram_arm"
+    made, case = runpy.run_path(str(folder / "measure.py")), load_case(folder)
+    for name, text in made["records"]().items():
+        rows = [
+            np.loadtxt(lines, delimiter=",", skiprows=1)
+            for lines in (folder / name, text.split("\n"))
+        ]
+        np.testing.assert_allclose(*rows, rtol=0.0, atol=1.1e-3)  # a digit may round otherwise
+    noise = dict.fromkeys(case.scene.laws, made["ANGLE"])
+    run, check = (read_measurements(folder / f"{n}.csv", noise=noise) for n in ("run", "check"))
+    found = identify(case, run, trim=0.1)
+    assert found.absent == ("m_upper", "m_crank")
+    true = combined(found, case.scene.values(None) | made["TRUTH"])
+    away = [abs(one.value - t) / one.error for one, t in zip(found.base, true, strict=True)]
+    assert len(away) == 10
+    assert max(away) < 4.0
+    for left in found.validate(check, trim=0.1).residual.values():
+        assert left == pytest.approx(made["TORQUE"], rel=0.3)
+
+
 def test_an_excitation_keeps_within_limits_and_tells_more():
     scene = two_links()
     limits = {"A": (-1.0, 1.0, 2.0, 9.0), "B": (0.0, 1.5, 3.0, 20.0)}
     found = excite(scene, limits, period=4.0, steps=60)
-    assert found.condition < found.first
+    assert found.error < 0.9  # of random motions' best, at which the search begins
     assert len(found.base) == 4
     swept = Scene(scene.mechanism, found.motion, wanted=["motion"], t=(0, 4, 4001))
     solution = evaluate(swept)
@@ -436,6 +484,19 @@ def test_what_cannot_be_is_refused_by_name():
         identify(scene, given, ["m1"])
     with pytest.raises(UnknownNameError, match="column of a drive 'B'"):
         identify(scene, Measurements(given.t, {"A": given.columns["A"], "effort:A": given.t}))
+    for bad, words in (
+        ({"t": given.t[::-1]}, "times that increase, got 3 s and then 2.99 s in rows 1 and 2"),
+        ({"t": given.t[:0]}, "at least 8 rows of measurements, got 0"),
+        ({"columns": {"A": np.full(301, np.nan)}}, "column 'A' has no values"),
+    ):
+        with pytest.raises(DeclarationError, match=words):
+            Measurements(**{"t": given.t, "columns": {}} | bad)
+    few = {name: given.columns[name][:8] for name in ("A", "B", "effort:A")}
+    few["effort:A"] = np.where(np.arange(8) < 4, few["effort:A"], np.nan)
+    with pytest.raises(DeclarationError, match="4 measured values do not determine 5 unknown"):
+        identify(scene, Measurements(given.t[:8], few))
+    with pytest.raises(DeclarationError, match="trim=5: expected less than half of the 3 s"):
+        identify(scene, given, trim=5.0)
     far = dict(record(platform(), PLATE, "effort:d0").columns)
     far["d0"] = far["d0"] + np.linspace(0.0, 3.0, far["d0"].size)
     with pytest.raises(AssemblyError, match="cannot be closed at row"):
@@ -466,6 +527,7 @@ def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, ca
     (tmp_path / "run.csv").write_text("\n".join(lines))
     given = ["--column", "O=angle", "--column", "effort:O=torque", "--noise", "effort:O=0.02"]
     given += ["--validate", "run.csv", "--figure", "fit.svg", "--out", "found.h5"]
+    given += ["--report", "page.html"]
     assert main(["identify", str(path), "run.csv", *given]) == 0
     said = capsys.readouterr().out
     settings = dict(word.split("=") for word in said.split() if word[:2] in ("w=", "c="))
@@ -481,9 +543,15 @@ def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, ca
         assert np.sqrt(np.mean(left**2)) == pytest.approx(0.02, rel=0.2)
         assert file["validation/effort:O"].attrs["relative"] == both.attrs["relative"]
     assert (tmp_path / "fit.svg").read_text().startswith("<?xml")
-    before = (tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes()
+    page = (tmp_path / "page.html").read_text()
+    for words in (f"<td>{settings['w'][:5]}", "standard error", "The record", "Another record"):
+        assert words in page
+    assert page.count("<img") == 4
+    files = [tmp_path / name for name in ("found.h5", "fit.svg", "page.html")]
+    before = [file.read_bytes() for file in files]
     assert main(["identify", str(path), "run.csv", *given]) == 0
-    assert before == ((tmp_path / "found.h5").read_bytes(), (tmp_path / "fit.svg").read_bytes())
+    assert before == [file.read_bytes() for file in files]
+    assert main(["identify", str(path), "run.csv", *given, "--report", "page.pdf"]) == 2
     assert main(["check", "found.h5"]) == 0
     damaged = bytearray(before[0])
     damaged[len(damaged) // 2] ^= 1

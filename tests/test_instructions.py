@@ -25,6 +25,7 @@ INSTANT = {
     "jansen_leg": 740,
     "excavator": 1494,
     "beam_pump": 480,
+    "parallelogram_arm": 418,
     "scara": 158,
     "roller_cam": 304,
     "v_twin": 1524,

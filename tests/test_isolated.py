@@ -7,13 +7,13 @@ import itertools
 import casadi as ca
 import numpy as np
 import pytest
-from drawn_curves import T, shown, told_by_limits
-from internals import DesignEngine, Smooth, Status, disc_cam
+from drawn_curves import T, cam, constraint, shown, slide, told_by_limits
+from internals import DesignEngine, Smooth, Status
 from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.motion import expression, polynomial
+from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -103,53 +103,22 @@ LAWS = {
 }
 
 
-def slide(law, count=21):
-    m = Mechanism("slide")
-    body, k = m.point_mass("body", 2.0), m.parameter("k", 0.0)
-    m.prismatic("way", m.ground, body, axis=(1, 0))
-    return Scene(
-        m, {"way": expression(lambda t: 0.1 * law(t - k))}, t=(-1.0, 1.0, count), wanted=("effort",)
-    )
+def slid(law, count=21):
+    return slide(lambda x, k: 0.1 * law(x - k), (-1.0, 1.0, count))
 
 
-def constraint(law, count=21):
-    m = Mechanism("constraint")
-    crank, body, k = (
-        m.link("crank", length=0.1, mass=1.0),
-        m.point_mass("body", 2.0),
-        m.parameter("k", 0.0),
-    )
-    turn = m.revolute("turn", m.ground, crank)
-    way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
-    m.constraint("profile", m.coordinate(way) - 0.1 * law(m.coordinate(turn) - k))
-    return Scene(m, {"turn": polynomial(0.0, 1.0)}, t=(-1.0, 1.0, count), wanted=("effort",))
+def held(law, count=21):
+    return constraint(lambda x, k: 0.1 * law(x - k), (-1.0, 1.0, count))
 
 
-def cam(law, count=21):
-    m = Mechanism("cam")
-    wheel, rod, k = (
-        m.link("wheel", length=0.1, mass=1.0),
-        m.link("rod", length=0.1, mass=1.0),
-        m.parameter("k", 0.0),
-    )
-    main = m.revolute("turn", m.ground, wheel)
-    lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
-    disc_cam(
-        m,
-        "profile",
-        main,
-        lead,
-        lambda x: 0.01 * law(ca.sin(x - 0.5 - k)),
-        base_radius=0.1,
-        roller=0.01,
-    )
-    return Scene(m, {"turn": polynomial(0.0, 1.0)}, t=(-1.0, 1.0, count), wanted=("effort",))
+def lifted(law, count=21):
+    return cam(lambda x, k: 0.01 * law(ca.sin(x - 0.5 - k)), (-1.0, 1.0, count))
 
 
 NAMED = {
-    slide: "the motion of joint 'way'",
-    constraint: "constraint 'profile'",
-    cam: "cam 'profile': its lift",
+    slid: "the motion of joint 'way'",
+    held: "constraint 'profile'",
+    lifted: "cam 'profile': its lift",
 }
 SCENES = pytest.mark.parametrize("scene", NAMED, ids=[one.__name__ for one in NAMED])
 
@@ -201,7 +170,7 @@ def test_the_first_instant_the_last_and_a_single_one_are_looked_at(t):
     with pytest.raises(
         DeclarationError, match="curvature where t = 0 differs from its values on both sides"
     ):
-        evaluate(slide(LAWS["fabs"]), t=t, certificate=False)
+        evaluate(slid(LAWS["fabs"]), t=t, certificate=False)
 
 
 def test_what_lies_between_both_sides_of_a_jump_of_acceleration_stays():
@@ -210,11 +179,11 @@ def test_what_lies_between_both_sides_of_a_jump_of_acceleration_stays():
         lambda x: x * ca.fabs(x),
         lambda x: ca.if_else(x < 0, 0, x**2),
     ):
-        evaluate(slide(law), certificate=False)
+        evaluate(slid(law), certificate=False)
 
 
 def test_a_rest_is_no_place_alone():
-    evaluate(slide(lambda x: ca.fmax(ca.fabs(x) - 0.55, 0) ** 3), certificate=False)
+    evaluate(slid(lambda x: ca.fmax(ca.fabs(x) - 0.55, 0) ** 3), certificate=False)
 
 
 @pytest.mark.parametrize("name", LAWS)

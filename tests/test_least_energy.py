@@ -7,7 +7,16 @@ import math
 import frames
 import numpy as np
 import pytest
-from elastic_mechanisms import LIGHT, STEEL, agrees, four_bar, held, made, sections_of, three_cranks
+from elastic_mechanisms import (
+    LIGHT,
+    STEEL,
+    agrees,
+    held,
+    made,
+    moving,
+    sections_of,
+    three_cranks,
+)
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
@@ -128,23 +137,9 @@ def test_a_portal_frame_is_that_of_a_frame_solver():
     assert len(solution.elasticity.completed) == 21
 
 
-@pytest.fixture(scope="module")
-def moving():
-    m = four_bar()
-    return m, evaluate(
-        Scene(
-            m,
-            {"O": polynomial(0.2, 30.0, 40.0)},
-            posture={"A": 0.5, "C": 1.5},
-            t=(0, 8e-3, 9),
-            elastic=True,
-        )
-    )
-
-
-def test_a_planar_four_bar_of_spatial_pins_that_moves(moving):
+def test_a_planar_four_bar_of_spatial_pins_that_moves():
     """Its inertia by differences of its poses; every component of every reaction is a frame's."""
-    m, solution = moving
+    m, solution = moving()
     i, h = 4, solution.t[1]
     stencil = (
         np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])

@@ -110,7 +110,7 @@ def test_all_programs_draw_the_line_at_the_same_place(x, misses, tmp_path):
         call = (
             f"parameters.x = {x!r}; status = @_prepare(&model, &parameters); outputs.effort_O = 0;"
         )
-        with pytest.raises(ParameterError, match=r"station .* m is outside link 'arm', 0 to 0\.3"):
+        with pytest.raises(ParameterError, match=r"point at .* m is outside link 'arm', 0 to 0\.3"):
             evaluate(scene, parameters={"x": x})
     else:
         evaluate(scene, parameters={"x": x})
@@ -187,7 +187,7 @@ def test_impossible_defaults_are_told_to_be_defaults():
     with pytest.raises(
         ParameterError,
         match=(
-            r"station 0\.3 m is outside link 'arm', 0 to 0\.2 m; .*; with the default parameters l"
+            r"point at 0\.3 m is outside link 'arm', 0 to 0\.2 m; .*; with the default parameters l"
             r" = 0\.2"
         ),
     ):

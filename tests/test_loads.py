@@ -78,7 +78,9 @@ def test_a_load_outside_its_link_is_named():
     a = m.link("a", length=1, mass=1)
     m.revolute("J", m.ground, a)
     m.spring("S", m.ground.at(0, 1), a.at(-0.9), stiffness=1.0, length=0.0)
-    with pytest.raises(ParameterError, match=r"load 'S': station -0\.9\d* m is outside link 'a'"):
+    with pytest.raises(
+        ParameterError, match=r"load 'S': its point at -0\.9\d* m is outside link 'a'"
+    ):
         Scene(m, {"J": polynomial(0)})
 
 

@@ -11,8 +11,8 @@ from internals import peak_line
 
 from lagrange_casadi import Mechanism, Peak, Scene, evaluate, load_case, sweep
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import CaseError, DeclarationError, ParameterError
-from lagrange_casadi.motion import expression, polynomial
+from lagrange_casadi.errors import DeclarationError, ParameterError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 
@@ -28,10 +28,6 @@ def scene():
     m.force("push", arm.tip, x={x})
     return Scene(m, {{"O": {law}}}, t=(0, 1, 5))
 """
-IF_ELSE = (
-    "a symbol has no truth value: use casadi.if_else(condition, a, b) for 'if', casadi.logic_and"
-    " and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and 'max'"
-)
 
 
 def swinging(x=lambda t: 0.0, law=None):
@@ -40,32 +36,6 @@ def swinging(x=lambda t: 0.0, law=None):
     m.revolute("O", m.ground, arm)
     m.force("push", arm.tip, x=x(m.time))
     return Scene(m, {"O": law or polynomial(0, 1.0)}, t=(0.2, 1, 9))
-
-
-@pytest.mark.parametrize(
-    "choice",
-    [
-        "1.0 if m.time > 0.5 else 2.0",
-        "max(m.time, 0.5)",
-        "1.0 * (m.time > 0.2 and m.time < 0.5)",
-        "2.0 if 0 < m.time < 0.5 else 1",
-    ],
-)
-def test_a_choice_that_python_cannot_make_names_what_makes_it(tmp_path, choice):
-    (tmp_path / "case.py").write_text(CASE.format(x=choice, law="polynomial(0, 1.0)"))
-    with pytest.raises(CaseError) as error:
-        load_case(tmp_path)
-    assert str(error.value).endswith(f"line 10: {IF_ELSE}")
-
-
-def test_a_law_that_chooses_names_what_makes_it():
-    scene = swinging(law=expression(lambda t: t if t > 0.5 else 2.0 * t))
-    with pytest.raises(DeclarationError) as error:
-        evaluate(scene)
-    assert str(error.value).endswith(
-        "cannot be made as an expression of the time t (CasADi's"
-        f" functions, numbers without units): {IF_ELSE}"[:300]
-    )
 
 
 @pytest.mark.parametrize(

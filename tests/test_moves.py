@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 import pytest
-from exported import by_c99, compare, expected, exported, instants, solve
 from internals import DesignEngine, Status
 
 from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
@@ -256,17 +255,6 @@ def test_moves_that_cannot_be_are_refused_everywhere():
         [0.5, 0.4, 0.0, 2.0],
     ]
     assert engine.evaluate(np.array(rows)).status.tolist() == [Status.OK, *[Status.IMPOSSIBLE] * 4]
-
-
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize("precision", ["double", "single"])
-def test_exported_c_has_the_same_numbers(tmp_path, precision):
-    """With parameters in all of the moves; instants at their seams too."""
-    scene = scene_of_parameters()
-    made, told = exported(scene, tmp_path, precision=precision)
-    solution = solve(scene, precision)
-    found = by_c99(tmp_path, told, instants(solution.t, precision))
-    compare(found, expected(scene, told, solution), told, made, solution)
 
 
 def test_peaks_are_found_beside_jumps():

@@ -227,7 +227,7 @@ def test_limits_that_hold_nowhere_are_told():
         ({"subject_to": ["peak:effort:O < "]}, DeclarationError, "expected a constraint such as"),
         ({"subject_to": ["peak:effort:O >= 3"]}, DeclarationError, "limited from above only"),
         ({"subject_to": ["min:effort:O <= 3"]}, DeclarationError, "use max:effort:O"),
-        ({"subject_to": ["peak:effort:O <= -3"]}, DeclarationError, "a peak is a size"),
+        ({"subject_to": ["peak:effort:O <= -3"]}, DeclarationError, "a peak is a magnitude"),
         ({"starts": 0}, DeclarationError, "starts: expected a whole number from 1 to 16777216"),
         ({"starts": [{"r": 0.1}]}, UnknownNameError, "parameter that is chosen"),
         ({"starts": [{"l": 0.7}]}, DeclarationError, "l = 0.7 is not within its bounds"),

@@ -32,7 +32,7 @@ def test_it_writes_a_file_and_a_picture(here, capfd):
     out, err = capfd.readouterr()
     assert err == ""
     assert out.startswith("slider_crank: peak:effort:O = 7.1794")
-    assert f"  {limit}: 1.2, active, relaxed by one unit it gains " in out
+    assert f"  {limit}: 1.2, active; the objective falls by " in out
     assert "  2 of 2 starts converged, " in out
     assert out.endswith("wrote a.h5 and a.svg\n")
     assert (here / "a.svg").read_text().lstrip().startswith("<?xml")

@@ -30,14 +30,6 @@ def test_pins_at_both_ends_share_what_is_along_the_bar():
     assert found.sections["bar"](0.5)[2] == pytest.approx(2.0 * 9.81 / 8)
 
 
-def test_two_guides_share_a_moment():
-    guides = [oracle.Joint(f"G{x}", "prismatic", ("ground", x, 0), ("bar", x, 0)) for x in (0, 1)]
-    found = bar(*guides).solve({"G0": (0.0, 0.0, 3.0)}, STILL)
-    assert found.open == {f"reaction:G{x}:{member}" for x in (0, 1) for member in ("fy", "mz")}
-    assert found.efforts["G0"] == pytest.approx(6.0)
-    assert found.open_sections["bar"](0.5) == (False, True, True)
-
-
 def slider_crank(angle):
     """A crank of 0.1 m and a rod of 0.3 m, the slider driven."""
     rods = [

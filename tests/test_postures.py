@@ -258,7 +258,7 @@ def test_of_more_ways_some_are_drawn_and_it_is_said_how_to_get_the_others(monkey
     assert (len(postures), len(firsts), complete) == (4, 4, False)
     words = "\n".join(text.get_text() for text in figures[0].texts)
     assert "4 of at most 64 ways to assemble it" in words
-    assert "For the others put the first entry of a row" in words
+    assert "To see the others, put the first entry of a row" in words
 
 
 def test_rounding_is_never_proposed():

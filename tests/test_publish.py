@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import threading
+from pathlib import Path
 
 import h5py
 import pytest
@@ -27,6 +28,16 @@ def test_a_folder_keeps_what_else_is_in_it(tmp_path):
         "a.png": "new",
     }
     assert os.listdir(tmp_path) == ["figures"]
+
+
+@pytest.mark.parametrize("path", [".", "..", "notes/.."])
+def test_the_working_folder_is_a_folder(path, tmp_path, monkeypatch):
+    (tmp_path / "figures" / "notes").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "figures")
+    with filling(Path(path)) as draft:
+        (draft / "a.png").write_text("new")
+    folder = tmp_path if path == ".." else tmp_path / "figures"
+    assert sorted(os.listdir(folder)) == sorted(["a.png", "figures" if path == ".." else "notes"])
 
 
 def test_a_failure_publishes_nothing(tmp_path):

@@ -1,4 +1,4 @@
-"""Rainflow counting: the standard's own example, two public libraries, and another algorithm."""
+"""Rainflow counting: the standard's own example, two public libraries, and identities."""
 
 import math
 
@@ -26,40 +26,6 @@ HISTORIES = st.lists(st.integers(-9, 9), min_size=1, max_size=40)
 
 def test_the_example_of_the_standard():
     assert [tuple(swing) for swing in rainflow(FIGURE_6)] == PUBLISHED
-
-
-def by_four_points(history):
-    """Another way for histories that repeat: of four turns in a row the inner two are a swing where
-    the outer two hold them.
-    """
-    values = list(history)
-    start = values.index(max(values))
-    turns = [
-        ([*values[start:], *values[: start + 1]])[k]
-        for k in reversals(np.array([*values[start:], *values[: start + 1]], float))
-    ]
-    found = []
-    again = True
-    while again:
-        again = False
-        for k in range(len(turns) - 3):
-            a, b, c, d = turns[k : k + 4]
-            if min(a, d) <= min(b, c) and max(b, c) <= max(a, d):
-                found.append((abs(b - c), (b + c) / 2))
-                del turns[k + 1 : k + 3]
-                again = True
-                break
-    assert len(turns) <= 3
-    if len(turns) == 3:
-        found.append((abs(turns[0] - turns[1]), (turns[0] + turns[1]) / 2))
-    return sorted(found)
-
-
-@given(HISTORIES)
-def test_histories_that_repeat_by_another_algorithm(history):
-    assert sorted((s.size, s.mean) for s in rainflow(history, repeating=True)) == by_four_points(
-        history
-    )
 
 
 @given(HISTORIES, st.integers(0, 40))

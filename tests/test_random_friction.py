@@ -19,6 +19,14 @@ from lagrange_casadi.errors import AssemblyError
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 SEEDS = range(120)
+# fmt: off
+RUB = [
+    0, 3, 4, 6, 7, 8, 11, 15, 16, 17, 18, 19, 22, 28, 30, 31, 34, 36, 37, 38, 39, 40, 41, 43, 44,
+    46, 47, 49, 54, 56, 61, 62, 63, 64, 65, 66, 67, 68, 71, 72, 76, 80, 84, 86, 90, 91, 92, 98, 101,
+    105, 107, 108, 109, 113, 115, 117,
+]
+# fmt: on
+"""Those of which something rubs."""
 _RUBS, _INSTANTS = 3, 3
 _STEADY = 0.05
 
@@ -44,6 +52,7 @@ def rubbed(seed):
     told; None for others.
     """
     drawn, rng = draw(seed), np.random.default_rng((seed, 77))
+    smoothed = np.random.default_rng((seed, 82))
     d = drawn.draft
     if (
         not is_regular(drawn)
@@ -78,6 +87,8 @@ def rubbed(seed):
             numbers |= {"static": rng.uniform(0.05, 0.2), "stribeck": rng.uniform(0.05, 1.0)}
         if rng.random() < 0.3:
             numbers["viscous"] = rng.uniform(0.0, 2.0)
+        if smoothed.random() < 0.15:
+            numbers["smooth"] = smoothed.uniform(0.2, 2.0) * max(rates)
         told = ", ".join(f"{word}={float(number)!r}" for word, number in numbers.items())
         lines.append(f'm.friction("rub_{joint.name}", m.joints["{joint.name}"], {told})')
     if not lines:
@@ -134,24 +145,18 @@ def compare(made):
     return worst
 
 
-def found(seed):
-    made = rubbed(seed)
-    if made is None:
-        pytest.skip("nothing here may rub")
-    return made, compare(made)
-
-
-@pytest.mark.sampled(30)
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.sampled(8)
+@pytest.mark.parametrize("seed", RUB)
 def test_right_or_refused(seed):
-    made, worst = found(seed)
+    made = rubbed(seed)
+    worst = compare(made)
     assert worst is None or worst < 1e-10, f"{worst}\n{made.source}"
 
 
 @pytest.mark.long
 def test_many_of_them_rub_and_few_jam():
-    made = [one for one in map(rubbed, SEEDS) if one is not None]
-    assert len(made) > len(SEEDS) / 10
+    assert [seed for seed in SEEDS if rubbed(seed) is not None] == RUB
+    made = [rubbed(seed) for seed in RUB]
     assert sum(compare(one) is None for one in made) < len(made) / 4
     assert math.isfinite(max(worst for one in made if (worst := compare(one)) is not None))
 
@@ -207,8 +212,6 @@ def test_designs_tell_peaks_where_an_acceleration_is_rounding():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", RUB)
 def test_every_peak_is_found(seed, monkeypatch):
-    made = rubbed(seed)
-    if made is not None:
-        keeps_peaks(made, monkeypatch)
+    keeps_peaks(rubbed(seed), monkeypatch)

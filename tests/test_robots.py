@@ -247,7 +247,7 @@ MISUSE = {
     ),
     "an island": (
         robot(BASE, link("a"), link("b"), joint("p", "a", "b"), joint("q", "b", "a")),
-        "line 5, <joint name='p'>: its links hang on nothing that leads to the root",
+        "line 5, <joint name='p'>: its links are not connected to the root",
     ),
     "unknown link": (
         robot(BASE, joint("p", "base", "a")),

@@ -5,10 +5,8 @@ meant stays.
 import casadi as ca
 import numpy as np
 import pytest
-from conftest import CASES, PLANAR, SPATIAL
-from drawings import drawing, drawn, drawn_twin
-from spatial_draft import orientation
-from spatial_twin import planar, twin
+from conftest import SPATIAL
+from drawings import drawing, drawn
 
 from lagrange_casadi import (
     Mechanism,
@@ -17,7 +15,6 @@ from lagrange_casadi import (
     evaluate,
     export,
     load,
-    load_case,
     prepare,
     save,
     sweep,
@@ -36,10 +33,6 @@ LAST = 1e-12
 """And by how much at the least: of such sums the last digits."""
 
 NOISES = [10.0**-k for k in range(16, 6, -1)]
-CLOSING = ("arm", "scara", "sleigh")
-"""Planar cases without a loop; the motion of the last one keeps to its blade, to less than the
-rounding.
-"""
 
 
 def assert_near(found, exact, noise):
@@ -89,23 +82,6 @@ def test_every_case_in_space(name, seed):
     exact = vm(drawn(name, 0.0), 9)
     for noise in NOISES:
         assert_near(vm(drawn(name, noise, seed), 9), exact, noise)
-
-
-@pytest.mark.sampled(13)
-@pytest.mark.parametrize("turned", [False, True])
-@pytest.mark.parametrize("name", [name for name in PLANAR if name not in CLOSING])
-def test_planar_cases_in_space(name, turned):
-    scene = load_case(CASES / name).scene
-    start, stop = scene.span
-    flat = planar(scene, start + 0.37 * (stop - start), xi=(0, 1, 3))
-    R = orientation(np.random.default_rng(PLANAR.index(name))) if turned else np.eye(3)
-    exact = evaluate(twin(scene, flat, R), wanted=["effort"], backend="vm")
-    for noise in NOISES[::3]:
-        assert_near(
-            evaluate(drawn_twin(scene, flat, R, noise), wanted=["effort"], backend="vm"),
-            exact,
-            noise,
-        )
 
 
 def four_bar(noise=0.0, tilt=None, *, hard=False, seed=1):

@@ -175,4 +175,4 @@ def test_run_says_that_a_part_fails(here, capsys):
     out = capsys.readouterr().out
     assert " governs, FAILS\n" in out
     assert "stresses" not in out
-    assert "a guess: the S-N line begins at 1000 cycles" in out
+    assert "an estimate: the S-N line begins at 1000 cycles" in out

@@ -3,7 +3,6 @@
 import casadi as ca
 import numpy as np
 import pytest
-from exported import by_c99, compare, expected, exported, instants, solve
 from internals import DesignEngine, Laws, Scaled, Status
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
@@ -78,20 +77,6 @@ def test_samples_scaled_by_parameters_are_those_of_scaled_numbers(name):
             )
         (peak,) = refine(scene, found, ["effort:J"])
         assert abs(designs.value[k, names.index("effort:J")] - peak.value) <= 1e-9 * abs(peak.value)
-
-
-@pytest.mark.parametrize("precision", ["double", "single"])
-def test_exported_c_takes_the_parameters(precision, tmp_path):
-    scene = geared(LAWS["later"])
-    made, told = exported(scene, tmp_path, precision=precision)
-    solution = solve(scene, precision)
-    compare(
-        by_c99(tmp_path, told, instants(solution.t, precision)),
-        expected(scene, told, solution),
-        told,
-        made,
-        solution,
-    )
 
 
 def test_a_cycle_that_ends_before_the_scene_is_refused():

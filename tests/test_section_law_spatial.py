@@ -173,56 +173,6 @@ def test_grids_compiled_or_not_are_what_the_law_gives_at_each_point(density, wor
         )
 
 
-@pytest.mark.parametrize(("n", "k"), [(1, 1), (3, 5000), (911, 61), (14_000, 1)])
-def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
-    random = np.random.default_rng(5)
-    coefficients = {name: random.normal(size=n) for name in SPACE.law}
-    loads = tuple(
-        SpatialPointLoad("", random.uniform(-0.1, 1.1, n), *random.normal(size=(6, n)))
-        for _ in range(2)
-    )
-    law, xi = SectionLaw(LENGTH, DENSITIES["in cells"], coefficients, loads), np.linspace(0, 1, k)
-    for force in SPACE.forces:
-        monkeypatch.setattr(grids, "WORTH_COMPILING", 10**12)
-        plain = law.on_grid(force, xi)
-        monkeypatch.setattr(grids, "WORTH_COMPILING", 0)
-        for share, streaming in ((10**9, 10**12), (1000, 0)):
-            monkeypatch.setattr(grids, "_SHARE", share)
-            monkeypatch.setattr(grids, "_STREAMING", streaming)
-            assert law.on_grid(force, xi).tobytes() == plain.tobytes()
-        assert plain.shape == (n, k)
-    assert (law.on_grid("bending", xi) >= 0.0).all()
-
-
-@pytest.mark.parametrize("worth", [0, 10**12])
-def test_what_is_largest_over_the_instants_is_that_of_the_grid(worth, monkeypatch):
-    laws, xi = [together(drawn(seed, "tapered", 30)) for seed in range(4)], np.linspace(0, 1, 9)
-    stacked = SectionLaw(
-        LENGTH * np.ones((4, 1)),
-        NumericDensity(
-            (0.0, 1.0),
-            tuple(tuple(c * np.ones((4, 1)) for c in cell) for cell in laws[0].density.cells),
-        ),
-        {name: np.stack([law.coefficients[name] for law in laws]) for name in SPACE.law},
-        tuple(
-            SpatialPointLoad(
-                "",
-                *(
-                    np.stack([getattr(law.loads[i], name) for law in laws])
-                    for name in SPACE.place_first
-                ),
-            )
-            for i in range(2)
-        ),
-    )
-    monkeypatch.setattr(grids, "WORTH_COMPILING", worth)
-    for force in SPACE.forces:
-        found = stacked.largest(force, stacked.basis(xi))
-        for row, law in zip(found, laws, strict=True):
-            grid = law.on_grid(force, xi)
-            assert row.tobytes() == grid[np.argmax(np.abs(grid), axis=0), np.arange(9)].tobytes()
-
-
 @pytest.mark.parametrize("density", DENSITIES)
 def test_bending_moments_go_by_the_shear_forces(density):
     """d(bending_z)/d(xi) = -shear_y and d(bending_y)/d(xi) = shear_z, by differences that share

@@ -254,7 +254,7 @@ def test_a_loop_that_an_equality_connects(reading):
     path = reading(mjcf(LINKS, f"<equality>{connect}</equality>{motor}"), "robot.xml")
     text = case_of(path)
     assert '"C": polynomial(0.0)' in text
-    assert "# Actuators, but for the joints that they drive: not read." in text
+    assert "# Actuators, except which joints they drive: not read." in text
     laws = {"O": harmonic(0.0, 0.3, 0.5)}
     solution = evaluate(Scene(read(path).mechanism, laws, t=(0.0, 1.0, 9), wanted=["effort"]))
     assert np.allclose(solution.effort("O"), four_bar().effort("O"), rtol=1e-10, atol=1e-11)
@@ -266,6 +266,10 @@ def test_a_loop_that_an_equality_connects(reading):
 MJCF_MISUSE = {
     "another root": ("<robot/>", "line 1, <robot>: expected <mujoco>"),
     "entities": ('<!DOCTYPE mujoco SYSTEM "x"><mujoco/>', "line 1: document types and entities"),
+    "gigantic": (
+        mjcf('<body><inertial mass="1e300" pos="0 0 0" diaginertia="1 1 1"/></body>'),
+        "<inertial>: mass: expected numbers of at most 1e+12, got '1e300'",
+    ),
     "what it refuses": (mjcf('<body><joint type="hinge"/></body>'), "MuJoCo refuses it: "),
     "out of the folder": (
         mjcf("", '<asset><mesh name="m" file="../../m.stl"/></asset>'),

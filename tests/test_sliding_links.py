@@ -112,7 +112,7 @@ def test_the_note_says_what_to_do_and_doing_it_helps(tmp_path):
     (note,) = sideways.notes
     assert (
         note
-        == "link 'needle_bar' slides along joint 'guide' at 90 deg to its axis, for the joint's"
+        == "link 'needle_bar' slides along joint 'guide' at 90 deg to its axis, because the joint's"
         ' axis does not turn it: angle="-90 deg" lays it along, angle=0 says that it is meant'
     )
     assert abs(sideways.section("needle_bar").bending).max() == pytest.approx(0.1 * 9.81 * 0.1)

@@ -37,7 +37,7 @@ def arm(**kwargs):
         ),
         (
             lambda m, a: m.revolute("J", m.ground, a, turned=[("w", 1.0)]),
-            "joint 'J': turned is turns about 'x', 'y' or 'z'",
+            "joint 'J': turned= expected rotations about 'x', 'y' or 'z'",
         ),
         (
             lambda m, a: m.revolute("J", m.ground, a, turned=((1, 0, 0), (1, 1, 0))),
@@ -74,11 +74,11 @@ def arm(**kwargs):
         ),
         (
             lambda m, a: m.spherical("J", m.ground, a, second=Z),
-            "joint 'J': second needs axis, and is at right angles to it",
+            "joint 'J': second= needs axis=, and must be at right angles to it",
         ),
         (
             lambda m, a: m.free("J", m.ground, a, second=Z),
-            "joint 'J': second needs axis, and is at right angles to it",
+            "joint 'J': second= needs axis=, and must be at right angles to it",
         ),
         (
             lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0)),

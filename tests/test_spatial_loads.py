@@ -117,3 +117,28 @@ def test_a_row_replaces_one_drive():
         match=r"those of joint 'pose' are pose:slide_1, .*; use a chain of joints of one",
     ):
         m.nonholonomic("rolling", m.velocity(disc)[0] - 0.1 * m.rate(pose, "turn_2"), replaces=pose)
+
+
+def test_a_point_mass_at_the_end_is_a_body_without_inertia():
+    """It has no axes of its own; random mechanisms in space have none."""
+
+    def swung(end):
+        m = SpatialMechanism("chain")
+        a, b = m.link("a", length=0.4, mass=1.0), m.link("b", length=0.5, mass=0.6)
+        m.universal("A", m.ground, a, axis=(0.2, 0.3, 1.0), second=(0.3, -0.2, 0.0))
+        m.revolute("B", a.tip, b, axis=(1, 2, 0.5))
+        still = {"length": 0.1, "mass": 2.0, "centre": (0, 0, 0), "inertia": (0, 0, 0)}
+        held = m.link("end", **still) if end == "body" else m.point_mass("end", 2.0)
+        m.weld("held", b.at(0.3, 0.05, 0.0), held)
+        laws = {"A:turn_1": motion.harmonic(0.2, 0.7, 1.2, 0.3), "B": motion.harmonic(0.4, 0.9, 1)}
+        laws["A:turn_2"] = motion.harmonic(-0.3, 0.4, 0.8)
+        return evaluate(Scene(m, laws, t=(0, 1, 5)))
+
+    body, point = swung("body"), swung("point")
+    assert point.certified
+    assert {"reaction:held:fx", "section:b:held:fy"} <= set(point.series) & set(body.series)
+    size = max(np.abs(values).max() for values in body.series.values())
+    for name in set(point.series) & set(body.series):
+        np.testing.assert_allclose(
+            point.series[name], body.series[name], rtol=0, atol=1e-13 * size, err_msg=name
+        )

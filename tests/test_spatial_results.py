@@ -2,14 +2,9 @@
 instants, sweeps, figures, C.
 """
 
-import importlib
-import itertools
-import subprocess
-
 import h5py
 import numpy as np
 import pytest
-from compiled import cc
 from internals import (
     SCHEMA,
     SPACE,
@@ -22,7 +17,6 @@ from internals import (
     Status,
     check,
     default_figures,
-    export,
 )
 from internals import seal_seal as seal
 from spatial_scenes import beams
@@ -40,39 +34,6 @@ def scene():
 @pytest.fixture(scope="module")
 def solution(scene):
     return evaluate(scene, xi=(0, 1, 21), certificate=False)
-
-
-@pytest.fixture(scope="module")
-def dense(scene):
-    return evaluate(scene, t=(0, 2, 12_001), xi=(0, 1, 3), certificate=False)
-
-
-@pytest.fixture(scope="module")
-def fine(scene, solution):
-    """The peaks between instants by their names."""
-    quantities = DesignEngine.of(scene, method=EvaluationMethod("vm")).quantities
-    return {
-        peak.name: peak
-        for peak in refine(scene, solution, [name for name in quantities if "load" not in name])
-    }
-
-
-@pytest.fixture(scope="module")
-def half(scene):
-    """Far finer instants of half the mass."""
-    return evaluate(scene, parameters={"mass": 3.0}, t=(0, 2, 4001), certificate=False)
-
-
-@pytest.fixture
-def no_certificate(monkeypatch):
-    """What is tested here is not what is judged: residuals of nothing."""
-
-    def residuals(solution, *_):
-        return {name: np.zeros(solution.t.size) for name in ("balance", "power", "closure", "ends")}
-
-    monkeypatch.setattr(
-        importlib.import_module("lagrange_casadi.studies.solving"), "residuals_of", residuals
-    )
 
 
 def test_a_solution_names_its_quantities(solution):
@@ -136,60 +97,10 @@ def test_a_changed_resultant_is_found(solution, tmp_path):
     assert any("section/beam/bending: differs from its law" in line for line in check(path))
 
 
-def test_peaks_between_instants_are_those_of_dense_ones(scene, solution, dense):
-    """Resultants too, some of them between the ends of their link."""
-    names = [f"section:{link}:{force}" for link in LINKS for force in SPACE.forces]
-    names += ["reaction:S:resultant", "reaction:S:moment"]
-    inner = set()
-    for peak in refine(scene, solution, names):
-        truth = dense.peak(peak.name)
-        scale = max(abs(truth.value), 1e-9)
-        assert abs(peak.value) >= abs(truth.value) * (1 - 1e-12), peak
-        assert abs(peak.value) <= abs(truth.value) + 1e-6 * scale, peak
-        if peak.xi is not None and 0.1 < peak.xi < 0.9:
-            inner.add(peak.name)
-    assert {"section:beam:bending", "section:beam:bending_y", "section:beam:bending_z"} <= inner
-
-
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize(
-    ("method", "tolerance"),
-    [
-        (EvaluationMethod("lanes"), 1e-11),
-        (EvaluationMethod("c"), 1e-11),
-        (EvaluationMethod("vm"), 1e-11),
-        (EvaluationMethod("lanes", "single"), 1e-5),
-    ],
-)
-def test_designs_have_the_same_peaks(scene, fine, half, method, tolerance):
-    designs = DesignEngine.of(scene, method=method)
-    outcome = designs.evaluate(np.array([[6.0], [3.0]]))
-    assert (outcome.status == 0).all()
-    largest = {
-        unit: max(abs(peak.value) for peak in fine.values() if peak.unit == unit)
-        for unit in ("N", "N m")
-    }
-    assert {
-        "reaction:A:resultant",
-        "reaction:A:moment",
-        "section:beam:bending",
-        "section:taper:torsion",
-    } <= set(fine)
-    for k, name in enumerate(designs.quantities):
-        peak = fine[name]
-        assert abs(abs(outcome.value[0, k]) - abs(peak.value)) <= tolerance * (
-            abs(peak.value) + 1e-2 * largest[peak.unit]
-        ), name
-    bending = designs.quantities.index("section:beam:bending")
-    assert outcome.value[1, bending] == pytest.approx(
-        half.peak("section:beam:bending").value, rel=1e-6
-    )
-
-
 def test_a_sweep_keeps_peaks_along_links(scene, solution):
     engine, timing, xi = DesignEngine.of(scene), scene.timing(None), np.linspace(0, 1, 7)
     data = engine.program.data
-    harvest = Harvest(engine, data, engine.program, "histories", InstantAxis.of(data, timing), xi)
+    harvest = Harvest(engine, engine.program, "histories", InstantAxis.of(data, timing), xi)
     found = dict(
         zip(
             (column.name for column in harvest.columns),
@@ -219,20 +130,6 @@ def test_a_sweep_keeps_peaks_along_links(scene, solution):
     )
 
 
-def test_estimates_of_errors_bound_what_single_precision_loses(scene, no_certificate):
-    exact, single = (
-        evaluate(scene, precision=precision, xi=(0, 1, 5)) for precision in ("double", "single")
-    )
-    ratios = np.array(
-        [0.0, 0.1234, 0.7654, 1.0]
-    )  # no station is at one of them: single precision may put it on the other side
-    for link, force in itertools.product(LINKS, SPACE.forces):
-        here, there = (found.section(link).law.on_grid(force, ratios) for found in (exact, single))
-        error = single.errors[f"section:{link}:{force}"]
-        assert np.abs(here - there).max() <= 10 * error + 1e-30, (link, force)
-        assert error <= 1e-4 * (np.abs(here).max() + 1.0), (link, force)
-
-
 def test_figures_show_six_maps_and_two_resultants(solution):
     specs = default_figures(solution)
     assert SectionMaps("section_beam", "beam") in specs
@@ -246,24 +143,6 @@ def test_figures_show_six_maps_and_two_resultants(solution):
     figure = SectionMaps("section_taper", "taper").draw(solution)
     titles = [axes.get_title().partition(":")[0] for axes in figure.axes if axes.get_title()]
     assert titles == [SPACE.row("section", force).long_name for force in SPACE.forces]
-
-
-@pytest.mark.parametrize("precision", ["double", "single"])
-def test_exported_c_gives_the_section_forces(scene, precision, no_certificate, tmp_path):
-    """Its own test against golden vectors passes, without a warning; and each force is called by
-    its name.
-    """
-    export(scene, tmp_path / "out", name="beams", precision=precision)
-    header = (tmp_path / "out" / "beams.h").read_text()
-    for force in SPACE.forces:
-        assert f"beams_real {force};" in header
-    result = cc(["cc", "-std=c99"], tmp_path / "out", "beams.c", "selftest.c")
-    assert result.returncode == 0, result.stderr
-    told = subprocess.run(
-        [tmp_path / "out" / "program"], capture_output=True, text=True, check=False
-    )
-    assert told.returncode == 0, told.stdout
-    assert "resultant bending moment" in (tmp_path / "out" / "selftest.c").read_text()
 
 
 def test_slides_that_stand_still_are_rounding_beside_what_turns():

@@ -26,6 +26,7 @@ from internals import (
     turns_many,
 )
 from mechanisms import counting, four_bar, harmonics, sampled, slider_crank
+from mechanisms import sprung as four_bar_with_springs
 from outside import doubled
 from stepped import pinned
 
@@ -164,21 +165,6 @@ LOADS = {
 }
 
 
-@pytest.mark.sampled(11)
-@pytest.mark.parametrize("name", LOADS)
-def test_loads_that_count(name):
-    """After a million radians in double; in single, after an hour, as in
-    :func:`test_singles_after_hours`.
-    """
-    scene = counting(RAMP, LOADS[name], **({"k": 3.0} if name == "parameters" else {}))
-    program = derive(scene, ["load:load", "effort"])
-    for later, methods, allowed in ((2.5e4, DOUBLE, 1e-13), (4e3, SINGLE, 2e-5)):
-        t = later + np.array([0.0123, 0.0391, 0.0777])
-        truth = exact(program, t)
-        for method in methods:
-            assert gap(program, t, method, truth) < allowed, method
-
-
 LAWS = {
     "root": expression(lambda t: ca.sqrt(7 * t + 1e6) * 90),
     "quotient": expression(lambda t: t * 100 / (3 + 1 / (1 + t))),
@@ -187,19 +173,6 @@ LAWS = {
     "swing": harmonic(0.2, 0.9, 3.3, 0.1),
     "swung": expression(lambda t: 25 * t + ca.sin(20 * t)),
 }
-
-
-@pytest.mark.sampled(7)
-@pytest.mark.parametrize("name", LAWS)
-def test_laws_of_motion_that_count(name):
-    """Roots, quotients, pieces and clamps of a law keep their phase in single precision too."""
-    t = 4e3 + np.array([0.0123, 0.0391, 0.0777])
-    program = derive(counting(LAWS[name], LOADS["harmonics"]), ["load:load", "effort"])
-    truth = exact(program, t)
-    for method in SINGLE:
-        assert gap(program, t, method, truth) < 1e-5, method
-    for method in DOUBLE:
-        assert gap(program, t, method, truth) < 1e-13, method
 
 
 def geared(ratio):
@@ -219,47 +192,36 @@ def geared(ratio):
     return Scene(m, {"O": RAMP}, posture={"rod": 0.1}, t=(0.0, 0.1, 11))
 
 
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("ratio", [-0.5, 7.0 / 3.0])
-def test_gears(ratio):
-    program = derive(geared(ratio), ["all"])
-    t = 2.5e4 + np.array([0.0123, 0.0391, 0.0777])
-    truth = exact(program, t)
-    for method in DOUBLE:
-        assert gap(program, t, method, truth) < 1e-13
-    t = t - 2.1e4
-    truth = exact(program, t)
-    for method in SINGLE:
-        assert gap(program, t, method, truth) < 1e-5
-
-
-def sprung():
-    """Torsion springs on pins that no drive is on: between a crank and its rod, and at a rocker's
-    foot.
+def counted():
+    """Scenes whose loads, laws, gears and springs count, what is looked at, and the error that
+    single precision may leave.
     """
-    scene = four_bar()
-    m = Mechanism("sprung")
-    a, b, c = (
-        m.link(n, length=l, mass=w)
-        for n, l, w in zip("abc", (0.1, 0.35, 0.25), (0.3, 0.5, 0.4), strict=True)
-    )
-    m.revolute("O", m.ground, a)
-    m.torsion_spring("coil", m.revolute("A", a.tip, b), stiffness=1.5, angle=0.2, damping=0.05)
-    m.revolute("B", b.tip, c.tip)
-    m.torsion_spring("foot", m.revolute("C", m.ground.at(0.3, 0.05), c), stiffness=2.5)
-    return Scene(m, {"O": RAMP}, posture=scene.posture, t=(0.0, 0.1, 11))
+    for name, load in LOADS.items():
+        more = {"k": 3.0} if name == "parameters" else {}
+        yield f"load {name}", (lambda load=load, more=more: counting(RAMP, load, **more)), 2e-5
+    for name, law in LAWS.items():
+        yield f"law {name}", (lambda law=law: counting(law, LOADS["harmonics"])), 1e-5
+    for ratio in (-0.5, 7.0 / 3.0):
+        yield f"gear {ratio:.2g}", (lambda ratio=ratio: geared(ratio)), 1e-5
+    # Springs on pins that no drive is on: between a crank and its rod, and at a rocker's foot.
+    yield "springs", (lambda: four_bar_with_springs("AC", law=RAMP, span=0.1, count=11)), 1e-5
 
 
-def test_springs_on_joints_without_a_drive():
-    program = derive(sprung(), ["all"])
-    t = 2.5e4 + np.linspace(0.0, 0.157, 8)
-    truth = exact(program, t)
-    for method in DOUBLE:
-        assert gap(program, t, method, truth) < 1e-13
-    t = t - 2.1e4
-    truth = exact(program, t)
-    for method in SINGLE:
-        assert gap(program, t, method, truth) < 1e-5
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize(
+    ("scene", "single"), [pytest.param(scene, one, id=name) for name, scene, one in counted()]
+)
+def test_what_counts_keeps_its_phase(scene, single):
+    """After a million radians in double; in single, after an hour, as in
+    :func:`test_singles_after_hours`.
+    """
+    made = scene()
+    program = derive(made, ["load:load", "effort"] if "load" in made.mechanism.loads else ["all"])
+    for later, methods, allowed in ((2.5e4, DOUBLE, 1e-13), (4e3, SINGLE, single)):
+        t = later + np.array([0.0123, 0.0391, 0.0777])
+        truth = exact(program, t)
+        for method in methods:
+            assert gap(program, t, method, truth) < allowed, method
 
 
 def test_motion_by_samples():

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import sweeps
 import xarray
-from forging import edit, flip
+from forging import edit
 from internals import CONVENTIONS
 from internals import base_seal as seal
 from internals import runs as store
@@ -121,7 +121,7 @@ def test_check_passes_a_whole_file(file):
         ),
         (
             lambda h: h["effort/O"].attrs.__setitem__("sign", "whatever"),
-            "effort/O: sign is not the schema's",
+            "effort/O: sign differs from the schema",
         ),
         (lambda h: h["effort/O"].dims[0].detach_scale(h["t"]), "effort/O: axis 0 has no scale /t"),
         (lambda h: h.__delitem__("effort"), "effort/O: missing"),
@@ -139,51 +139,6 @@ def test_check_names_what_is_wrong(file, change, finding):
     edit(file, change)
     found = check(file)
     assert re.search(finding, found[0])
-
-
-@pytest.mark.parametrize("read", [load, check])
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda h: h.attrs.__setitem__("mechanism", "{"),
-        lambda h: h.attrs.__setitem__("versions", "{"),
-        lambda h: h.attrs.__setitem__("undetermined", "{"),
-        lambda h: h.attrs.__delitem__("mechanism"),
-        lambda h: h.__delitem__("t"),
-    ],
-)
-def test_a_damaged_file_is_one_line(file, change, read):
-    edit(file, change)
-    with pytest.raises(StoreError, match=r"result\.h5: damaged: "):
-        read(file)
-
-
-def test_a_grid_that_is_missing_is_found(file):
-    edit(file, lambda h: h.__delitem__("section/rod/shear"))
-    with pytest.raises(StoreError, match=r"result\.h5: damaged: .*shear"):
-        check(file)
-
-
-@pytest.mark.parametrize("read", [load, check, store.figure_specs])
-def test_a_flipped_byte_is_found(file, read):
-    with h5py.File(file) as h:
-        chunk = h["section/rod/bending"].id.get_chunk_info(0)
-    flip(file, chunk.byte_offset + 100)
-    with pytest.raises(
-        StoreError, match=r"result\.h5: damaged: its bytes are not those that were written$"
-    ):
-        read(file)
-
-
-@pytest.mark.parametrize("keep", [0.0, 0.3, 0.9, 0.999])
-def test_a_truncated_file_is_refused(file, keep):
-    data = file.read_bytes()
-    file.write_bytes(data[: int(len(data) * keep)])
-    with pytest.raises(
-        StoreError,
-        match=r"result\.h5: (it has no seal: cut short|not a file of this program: it begins)",
-    ):
-        load(file)
 
 
 def test_an_unfinished_file_is_refused(file):

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 import strong
-from internals import KINDS, Member, maxima
+from internals import KINDS, PLANE, Member, maxima
 
-from lagrange_casadi import beams, evaluate, load, save
+from lagrange_casadi import beams, compile_scene, evaluate, load, save
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -58,6 +58,30 @@ def test_the_largest_is_that_of_a_fine_grid(solutions, name, kind):
     if kind == "normal":
         assert np.sign(peak.value) == np.sign(there[int(np.argmax(squares))][0])
     assert math.sqrt(max(squares)) == pytest.approx(size, rel=1e-9 if name != "even" else 1e-6)
+
+
+@pytest.mark.parametrize("name", ["tapered", "stepped"])
+def test_functions_of_a_program_are_those_of_its_solutions(solutions, name):
+    solution, program = solutions[name], compile_scene(strong.press(SHAPES[name]))
+    section, stress = program.section["rod"], program.stress["rod"]
+    inputs, p = stress.fibres.inputs, program.data.defaults
+    law, acting = (
+        np.array([solution.outputs[output] for output in outputs])
+        for outputs in (inputs.law, inputs.acting)
+    )
+    for part in stress.fibres.parts():
+        members, numbers = np.vstack([law, acting]), stress.numbers(p)
+        low, width = part.span(members[:, 0], numbers).full()[:, 0]
+        if width == 0.0:
+            continue
+        xi = low + 0.3 * width
+        there = solution.section("rod").law
+        for force, row in zip(PLANE.forces, section(law, acting, p, xi).full(), strict=True):
+            np.testing.assert_allclose(row, there.at(force, np.full((row.size, 1), xi))[:, 0])
+        values, fibres = part.stresses(members, numbers, 0.3).full(), solution.stress("rod")
+        for fibre, row in zip(part.fibres, values, strict=False):
+            expected = fibres.at(xi)[0, fibres.fibres(xi).index(fibre)]
+            np.testing.assert_allclose(row, expected, atol=1e-9 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("name", ["even", "leaning"])

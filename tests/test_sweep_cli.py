@@ -249,7 +249,7 @@ def test_info_and_check_tell_how_far_an_unfinished_sweep_is(here, capfd, monkeyp
             assert main(["check", target]) == 1
             out, err = capfd.readouterr()
             flaw = (
-                "damaged in its head or length, or an earlier one holds the same designs: it will"
+                "damaged in its header or length, or an earlier one has the same designs: it will"
                 " be done again"
             )
             flawed = [

@@ -412,7 +412,7 @@ OTHERS = {
         b"HTTP/1.0 400 Bad request\r\n" + 1000 * b"x",
         r"(nothing came from there within 1 s|what is there says nothing that)",
     ),
-    "ssh": (b"SSH-2.0-OpenSSH_9.2p1\r\n", "what is there says nothing that a scheduler says"),
+    "ssh": (b"SSH-2.0-OpenSSH_9.2p1\r\n", "what answers there is no scheduler"),
     "zeros": (bytes(1000), ""),
     "closed": (None, ""),
 }

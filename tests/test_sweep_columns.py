@@ -221,8 +221,8 @@ def test_a_design_that_memory_cannot_hold_is_refused(slider_crank, tmp_path, mon
     with pytest.raises(
         SizeError,
         match=(
-            r"no room for a design and what it is made from: 4 x .* GB, and this machine has"
-            r" 0\.0205 GB"
+            r"not enough memory for a design and what it is made from: 4 x .* GB, and this machine"
+            r" has 0\.0205 GB"
         ),
     ):
         sweep(

@@ -168,7 +168,7 @@ def test_what_cannot_be_drawn_is_named(swept, listed, monkeypatch, tmp_path):
             DeclarationError,
             "a grid is drawn over one parameter or two, got 3: l, r, m1",
         ),
-        ({"over": ["l", "l"]}, DeclarationError, "parameter 'l' is to be drawn over twice"),
+        ({"over": ["l", "l"]}, DeclarationError, "over: parameter 'l' is listed twice"),
         (
             {"over": ["l"], "at": {"l": 0.4}},
             DeclarationError,

@@ -4,10 +4,8 @@ import csv
 import re
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
-from forging import flip
 from internals import Sweep
 from sweeps import ASKED, BENDING, CASE
 
@@ -252,25 +250,6 @@ def test_a_table_of_nothing_is_refused(file, capfd, arguments, says):
         assert main(["table", "s.h5", *arguments, *more]) == 1
         assert capfd.readouterr() == ("", f"error: s.h5: {says}\n")
     assert not Path("x.csv").exists()
-
-
-def test_a_damaged_column_is_found(file, capfd):
-    with h5py.File("s.h5") as h:
-        place = h["peak/section/rod/bending"].id.get_chunk_info(0).byte_offset + 20
-    flip(file, place)
-    commands = (
-        ["best", "--minimise", BENDING],
-        ["table", "--csv", "x.csv"],
-        ["plot", "--over", "l", "--out", "figures"],
-    )
-    for command in (*commands, ["info"], ["check"]):
-        assert main([command[0], "s.h5", *command[1:]]) == 1
-        assert capfd.readouterr() == (
-            "",
-            "error: s.h5: damaged: its bytes are not those that were written\n",
-        )
-    assert not Path("x.csv").exists()
-    assert not Path("figures").exists()
 
 
 def test_where_a_figure_stays_is_a_number(file, capfd):

@@ -268,13 +268,16 @@ def rubbing():
 
 
 REFUSED = {
-    "no drive": (fixed, r"expected one driven joint, whose angle decides all, got none"),
-    "two": (two_drives, r"expected one driven joint, whose angle decides all, got 'near', 'far'"),
+    "no drive": (fixed, r"expected one driven joint, whose angle determines all, got none"),
+    "two": (
+        two_drives,
+        r"expected one driven joint, whose angle determines all, got 'near', 'far'",
+    ),
     "slides": (driven_slide, r"the driven joint 'guide' slides; expected one that turns"),
     "time": (
         lambda: arm(lambda q, w, t: ca.sin(t)),
         (
-            r"that the angle of joint 'pin' decides, but time itself enters 'load:load:mz',"
+            r"on the angle of joint 'pin' alone, but these depend on the time: 'load:load:mz',"
             r" 'effort:pin'$"
         ),
     ),
@@ -306,21 +309,21 @@ REFUSED = {
         unreachable,
         (
             r"the loop closed by joint 'B' cannot be closed, where C = 2\.\d+ rad \(1\d\d\.\d+"
-            r" deg\); expected a drive that can turn"
+            r" deg\); expected a drive that can make"
         ),
     ),
     "iterated": (
         truss_platform,
         (
-            r"the loops? closed by .*, where O = -?[\d.]+ rad .*; expected a drive that can turn"
-            r" all the way round"
+            r"the loops? closed by .*, where O = -?[\d.]+ rad .*; expected a drive that can make"
+            r" whole revolutions"
         ),
     ),
     "bricard": (
         lambda: case("bricard"),
         (
             r"the loops closed by joint 'J3' did not converge, where J0 = 2\.1\d+ rad .*; expected"
-            r" a drive that can turn all the way"
+            r" a drive that can make whole"
         ),
     ),
     "dead centre": (

@@ -7,8 +7,7 @@ Random ones are held against Newton and Euler on slices in the tests of mechanis
 import casadi as ca
 import numpy as np
 import pytest
-from exported import by_c99, compare, expected, exported, instants, solve
-from internals import SPACE, DesignEngine, EvaluationMethod, Status, check
+from internals import SPACE
 
 from lagrange_casadi import (
     Mechanism,
@@ -17,10 +16,7 @@ from lagrange_casadi import (
     curve,
     density,
     evaluate,
-    load,
     motion,
-    refine,
-    save,
 )
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, MobilityError, ParameterError
@@ -117,47 +113,6 @@ def plain():
     return evaluate(scene(), backend="vm")
 
 
-@pytest.mark.parametrize(
-    "way",
-    [
-        {"backend": "c"},
-        pytest.param({"backend": "lanes"}, marks=pytest.mark.long),
-        pytest.param({"precision": "single"}, marks=pytest.mark.long),
-    ],
-)
-def test_every_way_of_evaluating_agrees(plain, way):
-    largest = max(
-        np.abs(plain.array(name)).max()
-        for name in plain.names()
-        if plain.unit(name) in ("N", "N m")
-    )
-    found = evaluate(scene(), **way)
-    assert found.certified
-    for name in plain.names():
-        gap, size = (
-            np.abs(found.array(name) - plain.array(name)).max(),
-            np.abs(plain.array(name)).max(),
-        )
-        assert gap <= (1e-12 if "backend" in way else 2e-6) * max(size, largest), name
-
-
-def test_sections_are_told_in_outputs_and_files(plain, tmp_path):
-    assert plain.certified
-    assert max(values.max() for values in plain.certificate.values()) < 1e-13
-    law, there = plain.section("shaft").law, np.full((5, 1), 0.3)
-    inside = law.at("torsion", there) + 2 * law.at("bending_y", there) - law.at("bending_z", there)
-    np.testing.assert_allclose(plain.output("inside"), inside[:, 0], rtol=0, atol=1e-12)
-    save(plain, tmp_path / "thick.h5")
-    assert check(tmp_path / "thick.h5") == []
-    again = load(tmp_path / "thick.h5")
-    assert again.certified
-    for force in SPACE.forces:
-        assert (
-            again.section("shaft").array(force).tolist()
-            == plain.section("shaft").array(force).tolist()
-        )
-
-
 def test_forces_along_the_link_change_as_they_say_and_peak_where_they_do(plain):
     law, step = plain.section("shaft").law, 1e-6
     for u in (0.05, 0.33, 0.62, 0.9):
@@ -176,55 +131,6 @@ def test_forces_along_the_link_change_as_they_say_and_peak_where_they_do(plain):
         found = np.abs(law.extreme(force)[1])
         assert (found >= largest * (1 - 1e-12)).all(), force
         assert (found <= largest * (1 + 1e-9) + steepest * 5e-5).all(), force
-
-
-@pytest.mark.parametrize("precision", ["double", pytest.param("single", marks=pytest.mark.long)])
-def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
-    one = scene(t=(0.0, 1.0, 41))
-    made, told = exported(one, tmp_path, precision=precision)
-    solution = solve(one, precision)
-    compare(
-        by_c99(tmp_path, told, instants(solution.t, precision)),
-        expected(one, told, solution),
-        told,
-        made,
-        solution,
-    )
-
-
-@pytest.mark.long
-def test_peaks_between_instants_and_of_sweeps():
-    m = SpatialMechanism("swept")
-    push, width = m.parameter("push", 5.0, "N"), m.parameter("width", 0.02, "kg m", low=0.0)
-    shaft = m.link(
-        "shaft",
-        length=0.6,
-        density=density.thick(
-            density.polynomial(2.0), yy=density.polynomial(0.02, -0.01), zz=width
-        ),
-    )
-    m.spherical("O", m.ground, shaft)
-    m.force("pull", shaft.at(0.35, 0.03, -0.02), x=2.0, y=push, z=-3.0)
-    laws = [
-        motion.harmonic(0.2, 1.4, 3.0),
-        motion.harmonic(0.1, 0.8, 5.0),
-        motion.harmonic(0.3, 0.4, 4.0),
-    ]
-    one = Scene(m, {"O": laws}, t=(0.0, 1.0, 41), wanted=["section"])
-    designs, forces = (
-        np.array([[5.0, 0.02], [-20.0, 0.1]]),
-        [f"section:shaft:{force}" for force in SPACE.forces],
-    )
-    engine = DesignEngine.of(one, method=EvaluationMethod("lanes"))
-    swept = engine.evaluate(designs)
-    assert swept.status.tolist() == [Status.OK] * 2
-    names = [str(quantity) for quantity in engine.quantities]
-    for k, (push_, width_) in enumerate(designs.tolist()):
-        parameters = {"push": push_, "width": width_}
-        for peak in refine(one, evaluate(one, parameters=parameters, backend="vm"), forces):
-            assert abs(swept.value[k, names.index(peak.name)] - peak.value) <= 1e-9 * max(
-                abs(peak.value), 1e-9
-            ), peak.name
 
 
 def test_second_moments_are_told_in_any_way_of_densities():

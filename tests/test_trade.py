@@ -95,8 +95,8 @@ def test_the_front_and_the_fastest():
     with pytest.raises(
         AccuracyError,
         match=(
-            r"no method of evaluating 'x' keeps 1e-16 .*; the best, --backend c --flags -D5, keeps"
-            r" 1e-15 \("
+            r"no method evaluates 'x' to 1e-16 .*; the best, --backend c --flags -D5, has an error"
+            r" of 1e-15 \("
         ),
     ):
         found.fastest(1e-16)
@@ -188,7 +188,7 @@ def test_the_command(tmp_path, monkeypatch, capfd):
     assert main([*arguments, "--accuracy", "1e-30"]) == 1
     out, err = capfd.readouterr()
     assert err.startswith(
-        "error: no method of evaluating 'slider_crank' keeps 1e-30 of the peak; the best, "
+        "error: no method evaluates 'slider_crank' to 1e-30 of the peak; the best, "
     )
     assert err.count("\n") == 1
 

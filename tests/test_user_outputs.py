@@ -5,13 +5,11 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from design_rows import around, assert_refined
-from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
-from internals import DesignEngine, EvaluationMethod, Status, figures
 from internals import derive_derive as derive
+from internals import figures
 
-from lagrange_casadi import Mechanism, Scene, check, density, evaluate, load, motion, refine, save
+from lagrange_casadi import Mechanism, Scene, density, evaluate, motion, refine
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -135,44 +133,6 @@ def test_their_peaks_are_between_instants():
     for peak in refine(scene, coarse, names):
         sampled = abs(fine.peak(peak.name).value)
         assert sampled * (1 - 1e-12) <= abs(peak.value) <= sampled * (1 + 1e-5)
-
-
-@pytest.mark.parametrize("backend", ["c", "vm"])
-def test_sweeps_keep_their_peaks_and_means(backend):
-    scene = engine(t=(0, 1, 101), wanted=("output:power", "output:bending_c", "output:vx"))
-    designs, p = DesignEngine.of(scene, method=EvaluationMethod(backend)), around(scene, 2)
-    outcome = designs.evaluate(p)
-    assert outcome.status.tolist() == [Status.OK] * 2
-    for row in range(2):
-        assert_refined(scene, designs, outcome, row, p[row])
-        power = evaluate(
-            scene, parameters=dict(zip(scene.mechanism.parameters, p[row], strict=True))
-        ).output("power")
-        k = designs.efforts.index("output:power")
-        assert outcome.mean[row, k] == pytest.approx(np.trapezoid(power) / 100, rel=1e-12)
-
-
-@pytest.mark.parametrize("precision", ["double", "single"])
-def test_exported_c_has_them(precision, tmp_path):
-    scene = engine(t=(0, 1, 41))
-    made, told = exported(scene, tmp_path, precision=precision)
-    solution = solve(scene, precision)
-    found = by_c99(tmp_path, told, instants(solution.t, precision))
-    row = next(row for row in told["outputs"] if row["path"] == "output/power")
-    assert row["unit"] == "W"
-    compare(
-        found, expected(scene, told, solution), told, made, solution, exact=precision == "double"
-    )
-
-
-def test_files_hold_them(tmp_path):
-    found = evaluate(engine(t=(0, 1, 21)))
-    save(found, tmp_path / "x.h5")
-    kept = load(tmp_path / "x.h5")
-    assert kept.description == found.description
-    assert kept.unit("output:ax") == "m/s^2"
-    np.testing.assert_array_equal(kept.output("power"), found.output("power"))
-    assert check(tmp_path / "x.h5") == []
 
 
 def test_what_equilibrium_leaves_open_leaves_them_open():

@@ -208,19 +208,19 @@ def test_run_writes_them(tmp_path, monkeypatch, capsys):
     [
         (
             lambda h: h["sensitivity/l"].__delitem__("effort"),
-            "the sensitivities are not those of all quantities",
+            "the sensitivities are not of all quantities",
         ),
         (
             lambda h: h["sensitivity"].move("l", "length"),
-            "there are sensitivities by what is no parameter",
+            "there are sensitivities by names that are not parameters",
         ),
         (
             lambda h: h["sensitivity/l"].__setitem__("more", [1.0]),
-            "the sensitivities are not those of all quantities",
+            "the sensitivities are not of all quantities",
         ),
         (
             lambda h: h["sensitivity/l"].move("effort", "efforts"),
-            "the sensitivities are not those of all quantities",
+            "the sensitivities are not of all quantities",
         ),
     ],
 )
@@ -240,7 +240,7 @@ def test_check_looks_at_them(tmp_path, solution):
 
     edit(tmp_path / "a.h5", change)
     assert check(tmp_path / "a.h5") == [
-        "sensitivity/r/effort/O: units is not the schema's",
+        "sensitivity/r/effort/O: units differs from the schema",
         "sensitivity/l/effort/O: holds values that are not finite",
     ]
 

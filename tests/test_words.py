@@ -47,3 +47,16 @@ def test_identifiers_are_in_the_words_of_the_field():
         if words(name) & PRIVATE
     ]
     assert not private, "\n".join(private)
+
+
+def test_no_program_tells_or_feels():
+    """Docstrings, comments and messages, in Python and C: a program reports, states, returns."""
+    spoken = re.compile(r"\b(told|tells?|telling|felt|feels?)\b(?!\()", re.IGNORECASE)
+    found = [
+        f"{path.relative_to(PACKAGE)}:{number}: {line.strip()}"
+        for path in sorted(PACKAGE.rglob("*.*"))
+        if path.suffix in {".py", ".c", ".h", ".md"} and path.name != "renamed.py"
+        for number, line in enumerate(path.read_text().splitlines(), 1)
+        if spoken.search(line)
+    ]
+    assert not found, "\n".join(found)

@@ -307,7 +307,7 @@ def _laws(solution: Solution, force: str) -> list[str]:
     ]
     if not links:
         none = (
-            "bodies given by mass and centre alone have none, and indeterminate ones are not shown"
+            "a body declared by its mass and centre has none, and indeterminate ones are not shown"
         )
         raise DeclarationError(
             f"{solution.case}: there is no section force to be shown; want section too; {none}"

@@ -310,7 +310,7 @@ class _Scene:
         self, values: npt.NDArray[np.generic], *, ends: bool = False, target: int | None = None
     ) -> int:
         """Add an array, (n,) or (n, 3 or 4): of whole numbers, or in single precision; ``ends``
-        tells its least and largest.
+        states its least and largest.
         """
         values = values if values.dtype.kind == "u" else values.astype("<f4") + np.float32(0.0)
         view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes} | (

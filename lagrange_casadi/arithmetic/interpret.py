@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression, Operand
 from ..errors import DeclarationError
 from .lookups import Lookup, lookup
@@ -41,6 +42,18 @@ class Step:
     called: Any = None
     looked_up: Lookup | None = None
 
+
+INFIX = {
+    ca.OP_ADD: "{0} + {1}",
+    ca.OP_SUB: "{0} - {1}",
+    ca.OP_MUL: "{0} * {1}",
+    ca.OP_DIV: "{0} / {1}",
+    ca.OP_NEG: "-{0}",
+    ca.OP_SQ: "{0} * {0}",
+    ca.OP_TWICE: "{0} + {0}",
+    ca.OP_ASSIGN: "{0}",
+}
+"""Operations that C and structured text write alike."""
 
 REMAINDERS = {ca.OP_FMOD, ca.OP_REMAINDER}
 """Operations that take whole multiples of their second operand from the first."""
@@ -221,7 +234,7 @@ def _written_out(function: ca.Function, inputs: Sequence[ca.SX]) -> list[Operand
 
 
 def _filled(sparsity: ca.Sparsity, nonzeros: Iterable[Expression]) -> ca.SX:
-    return ca.SX(sparsity, ca.vertcat(ca.SX(0, 1), *nonzeros))
+    return ca.SX(sparsity, column(nonzeros))
 
 
 def operation_name(operation: int) -> str:

@@ -39,7 +39,7 @@ class Lookup:
     ``entry`` of a number.
 
     A break belongs to the cell after it; beyond the ends the first and the last cell go on. Of a
-    cell ``ends`` tells whether a number may be beyond them, which is for others to refuse.
+    cell ``ends`` says whether a number may be beyond them, which is for others to refuse.
     """
 
     kind: Kind

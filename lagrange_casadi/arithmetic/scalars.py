@@ -1,4 +1,4 @@
-"""Sums, differences and products of numbers and expressions.
+"""Sums, differences and products of numbers and expressions, and columns of them.
 
 CasADi's operators first ask of each operand which of all kinds it is. That takes ten times as long
 as to write the operation down. Here there are two kinds alone: numbers, and expressions of scalars
@@ -6,6 +6,8 @@ as to write the operation down. Here there are two kinds alone: numbers, and exp
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 import casadi as ca
 
@@ -50,3 +52,14 @@ def applied(operation: int, *operands: Expression) -> ca.SX:
 def as_expression(value: Expression) -> ca.SX:
     """A number as an expression, an expression as it is."""
     return value if isinstance(value, _SX) else _SX(value)
+
+
+def column(parts: Iterable[Expression]) -> ca.SX:
+    """Parts one below the other; an empty column where there are none."""
+    return ca.vertcat(_SX(0, 1), *parts)
+
+
+def entries(whole: Expression) -> list[ca.SX]:
+    """The entries of a column, of which there may be none."""
+    found = as_expression(whole)
+    return ca.vertsplit(found) if found.numel() else []

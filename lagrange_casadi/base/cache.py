@@ -102,7 +102,7 @@ def _usable(place: Path) -> Path | None:
     try:
         place.mkdir(0o700, parents=True, exist_ok=True)
         if why := distrusted(place):
-            warn(f"the cache folder {place} is not used, for {why}; a temporary one is")
+            warn(f"the cache folder {place} is not used, because {why}; a temporary one is")
             place = Path(tempfile.mkdtemp(prefix=_WORK, dir=_private()))
             atexit.register(shutil.rmtree, place, ignore_errors=True)
         with tempfile.TemporaryFile(dir=place):
@@ -132,8 +132,8 @@ def _private() -> str:
     there = tempfile.gettempdir()
     if why := distrusted(Path(there), shared=True):
         raise PathError(
-            f"nothing can be built in the temporary folder {there}, for {why}; set $TMPDIR to a"
-            " folder of your own"
+            f"nothing can be built in the temporary folder {there}, because {why}; set $TMPDIR"
+            " to a folder of your own"
         )
     return there
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import PathError
-from .publish import filling, replacing, telling
+from .publish import filling, replacing, reporting
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Manifest:
         """
         if not folder.exists():
             return {}
-        with telling(folder):
+        with reporting(folder):
             known = self.known(folder)
             present = {path.name for path in folder.iterdir() if not path.name.startswith(".")}
             present -= {apart, *([self.name] if known else [])}
@@ -107,7 +107,7 @@ class Manifest:
         more: Mapping[str, object] | None = None,
         before: Mapping[str, str] | None = None,
     ) -> str:
-        """The manifest of files by their digests, with what ``more`` it tells, and digests of those
+        """The manifest of files by their digests, with what ``more`` it has, and digests of those
         that go, ``before`` they do.
         """
         content = {
@@ -145,7 +145,7 @@ class Manifest:
             files = written if alone else same | written
             before = {name: known for name, known in same.items() if files.get(name) != known}
             _write(draft / self.name, self.text(files, more, before))
-        with telling(folder):
+        with reporting(folder):
             for name in before.keys() - files.keys():
                 (folder / name).unlink()
         with replacing(

@@ -64,8 +64,9 @@ def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) ->
 
 
 def settled(target: Path) -> Path:
-    """Resolve a file's path: a symbolic link stays, its target is written."""
-    return Path(os.path.realpath(target)) if os.path.islink(target) else target
+    """Resolve a path: a symbolic link stays, its target is written; ``.`` and ``..`` get a name."""
+    nameless = target.name in ("", "..")
+    return Path(os.path.realpath(target)) if nameless or os.path.islink(target) else target
 
 
 def is_hdf5(path: Path) -> bool:
@@ -104,7 +105,7 @@ def replacing(target: Path, *, hdf5: bool = False) -> Iterator[Path]:
     """A temporary file to write, renamed to ``target`` on success and removed on any failure."""
     check_writable(target, hdf5=hdf5)
     place = settled(target)
-    with telling(target), _beside(place) as work:
+    with reporting(target), _beside(place) as work:
         draft = work / place.name
         yield draft
         flush(draft)
@@ -121,7 +122,7 @@ def writing(*targets: Path) -> Iterator[list[BinaryIO]]:
     """
     for target in targets:
         check_writable(target)
-    with telling(*targets), ExitStack() as stack:
+    with reporting(*targets), ExitStack() as stack:
         files: list[BinaryIO] = []
         drafts: list[tuple[Path, Path]] = []
         for target in targets:
@@ -221,7 +222,7 @@ def filling(folder: Path, first: str = "") -> Iterator[Path]:
     place = settled(folder)
     # What is mounted there takes no file from beside it by a new name.
     within = place / place.name if os.path.ismount(place) else place
-    with telling(folder), _beside(within) as work:
+    with reporting(folder), _beside(within) as work:
         draft = work / place.name
         draft.mkdir()
         yield draft
@@ -291,7 +292,7 @@ def _lock(folder: Path, locks: ExitStack, *, wait: bool) -> bool:
 
 
 @contextmanager
-def telling(*targets: Path) -> Iterator[None]:
+def reporting(*targets: Path) -> Iterator[None]:
     """Say failures of the disk in one line: raise :class:`StoreError` for ``OSError``."""
     try:
         yield

@@ -11,9 +11,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from ..errors import check_kind
 from .tables import PLANE, SPACE, Quantity, Table, table_of
+
+Value = TypeVar("Value")
 
 FORCES = PLANE.forces
 """The section forces of planar mechanisms."""
@@ -50,8 +53,8 @@ def compared(units: Sequence[str]) -> list[int]:
     """Number of each unit with which sizes are compared: lengths beside angles, moments beside
     forces.
 
-    Of a mechanism all of whose slides stand still, lengths are nothing but rounding, which angles
-    tell.
+    Of a mechanism all of whose slides stand still, lengths are nothing but rounding, so angles
+    count.
     """
     kinds = [_LIKE.get(unit, unit) for unit in units]
     numbers = {kind: k for k, kind in enumerate(dict.fromkeys(kinds))}
@@ -144,7 +147,7 @@ class Output:
         """Row of the table of planar mechanisms, or, if these have none, of spatial ones: axes and
         unit are the same in both.
 
-        What it means in either is told by :meth:`meant`. Raises ``KeyError`` where there is none.
+        :meth:`meant` has its meaning in either. Raises ``KeyError`` where there is none.
         """
         return (PLANE if (self.group, self.member) in PLANE else SPACE).row(self.group, self.member)
 
@@ -183,3 +186,8 @@ class Output:
 def quotient(unit: str, by: str) -> str:
     """The unit of a derivative: ``N m/m``, and ``N/(kg/m)`` of what is itself one."""
     return unit if by == "1" else f"{unit}/{by}" if by.isalnum() else f"{unit}/({by})"
+
+
+def parts_along(outputs: Mapping[Output, Value], link: str) -> dict[Output, Value]:
+    """The parts of a link's section forces among outputs."""
+    return {o: value for o, value in outputs.items() if o.along and o.part == link}

@@ -29,7 +29,9 @@ def require(what: str, shape: tuple[int, ...]) -> None:
     if size > _SMALL and size > (there := memory()):
         values = " x ".join(f"{length:,}".replace(",", " ") for length in shape)
         free = f"this machine has {there / 1e9:.3g} GB free"
-        raise SizeError(f"no room for {what}: {values} values are {size / 1e9:.4g} GB, and {free}")
+        raise SizeError(
+            f"not enough memory for {what}: {values} values are {size / 1e9:.4g} GB, and {free}"
+        )
 
 
 def cores() -> int:

@@ -29,7 +29,7 @@ class Notch:
     """A place where stress concentrates: the ratio ``at`` = xi/l, and the theoretical factors on
     nominal stress of axial force, of bending, and of shear and torsion.
 
-    ``sensitivity``, from 0 to 1, is how much of it fatigue feels: K_f = 1 + q (K_t - 1).
+    ``sensitivity``, from 0 to 1, is how much of it counts in fatigue: K_f = 1 + q (K_t - 1).
     """
 
     at: Share

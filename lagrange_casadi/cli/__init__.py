@@ -150,8 +150,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 @contextmanager
 def _read() -> Iterator[None]:
-    """Tell a reader that is gone before click ends the program: of standard output, for files fail
-    with an error of ours.
+    """Notice that nobody reads standard output any more, before click ends the program; files
+    fail with an error of ours.
     """
     try:
         yield

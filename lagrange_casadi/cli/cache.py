@@ -20,7 +20,7 @@ def cache(clear: bool) -> None:
     size = sum(entry.size for entry in entries)
     libraries = counted(names.count(".so"), "library").replace("librarys", "libraries")
     if distrusted:
-        echo(f"note: {place} is not used, for {distrusted}", err=True)
+        echo(f"note: {place} is not used, because {distrusted}", err=True)
     what = f"{counted(names.count('.graph'), 'graph')}, {libraries}, {size / 1e6:.3g} MB"
     if not clear:
         echo(f"{place}: {what} in {counted(len(names), 'file')}")

@@ -40,6 +40,8 @@ from .options import (
     arithmetic,
     at_values,
     even_points,
+    file,
+    flag,
     instants,
     method,
     over,
@@ -47,8 +49,10 @@ from .options import (
     place,
     setting,
     settings_by,
+    several,
     svg,
     table_file,
+    value,
     wanted,
 )
 
@@ -56,33 +60,27 @@ from .options import (
 @command()
 @click.argument("case", type=CASE)
 @at_values
-@click.option(
+@value(
     "--xi",
-    type=even_points,
-    metavar=EVEN_POINTS,
-    help="Set the ratios xi/l at which sections are stored, within 0 (base) and 1 (tip); default:"
-    " those"
-    " of the case.",
+    even_points,
+    EVEN_POINTS,
+    "Set the ratios xi/l at which sections are stored, within 0 (base) and 1 (tip); default:"
+    " those of the case.",
 )
 @wanted(
     "Compute these outputs: effort, reaction:JOINT, section:LINK, motion, sensitivity:PARAMETER, a"
-    " kind"
-    " such as section, or all; repeatable. Default: those of the case."
+    " kind such as section, or all; repeatable. Default: those of the case."
 )
 @method
-@click.option(
+@value(
     "--threads",
-    type=click.IntRange(1, MOST_THREADS),
-    metavar="N",
-    help="Use this number of threads; default: one per core.",
+    click.IntRange(1, MOST_THREADS),
+    "N",
+    "Use this number of threads; default: one per core.",
 )
-@click.option(
-    "--out", type=PATH, help="Write the results to this HDF5 file; default: <case>.h5 here."
-)
-@click.option(
-    "--figures", type=PATH, help="Draw the figures into this folder; default: <case>_figures here."
-)
-@click.option("--no-figures", is_flag=True, help="Draw no figures.")
+@file("--out", "Write the results to this HDF5 file; default: <case>.h5 here.")
+@file("--figures", "Draw the figures into this folder; default: <case>_figures here.")
+@flag("--no-figures", "Draw no figures.")
 @svg
 @table_file("Also write the results as CSV, one row per instant.")
 @click.option(
@@ -91,22 +89,12 @@ from .options import (
     help="Store section forces at all ratios xi/l beside their laws, of all links or of none;"
     " default: of all but pieces of bent bars.",
 )
-@click.option(
-    "--refine-peaks", is_flag=True, help="Search for the listed peaks between the instants too."
+@flag("--refine-peaks", "Search for the listed peaks between the instants too.")
+@flag(
+    "--elastic", "Determine statically indeterminate forces by the elasticity of the links' beams."
 )
-@click.option(
-    "--elastic",
-    is_flag=True,
-    help="Determine statically indeterminate forces by the elasticity of the links' beams.",
-)
-@click.option(
-    "--no-certificate",
-    is_flag=True,
-    help="Do not check the results by an independent balance of forces.",
-)
-@click.option(
-    "--verbose", is_flag=True, help="List all quantities, with strength and deflection in full."
-)
+@flag("--no-certificate", "Do not check the results by an independent balance of forces.")
+@flag("--verbose", "List all quantities, with strength and deflection in full.")
 def run(**given: Any) -> None:
     """Compute efforts, reactions and section forces of CASE.
 
@@ -120,59 +108,42 @@ def run(**given: Any) -> None:
 
 @command()
 @click.argument("case", type=CASE)
-@click.option("--out", type=PATH, metavar="DIR", help="Write into this folder.")
-@click.option(
+@file("--out", "Write into this folder.", metavar="DIR")
+@file(
     "--model",
-    type=PATH,
+    "Write the mechanism as data for other programs: bodies, joints, motions.",
     metavar="FILE.json",
-    help="Write the mechanism as data for other programs: bodies, joints, motions.",
 )
-@click.option(
-    "--name", metavar="NAME", help="Set the prefix of the names in C; default: the case's name."
-)
+@value("--name", str, "NAME", "Set the prefix of the names in C; default: the case's name.")
 @settings_by("Set the default of a parameter, as l=0.25 or phi=30deg; repeatable.")
 @wanted()
 @arithmetic
-@click.option(
+@value(
     "--largest",
-    type=click.IntRange(0),
-    metavar="BYTES",
-    help="Limit the size of a table [bytes]; default: 16 MB, in single precision 64 kB.",
+    click.IntRange(0),
+    "BYTES",
+    "Limit the size of a table [bytes]; default: 16 MB, in single precision 64 kB.",
 )
-@click.option(
+@flag(
     "--fmu",
-    is_flag=True,
-    help=(
-        "Also write DIR/CASE.fmu, a unit of FMI 2.0 for simulation tools; needs FMPy and a C"
-        " compiler."
-    ),
+    "Also write DIR/CASE.fmu, a unit of FMI 2.0 for simulation tools; needs FMPy and a C compiler.",
 )
-@click.option(
+@value(
     "--fmu-by",
-    metavar="time|COORDINATE",
-    help="With --fmu, put the case's motion inside: the input is the time, or the place of this"
+    str,
+    "time|COORDINATE",
+    "With --fmu, put the case's motion inside: the input is the time, or the place of this"
     " coordinate, as a crank's angle.",
 )
-@click.option(
+@flag(
     "--control",
-    is_flag=True,
-    help="Also write DIR/CASE_control.hpp, a class of C++ for controllers as ros2_control's.",
+    "Also write DIR/CASE_control.hpp, a class of C++ for controllers as ros2_control's.",
 )
-@click.option(
-    "--structured-text",
-    is_flag=True,
-    help="Also write DIR/CASE.st, function blocks of IEC 61131-3 for PLCs.",
+@flag("--structured-text", "Also write DIR/CASE.st, function blocks of IEC 61131-3 for PLCs.")
+@flag(
+    "--wasm", "Also write DIR/CASE.wasm for web pages, with a wrapper in JavaScript; needs ziglang."
 )
-@click.option(
-    "--wasm",
-    is_flag=True,
-    help="Also write DIR/CASE.wasm for web pages, with a wrapper in JavaScript; needs ziglang.",
-)
-@click.option(
-    "--force",
-    is_flag=True,
-    help="Write into a folder that holds other files as well; these are left as they are.",
-)
+@flag("--force", "Write into a folder that holds other files as well; these are left as they are.")
 def export(**given: Any) -> None:
     """Write CASE as C for other programs.
 
@@ -185,20 +156,17 @@ def export(**given: Any) -> None:
 
 @command()
 @click.argument("file", type=PATH)
-@click.option("--out", type=PATH, required=True, help="Draw into this folder.")
-@click.option(
+@file("--out", "Draw into this folder.", required=True)
+@several(
     "--over",
-    multiple=True,
-    metavar="NAME",
-    help="For a sweep: draw over this parameter, for maps over two; for a list of designs, over"
-    " any.",
+    "NAME",
+    "For a sweep: draw over this parameter, for maps over two; for a list of designs, over any.",
 )
-@click.option(
+@several(
     "--at",
-    type=place,
-    multiple=True,
-    metavar="NAME=VALUE",
-    help="For a sweep: keep another parameter at this value, or choose designs of a list.",
+    "NAME=VALUE",
+    "For a sweep: keep another parameter at this value, or choose designs of a list.",
+    kind=place,
 )
 @click.option(
     "--against",
@@ -207,11 +175,7 @@ def export(**given: Any) -> None:
     metavar="COLUMN COLUMN",
     help="For a sweep: draw the Pareto front of these two columns or parameters.",
 )
-@click.option(
-    "--si",
-    is_flag=True,
-    help="Draw axes in SI units without prefixes, in place of kN and mm.",
-)
+@flag("--si", "Draw axes in SI units without prefixes, in place of kN and mm.")
 @svg
 def plot(**given: Any) -> None:
     """Draw the figures of the run or sweep FILE.h5.
@@ -227,28 +191,20 @@ def plot(**given: Any) -> None:
 @click.argument(
     "targets", metavar="FILE.h5|CASE [FILE.h5|CASE]", type=CASE, nargs=-1, required=True
 )
-@click.option(
-    "--out",
-    type=PATH,
-    metavar="REPORT.html",
-    help="Write the page to this file; default: <name>.html here.",
-)
+@file("--out", "Write the page to this file; default: <name>.html here.", metavar="REPORT.html")
 @settings_by("For a case: set a parameter, as l=0.25 or phi=30deg; repeatable.")
 @instants("For a case: set the instants [s], both ends included; default: those of the case.")
 @over
 @wanted("For a case: show these outputs besides the motion; default: those of the case.")
-@click.option(
+@flag(
     "--live",
-    is_flag=True,
-    help="For a case: put the evaluation into the page, with sliders for the parameters; needs"
-    " ziglang.",
+    "For a case: put the evaluation into the page, with sliders for the parameters; needs ziglang.",
 )
-@click.option(
+@several(
     "--beside",
-    type=setting,
-    metavar="NAME=VALUE",
-    multiple=True,
-    help="For a case: show a second design beside it, with this parameter changed; repeatable.",
+    "NAME=VALUE",
+    "For a case: show a second design beside it, with this parameter changed; repeatable.",
+    kind=setting,
 )
 @click.option("--case", type=CASE, help="For a sweep: show the mechanism of this case in motion.")
 def report(
@@ -275,44 +231,22 @@ def report(
 
 @command()
 @click.argument("target", metavar="FILE.h5|CASE", type=CASE)
-@click.option(
+@file(
     "--out",
-    type=PATH,
+    "Write the animation to this file; default: <name>.gif here.",
     metavar="FILE.gif|FILE.mp4|FILE.svg|FILE.glb",
-    help="Write the animation to this file; default: <name>.gif here.",
 )
-@click.option("--forces", is_flag=True, help="Draw reactions, efforts and loads as arrows.")
+@flag("--forces", "Draw reactions, efforts and loads as arrows.")
 @click.option(
     "--section",
     default="",
     metavar="FORCE",
     help="Draw a section force, as bending, as ribbons along the links.",
 )
-@click.option("--no-names", is_flag=True, help="Do not write the names of joints.")
-@click.option(
-    "--width",
-    type=int,
-    default=WIDTH,
-    show_default=True,
-    metavar="PIXELS",
-    help="Set the width of the picture [pixels].",
-)
-@click.option(
-    "--rate",
-    type=float,
-    default=RATE,
-    show_default=True,
-    metavar="NUMBER",
-    help="Set the number of frames per second.",
-)
-@click.option(
-    "--seconds",
-    type=float,
-    default=SECONDS,
-    show_default=True,
-    metavar="NUMBER",
-    help="Set the playing time of one cycle [s].",
-)
+@flag("--no-names", "Do not write the names of joints.")
+@value("--width", int, "PIXELS", "Set the width of the picture [pixels].", default=WIDTH)
+@value("--rate", float, "NUMBER", "Set the number of frames per second.", default=RATE)
+@value("--seconds", float, "NUMBER", "Set the playing time of one cycle [s].", default=SECONDS)
 @settings_by("For a case: set a parameter, as l=0.25 or phi=30deg; repeatable.")
 @instants("For a case: set the instants [s], both ends included; default: those of the case.")
 @over
@@ -343,16 +277,9 @@ def info(**given: Any) -> None:
 
 @command()
 @click.argument("file", metavar="FILE.h5|FILE.h5.parts", type=PATH)
-@click.option(
-    "--untrusted",
-    is_flag=True,
-    help="Read the file in a process of its own: forged files may crash or stall HDF5.",
-)
-@click.option(
-    "--time-limit",
-    type=float,
-    metavar="SECONDS",
-    help=f"Limit the time of --untrusted [s]; default: {TIME_LIMIT:g}.",
+@flag("--untrusted", "Read the file in a process of its own: forged files may crash or stall HDF5.")
+@value(
+    "--time-limit", float, "SECONDS", f"Limit the time of --untrusted [s]; default: {TIME_LIMIT:g}."
 )
 def check(**given: Any) -> int:
     """Check that FILE.h5 is whole and consistent.
@@ -365,7 +292,7 @@ def check(**given: Any) -> int:
 
 
 @command()
-@click.option("--copy", type=PATH, metavar="FOLDER", help="Copy all of them into this new folder.")
+@file("--copy", "Copy all of them into this new folder.", metavar="FOLDER")
 def cases(**given: Any) -> None:
     """List the cases that come with the package, or copy them.
 
@@ -378,11 +305,7 @@ def cases(**given: Any) -> None:
 
 @command()
 @click.argument("folder", type=PATH)
-@click.option(
-    "--like",
-    metavar="NAME",
-    help="Copy this case; the command cases lists all.",
-)
+@value("--like", str, "NAME", "Copy this case; the command cases lists all.")
 @click.option(
     "--from",
     "source",
@@ -396,13 +319,13 @@ def new(**given: Any) -> None:
     It is a copy of one that comes with the package, under the folder's name, or a model of another
     program that is written as a case.
     """
-    from .new import new
+    from .cases import new
 
     new(**given)
 
 
 @command()
-@click.option("--clear", is_flag=True, help="Remove all graphs and libraries from the cache.")
+@flag("--clear", "Remove all graphs and libraries from the cache.")
 def cache(**given: Any) -> None:
     """Show the cache of graphs and compiled libraries, or empty it.
 
@@ -415,20 +338,18 @@ def cache(**given: Any) -> None:
 
 @command()
 @click.argument("case", type=CASE)
-@click.option(
+@several(
     "--link",
-    "links",
-    multiple=True,
-    metavar="NAME",
-    help="Write the load cases of this link, rigid body or point mass; repeatable.",
+    "NAME",
+    "Write the load cases of this link, rigid body or point mass; repeatable.",
+    into="links",
 )
-@click.option("--out", type=PATH, required=True, metavar="DIR", help="Write into this folder.")
+@file("--out", "Write into this folder.", metavar="DIR", required=True)
 @at_values
-@click.option(
+@flag(
     "--every",
-    is_flag=True,
-    help="Write a load case for every instant; default: for those at which a section force or a"
-    " stress of the link, or a reaction on it, is largest.",
+    "Write a load case for every instant; default: for those at which a section force or a stress"
+    " of the link, or a reaction on it, is largest.",
 )
 @click.option(
     "--format",
@@ -438,22 +359,20 @@ def cache(**given: Any) -> None:
     help="Write this format; repeatable. inp is included by input files of CalculiX and Abaqus, nas"
     " by Nastran's; beam is a model that CalculiX runs. Default: all.",
 )
-@click.option(
+@several(
     "--node",
-    "nodes",
-    type=pair,
-    multiple=True,
-    metavar="JOINT=NAME",
-    help="Name the node set, or the number, of the node in your mesh that takes a joint's load;"
+    "JOINT=NAME",
+    "Name the node set, or the number, of the node in your mesh that takes a joint's load;"
     " LINK=NAME names the element set; repeatable.",
+    kind=pair,
+    into="nodes",
 )
-@click.option(
+@several(
     "--spectrum",
-    "spectra",
-    multiple=True,
-    metavar="NAME",
-    help="Write the rainflow matrix of a quantity, as reaction:A:fx, section:rod:bending@0.5 or"
+    "NAME",
+    "Write the rainflow matrix of a quantity, as reaction:A:fx, section:rod:bending@0.5 or"
     " stress:rod@0.5; repeatable.",
+    into="spectra",
 )
 @click.option(
     "--classes",
@@ -462,13 +381,11 @@ def cache(**given: Any) -> None:
     default=64,
     help="Set the classes of --spectrum, 0 for every cycle as it is; default: 64.",
 )
-@click.option(
+@several(
     "--bearing",
-    "bearings",
-    multiple=True,
-    metavar="JOINT",
-    help="Write equivalent loads and the speed of this joint for catalogues of bearings;"
-    " repeatable.",
+    "JOINT",
+    "Write equivalent loads and the speed of this joint for catalogues of bearings; repeatable.",
+    into="bearings",
 )
 @click.option(
     "--exponent",

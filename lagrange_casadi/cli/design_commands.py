@@ -29,8 +29,11 @@ from .options import (
     axis,
     backend,
     bounds,
+    choice,
     conditions,
     even_points,
+    file,
+    flag,
     instants,
     length,
     over,
@@ -38,76 +41,72 @@ from .options import (
     ratios,
     resumable,
     settings_by,
+    several,
     share,
     table_file,
     tolerance,
     untabled_method,
+    value,
     wanted,
 )
 
 
 @command()
 @click.argument("case", type=CASE)
-@click.option(
+@several(
     "--grid",
-    "axes",
-    type=axis,
-    metavar=AXIS,
-    multiple=True,
-    help="Sweep a parameter over a range or a list of values, in SI units or with a unit;"
-    " repeatable, the"
-    " last varies fastest.",
+    AXIS,
+    "Sweep a parameter over a range or a list of values, in SI units or with a unit; repeatable,"
+    " the last varies fastest.",
+    kind=axis,
+    into="axes",
 )
-@click.option(
+@file(
     "--designs",
-    type=PATH,
+    "Sweep the designs of a list: one row of parameter names, then one row per design.",
     metavar="FILE.csv",
-    help="Sweep the designs of a list: one row of parameter names, then one row per design.",
 )
 @settings_by("Set a parameter that is not swept, as l=0.25 or phi=30deg; repeatable.")
 @instants()
 @over
-@click.option(
+@value(
     "--xi",
-    type=even_points,
-    metavar=EVEN_POINTS,
-    help="Also store the peak over time of the section forces at each of these ratios xi/l.",
+    even_points,
+    EVEN_POINTS,
+    "Also store the peak over time of the section forces at each of these ratios xi/l.",
 )
 @wanted("Compute these outputs, as info CASE lists them; all leaves out the motion; repeatable.")
-@click.option(
+@choice(
     "--keep",
-    type=click.Choice(KEEPS),
-    default="peaks",
-    show_default=True,
-    help="Store of each design its peaks only, its section laws as well, or all outputs over time"
-    " as"
+    KEEPS,
+    "peaks",
+    "Store of each design its peaks only, its section laws as well, or all outputs over time as"
     " well.",
 )
-@click.option(
+@choice(
     "--peaks",
-    type=click.Choice(PEAK_SEARCHES),
-    default="exact",
-    show_default=True,
-    help="Seek peaks between the instants, or take those of the instants, each with an error.",
+    PEAK_SEARCHES,
+    "exact",
+    "Seek peaks between the instants, or take those of the instants, each with an error.",
+)
+@flag(
+    "--fluctuation",
+    "Store the fluctuation of energy of each drive as well, for which a flywheel is sized.",
 )
 @untabled_method
-@click.option(
+@value(
     "--workers",
-    type=click.IntRange(1, MOST_THREADS),
-    metavar="N",
-    help="Use this number of threads; default: one per core.",
+    click.IntRange(1, MOST_THREADS),
+    "N",
+    "Use this number of threads; default: one per core.",
 )
-@click.option(
-    "--dask",
-    metavar="ADDRESS",
-    help="Evaluate on the cluster of this Dask scheduler, as tcp://HOST:8786.",
+@value(
+    "--dask", str, "ADDRESS", "Evaluate on the cluster of this Dask scheduler, as tcp://HOST:8786."
 )
 @resumable("sweep")
-@click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
-@click.option("--quiet", is_flag=True, help="Show no progress.")
-@click.option(
-    "--out", type=PATH, help="Write the sweep to this HDF5 file; default: <case>_sweep.h5 here."
-)
+@flag("--yes", "Allow more than 10^9 designs.")
+@flag("--quiet", "Show no progress.")
+@file("--out", "Write the sweep to this HDF5 file; default: <case>_sweep.h5 here.")
 def sweep(**given: Any) -> None:
     """Compute CASE for each design of a grid or a list.
 
@@ -127,23 +126,18 @@ def sweep(**given: Any) -> None:
 
 @command()
 @click.argument("file", metavar="FILE.h5", type=PATH)
-@click.option(
-    "--minimise",
-    multiple=True,
-    metavar="COLUMN",
-    help="Minimise this column; of two objectives, list their Pareto front.",
+@several(
+    "--minimise", "COLUMN", "Minimise this column; of two objectives, list their Pareto front."
 )
-@click.option("--maximise", multiple=True, metavar="COLUMN", help="Maximise this column.")
+@several("--maximise", "COLUMN", "Maximise this column.")
 @conditions("designs")
-@click.option(
+@value(
     "--count",
-    type=click.IntRange(1),
-    metavar="N",
-    help="List this number of designs; default: the best one, or the whole front.",
+    click.IntRange(1),
+    "N",
+    "List this number of designs; default: the best one, or the whole front.",
 )
-@click.option(
-    "--column", "columns", multiple=True, metavar="COLUMN", help="List this column too; repeatable."
-)
+@several("--column", "COLUMN", "List this column too; repeatable.", into="columns")
 @table_file("Also write the designs as CSV.")
 def best(**given: Any) -> None:
     """List the best designs of the sweep FILE.h5.
@@ -158,21 +152,10 @@ def best(**given: Any) -> None:
 @command()
 @click.argument("file", metavar="FILE.h5", type=PATH)
 @conditions("rows")
-@click.option(
-    "--column",
-    "columns",
-    multiple=True,
-    metavar="COLUMN",
-    help="List this column; repeatable. Default: the main peaks.",
+@several(
+    "--column", "COLUMN", "List this column; repeatable. Default: the main peaks.", into="columns"
 )
-@click.option(
-    "--rows",
-    type=click.IntRange(1),
-    default=20,
-    show_default=True,
-    metavar="N",
-    help="List this number of rows.",
-)
+@value("--rows", click.IntRange(1), "N", "List this number of rows.", default=20)
 @table_file("Write all rows as CSV; default: all columns without axes.")
 def table(**given: Any) -> None:
     """List the designs of the sweep FILE.h5, or write them as CSV.
@@ -186,80 +169,46 @@ def table(**given: Any) -> None:
 
 @command()
 @click.argument("case", type=CASE)
-@click.option(
+@several(
     "--minimise",
+    "TERM",
+    "Minimise peak:QUANTITY, max:, mean: or rms: of one, fluctuation:effort:JOINT, or a"
+    " parameter; repeated: find the Pareto front.",
     required=True,
-    multiple=True,
-    metavar="TERM",
-    help="Minimise peak:QUANTITY, max:, mean: or rms: of one, or a parameter; repeated: find the"
-    " Pareto"
-    " front.",
 )
-@click.option(
+@several(
     "--over",
-    "bounds",
-    type=bounds,
-    multiple=True,
+    BOUNDS,
+    "Choose this parameter between two bounds, in SI units or with a unit; repeatable.",
+    kind=bounds,
+    into="bounds",
     required=True,
-    metavar=BOUNDS,
-    help="Choose this parameter between two bounds, in SI units or with a unit; repeatable.",
 )
-@click.option(
+@several(
     "--subject-to",
-    "limits",
-    multiple=True,
-    metavar="'TERM<=NUMBER'",
-    help="Keep within this limit, in SI units, as 'peak:effort:O<=12'; repeatable.",
+    "'TERM<=NUMBER'",
+    "Keep within this limit, in SI units, as 'peak:effort:O<=12'; repeatable.",
+    into="limits",
 )
-@click.option(
-    "--starts",
-    type=int,
-    default=4,
-    show_default=True,
-    metavar="NUMBER",
-    help="Start from this number of designs.",
-)
-@click.option(
-    "--screen",
-    type=int,
-    default=256,
-    show_default=True,
-    metavar="NUMBER",
-    help="Choose the starts among this number of designs.",
-)
-@click.option(
-    "--points",
-    type=int,
-    default=POINTS,
-    show_default=True,
-    metavar="NUMBER",
-    help="Find at most this number of points of a front.",
-)
-@click.option(
+@value("--starts", int, "NUMBER", "Start from this number of designs.", default=4)
+@value("--screen", int, "NUMBER", "Choose the starts among this number of designs.", default=256)
+@value("--points", int, "NUMBER", "Find at most this number of points of a front.", default=POINTS)
+@value(
     "--transmission",
-    type=float,
+    float,
+    "SINE",
+    "Keep the sine of all transmission angles above this number.",
     default=0.05,
-    show_default=True,
-    metavar="SINE",
-    help="Keep the sine of all transmission angles above this number.",
 )
 @settings_by("Set a parameter that is not chosen, as l=0.25 or phi=30deg; repeatable.")
 @instants()
 @backend(" designs")
-@click.option(
-    "--dask",
-    metavar="ADDRESS",
-    help="Search on the cluster of this Dask scheduler, as tcp://HOST:8786.",
+@value(
+    "--dask", str, "ADDRESS", "Search on the cluster of this Dask scheduler, as tcp://HOST:8786."
 )
 @resumable("search")
-@click.option(
-    "--out",
-    type=PATH,
-    help="Write history and result to this HDF5 file; default: <case>_optimum.h5 here.",
-)
-@click.option(
-    "--figure", type=PATH, help="Draw the history into this file; default: <case>_optimum.png here."
-)
+@file("--out", "Write history and result to this HDF5 file; default: <case>_optimum.h5 here.")
+@file("--figure", "Draw the history into this file; default: <case>_optimum.png here.")
 def optimise(**given: Any) -> int:
     """Find the design of CASE with the least peak or mean.
 
@@ -274,48 +223,26 @@ def optimise(**given: Any) -> int:
 
 @command("size")
 @click.argument("case", type=CASE)
-@click.option(
+@file(
     "--profiles",
-    type=PATH,
-    metavar="FILE.csv|NAME",
-    help="Choose from this table: a column name, and one column per dimension [m]; or by name from"
-    " a standard one: IPE, HEA, HEB, CHS, SHS, RHS, SHS_cold, RHS_cold, flat, round. Default:"
+    "Choose from this table: a column name, and one column per dimension [m]; or by name from a"
+    " standard one: IPE, HEA, HEB, CHS, SHS, RHS, SHS_cold, RHS_cold, flat, round. Default:"
     " profiles.csv next to the case.",
+    metavar="FILE.csv|NAME",
 )
-@click.option(
-    "--safety",
-    type=float,
-    default=2.0,
-    show_default=True,
-    metavar="FACTOR",
-    help="Demand this factor of safety at least.",
-)
-@click.option(
+@value("--safety", float, "FACTOR", "Demand this factor of safety at least.", default=2.0)
+@value(
     "--deflection",
-    type=share,
-    metavar="SHARE",
-    help="Limit the deflection across a link over its length, as 1/500. Default: no limit.",
+    share,
+    "SHARE",
+    "Limit the deflection across a link over its length, as 1/500. Default: no limit.",
 )
-@click.option(
-    "--link",
-    "links",
-    multiple=True,
-    metavar="LINK",
-    help="Size this link; repeatable. Default: all that profiles fit.",
+@several(
+    "--link", "LINK", "Size this link; repeatable. Default: all that profiles fit.", into="links"
 )
-@click.option(
-    "--criterion",
-    type=click.Choice(CRITERIA),
-    default="goodman",
-    show_default=True,
-    help="Count mean stress in fatigue by this criterion.",
-)
-@click.option(
-    "--yielding",
-    type=click.Choice(YIELDING),
-    default="von_mises",
-    show_default=True,
-    help="Compare this equivalent stress with the yield strength.",
+@choice("--criterion", CRITERIA, "goodman", "Count mean stress in fatigue by this criterion.")
+@choice(
+    "--yielding", YIELDING, "von_mises", "Compare this equivalent stress with the yield strength."
 )
 @at_values
 def size(**given: Any) -> None:
@@ -330,20 +257,20 @@ def size(**given: Any) -> None:
 
 @command("free")
 @click.argument("case", type=CASE)
-@click.option(
+@value(
     "--drive",
-    metavar="LAW=NUMBER,...",
-    help="Drive it by torque=TORQUE [N m], power=POWER [W], dc=STALL_TORQUE,NO_LOAD_SPEED or"
+    str,
+    "LAW=NUMBER,...",
+    "Drive it by torque=TORQUE [N m], power=POWER [W], dc=STALL_TORQUE,NO_LOAD_SPEED or"
     " induction=BREAKDOWN_TORQUE,BREAKDOWN_SLIP,SYNCHRONOUS_SPEED [rad/s]. Default: nothing; of a"
     " steady cycle the torque that keeps the mean speed.",
 )
-@click.option(
+@value(
     "--geared",
-    type=float,
+    float,
+    "NUMBER",
+    "Let the motor turn so many times as fast as the drive.",
     default=1.0,
-    show_default=True,
-    metavar="NUMBER",
-    help="Let the motor turn so many times as fast as the drive.",
 )
 @click.option(
     "--load", type=float, default=0.0, metavar="NUMBER", help="Let this torque resist [N m]."
@@ -355,43 +282,29 @@ def size(**given: Any) -> None:
     metavar="NUMBER",
     help="Put a flywheel of this inertia on the drive [kg m^2].",
 )
-@click.option(
+@value(
     "--start",
-    metavar="COORDINATE,RATE",
-    help="Start there [rad, rad/s or m, m/s]; default: where the motion of the case starts.",
+    str,
+    "COORDINATE,RATE",
+    "Start there [rad, rad/s or m, m/s]; default: where the motion of the case starts.",
 )
-@click.option("--steady", is_flag=True, help="Find the steady cycle, and go round once.")
-@click.option(
+@flag("--steady", "Find the steady cycle, and go round once.")
+@value(
     "--fluctuation",
-    type=float,
-    metavar="NUMBER",
-    help="Find the flywheel with which the steady cycle has this coefficient of fluctuation.",
+    float,
+    "NUMBER",
+    "Find the flywheel with which the steady cycle has this coefficient of fluctuation.",
 )
-@click.option(
-    "--cycle",
-    type=float,
-    default=1.0,
-    show_default=True,
-    metavar="TURNS",
-    help="Say after how many turns the machine repeats.",
-)
-@click.option(
-    "--count",
-    type=int,
-    default=721,
-    show_default=True,
-    metavar="NUMBER",
-    help="Take so many instants of a steady cycle.",
-)
+@value("--cycle", float, "TURNS", "Say after how many turns the machine repeats.", default=1.0)
+@value("--count", int, "NUMBER", "Take so many instants of a steady cycle.", default=721)
 @settings_by()
 @instants()
 @wanted()
-@click.option("--out", type=PATH, help="Write the run to this HDF5 file; default: <case>_free.h5.")
-@click.option(
+@file("--out", "Write the run to this HDF5 file; default: <case>_free.h5.")
+@file(
     "--plot",
-    type=PATH,
+    "Draw torque and speed over the drive's coordinate into this file, .png, .pdf or .svg.",
     metavar="FILE.png",
-    help="Draw torque and speed over the drive's coordinate into this file, .png, .pdf or .svg.",
 )
 def free(**given: Any) -> None:
     """Let the machine CASE go: its motion under a motor, a load and its own weight.
@@ -409,19 +322,17 @@ def free(**given: Any) -> None:
 
 @command("drive")
 @click.argument("case", type=CASE)
-@click.option(
+@file(
     "--motors",
-    type=PATH,
-    metavar="FILE.csv|NAME",
-    help="Choose from this catalogue, or by name from a class of motors: servo, induction; default:"
+    "Choose from this catalogue, or by name from a class of motors: servo, induction; default:"
     " motors.csv next to the case.",
+    metavar="FILE.csv|NAME",
 )
-@click.option(
+@several(
     "--drive",
-    "drives",
-    multiple=True,
-    metavar="JOINT",
-    help="Choose a motor for this drive; repeatable. Default: all drives.",
+    "JOINT",
+    "Choose a motor for this drive; repeatable. Default: all drives.",
+    into="drives",
 )
 @click.option(
     "--ratio",
@@ -433,19 +344,14 @@ def free(**given: Any) -> None:
     " taken."
     " Default: 1.",
 )
-@click.option(
+@value(
     "--lead",
-    type=length,
-    metavar="LENGTH",
-    help="Set the travel per turn [m] of the screw or belt of a sliding drive.",
+    length,
+    "LENGTH",
+    "Set the travel per turn [m] of the screw or belt of a sliding drive.",
 )
-@click.option(
-    "--efficiency",
-    type=float,
-    default=1.0,
-    show_default=True,
-    metavar="SHARE",
-    help="Set the efficiency of the gearbox, from 0 to 1.",
+@value(
+    "--efficiency", float, "SHARE", "Set the efficiency of the gearbox, from 0 to 1.", default=1.0
 )
 @click.option(
     "--inertia",
@@ -459,12 +365,7 @@ def free(**given: Any) -> None:
     "Set the instants [s] over a whole cycle, both ends included; default: those of the case."
 )
 @over
-@click.option(
-    "--plot",
-    type=PATH,
-    metavar="FILE.png",
-    help="Draw torque over speed into this file, .png, .pdf or .svg.",
-)
+@file("--plot", "Draw torque over speed into this file, .png, .pdf or .svg.", metavar="FILE.png")
 def drive(**given: Any) -> None:
     """Choose the smallest motor that suits each drive of CASE.
 
@@ -477,26 +378,17 @@ def drive(**given: Any) -> None:
 
 @command()
 @click.argument("case", type=CASE)
-@click.option(
+@several(
     "--tolerance",
-    "within",
-    type=tolerance,
-    multiple=True,
+    "NAME=VALUE",
+    "Set the tolerance of a parameter, plus or minus this value [SI unit, unit or %]; repeatable.",
+    kind=tolerance,
+    into="within",
     required=True,
-    metavar="NAME=VALUE",
-    help="Set the tolerance of a parameter, plus or minus this value [SI unit, unit or %];"
-    " repeatable.",
 )
 @at_values
 @wanted("Compute these outputs, as in run; repeatable. Default: those of the case.")
-@click.option(
-    "--samples",
-    type=int,
-    default=SAMPLES,
-    show_default=True,
-    metavar="NUMBER",
-    help="Draw this number of designs at random.",
-)
+@value("--samples", int, "NUMBER", "Draw this number of designs at random.", default=SAMPLES)
 @backend(" designs")
 @table_file("Write the peaks as CSV, one row per quantity.")
 def tolerances(**given: Any) -> None:
@@ -513,20 +405,14 @@ def tolerances(**given: Any) -> None:
 @click.argument("case", type=CASE)
 @at_values
 @wanted()
-@click.option(
+@value(
     "--accuracy",
-    type=float,
-    metavar="ERROR",
-    help="Recommend the fastest method whose error, over the peak, is within this number.",
+    float,
+    "ERROR",
+    "Recommend the fastest method whose error, over the peak, is within this number.",
 )
-@click.option(
-    "--out", type=PATH, help="Write the numbers to this JSON file; default: <case>_trade.json here."
-)
-@click.option(
-    "--figure",
-    type=PATH,
-    help="Draw time over error into this file; default: <case>_trade.png here.",
-)
+@file("--out", "Write the numbers to this JSON file; default: <case>_trade.json here.")
+@file("--figure", "Draw time over error into this file; default: <case>_trade.png here.")
 def trade(**given: Any) -> None:
     """Measure time and error of each evaluation method on CASE.
 
@@ -540,75 +426,46 @@ def trade(**given: Any) -> None:
 @command()
 @click.argument("case", type=CASE)
 @click.argument("data", metavar="DATA.csv", type=PATH)
-@click.option(
-    "--unknown",
-    multiple=True,
-    metavar="NAME",
-    help="Find this parameter; repeatable. Default: all parameters of the case.",
+@several(
+    "--unknown", "NAME", "Find this parameter; repeatable. Default: all parameters of the case."
 )
 @settings_by("Set a known parameter, or the first value of an unknown one, as l=0.25; repeatable.")
-@click.option(
+@several(
     "--column",
-    "names",
-    type=tolerance,
-    multiple=True,
-    metavar="NAME=HEAD",
-    help="Read a drive's coordinate, or a force as effort:O, from the column of this head;"
-    " repeatable.",
+    "NAME=HEAD",
+    "Read a drive's coordinate, or a force as effort:O, from the column of this head; repeatable.",
+    kind=tolerance,
+    into="names",
 )
-@click.option(
+@several(
     "--noise",
-    type=place,
-    multiple=True,
-    metavar="NAME=NUMBER",
-    help="State the standard deviation of a column, in the unit of the file; repeatable.",
+    "NAME=NUMBER",
+    "State the standard deviation of a column, in the unit of the file; repeatable.",
+    kind=place,
 )
-@click.option(
+@several(
     "--prior",
-    type=place,
-    multiple=True,
-    metavar="NAME=NUMBER",
-    help="State how sure the first value of a parameter is, as a standard deviation; repeatable.",
+    "NAME=NUMBER",
+    "State how sure the first value of a parameter is, as a standard deviation; repeatable.",
+    kind=place,
 )
-@click.option(
-    "--counts-per-turn",
-    type=float,
-    metavar="NUMBER",
-    help="Set the number of counts of an encoder in one turn.",
-)
-@click.option("--robust", is_flag=True, help="Let outliers count less, by Huber's loss.")
-@click.option(
+@value("--counts-per-turn", float, "NUMBER", "Set the number of counts of an encoder in one turn.")
+@flag("--robust", "Let outliers count less, by Huber's loss.")
+@flag(
     "--consistent",
-    is_flag=True,
-    help="Find positive masses, inertias that a body can have, and parameters in their bounds.",
+    "Find positive masses, inertias that a body can have, and parameters in their bounds.",
 )
-@click.option(
+@value(
     "--cutoff",
-    type=float,
-    metavar="HZ",
-    help="Filter forces without delay; half the power is left at this frequency.",
+    float,
+    "HZ",
+    "Filter forces without delay; half the power is left at this frequency.",
 )
-@click.option(
-    "--trim",
-    type=float,
-    default=0.0,
-    show_default=True,
-    metavar="SECONDS",
-    help="Leave out this time at both ends of the record.",
-)
-@click.option(
-    "--validate",
-    type=PATH,
-    metavar="OTHER.csv",
-    help="Compare this other record with the model that was found.",
-)
-@click.option("--out", type=PATH, help="Write to this HDF5 file; default: <case>_identified.h5.")
-@click.option(
-    "--figure",
-    type=PATH,
-    metavar="FILE",
-    help="Draw measured and model to this .png, .pdf or .svg.",
-)
+@value("--trim", float, "SECONDS", "Leave out this time at both ends of the record.", default=0.0)
+@file("--validate", "Compare this other record with the model that was found.", metavar="OTHER.csv")
+@file("--out", "Write to this HDF5 file; default: <case>_identified.h5.")
+@file("--figure", "Draw measured and model to this .png, .pdf or .svg.", metavar="FILE")
+@file("--report", "Write a page with all tables and pictures.", metavar="FILE.html")
 def identify(**given: Any) -> None:
     """Find parameters of CASE from motion and forces that were measured.
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 from ..base.publish import check_writable
 from ..case import load_case
 from ..identification import Comparison, Identification, identify, read_measurements
-from ..identification.file import plot_identification, save_identification
+from ..identification.file import save_identification
+from ..identification.page import check_page, report_identification
+from ..identification.plot import plot_identification
+from ..shapes.pictures import check_picture
 from .echo import echo
 from .options import parameters
 
@@ -30,20 +33,21 @@ def identify_command(
     validate: Path | None,
     out: Path | None,
     figure: Path | None,
+    report: Path | None,
 ) -> None:
     """See :func:`.design_commands.identify`."""
     loaded = load_case(case)
     out = out or Path(f"{loaded.name}_identified.h5")
     check_writable(out, hdf5=True)
+    if figure is not None:
+        check_picture(figure)
+    if report is not None:
+        check_page(report)
 
-    def read(path: Path) -> Comparison:
-        return found.validate(
-            read_measurements(path, names=dict(names), counts_per_turn=counts_per_turn), trim
-        )
-
-    record = read_measurements(
-        data, names=dict(names), noise=dict(noise), counts_per_turn=counts_per_turn
+    read = partial(
+        read_measurements, names=dict(names), noise=dict(noise), counts_per_turn=counts_per_turn
     )
+    record, other = read(data), None if validate is None else read(validate)
     found = identify(
         loaded.scene,
         record,
@@ -55,7 +59,7 @@ def identify_command(
         cutoff=cutoff,
         trim=trim,
     )
-    second = None if validate is None else read(validate)
+    second = None if other is None else found.validate(other, trim)
     for line in _lines(found, second):
         echo(line)
     save_identification(found, out, second)
@@ -63,6 +67,9 @@ def identify_command(
     if figure is not None:
         plot_identification(second or found.comparison, figure)
         echo(f"wrote {figure}")
+    if report is not None:
+        report_identification(found, report, second)
+        echo(f"wrote {report}")
     echo(" ".join(f"--set {word}" for word in found.setting.split()))
 
 
@@ -76,17 +83,8 @@ def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:
     for one in found.base:
         numbers = f"{one.value:>12.6g} {one.error:>10.3g} {one.t:>8.3g}"
         yield f"  {one.words:<{width}} {numbers} {one.unit}"
-    for name, others in found.nonlinear.items():
-        yield f"  forces are not linear in {name}, with {', '.join(others)}: found by iteration"
-    if found.absent:
-        yield f"  nothing measured depends on {', '.join(found.absent)}"
-    for words in found.unexcited:
-        yield f"  this motion does not determine {words}; other speeds and accelerations do"
-    for drive, cutoff in found.cutoffs.items():
-        if cutoff < math.inf:
-            yield f"  {drive} is smoothed, half the power at {cutoff:.3g} Hz"
-    if found.cutoff is not None:
-        yield f"  forces are filtered without delay, half the power at {found.cutoff:.3g} Hz"
+    for note in found.notes:
+        yield f"  {note}"
     for title, compared in (("record", found.comparison), ("validation", second)):
         if compared is not None:
             for name, share in compared.relative.items():

@@ -15,8 +15,7 @@ from ..base.vocabulary import Backend
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..errors import DeclarationError
-from ..figures.front import draw_front
-from ..figures.optimum import draw_optimum
+from ..figures.optimum import draw_front, draw_optimum
 from ..shapes.pictures import PICTURES
 from ..studies.optimise import Front, Optimum
 from ..studies.optimise import optimise as search

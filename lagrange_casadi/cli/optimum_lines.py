@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 
 from ..studies.optimise import Front, Optimum
 
+_RELAXED = " per SI unit by which it is relaxed"
+
 
 def optimum_lines(found: Optimum) -> Iterator[str]:
     """Lines of a search's result."""
@@ -23,13 +25,13 @@ def optimum_lines(found: Optimum) -> Iterator[str]:
         )
         relaxed = ""
         if limit.active and found.feasible:
-            relaxed = f", relaxed by one unit it gains {limit.multiplier:.4g} {found.unit}"
+            relaxed = f"; the objective falls by {limit.multiplier:.4g} {found.unit}{_RELAXED}"
         yield f"  {limit.constraint}: {limit.value:.8g}, {kept}{relaxed}"
     for name, multiplier in found.bounds.items():
         if multiplier and found.feasible:
             end = "least" if multiplier < 0.0 else "largest"
-            gain = f"{abs(multiplier):.4g} {found.unit}"
-            yield f"  {name} is at its {end} value, relaxed by one unit it gains {gain}"
+            gain = f"{abs(multiplier):.4g} {found.unit}{_RELAXED}"
+            yield f"  {name} is at its {end} value; the objective falls by {gain}"
     angle = (
         ""
         if math.isnan(found.transmission)

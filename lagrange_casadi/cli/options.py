@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import click
 
@@ -30,6 +30,8 @@ BOUNDS = "NAME=LEAST:LARGEST"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 Number = TypeVar("Number")
+Kind: TypeAlias = "click.ParamType[Any] | Callable[[str], object]"
+"""Reader of an option's value."""
 
 
 class _Path(click.Path):
@@ -265,39 +267,75 @@ def _together(*options: Option) -> Option:
     return decorate
 
 
+def value(
+    name: str, kind: Kind, metavar: str, says: str, *, default: float | None = None
+) -> Option:
+    """A value of a kind, which help shows if it has a default."""
+    shown = default is not None
+    return click.option(
+        name, type=kind, metavar=metavar, default=default, show_default=shown, help=says
+    )
+
+
+def several(
+    name: str,
+    metavar: str,
+    says: str,
+    *,
+    kind: Kind | None = None,
+    into: str = "",
+    required: bool = False,
+) -> Option:
+    """Values of an option that is repeatable, for the argument ``into``."""
+    names = [name, into] if into else [name]
+    return click.option(
+        *names, type=kind, multiple=True, required=required, metavar=metavar, help=says
+    )
+
+
+def choice(name: str, words: Sequence[str], default: str, says: str) -> Option:
+    """One of some words."""
+    return click.option(
+        name, type=click.Choice(words), default=default, show_default=True, help=says
+    )
+
+
+def flag(name: str, says: str) -> Option:
+    """A switch."""
+    return click.option(name, is_flag=True, help=says)
+
+
+def file(name: str, says: str, *, metavar: str | None = None, required: bool = False) -> Option:
+    """The path of a file or folder."""
+    return click.option(name, type=PATH, metavar=metavar, required=required, help=says)
+
+
 def backend(designs: str = "") -> Option:
     """Backend of an evaluation, or of ``" designs"``."""
-    return click.option(
+    return choice(
         "--backend",
-        type=click.Choice(BACKENDS),
-        default="auto",
-        show_default=True,
-        help=f"Evaluate{designs} with SIMD in C++ (lanes), with C, or with CasADi's virtual machine"
+        BACKENDS,
+        "auto",
+        f"Evaluate{designs} with SIMD in C++ (lanes), with C, or with CasADi's virtual machine"
         " (vm).",
     )
 
 
-_PRECISION = click.option(
-    "--precision",
-    type=click.Choice(PRECISIONS),
-    default="double",
-    show_default=True,
-    help="Compute in double or in single precision.",
+_PRECISION = choice(
+    "--precision", PRECISIONS, "double", "Compute in double or in single precision."
 )
-_NEWTON = click.option(
+_NEWTON = value(
     "--newton",
-    type=int,
-    metavar="STEPS",
-    help="Close iterated loops by this number of Newton steps from the instant before; default:"
-    " until they"
-    " close.",
+    int,
+    "STEPS",
+    "Close iterated loops by this number of Newton steps from the instant before; default: until"
+    " they close.",
 )
-_TABLE = click.option(
+_TABLE = value(
     "--table",
-    type=table,
-    metavar="NODES|ACCURACY",
-    help="Interpolate outputs in a table over one turn, with this number of nodes or this"
-    " accuracy.",
+    table,
+    "NODES|ACCURACY",
+    "Interpolate outputs in a table over one turn, with this number of nodes or this accuracy.",
 )
 _FLAGS = click.option(
     "--flags",
@@ -316,22 +354,19 @@ def settings_by(
     says: str = "Set a parameter, in SI units or with a unit, as l=0.25 or phi=30deg; repeatable.",
 ) -> Option:
     """Values of parameters: ``settings``, to be read by :func:`parameters`."""
-    return click.option(
-        "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help=says
-    )
+    return several("--set", "NAME=VALUE", says, kind=setting, into="settings")
 
 
 def instants(
     says: str = "Set the instants [s], both ends included; default: those of the case.",
 ) -> Option:
     """Instants by their times: ``t``."""
-    return click.option("--t", type=even_points, metavar=EVEN_POINTS, help=says)
+    return value("--t", even_points, EVEN_POINTS, says)
 
 
 def wanted(
     says: str = "Compute these outputs: effort, reaction:JOINT, section:LINK, motion, a kind such"
-    " as "
-    "section, or all; repeatable. Default: those of the case.",
+    " as section, or all; repeatable. Default: those of the case.",
 ) -> Option:
     """Names of outputs: ``want``."""
     return click.option("--want", multiple=True, callback=separated, metavar="OUTPUT", help=says)
@@ -365,15 +400,12 @@ def table_file(says: str) -> Option:
     return decorate
 
 
-over = click.option(
+over = value(
     "--over",
-    type=steps_over,
-    metavar=OVER,
-    help=(
-        "Set the instants as equal steps of a driven joint's coordinate [rad or m, or with a unit,"
-        " as"
-        " 720deg], in place of --t."
-    ),
+    steps_over,
+    OVER,
+    "Set the instants as equal steps of a driven joint's coordinate [rad or m, or with a unit, as"
+    " 720deg], in place of --t.",
 )
 """Instants by a drive."""
 
@@ -384,23 +416,17 @@ at_values = _together(settings_by(), instants(), over)
 def resumable(what: str) -> Option:
     """Continuation of ``what`` may have been stopped, or a new start."""
     return _together(
-        click.option(
-            "--resume",
-            is_flag=True,
-            help=f"Continue a {what} that was stopped; start it if there is none.",
-        ),
-        click.option("--force", is_flag=True, help="Start anew and replace the file."),
+        flag("--resume", f"Continue a {what} that was stopped; start it if there is none."),
+        flag("--force", "Start anew and replace the file."),
     )
 
 
 def conditions(rows: str) -> Option:
     """Conditions on ``rows``: ``where``."""
-    return click.option(
+    return several(
         "--where",
-        multiple=True,
-        metavar="NAME<NUMBER",
-        help=f"Choose only {rows} that satisfy this: <, <=, >, >=, == or !=, in SI units;"
-        " repeatable.",
+        "NAME<NUMBER",
+        f"Choose only {rows} that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
     )
 
 
@@ -414,4 +440,4 @@ arithmetic = _together(_PRECISION, _NEWTON, _TABLE)
 """Options that do not concern the compiler."""
 
 
-svg = click.option("--svg", is_flag=True, help="Draw figures as SVG, in place of PNG.")
+svg = flag("--svg", "Draw figures as SVG, in place of PNG.")

@@ -19,6 +19,9 @@ from ..instants.statistics import Statistics
 _ROUNDING = 5e-7
 """Errors below this share of the largest value of their unit are rounding."""
 _DIGITS = 6
+NOT_FOUND = "; the peak between the instants was not found, use more instants"
+"""End of the line of a peak of which only the ``least`` size is known."""
+
 _INDETERMINATE = "indeterminate"
 _CARDS = {
     ("effort", ""): "effort",
@@ -140,7 +143,7 @@ class Rows:
         return scales
 
     def _nothing(self, row: Row) -> bool:
-        """Tell what is zero but for rounding, or indeterminate."""
+        """Mark what is zero within rounding, or indeterminate."""
         return readable(_size(row.peak), row.error, self._scales[row.unit]) == "0"
 
     def _first(self, count: int) -> tuple[Row, ...]:
@@ -163,7 +166,7 @@ class Rows:
         return tuple(row for row in self.rows if id(row) in chosen)
 
     def _component(self, output: Output) -> bool:
-        """Tell a component of a resultant from a quantity of its own."""
+        """Distinguish a component of a resultant from a quantity of its own."""
         table = self.solution.table
         if output.group == "reaction":
             planar_moment = output.member == "mz" and "moment" not in table.reactions
@@ -226,7 +229,7 @@ def shown(peak: Peak, error: float | None, scale: float) -> str:
 
 
 def _matters(value: str, error: float) -> bool:
-    """Tell whether an error reaches the last digit shown of a value."""
+    """Return whether an error reaches the last digit shown of a value."""
     size = abs(float(value))
     if not (math.isfinite(error) and math.isfinite(size)):
         return False
@@ -241,11 +244,7 @@ def peak_line(solution: Solution, peak: Peak, scale: float | None = None, width:
         where = f"{solution.over.shown(peak.over)}, {where}"
     error = error_of(solution, peak.name)
     value = shown(peak, error, _size(peak) if scale is None else scale)
-    more = (
-        ""
-        if peak.least is None
-        else ("; the peak between the instants was not found, use more instants")
-    )
+    more = "" if peak.least is None else NOT_FOUND
     return f"  {peak.name:<{width}} {value:>12} {peak.unit:<4} at {where}{more}"
 
 

@@ -148,7 +148,7 @@ def _evaluated(loaded: Case, asked: Asked, given: Mapping[str, float]) -> Soluti
         t=asked.t,
         over=asked.over,
         wanted=with_motion(asked.want or loaded.scene.wanted),
-        # What a live page computes anew is what equilibrium tells.
+        # What a live page computes anew is what equilibrium determines.
         elastic=False if asked.live else None,
     )
 

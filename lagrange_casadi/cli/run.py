@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Iterator, Sequence
-from contextlib import nullcontext
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import nullcontext, suppress
 from functools import partial
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import click
 import numpy as np
 
 from ..base.publish import check_writable
+from ..base.quantities import AVERAGED, Output
 from ..base.streams import is_standard_output
 from ..base.table_file import TableFile
 from ..base.vocabulary import Backend, Precision
@@ -22,24 +24,25 @@ from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
 from ..declare.times import Over, Timing
 from ..declare.wanted_names import among
-from ..errors import CertificateError
+from ..elastic.vibration import vibration
+from ..errors import CertificateError, DeclarationError
 from ..instants.frames import TIME, columns
+from ..instants.ordering import ordered
 from ..instants.solution import Solution
+from ..sensitivity.peaks import PeakKind
 from ..shapes.index import MANIFEST
 from ..shapes.kept import dump_specs
 from ..store.runs import check_target, save
 from ..studies.evaluate import evaluate
 from ..studies.peaks import forces, refine, resultants
+from ..studies.sensitivities import Changes, sensitivities
 from ..verification.certificate import failure, summary
 from .drawing import draw_with_progress
 from .echo import echo
-from .elastic_lines import elastic_card, elastic_lines
 from .options import parameters
-from .replaced import figures_in, replaced_lines
-from .report import Rows
+from .report import Rows, card, ratio
 from .rows import rows_of
-from .slope_lines import slope_lines
-from .strength_lines import not_evaluated_lines, strength_cards, strength_lines
+from .strength_lines import evaluated, not_evaluated_lines, strength_cards, strength_lines, worst
 
 _SCREEN = 39
 """Lines of a screen, but for that of the next prompt."""
@@ -195,3 +198,118 @@ def _notes(scene: Scene, solution: Solution, timing: Timing) -> Iterator[str]:
         scene.prescribed, kinds_of_described(solution.description), timing, values
     )
     yield from (f"note: {note}" for note in (*solution.notes, turning) if note)
+
+
+_FROM = {"ends": "from the line between its ends", "base": "from its axis at the base"}
+
+
+def elastic_lines(solution: Solution, wanted: Sequence[str]) -> Iterator[str]:
+    """Write the deflections that are wanted of links that have a beam, or why there are none."""
+    if links := among("deflection", beams_of(solution.description), wanted):
+        yield "deflections across the links, largest in size:"
+        for link in links:
+            yield from evaluated(link, lambda name: list(_lines(solution, name)))
+
+
+def elastic_card(solution: Solution, wanted: Sequence[str]) -> Iterator[str]:
+    """Write the largest deflection that is wanted."""
+
+    def deflection(link: str) -> tuple[float, str]:
+        line = next(_lines(solution, link))
+        return -solution.deflection(link).peak().value, card("deflection", line)
+
+    yield from worst(among("deflection", beams_of(solution.description), wanted), deflection)
+
+
+def _lines(solution: Solution, link: str) -> Iterator[str]:
+    found = solution.deflection(link)
+    peak = found.peak()
+    where = f"t = {peak.t:.5g} s, xi/l = {ratio(peak.xi)}, {_FROM[found.against]}"
+    yield f"  {f'deflection:{link}':<28} {peak.value * 1e3 + 0.0:>12.6g} mm   at {where}"
+    yield f"    {vibration(solution, link).words}"
+
+
+_WIDTH = 13
+_WORDS = {
+    PeakKind.END: "at an end of the instants",
+    PeakKind.SWITCH: "at a kink or a jump",
+    PeakKind.LINK_END: "at an end of the link",
+    PeakKind.UNKNOWN: "at a kink or a jump of unknown origin",
+}
+
+
+def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[str]:
+    """The derivatives of the peaks and means that a run prints, if sensitivities were wanted: a
+    column for each parameter.
+    """
+    by = solution.sensitivities.parameters
+    names = [str(output) for output in ordered(solution) if solution.determined(output)]
+    if not by or not names:
+        return
+    try:
+        found = sensitivities(scene, solution, backend=backend)
+        changes = found.peaks(names)
+    except DeclarationError as error:  # of a table that is very rough
+        yield f"derivatives of peaks are not available: {error}"
+        return
+    units = {name: solution.description["parameters"][name]["unit"] for name in by}
+    yield "derivatives of peaks, between the instants too, per unit of"
+    yield f"{'':<30}" + " ".join(f"{f'{name} [{units[name]}]':>{_WIDTH}}" for name in by)
+    for name, change in zip(names, changes, strict=True):
+        yield _line(name, change, by)
+    averaged = [name for name in names if Output.of(name).group in AVERAGED]
+    if averaged:
+        yield "derivatives of means over time and of root mean squares"
+    for name in averaged:
+        yield _line(f"mean:{name}", found.mean(name), by)
+        yield _line(f"rms:{name}", found.rms(name), by)
+
+
+def _line(name: str, change: Changes, by: tuple[str, ...]) -> str:
+    cells = [
+        f"{slope + 0.0:.6g}" if math.isfinite(slope) else "none"
+        for slope in (change.slopes[parameter] for parameter in by)
+    ]
+    where = _WORDS.get(change.kind) if change.kind is not None else None
+    if change.tied:
+        where = f"{where + ', ' if where else ''}equally large elsewhere, with other derivatives"
+    return (
+        f"  {name:<28}"
+        + " ".join(f"{cell:>{_WIDTH}}" for cell in cells)
+        + (f"  {where}" if where else "")
+    )
+
+
+_LISTED = 6
+
+
+def figures_in(folder: Path | None) -> set[str]:
+    """The names of the pictures in a folder; none where there is no folder, or none that can be
+    read.
+    """
+    with suppress(OSError):
+        files = folder.iterdir() if folder else ()
+        return {path.name for path in files if path.suffix in (".png", ".svg")}
+    return set()
+
+
+def replaced_lines(
+    file: Path, replaced: bool, folder: Path | None, before: Collection[str], drawn: Collection[str]
+) -> Iterator[str]:
+    """Say whether the file was replaced, how many figures were, and which ones ``before`` in the
+    folder are older than the file.
+    """
+    over = [name for name in before if name in drawn]
+    what = [str(file)] if replaced else []
+    if over:
+        what.append(f"{len(over)} figure{'s' if len(over) > 1 else ''} in {folder}/")
+    if what:
+        yield f"replaced {' and '.join(what)}"
+    older = sorted(set(before) - set(drawn))
+    if older:
+        more = f" and {len(older) - _LISTED} more" if len(older) > _LISTED else ""
+        redraw = "" if drawn else f"; lagrange-casadi plot {file} --out {folder} draws them anew"
+        yield (
+            f"note: figures in {folder}/ that are older than {file}:"
+            f" {', '.join(older[:_LISTED])}{more}{redraw}"
+        )

@@ -33,7 +33,7 @@ class Workers:
     def go(
         self, solver: Solver, tasks: Sequence[SearchTask], progress: Progress
     ) -> Iterator[tuple[int, SearchRun]]:
-        """The ways of errands, as they are done. What was not done after an interrupt is not told.
+        """Runs of tasks, as they are done; those that an interrupt stopped are left out.
 
         Raises :class:`ClusterError` where the cluster cannot serve.
         """
@@ -67,7 +67,7 @@ def _descend(sent: bytes, words: Mapping[str, Json], task: SearchTask) -> Search
             solver = _built(sent)
             found = difference(words, solver.question.words(solver.engine))
             if found:
-                raise ClusterError(f"a worker would not give the same numbers: {found} there")
+                raise ClusterError(f"a worker would give other numbers: {found} there")
             run = solver.descend(task, lambda *_: None)
     except ClusterError:
         raise

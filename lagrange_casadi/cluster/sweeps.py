@@ -25,8 +25,7 @@ from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_li
 from ..studies.sweep.blocks import Queue
 from ..studies.sweep.columns import Harvest
 from ..studies.sweep.plan import Plan, Task, difference, signature
-from ..studies.sweep.thread_pool import ThreadPool
-from ..studies.sweep.workers import PATIENCE, PULSE, Blocks
+from ..studies.sweep.workers import PATIENCE, PULSE, Blocks, ThreadPool
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -39,7 +38,7 @@ _PATIENCE = 10.0
 _ADDRESS = re.compile(r"(tcp|tls|ws|wss|ucx)://\S+:\d{1,5}/?")
 _GLANCE, _ROLL, _PROBED, _GOODBYE = 2e-3, 1.0, 3.0, 0.3
 """Seconds between looks for a block, and between questions who the workers are; in which these must
-say what they have; and in which the scheduler is told that all is over."""
+say what they have; and in which the scheduler learns that all is over."""
 
 _PROBE = "__import__('importlib.util').util.find_spec('lagrange_casadi') is not None"
 """Question to a worker, in words that need nothing of this package."""
@@ -161,7 +160,7 @@ class Cluster:
             why = f"nothing came from there within {_PATIENCE:g} s"
         else:
             known = isinstance(error, (OSError, TypeError, ValueError, RuntimeError))
-            why = one_line(error) if known else "what is there says nothing that a scheduler says"
+            why = one_line(error) if known else "what answers there is no scheduler"
         raise ClusterError(f"no Dask scheduler answers at {self.address}: {why}")
 
     def _result(self, coming: Any, roll: _Roll, start: int, stop: int) -> Any:
@@ -349,7 +348,7 @@ def _evaluate(
             program, harvest = _built(sent, task)
         found = difference(identity, signature(program, task, harvest.engine.provenance))
         if found:
-            raise ClusterError(f"a worker would not give the same numbers: {found} there")
+            raise ClusterError(f"a worker would give other numbers: {found} there")
         return harvest.chunks(p, capacity)
     except ClusterError:
         raise

@@ -33,7 +33,7 @@ static casadi_int row(casadi_int i, long long every) {{
 
 LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
   casadi_int i, j, k, of;
-  double lane[{given} + 1][LANES], told[{found}][LANES];
+  double lane[{given} + 1][LANES], rows[{found}][LANES];
   casadi_real at[{given} + 1], y[{found}];
   const casadi_real* arg[{many}];
   casadi_real* res[1];
@@ -48,10 +48,10 @@ LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
     }}
     memcpy(at, lane, sizeof lane);
     at_once(arg, res);
-    memcpy(told, y, sizeof told);
+    memcpy(rows, y, sizeof rows);
     for (j = 0; j < LANES; ++j) {{
       of = i + j < call->n ? i + j : call->n - 1;
-      for (k = 0; k < {found}; ++k) call->found[of*{found} + k] = told[k][j];{cleared}
+      for (k = 0; k < {found}; ++k) call->found[of*{found} + k] = rows[k][j];{cleared}
     }}
   }}
 }}

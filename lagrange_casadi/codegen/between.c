@@ -1,4 +1,4 @@
-/* What curves may do between equal steps of time, told by their values at them: how far they go, and where they may do anything. */
+/* What curves may do between equal steps of time, judged by their values at them: how far they go, and where they may do anything. */
 /* What bends a row at a value downwards. */
 static search_real search_bend(const search_real* y) { return 2*y[0] - y[-1] - y[1]; }
 
@@ -49,7 +49,7 @@ static search_real search_furthest(const search_real* row, long long i, long lon
 static search_real search_floor(search_real x) { return x - x == 0 ? (search_real) floor((double) x) : x; }
 
 /* How many kinks one of the watched has in a step, 2 for more; or SEARCH_MANY where it may do anything. Unless it may have a kink
-   itself there, as bent tells, one that bends little beside how far it goes stays between its ends. */
+   itself there, as bent says, one that bends little beside how far it goes stays between its ends. */
 #define SEARCH_MANY 100
 #define SEARCH_NUMBERED(kind) ((kind) == SEARCH_IS_SWITCH || (kind) == SEARCH_IS_KNOT)
 static int search_kinks(const search_real* row, long long i, long long n, int kind, const search_real* at, int count, double step,
@@ -132,7 +132,7 @@ static int search_is_sharp(search_real* row, long long n, int kind, double step)
   return 0;
 }
 
-/* Tell in which steps of a panel something may hide; inside a step between instants, kinks of the motion are counted too. In the
+/* Find in which steps of a panel something may hide; inside a step between instants, kinks of the motion are counted too. In the
    finest steps rounding makes kinks, where what is watched is nearly zero, and poles alone hide more. */
 static void search_hide(const search_now* now, const search_panel* panel, int depth) {
   const lagrange_casadi_curves* curves = now->curves;

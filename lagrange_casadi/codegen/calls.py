@@ -28,7 +28,7 @@ class Call:
     """A struct of C: its ``name``, and the C type of each member.
 
     A type is ``long long``, ``int``, ``double`` or a pointer; ``real`` in it stands for a floating
-    type that :meth:`text` is told.
+    type that :meth:`text` is given.
     """
 
     name: str

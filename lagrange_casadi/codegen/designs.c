@@ -172,7 +172,7 @@ static int designs_bind(designs_now* now) {
   return near;
 }
 
-/* The first rule that each of a pack of instants breaks, by number, or zero; the pack begins at i, near is what designs_bind tells. */
+/* The first rule that each of a pack of instants breaks, by number, or zero; the pack begins at i, near is what designs_bind sets. */
 LANES_INLINE casadi_real designs_broken(const designs_now* now, int near, casadi_int i) {
   casadi_real seen[4][SCENE_SOME(DESIGNS_BOUNDS)], beside[SCENE_SOME(DESIGNS_BOUNDS)], iterated = (lanes_real) 0, rule;
   lanes_real lane[LANES];
@@ -232,7 +232,7 @@ static int designs_refused(designs_now* now) {
   return SCENE_OK;
 }
 
-/* Whether equilibrium leaves open, at any instant, what a check tells of. */
+/* Whether equilibrium leaves open, at any instant, what a check is about. */
 static int designs_is_open(const designs_now* now, int check) {
   const lanes_real *row = designs_row(now, DESIGNS_CHECKED + check), limit = designs_lane(now->matter + DESIGNS_LIMITS + check, 0);
   casadi_int i;
@@ -370,7 +370,7 @@ static void designs_timed(designs_now* now, const double* t) {
    none where value is NULL; these ask for instants in equal steps. tops, unless it is NULL, becomes the local peaks of quantities that
    way and share ask of the search. Where error is not NULL, peaks are
    those at the instants, and error becomes how much larger each may be between them. history, unless it is NULL, becomes outputs by instants, iterated likewise iterated coordinates; a
-   design without a result leaves its status, and NaN. bent tells after which instants the motion bends more than they show, its rows
+   design without a result leaves its status, and NaN. bent says after which instants the motion bends more than they show, its rows
    are bent_apart values apart. The room is rows of stride values, of times, iterated coordinates, curves, their places, what is
    checked and what is watched, all zero; of the status stride integers that are zero, and of hiding twice as many. find searches for
    peaks, by a search of which tables and room are set. */

@@ -13,6 +13,7 @@ from importlib import resources
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.status import Status
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
@@ -163,11 +164,11 @@ def hoisted(
     inputs = instant.sx_in()
     out = instant(*inputs) if rows is None else instant(*inputs)[list(rows)]
     rest, symbols, constants = ca.extract_parametric(out, inputs[-1], {"extract_trivial": True})
-    c = ca.vertcat(ca.SX(0, 1), *symbols)
+    c = column(symbols)
     hoisted = ca.Function(
         "constants_of",
         [inputs[-1]],
-        [ca.densify(ca.vertcat(ca.SX(0, 1), *constants))],
+        [ca.densify(column(constants))],
         {"cse": True},
     )
     return hoisted, ca.Function("instant", [*inputs[:-1], c], [ca.densify(rest)], {"cse": True})

@@ -16,7 +16,7 @@ typedef struct {
 } search_fit;
 
 /* A value of a panel beside which a curve may rise: where to look, and what is expected there: its size, and the size's slope and
-   curve by steps of time. What a polynomial misses there bends its slope by steep times that; its sixth difference tells how rough it
+   curve by steps of time. What a polynomial misses there bends its slope by steep times that; its sixth difference shows how rough it
    is. kink_t and kink_size are the times at which to look for a kink, if any, and the sizes expected there. */
 typedef struct {
   int curve, closed, again, kinked;
@@ -68,7 +68,7 @@ static long long search_window(long long j, long long count) {
   return j < 3 ? 0 : j > count - 4 ? count - SEARCH_FIT : j - 3;
 }
 
-/* Begin at value j of count, around which the first of the seven is told; an end keeps a little inside. */
+/* Begin at value j of count, around which the first of the seven is given; an end keeps a little inside. */
 static void search_begin(search_fit* fit, int lane, long long j, long long first, long long count) {
   const search_real from = (search_real) (j - first - 3), off = (search_real) 1e-5;
   fit->x[lane] = from;

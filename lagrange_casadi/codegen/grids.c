@@ -54,7 +54,7 @@ static inline __attribute__((always_inline)) void combine(long long many, long l
   }
 }
 
-/* What acts at a station is felt by the sections whose edge it is beyond: see edge in equations/section_function.py. */
+/* What acts at a load point is carried by the sections whose edge it is beyond: see edge in equations/section_function.py. */
 static void act(long long n, double station, double constant, double slope, const double* u, const double* beyond,
                 double* restrict row) {
   long long j;
@@ -101,12 +101,11 @@ static void whole(long long many, long long n, const double* const* columns, con
   }
 }
 
-/* out[i*k + j], n rows of k ratios u. columns[m][i] are the coefficients of basis[m*stride + j], and acting[3*s], [3*s + 1] and
-   [3*s + 2] the station, the constant and the slope of load s. With two planes there are so many coefficients and loads of each, one
-   plane's after the other's, and out is the size of both. */
-__attribute__((visibility("default")))
-void lagrange_casadi_grid(const lagrange_casadi_grid_call* call) {
-  const long long n = call->n, k = call->k;
+/* out[i*k + j], rows of k ratios u for the instants from one to before another. columns[m][i] are the coefficients of
+   basis[m*stride + j], and acting[3*s], [3*s + 1] and [3*s + 2] the station, the constant and the slope of load s. With two planes
+   there are so many coefficients and loads of each, one plane's after the other's, and out is the size of both. */
+static void grid(const lagrange_casadi_grid_call* call, long long from, long long to) {
+  const long long k = call->k;
   const int planes = call->planes, terms = call->terms, loads = call->loads;
   const double *const *columns = call->columns, *const *acting = call->acting, *u = call->u, *beyond = call->beyond;
   double* out = call->out;
@@ -118,8 +117,8 @@ void lagrange_casadi_grid(const lagrange_casadi_grid_call* call) {
   for (start = 0; start < k; start += width) {
     const long long size = k - start < width ? k - start : width;
     for (m = 0; m < terms; ++m) along[m] = call->basis + m*call->stride + start;
-    for (first = 0; first < n; first += rows) {
-      const long long many = n - first < rows ? n - first : rows;
+    for (first = from; first < to; first += rows) {
+      const long long many = to - first < rows ? to - first : rows;
       double* here = call->streams ? tile : out + first*k + start;
       whole(many, size, columns, along, planes, terms, acting, loads, first, u + start, beyond + start, here, other);
       if (call->streams) stream(out + first*k + start, tile, many*size);
@@ -128,6 +127,13 @@ void lagrange_casadi_grid(const lagrange_casadi_grid_call* call) {
 #ifdef PAST
   if (call->streams) _mm_sfence();
 #endif
+}
+
+/* Some grids, as many as there are calls. */
+__attribute__((visibility("default")))
+void lagrange_casadi_grids(const lagrange_casadi_grid_call* calls, long long many, long long from, long long to) {
+  long long i;
+  for (i = 0; i < many; ++i) grid(calls + i, from, to);
 }
 
 /* out[d*k + j], of so many designs: over n instants, what is largest in size at each of k ratios u, with its sign; of sizes that are

@@ -27,7 +27,7 @@ typedef struct {
 
 enum { SEARCH_HIDES = 1, SEARCH_DONE = 2 };
 
-/* A search. left are panels that it may still take, hidden steps in which something may hide; none tells which
+/* A search. left are panels that it may still take, hidden steps in which something may hide; none says which
    curves are no number at any instant. inner are rows of panels within each other, columns what such panels
    have at their ends, found what was evaluated last. */
 typedef struct {
@@ -72,7 +72,7 @@ static void search_count(const search_now* now, int curve, search_real* row, lon
   for (i = 0; i < many; ++i) row[i] = way*row[i] - base;
 }
 
-/* Evaluate at up to as many times as go together, into rows that are so far apart. need tells links by bits. */
+/* Evaluate at up to as many times as go together, into rows that are so far apart. need names links by bits. */
 static void search_evaluate(search_now* now, const double* t, int many, unsigned long long need, search_real* rows, long long apart) {
   int k;
   if (now->stopped || now->call->at(now->call->of, many, t, need, rows, apart)) now->stopped = 1;

@@ -77,12 +77,12 @@ LANES_INLINE lanes_pack operator*(lanes_pack a, lanes_pack b) { return a.v * b.v
 LANES_INLINE lanes_pack operator/(lanes_pack a, lanes_pack b) { return a.v / b.v; }
 LANES_INLINE lanes_pack operator-(lanes_pack a) { return -a.v; }
 
-/* The bits of a where told, else those of b. */
+/* The bits of a if chosen, else those of b. */
 LANES_INLINE lanes_pack lanes_bits(lanes_mask where, lanes_pack a, lanes_pack b) {
   return (lanes_vector)((where & (lanes_mask)a.v) | (~where & (lanes_mask)b.v));
 }
 
-/* The lanes of a where told, else those of b; of a comparison gcc makes one instruction so, of the above three. */
+/* The lanes of a if chosen, else those of b; of a comparison gcc makes one instruction so, of the above three. */
 #ifdef __clang__
 LANES_INLINE lanes_pack lanes_pick(lanes_mask where, lanes_pack a, lanes_pack b) { return lanes_bits(where, a, b); }
 #else

@@ -114,23 +114,42 @@ class Library:
         :meth:`follow` does.
 
         ``t`` is (n,), in single precision (2, n): rounded, and the rest; ``p`` likewise. All rows
-        are equally far apart. ``status`` (n) tells where loops do not close, and what is not
+        are equally far apart. ``status`` (n) says where loops do not close, and what is not
         finite. The bytes do not depend on ``threads``.
         """
-        assert t.ndim == 1 or t.strides == out.strides
+        self.evaluation(t, p, guess, z, out, status, threads)()
+
+    def evaluation(
+        self,
+        t: Array,
+        p: Array,
+        guess: Array,
+        z: Array,
+        out: Array,
+        status: Status,
+        threads: int = 1,
+    ) -> Callable[[], None]:
+        """Return a function that does what :meth:`evaluate` does, from the contents of the arrays
+        when it is called.
+        """
+        assert t.ndim == 1 or t.strides == out.strides or not t.size
         assert not z.size or z.strides == out.strides
         n = t.shape[-1]
         call, entry = _instants(t, p, guess, z, out, status), self.entries[EVALUATE]
-        self._follow(call, guess, status)
         share = max(_CUT, self.share())
         shares = max(1, min(threads, n // share))
         # Between calls an interrupt comes through.
         pieces = min(shares * _DISTRIBUTED, 2 * n // share) if shares > 1 else 1
         size = min(_LONGEST * share // _CUT * _CUT, -(-n // (pieces * _CUT)) * _CUT)
-        if size >= n:
-            entry(call, 0, n)
-            return
-        in_threads(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
+
+        def evaluate(_kept: object = (t, p, z, out)) -> None:
+            self._follow(call, guess, status)
+            if size >= n:
+                entry(call, 0, n)
+                return
+            in_threads(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
+
+        return evaluate
 
     def _follow(self, call: ctypes.Structure, guess: Array, status: Status) -> None:
         if not guess.size:
@@ -183,10 +202,10 @@ class Library:
         contents of the arrays when it is called.
 
         They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n,
-        t - 1) tells in which steps between them the motion bends more than they show; one row of
+        t - 1) says in which steps between them the motion bends more than they show; one row of
         either serves all designs. ``history`` may be None; or all but that and the status may be
         None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
-        ``tops``, of which ``listed`` tells, may be left out. With ``error`` peaks are those at the
+        ``tops``, which ``listed`` describes, may be left out. With ``error`` peaks are those at the
         instants: it becomes how much larger they may be between them. The bytes of a row do not
         depend on other rows.
         """

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.interpret import Step, operation_name, steps
+from ..arithmetic.interpret import INFIX, Step, operation_name, steps
 from ..arithmetic.lookups import Lookup
 from ..base.vocabulary import Precision
 from ..errors import DeclarationError, SizeError
@@ -232,15 +232,8 @@ _LIBRARY = {
 """Operations that are functions of C's library."""
 
 _WRITTEN = {
-    ca.OP_ADD: "{0} + {1}",
-    ca.OP_SUB: "{0} - {1}",
-    ca.OP_MUL: "{0} * {1}",
-    ca.OP_DIV: "{0} / {1}",
-    ca.OP_NEG: "-{0}",
-    ca.OP_SQ: "{0} * {0}",
-    ca.OP_TWICE: "{0} + {0}",
+    **INFIX,
     ca.OP_INV: "{one} / {0}",
-    ca.OP_ASSIGN: "{0}",
     ca.OP_LT: "{0} < {1}",
     ca.OP_LE: "{0} <= {1}",
     ca.OP_EQ: "{0} == {1}",

@@ -482,7 +482,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search_room(lagrange_casadi_search_c
    NULL, peaks are those at the instants, and it becomes how much larger quantities may be between them. tops, unless it is NULL,
    becomes for each quantity SEARCH_TOPS local peaks down to a share of the largest: the number of the curve among the quantity's own,
    which is NAN where there are no more, time, ratio and value. rows are those of curves, of their places and, at watched, of what is watched, stride values apart; most
-   are the largest sizes of curves at the instants. What rests is NaN in rows. scales, unless it is NULL, tells how large others are of each unit, hiding in which
+   are the largest sizes of curves at the instants. What rests is NaN in rows. scales, unless it is NULL, says how large others are of each unit, hiding in which
    steps something is known to hide; it has twice stride values. at evaluates up to so many times together, and may
    write as many values of each row of its out; what it returns ends the search unless it is 0. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* call) {

@@ -13,7 +13,7 @@ LANES_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return l
 /* A ratio on the link; 0 for what is none. */
 LANES_INLINE casadi_real designs_on_link(casadi_real u) { return lanes_less(0, u, lanes_less(u, 1, u, 1), 0); }
 
-/* The ratio beyond which a section feels what acts at stations, as it is on the tip's side of one that is there, and on the base's: see
+/* The ratio beyond which a section carries what acts at load points, as it is on the tip's side of one that is there, and on the base's: see
    edge in equations/section_function.py. */
 LANES_INLINE casadi_real designs_section_edge(casadi_real u, int side) {
   if (side) return lanes_less(DESIGNS_END, u - DESIGNS_END, u - DESIGNS_END, DESIGNS_END);
@@ -60,7 +60,7 @@ LANES_INLINE void designs_uniform(const casadi_real* matter, const casadi_real* 
 /* A link with a cell of density between each two breaks, and with what acts at stations. Its matter is its length and, a cell, the
    moments T0, T1, T2 of what is beyond it, and the density as a polynomial of the distance from the end that is nearer to the tip.
    loads holds station, n, f, m of each station. spread holds of each load along the link its width and where it ends, and then, for each of
-   so many directions, so many powers; those that act along the axis and across it are told, and, where slices have rotary inertia, that
+   so many directions, so many powers; those that act along the axis and across it are given, and, where slices have rotary inertia, that
    of the couple that bends, and whether it does so the other way round. Where they begin and end are stations at which nothing acts. */
 typedef struct {
   int cells, terms, stations;
@@ -100,7 +100,7 @@ LANES_INLINE casadi_real designs_shear(const designs_link* link, int cell, casad
   return law[3] + law[4]*tail[0] + law[5]*(link->matter[0]*(u*tail[0] + tail[1]));
 }
 
-/* What sections at a ratio feel of loads along the link: see equations/distributed_loads.py. */
+/* What sections at a ratio carry of loads along the link: see equations/distributed_loads.py. */
 static inline void designs_spread(const designs_link* link, casadi_real u, casadi_real* force) {
   const casadi_real *load = link->spread, l = link->matter[0];
   casadi_real x, reach, lever, power, share;

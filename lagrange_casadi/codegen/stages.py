@@ -26,7 +26,7 @@ import numpy.typing as npt
 from ..arithmetic.compensated import Pair, Pairs
 from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
 from ..arithmetic.lookups import Lookup
-from ..arithmetic.scalars import applied
+from ..arithmetic.scalars import applied, column, entries
 from ..base.arrays import Array, Expression, Operand
 from ..base.symbolic import Graphs, symbolic
 from ..base.vocabulary import Precision
@@ -140,7 +140,7 @@ def controlled(
     pairs, rows = Pairs(precision), 1 + len(program.driven)
     moment, p = ca.SX.sym("moment", rows, 2), program.instant.sx_in("p")
     t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
-    known = [Pair(x) for x in _split(p)] if fixed is None else [pairs.constant(x) for x in fixed]
+    known = [Pair(x) for x in entries(p)] if fixed is None else [pairs.constant(x) for x in fixed]
     handed, loops, instant = _counted(program, pairs, t, driven, known)
     count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
     return Controlled(
@@ -340,10 +340,10 @@ def _counted(
     _, _, rate, acceleration, z, symbols = program.instant.sx_in()
     t_value, d_values = _Value(pair=t), [_Value(pair=pair) for pair in driven]
     p_values = [
-        _Value(symbol, pair, fixed=True) for symbol, pair in zip(_split(symbols), p, strict=True)
+        _Value(symbol, pair, fixed=True) for symbol, pair in zip(entries(symbols), p, strict=True)
     ]
     z_values, rates, accelerations = (
-        [_Value(x) for x in _split(column)] for column in (z, rate, acceleration)
+        [_Value(x) for x in entries(column)] for column in (z, rate, acceleration)
     )
     found = (
         [
@@ -383,9 +383,5 @@ def _counted(
     return handed, loops, instant
 
 
-def _split(symbols: ca.SX) -> list[ca.SX]:
-    return ca.vertsplit(symbols) if symbols.numel() else []
-
-
 def _column(parts: list[ca.SX]) -> ca.SX:
-    return ca.densify(ca.vertcat(ca.SX(0, 1), *parts))
+    return ca.densify(column(parts))

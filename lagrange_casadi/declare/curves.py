@@ -123,7 +123,7 @@ class Curve:
             )
         if not (self.periodic or ((numbers >= self.low) & (numbers <= self.high)).all()):
             raise DeclarationError(
-                f"curve: {x!r} is beyond its ends, {self.low:g} and {self.high:g}"
+                f"curve: {x!r} is outside its range, {self.low:g} to {self.high:g}"
             )
         within = numbers - self.origin
         if self.periodic:

@@ -63,7 +63,7 @@ class JointNumbers:
 
     ``axes`` are in sequence. The first direction of the ``triad`` is that of the joint's axis.
     ``turned`` are the child's axes in the parent's where all coordinates are zero. ``free`` says
-    whether it turns about an axis of which no coordinate tells.
+    whether it turns about an axis that no coordinate describes.
     """
 
     kind: str

@@ -14,6 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression, Json
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
@@ -310,7 +311,7 @@ class Template(Graphs):
         """The template whose numbers are expressions of the parameters' symbols, in the order of
         its places.
         """
-        numbers = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(expression) for expression in asked)))
+        numbers = ca.densify(column(ca.SX(expression) for expression in asked))
         return cls(content, ca.Function("numbers", [symbols], [numbers], ["p"], ["numbers"]))
 
 

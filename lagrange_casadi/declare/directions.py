@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .ownership import Ownership
 
 Checked = Callable[..., Expression]
-"""Takes what is said of an expression, the expression, and its unit if a text may tell it."""
+"""Takes what is said of an expression, the expression, and its unit if a text may state it."""
 
 RIGHT = 1e-9
 """A cosine that is smaller is that of a right angle."""
@@ -101,7 +101,9 @@ def triad_of(
     said = f"{what}{part}"
     if axis is None:
         if second is not None:
-            raise DeclarationError(f"{said}: second needs axis, and is at right angles to it")
+            raise DeclarationError(
+                f"{said}: second= needs axis=, and must be at right angles to it"
+            )
         return AXES
     u = _unit(f"{said}: axis", vector(f"{said}: axis", axis, ownership.expression))
     if second is None:
@@ -155,18 +157,18 @@ def turned_by(what: str, turned: Expression, own: Ownership) -> tuple[Vector, Ve
     axis that those before carry.
     """
     expected = (
-        "turns about 'x', 'y' or 'z' in sequence, as [('x', '90 deg')], or the directions of the"
-        " child's x and y axes"
+        "rotations about 'x', 'y' or 'z' in sequence, as [('x', '90 deg')], or the directions of"
+        " the child's x and y axes"
     )
     if not isinstance(turned, (list, tuple)):
-        raise DeclarationError(f"{what}: turned is {expected}, got {turned!r}")
+        raise DeclarationError(f"{what}: turned= expected {expected}, got {turned!r}")
     if len(turned) == 2 and all(isinstance(one, (tuple, list)) and len(one) == 3 for one in turned):
         x, y, _ = triad_of(what, turned[0], turned[1], own, ": turned")
         return x, y
     found = Rotation()
     for turn in turned:
         if not isinstance(turn, (tuple, list)) or len(turn) != 2 or turn[0] not in ("x", "y", "z"):
-            raise DeclarationError(f"{what}: turned is {expected}, got {turn!r}")
+            raise DeclarationError(f"{what}: turned= expected {expected}, got {turn!r}")
         angle = own.expression(f"{what}: turned", turn[1], "rad")
         found = found.then(Rotation.about(AXES["xyz".index(turn[0])], *direction(angle), angle))
     return found.x, found.y

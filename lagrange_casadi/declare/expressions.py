@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import casadi as ca
 
 from ..arithmetic.interpret import written_out
+from ..arithmetic.scalars import column
 from ..base.arrays import Operand
 from ..base.units import number, typed
 from ..errors import DeclarationError, NumberError, one_line, shown
@@ -85,7 +86,7 @@ def coordinates(
     what: str, terms: Iterable[tuple[Expression | str, str]]
 ) -> tuple[list[Expression], str]:
     """Numbers or expressions of a joint's coordinate, each with what it is per, as ``"/s"``; and in
-    which unit texts tell them.
+    which unit texts give them.
 
     That is rad or m, or nothing without a text. Raises :class:`DeclarationError` for what is none
     of these, or in both units.
@@ -203,10 +204,8 @@ def value_of(
             f"number: expected values of all parameters, and {', '.join(missing)} have none"
         )
     try:
-        numbers = ca.vertcat(ca.SX(0, 1), *(values[name] for name in symbols))
-        return float(
-            ca.evalf(ca.substitute(expression, ca.vertcat(ca.SX(0, 1), *symbols.values()), numbers))
-        )
+        numbers = column(values[name] for name in symbols)
+        return float(ca.evalf(ca.substitute(expression, column(symbols.values()), numbers)))
     except (RuntimeError, NotImplementedError):
         raise DeclarationError(
             f"number: expected an expression of parameters only, got {shown(expression)}"

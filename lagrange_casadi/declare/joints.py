@@ -33,7 +33,7 @@ class Freedom(NamedTuple):
     """Degree of freedom of a kind of joint: a slide or turn along a direction of its triad, by
     number.
 
-    ``name`` tells it among the freedoms of its joint; None where it is no coordinate.
+    ``name`` distinguishes it among the freedoms of its joint; None if it is no coordinate.
     """
 
     name: str | None

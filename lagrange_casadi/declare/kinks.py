@@ -11,7 +11,8 @@ found to the last bit, and value and slopes on both sides of it are compared.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -21,12 +22,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
+from ..arithmetic.lookups import is_entry
 from ..base.arrays import Array, Expression
 from ..base.symbolic import symbolic_property
-from .broken_curves import Isolated, Kink
+from ..errors import DeclarationError
 from .clearance import Clearance
 from .limits_beside import Flags, Side, between, vanishes
-from .marks import marks_of
 from .steps import Steps, called, sides_of
 
 _SAME, _FAINT = 1e-6, 1e-9
@@ -162,7 +163,7 @@ class Smooth:
 
     @symbolic_property
     def clearance(self) -> Clearance:
-        """Tells along which paths no mark comes near to where it passes, at a small part of the
+        """Return along which paths no mark comes near to where it passes, at a small part of the
         cost of looking for kinks.
         """
         return Clearance(self.marks, self.whole, self.open)
@@ -442,3 +443,108 @@ def _worst(steps: Steps, parts: Array, broken: Flags) -> Iterator[tuple[int, str
     for k in np.flatnonzero(broken.any(axis=0)):
         row = 0 if broken[0, k] else 1
         yield int(steps.owner[k]), ("value", "slope")[row], float(parts[row, k]), places[:, k]
+
+
+@dataclass(frozen=True)
+class Kink:
+    """A place, by symbol, at which a value or a slope jumps; by what part of it, infinite where it
+    has no limit.
+    """
+
+    what: str
+    jump: float
+    at: Mapping[str, float]
+
+    def __str__(self) -> str:
+        does = f"jumps by {100.0 * self.jump:.3g} %" if math.isfinite(self.jump) else "has no limit"
+        return f"its {self.what} {does} where {_place(self.at)}"
+
+    def refused(self, what: str) -> DeclarationError:
+        """The error for ``what`` has the kink."""
+        return DeclarationError(
+            f"{what}: {self}: rates would jump there, and accelerations would be wrong; expected a"
+            " curve with a continuous slope, as curve(x, y) in place of a table, a polynomial or"
+            " a Fourier sum"
+        )
+
+
+@dataclass(frozen=True)
+class Isolated:
+    """An instant, by symbol, at which a value, a slope or a curvature is other than on both sides
+    of it.
+    """
+
+    what: str
+    at: Mapping[str, float]
+
+    def __str__(self) -> str:
+        return f"its {self.what} where {_place(self.at)} differs from its values on both sides"
+
+    def refused(self, what: str) -> DeclarationError:
+        """The error for ``what`` is isolated at an instant."""
+        return DeclarationError(
+            f"{what}: {self}: the value is that of this instant alone; expected other instants, or"
+            " a curve that is continuous there: if_else, fabs, sign and floor are not, so in"
+            " place of if_else(x == 0, 1, sin(x)/x) take a series for small x"
+        )
+
+
+def _place(at: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} = {value:.6g}" for name, value in at.items())
+
+
+_TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
+
+
+def marks_of(operation: int, operands: Sequence[ca.SX]) -> Iterator[tuple[Expression, bool, bool]]:
+    """Expressions at whose zeros, or whole numbers, an operation has a kink; and whether it is
+    undefined there.
+    """
+    x, y = operands[0], operands[-1]
+    if operation in (ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_LT):
+        yield (y - x if operation == ca.OP_LT else x - y), False, False
+    elif operation in (ca.OP_FABS, ca.OP_SIGN, ca.OP_COPYSIGN):
+        yield from ((one, False, False) for one in operands)
+    elif operation in (ca.OP_EQ, ca.OP_NE):
+        yield from ((one, False, False) for one in _zeros(x - y))
+    elif operation in (ca.OP_NOT, ca.OP_IF_ELSE_ZERO):
+        yield from ((one, False, False) for one in _zeros(x))
+    elif operation in (ca.OP_AND, ca.OP_OR):
+        yield from ((mark, False, False) for one in operands for mark in _zeros(one))
+    elif operation in (ca.OP_FLOOR, ca.OP_CEIL):
+        # What a table has for a cell is a whole number already.
+        if not is_entry(x):
+            yield (x if operation == ca.OP_FLOOR else -x), True, False
+    elif operation in (ca.OP_FMOD, ca.OP_REMAINDER):
+        yield x / y + (0.5 if operation == ca.OP_REMAINDER else 0.0), True, False
+        yield y, False, True
+    elif operation in (ca.OP_DIV, ca.OP_INV):
+        yield y, False, True
+    elif operation == ca.OP_TAN:
+        yield ca.cos(x), False, True
+    elif operation in (ca.OP_SQRT, ca.OP_LOG):
+        yield x, False, True
+    elif operation == ca.OP_LOG1P:
+        yield 1.0 + x, False, True
+    elif operation in (ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATANH):
+        yield 1.0 - x * x, False, True
+    elif operation == ca.OP_ACOSH:
+        yield x - 1.0, False, True
+    elif operation == ca.OP_HYPOT:
+        yield x * x + y * y, False, True
+    elif operation == ca.OP_ATAN2:
+        # Its cut is where the first is zero and the second negative.
+        yield x, False, False
+        yield x * x + y * y, False, True
+    elif operation in (ca.OP_POW, ca.OP_CONSTPOW) and not (
+        y.is_constant() and float(y) >= 0.0 and float(y).is_integer()
+    ):
+        yield x, False, True
+
+
+def _zeros(x: ca.SX) -> Iterator[Expression]:
+    """Marks of where something is zero, for a stretch or at a place that it passes; a comparison
+    has marks of its own.
+    """
+    if x.op() not in _TRUTHS:
+        yield from (ca.fabs(x), x)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.vocabulary import Precision
 from ..errors import DeclarationError, ParameterError, UnknownNameError, check_kind
 from .density import Density
@@ -112,7 +113,7 @@ def along_link(
     default ones.
     """
     for end, beyond in ((0.0, -x), (length, x - length)):
-        if ca.jacobian(ca.SX(beyond), ca.vertcat(ca.SX(0, 1), *ca.symvar(ca.SX(beyond)))).is_zero():
+        if ca.jacobian(ca.SX(beyond), column(ca.symvar(ca.SX(beyond)))).is_zero():
             size, far = number(length), number(beyond)
             if END["double"] * size < far <= ROUNDED * size:
                 return end, far

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import casadi as ca
 
 from ..errors import DeclarationError
-from .expressions import error_text
+from .expressions import expressed
 from .ownership import Ownership
 from .parts import Expression, LineLoad, Link
 from .powers import powers
@@ -102,18 +102,13 @@ def _of_function(
 ) -> list[Expression]:
     """Line load as a polynomial of the distance xi."""
     distance = ca.SX.sym("xi")
-    try:
-        value = function(distance)
-    except Exception as error:  # whatever a user's function raises
-        raise DeclarationError(
-            f"{what}: its function of the distance fails: {error_text(error)}"
-        ) from error
+    value = expressed(what, function, [distance], "the distance from the base")
     if not isinstance(value, ca.SX):
         return [checked(value)]
     if value.numel() != 1:
         raise DeclarationError(f"{what} must be a scalar, got one of shape {value.shape}")
-    # With numbers for ends the polynomial is rounded once; a symbol that is foreign is told by the
-    # coefficients.
+    # With numbers for ends the polynomial is rounded once; a symbol that is foreign is refused by
+    # the coefficients.
     found = powers(value, distance, (ca.SX(end), ca.SX(start - end)))
     if found is None or len(found) > HIGHEST + 1:
         raise DeclarationError(

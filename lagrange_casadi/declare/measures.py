@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from .joints import Axis, Joint
 from .parts import Link, Point
 
@@ -60,16 +61,12 @@ class Measures:
     @property
     def places(self) -> ca.SX:
         """All symbols of coordinates, places and directions, one column."""
-        return ca.vertcat(
-            ca.SX(0, 1), *(symbol for measure in self.asked for symbol in measure.places)
-        )
+        return column(symbol for measure in self.asked for symbol in measure.places)
 
     @property
     def rates(self) -> ca.SX:
         """All symbols of rates and velocities, one column."""
-        return ca.vertcat(
-            ca.SX(0, 1), *(symbol for measure in self.asked for symbol in measure.rates)
-        )
+        return column(symbol for measure in self.asked for symbol in measure.rates)
 
     @property
     def accelerations(self) -> list[ca.SX]:

@@ -20,7 +20,7 @@ FITTING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Wrench:
-    """A force, and a couple about the place where it is told [m for a force without a unit], in a
+    """A force, and a couple about the place where it is given [m for a force without a unit], in a
     carrier's axes.
     """
 
@@ -68,7 +68,7 @@ class Loss:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Two numbers of a transmission that must be the same, beside a ``size``; ``words`` tell both,
+    """Two numbers of a transmission that must be the same, beside a ``size``; ``words`` name both,
     as {got} and {meant}.
     """
 

@@ -15,6 +15,7 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import fitting, public
+from ..arithmetic.scalars import column, entries
 from ..base.symbolic import symbolic
 from ..errors import DeclarationError, shown
 from ..renamed import renamed
@@ -216,7 +217,7 @@ def motion_function(laws: Mapping[str, Motion], parameters: ca.SX) -> ca.Functio
     """
     t = ca.SX.sym("t")
     rows = [_derivatives(_scalar(joint, law, t, parameters), t) for joint, law in laws.items()]
-    stacked = [ca.vertcat(ca.SX(0, 1), *(row[order] for row in rows)) for order in range(3)]
+    stacked = [column(row[order] for row in rows) for order in range(3)]
     return ca.Function(
         "motion",
         [t, parameters],
@@ -273,7 +274,7 @@ def _scalar(joint: str, law: Motion, t: ca.SX, parameters: ca.SX) -> Expression:
         raise DeclarationError(
             f"{what} is not a number; use CasADi's functions, as casadi.sin in place of math.sin"
         )
-    symbols = [t, *ca.vertsplit(parameters)] if parameters.numel() else [t]
+    symbols = [t, *entries(parameters)]
     return scalar(what, value, symbols, "parameter")
 
 

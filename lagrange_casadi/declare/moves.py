@@ -215,8 +215,8 @@ def _graph(
     advance: float,
     demands: tuple[Demand, ...],
 ) -> Expression:
-    """The law as a function of its argument: which stretch it is in is told once, and each law is
-    written once.
+    """The law as a function of its argument: which stretch it is in is decided once, and each law
+    is written once.
     """
     # What cannot be has no value, wherever the law is used.
     held: Any = 1.0

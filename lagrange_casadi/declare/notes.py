@@ -24,7 +24,7 @@ def notes(
     resting: npt.NDArray[np.bool_],
 ) -> Iterator[str]:
     """More drives than motions; slender links that slide across their axes, as nobody said; where a
-    joint that rubs is ``resting``; joints in gimbal lock, whose turns are not told; and each joint
+    joint that rubs is ``resting``; joints in gimbal lock, whose turns are not known; and each joint
     whose point slides beyond the end of a link that has sections, and how far it goes.
 
     As far as efforts, the motion of the joint, or the sections of the link, are among the outputs:
@@ -37,7 +37,7 @@ def notes(
             f"{len(drives)} drives ({', '.join(drives)}) make {moved}"
             f" motion{'s' if moved > 1 else ''}"
         )
-        yield f"{text}: of all efforts that do, these have the least weighted sum of squares"
+        yield f"{text}; their efforts are those with the least weighted sum of squares"
     yield from _across(description)
     if resting.any():
         yield rest_note(t, outputs, resting)
@@ -69,8 +69,8 @@ def notes(
             low, high = (round(float(end), 9) + 0.0 for end in (ratio.min(), ratio.max()))
             yield (
                 f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s"
-                f" (xi/l from {low:.4g} to {high:.4g}): there its force acts on the end of the"
-                " link as through a rigid bracket"
+                f" (xi/l from {low:.4g} to {high:.4g}); beyond the end of the link the"
+                " joint's force acts on that end, as through a rigid bracket"
             )
 
 
@@ -121,7 +121,7 @@ def _across(description: Description) -> Iterator[str]:
             )
         yield (
             f"link '{joint['child']['body']}' slides along joint '{name}' at"
-            f" {math.degrees(off):.3g} deg to its axis, for the joint's axis does not turn it:"
+            f" {math.degrees(off):.3g} deg to its axis, because the joint's axis does not turn it:"
             f" {directions}"
         )
 

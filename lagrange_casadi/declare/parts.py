@@ -127,7 +127,7 @@ class Link(Body):
 
     Its mass lies along the axis with a :class:`.Density`, which gives it a section law, or is known
     as a whole only (:class:`RigidMass`), and then it has none. ``beam`` says what it is made of,
-    where that is told. ``outline`` are the corners of what it is drawn as, in its own axes [m].
+    where that is known. ``outline`` are the corners of what it is drawn as, in its own axes [m].
     ``beside`` is the direction that was declared for its y axis in space, of length 1 and in ground
     axes.
     """

@@ -11,7 +11,7 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.interpret import Arithmetic, interpret, steps
-from ..arithmetic.scalars import applied
+from ..arithmetic.scalars import applied, column
 from ..base.arrays import Expression
 from ..errors import DeclarationError
 
@@ -33,9 +33,7 @@ def powers(expression: Expression, symbol: Expression, replaced: Polynomial) -> 
     others = [
         other for other in ca.symvar(expression) if other.element_hash() != symbol.element_hash()
     ]
-    function = ca.Function(
-        "along", [symbol, ca.vertcat(ca.SX(0, 1), *others)], [ca.densify(expression)]
-    )
+    function = ca.Function("along", [symbol, column(others)], [ca.densify(expression)])
     operations: dict[int, Callable[..., Polynomial]] = {
         step.operation: _alone(step.operation)
         for step in steps(function)

@@ -319,7 +319,7 @@ def _is_meant(cell: str) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class _Table:
-    """A table of numbers: heads, if it has any, with the units that it tells of its columns, and
+    """A table of numbers: heads, if it has any, with the units that it states of its columns, and
     its rows.
     """
 
@@ -330,7 +330,7 @@ class _Table:
 
     @classmethod
     def read(cls, path: Path) -> _Table:
-        """A table with its units: in the heads, in a row below them, or as OpenSim tells them."""
+        """A table with its units: in the heads, in a row below them, or as OpenSim states them."""
         skip, described = _header(path)
         heads, rows, many = _opened(path, skip)
         parted = headings(heads)
@@ -355,7 +355,7 @@ class _Table:
 
 
 def _header(path: Path) -> tuple[int, dict[str, str]]:
-    """The number of lines of a header as OpenSim writes it, and what it tells by words in small
+    """The number of lines of a header as OpenSim writes it, and what it states by words in small
     letters; no lines for another file.
     """
     if path.suffix.lower() not in (".mot", ".sto"):

@@ -210,8 +210,8 @@ def _both_halves(u: Expression, half: Callable[[Expression], Expression]) -> Exp
 
 
 def _before(x: Expression, place: Expression, first: Expression, then: Expression) -> Expression:
-    """One value before a place and another from there on; by two comparisons, for C tells a number
-    from its negation.
+    """One value before a place and another from there on; by two comparisons, for C distinguishes a
+    number from its negation.
     """
     return ca.if_else(x < place, first, 0.0) + ca.if_else(x >= place, then, 0.0)
 

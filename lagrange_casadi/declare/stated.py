@@ -13,6 +13,7 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.symbolic import Graphs, symbolic
 from .mechanism import Mechanism
@@ -385,7 +386,7 @@ def _columns(found: Iterable[_Measured]) -> tuple[ca.SX, ca.SX]:
     places, rates = (
         zip(*((one.place, one.rate) for one in found), strict=True) if found else ((), ())
     )
-    return ca.vertcat(ca.SX(0, 1), *places), ca.vertcat(ca.SX(0, 1), *rates)
+    return column(places), column(rates)
 
 
 def _kind_and_numbers(

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.numerals import readable
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.vocabulary import Precision
@@ -66,14 +67,14 @@ class ParameterConstraints:
     @symbolic_property
     def function(self) -> ca.Function:
         """``possible(p)``: the value of each demand."""
-        values = ca.vertcat(ca.SX(0, 1), *(ca.SX(demand.value) for demand in self.each))
+        values = column(ca.SX(demand.value) for demand in self.each)
         return ca.Function("possible", [self.symbols], [ca.densify(values)], {"cse": True})
 
     def margins(self) -> Margins:
         """Return the values alone."""
         values = self.function(self.symbols)
         order = sorted(range(len(self.each)), key=lambda k: not self.each[k].positive)
-        ordered = ca.densify(ca.vertcat(ca.SX(0, 1), *(values[k] for k in order)))
+        ordered = ca.densify(column(values[k] for k in order))
         function = ca.Function(
             "margins", [self.symbols], [ordered], ["p"], ["margins"], {"cse": True}
         )
@@ -492,7 +493,7 @@ def _of_load_point(what: str, point: Any, precision: Precision, *, space: bool) 
     def refusal(number: Evaluator) -> str:
         x, length, link = number(point.x), number(point.body.length), point.body.name
         there = (
-            f"station {readable(x, 0.0, length)} m is outside link '{link}', 0 to"
+            f"its point at {readable(x, 0.0, length)} m is outside link '{link}', 0 to"
             f" {readable(length, x)} m"
         )
         end, beyond, turned = ("", -x, back) if x < 0.0 else (".tip", x - length, "")

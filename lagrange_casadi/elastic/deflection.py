@@ -195,7 +195,7 @@ class Deflection:
 
     @cached_property
     def _curves(self) -> dict[str, Array]:
-        """Polynomials of all that is told, from the base."""
+        """Polynomials of all components, from the base."""
         e, turned = self._strains, {}
         found = {"along": self._sum(e["axial"])}
         if not self.member.space:

@@ -216,7 +216,7 @@ def _no_cycle(t: Array, forces: list[Array], whole: float) -> str:
     if steps.max() - steps.min() > _UNEVEN * (t[-1] - t[0]):
         return "harmonics need equally spaced instants"
     if any(abs(force[-1] - force[0]) > _CYCLE * whole for force in forces):
-        return "harmonics need a whole cycle: its bending does not end as it began"
+        return "harmonics need a whole cycle: the last bending moment differs from the first"
     return ""
 
 

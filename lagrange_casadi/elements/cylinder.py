@@ -75,10 +75,11 @@ def cylinder(
     DeclarationError
         For impossible sizes, in space, and as for links and joints.
     """
-    what, ownership = f"cylinder '{name}'", mechanism.own
+    what, ownership = f"cylinder '{name}'", mechanism.ownership
     if mechanism.space:
         raise DeclarationError(
-            f"{what}: cylinders lie in a plane; in space declare two links and a prismatic joint"
+            f"{what}: only a mechanism in a plane has cylinders; in space declare two links and a"
+            " prismatic joint"
         )
     bore, rod = (
         ownership.expression(f"{what}: bore", bore, "m"),

@@ -85,10 +85,10 @@ def planetary(
     DeclarationError
         For numbers of teeth that do not fit, and as :func:`.gears`.
     """
-    what, ownership = f"planetary set '{name}'", mechanism.own
+    what, ownership = f"planetary set '{name}'", mechanism.ownership
     if mechanism.space:
         raise DeclarationError(
-            f"{what}: it lies in a plane; in space declare planets, pins and gears"
+            f"{what}: only a mechanism in a plane has it; in space declare planets, pins and gears"
         )
     if (
         not isinstance(teeth, (list, tuple))

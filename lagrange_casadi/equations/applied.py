@@ -156,7 +156,7 @@ def _along(load: LineLoad, resting: Grown) -> Applied:
     the part on which it acts.
 
     For a power j of s = (end - xi)/(end - start) the integrals of s^j and of s^j (1/2 - s) from 0
-    to 1 tell force and couple.
+    to 1 say force and couple.
     """
     rotation, reach = resting.frames[load.link.name].rotation, load.reach
     forces = [_vector(resting, (x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)]

@@ -15,6 +15,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..declare.corners import smooth_constraint
 from ..declare.density import Density
@@ -29,7 +30,7 @@ from .applied import applied_by, held_by, push, work
 from .growing import Grown, coordinates_of
 from .joints import loop_residuals
 from .meshes import meshed_by
-from .multibody import Applied, LoopEquations, Multibody, RowGraph, change, column
+from .multibody import Applied, LoopEquations, Multibody, RowGraph, change
 from .tree import Tree
 from .two_force_links import TwoForceFrame
 

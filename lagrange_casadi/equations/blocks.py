@@ -17,13 +17,14 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..declare.joints import Joint
 from ..errors import MobilityError
 from ..geometry.vectors import cross, dot
 from .legs import in_fewest, solve_leg
 from .loops import ClosedForm, solve_in_turn, solve_loop, solves
-from .multibody import Coordinate, LoopEquations, Multibody, column
+from .multibody import Coordinate, LoopEquations, Multibody
 from .released_loops import ReleasedLoops, rank_of
 from .residuals import extent, units
 from .sampling import drawn
@@ -153,12 +154,12 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         for name in ("residual", "residual_rate", "residual_acceleration")
     ]
     slopes = ca.jacobian(motion[1], column(c.rate for c in unknown))
-    entries = drawn(ca.vertcat(ca.SX(0, 1), *slopes.nonzeros()), multibody.coordinates)
+    entries = drawn(column(slopes.nonzeros()), multibody.coordinates)
     sizes: list[dict[Coordinate, float]] = [{} for _ in range(slopes.size1())]
     for row, k, values in zip(*slopes.sparsity().get_triplet(), np.abs(entries), strict=True):
         sizes[row][unknown[k]] = float(np.where(np.isnan(values), np.inf, values).max())
     found, mechanism = [], multibody.mechanism
-    whole = mechanism.own.at_defaults(extent(mechanism)) if mechanism.space else 1.0
+    whole = mechanism.ownership.at_defaults(extent(mechanism)) if mechanism.space else 1.0
     for k, (loop, row) in enumerate(
         (group, row) for group in loops for row in range(group.residual.numel())
     ):
@@ -238,7 +239,7 @@ def _peeled(
     """A part that has too many equations, loop by loop: in space a planar loop has, but says all of
     what it leaves no other.
 
-    A loop that tells its coordinates by the rank of its own equations is solved by itself, the
+    A loop that determines its coordinates by the rank of its own equations is solved by itself, the
     fewest coordinates first.
     """
     rows, columns = part
@@ -398,7 +399,7 @@ def solve_line(
     unknown: Sequence[Coordinate],
     multibody: Multibody,
 ) -> tuple[ClosedForm, ...]:
-    """The closed forms, one after another, of the ``rows`` of a joint that are Phi, told in the
+    """The closed forms, one after another, of the ``rows`` of a joint that are Phi, given in the
     plane in which its line moves.
 
     A slot or a cylindrical joint that closes a loop holds its points together along two lines

@@ -39,14 +39,14 @@ class Check:
     """A column that is no output.
 
     Whether there is a result, ``closure`` (see :mod:`.loops`), ``gap`` and ``misfit`` (see
-    :mod:`.residuals`) of the joint or constraint that closes a loop tell, ``gimbal`` of a joint how
+    :mod:`.residuals`) of the joint or constraint that closes a loop say, ``gimbal`` of a joint how
     far its three turns are from losing one, ``roll`` of a bar how far it is from lying along the
     direction that was declared for its y axis, ``hold`` of drives whether they can make the motion
     (see :mod:`.drives`), ``row`` and ``rowsize`` of a non-holonomic row, and ``turned`` of a joint,
     how far an angle swings that is seen with its turns (see :mod:`.turns`), and ``beyond`` of a
     load, constraint or row, how far what is put into its curves is beyond their ends (see
-    :mod:`.ends`). Whether it is the only one tells ``open`` of an output (see :mod:`.determinacy`),
-    and of a friction whether it is at ``rest``, 1 or 0. ``jam`` tells how far frictions are from
+    :mod:`.ends`). Whether it is the only one says ``open`` of an output (see :mod:`.determinacy`),
+    and of a friction whether it is at ``rest``, 1 or 0. ``jam`` says how far frictions are from
     holding each other, ``slip`` what is left of their laws, and ``bend`` how much one that slides
     changes with those at rest (see :mod:`.friction`). ``turns`` are the whole turns of a joint's
     angle that its column is without, ``multiplier`` is one that was not wanted, ``drive`` is what a

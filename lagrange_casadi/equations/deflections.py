@@ -1,9 +1,9 @@
 """Deflection of a link at an instant: the largest transverse deflection along it, as an expression.
 
-Strains of Timoshenko's beam, turn' = M/EI and across' = turn + V/GAs, are told at Chebyshev's nodes
-of each part between two stations, and the polynomials through them are integrated: exactly where
-the cross-section is constant. In space turn_z' and turn_y' are those of bending about any axes, and
-shear twists about the shear centre.
+Strains of Timoshenko's beam, turn' = M/EI and across' = turn + V/GAs, are taken at Chebyshev's
+nodes of each part between two stations, and the polynomials through them are integrated: exactly
+where the cross-section is constant. In space turn_z' and turn_y' are those of bending about any
+axes, and shear twists about the shear centre.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ import casadi as ca
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..declare.mechanism import Mechanism
 from .checks import Column
-from .multibody import column
 from .strains import Moduli, moduli_of, strains
 from .strength import Loaded, Part, most, sampled
 

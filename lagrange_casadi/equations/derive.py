@@ -13,6 +13,7 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import Outputs, public, texts
+from ..arithmetic.scalars import column
 from ..base import cache
 from ..base.arrays import Expression
 from ..base.quantities import Output
@@ -38,7 +39,7 @@ from .load_points import gathered
 from .mobility import internal_forces
 from .model_data import ModelData
 from .moving import Moving
-from .multibody import Multibody, column
+from .multibody import Multibody
 from .program import Program
 from .reciprocals import share_reciprocals
 from .rounding import nearest
@@ -305,7 +306,7 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
         if want is asked
         else {key: value for key, value in columns.items() if not _for_strain_alone(key, asked)}
     )
-    out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
+    out = ca.densify(column(columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(
         ca.Function("instant", moving.inputs, [out], names, ["out"], {"cse": True}), "p"

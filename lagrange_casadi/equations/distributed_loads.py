@@ -3,7 +3,7 @@ link's mass.
 
 A load acts up to ``end``, a ratio u = xi/l, on so much of the link as ``width`` says, with the
 value c_0 + c_1 s + c_2 s^2 + ... per length, where s = (end - u)/width. With x = s kept from 0 to
-1, L = l width and a = l max(end - width - u, 0), the section at u feels of each coefficient
+1, L = l width and a = l max(end - width - u, 0), the section at u carries of each coefficient
 
     c_j L x^(j+1)/(j+1)                              of a force,
     c_j L x^(j+1)/(j+1) (L x/(j+2) + a)              of a moment.
@@ -14,7 +14,6 @@ Each is a product, so nothing cancels: not where the load ends, and not of a sho
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -23,7 +22,7 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.tables import Terms, table_of
-from ..declare.density import Density
+from ..declare.density import Density, shifted
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Vector
 from .checks import Column
@@ -93,11 +92,7 @@ def rotary(
 
 def _from(cell: Sequence[Expression], end: float, width: float) -> list[Expression]:
     """A polynomial of u = end - width s as one of s."""
-    return [
-        (-width) ** j
-        * sum(c * math.comb(n, j) * end ** (n - j) for n, c in enumerate(cell) if n >= j)
-        for j in range(len(cell))
-    ]
+    return [(-width) ** j * c for j, c in enumerate(shifted(cell, end))]
 
 
 def _unnamed(mechanism: Mechanism, word: str) -> Iterator[str]:
@@ -146,8 +141,8 @@ def _force_of_load(
     *,
     arm: bool,
 ) -> Expression:
-    """The force of a link's load along it, the part that a section at a ratio feels in a direction,
-    or with ``arm`` its moment.
+    """The force of a link's load along it, the part that a section at a ratio carries in a
+    direction, or with ``arm`` its moment.
     """
     link, load = of
 

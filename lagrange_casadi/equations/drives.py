@@ -15,9 +15,9 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from .linear import LinearSystem
-from .multibody import column
 
 _ROUNDING = 1e-24
 """A ``hold`` below it is the square of a rounding."""
@@ -55,8 +55,8 @@ def solve_efforts(
     """The efforts, by joint their symbols, that leave nothing of ``needs``, which are linear in
     them.
 
-    ``units`` are by joint what its coordinate is measured in, to tell whether a drive moves much of
-    a motion or little.
+    ``units`` are by joint what its coordinate is measured in, to decide whether a drive moves much
+    of a motion or little.
     """
     symbols, residual = column(efforts.values()), column(needs.values())
     rest = ca.substitute(residual, symbols, ca.SX.zeros(symbols.numel()))
@@ -76,7 +76,7 @@ def solve_efforts(
 
 
 def closure(authority: Expression, usual: float) -> Expression:
-    """A ``hold`` as loops tell how far they are from a dead centre, from 0 to 1: beside what it is
+    """A ``hold`` as loops measure their distance from a dead centre, from 0 to 1: beside what it is
     where the motion starts.
     """
     beside = usual if _ROUNDING < usual < math.inf else 1.0

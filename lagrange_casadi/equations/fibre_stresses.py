@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import interpret, numpy_arithmetic
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
@@ -83,7 +84,7 @@ class LinkForm:
         course = Course(self.breaks, tuple((shapes[a], shapes[b]) for a, b in self.cells))
         density = Density(breaks, cells, per_length=False)
         beam = Beam(course, Material("", 1.0), self.notches)
-        numbers = ca.vertcat(ca.SX(0, 1), *numbers_of(length, density, beam))
+        numbers = column(numbers_of(length, density, beam))
         return Link("", length, density, beam), numbers
 
 
@@ -235,6 +236,27 @@ class FibreStresses:
         return _parts(self.form, still)
 
 
+@dataclass(frozen=True, eq=False)
+class LinkStress(Graphs):
+    """The stresses in a link of a :class:`.Program`: functions at its ``fibres``, of its section
+    law and its numbers, and these ``numbers(p)`` of the parameters.
+    """
+
+    fibres: FibreStresses
+    numbers: ca.Function
+
+    @classmethod
+    def of(cls, outputs: Iterable[Output], link: Link, p: ca.SX) -> LinkStress:
+        """Make them for a link, whose section law is among some outputs, and whose numbers are
+        expressions of parameters ``p``.
+        """
+        assert isinstance(link.mass, Density)
+        assert link.beam is not None
+        numbers = ca.densify(ca.vertcat(*numbers_of(link.length, link.mass, link.beam)))
+        fibres = FibreStresses.of(outputs, link.name, link.mass, link.beam)
+        return cls(fibres, ca.Function("numbers", [p], [numbers]))
+
+
 def _is_place(member: Output) -> bool:
     return member.member == "station" or (member.group == "spread" and member.power is None)
 
@@ -291,8 +313,8 @@ def _parts(form: LinkForm, still: bool) -> tuple[FibrePart, ...]:
 def _places(
     body: Loaded, spans: Sequence[Part], x: ca.SX, *, still: bool
 ) -> Iterator[tuple[Part, Any, Any, Notch | None]]:
-    """Parts, ratios in them, beyond which ratio loads are felt there, and notches with the factors
-    that count in fatigue.
+    """Parts, ratios in them, beyond which ratio loads are carried there, and notches with the
+    factors that count in fatigue.
     """
     for part in spans:
         u = part.low + part.width * x

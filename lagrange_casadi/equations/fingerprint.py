@@ -12,6 +12,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.symbolic import symbolic
 from ..declare.scene import Scene, Wanted
 
@@ -21,7 +22,7 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
     """The hash of the declaration, its expressions, laws of motion, what is wanted, and the code
     that derives.
 
-    None where the declaration holds something whose content cannot be told.
+    None if the declaration holds something whose content cannot be known.
     """
     declared = declaration(scene, wanted)
     if declared is None:
@@ -33,8 +34,8 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
 
 @symbolic
 def declaration(scene: Scene, wanted: Wanted) -> str | None:
-    """All that is declared and wanted, as text; None where it holds something whose content cannot
-    be told.
+    """All that is declared and wanted, as text; None if it holds something whose content cannot
+    be known.
     """
     mechanism = scene.mechanism
     expressions: list[Any] = []
@@ -59,7 +60,7 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
     laws = scene.prescribed.motion
     if any(f.class_name() in _UNKNOWN for f in [laws, *laws.find_functions()]):
         return None
-    written = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.vec(ca.densify(e)) for e in expressions)))
+    written = ca.densify(column(ca.vec(ca.densify(e)) for e in expressions))
     declared = ca.Function("declared", ca.symvar(written), [written])
     if any(f.class_name() in _UNKNOWN for f in declared.find_functions()):
         return None

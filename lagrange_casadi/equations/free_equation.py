@@ -50,7 +50,7 @@ class FreeEquation(Graphs):
     """The equation of motion of a machine: ``state(t, angle, speed, z, added, p)``, a row for
     each of :data:`COLUMNS`, and ``loops(z, t, angle, p)``, Newton's correction of z and its size.
 
-    ``added`` are a torque and the flywheel's inertia on the drive's ``joint``. ``timed`` tells
+    ``added`` are a torque and the flywheel's inertia on the drive's ``joint``. ``timed`` says
     whether anything depends on the time, ``slides`` whether the coordinate is a length.
     """
 

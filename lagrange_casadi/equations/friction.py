@@ -25,10 +25,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression, Operand
 from ..declare.meshes import Loss, Transmission
 from .checks import Check, Column
-from .multibody import column
 from .pressing import Contact, FrictionContact, both_edges
 
 STEPS = 4

@@ -10,6 +10,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
@@ -18,7 +19,7 @@ from ..geometry.frames import Carried, Frame
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, plus, times
 from .joints import orientation, turning_axes
-from .multibody import Coordinate, Turned, column, own_coordinate, place_along, rates_along
+from .multibody import Coordinate, Turned, own_coordinate, place_along, rates_along
 from .spherical import SphericalCoordinates
 from .tree import Branch, Tree
 from .two_force_links import TwoForceLink, two_force_frame

@@ -8,6 +8,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..declare.scene import Scene, Wanted
@@ -15,7 +16,6 @@ from .checks import Check, Column
 from .meshes import transmissions_of
 from .mobility import internal_forces
 from .moving import Moving
-from .multibody import column
 from .pressing import frictions_of
 
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from .checks import Check, Column
-from .multibody import column
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column, entries
 from ..base.arrays import Array, Expression
 from ..base.symbolic import symbolic_property
 from ..errors import DeclarationError
@@ -53,7 +54,7 @@ class Course:
         on its radius of one.
         """
         generator, size = np.random.default_rng(1), self.coordinates.numel()
-        # A few ways to move tell as much as every rate by itself.
+        # A few ways to move show as much as every rate by itself.
         directions = ca.DM(generator.normal(size=(self.rates.numel(), _WAYS)))
         moved = ca.densify(ca.jtimes(ca.SX(self.coordinate_rates), self.rates, directions))
         others = _others(moved, self.coordinates)
@@ -89,13 +90,13 @@ def no_rates(
     n, p, k = course.rates.numel(), course.coordinates.numel(), graphs.numel()
     if not k or not n + mobilities.numel():
         return []
-    # All of them at once, each with a weight: one sweep tells whether any is wrong.
+    # All of them at once, each with a weight: one sweep shows whether any is wrong.
     weights = ca.SX.sym("weights", k)
     slopes = ca.gradient(ca.dot(weights, graphs), ca.vertcat(course.coordinates, course.rates))
     by_place, by_rate = ca.vertsplit(slopes, [0, p, p + n])
     along = [course.derivative(by_rate), course.along_rates(by_place)]
     across = [ca.SX(k, 0), ca.SX(k, 0)]
-    for e, e_rate in zip(_split(mobilities), _split(mobility_rates), strict=False):
+    for e, e_rate in zip(entries(mobilities), entries(mobility_rates), strict=False):
         by_mobility = ca.jacobian(graphs, e)
         rows_here = ca.SX(by_mobility.sparsity(), 1)
         across[0] = ca.horzcat(
@@ -164,12 +165,5 @@ def no_rates(
 
 def _others(graphs: ca.SX, known: ca.SX) -> ca.SX:
     """The symbols of graphs that are not among those that are known, one column."""
-    rows_here = {symbol.element_hash() for symbol in _split(known)}
-    return ca.vertcat(
-        ca.SX(0, 1),
-        *(symbol for symbol in ca.symvar(graphs) if symbol.element_hash() not in rows_here),
-    )
-
-
-def _split(symbols: ca.SX) -> list[ca.SX]:
-    return ca.vertsplit(symbols) if symbols.numel() else []
+    rows_here = {symbol.element_hash() for symbol in entries(known)}
+    return column(symbol for symbol in ca.symvar(graphs) if symbol.element_hash() not in rows_here)

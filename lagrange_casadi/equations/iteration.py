@@ -9,9 +9,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from .linear import LinearSystem
-from .multibody import Coordinate, Multibody, column
+from .multibody import Coordinate, Multibody
 from .spherical import SphericalCoordinates, axes_of, quaternion_of, turn
 from .substitution import Numbers
 
@@ -27,7 +28,7 @@ class NewtonLoop:
     the first instant.
 
     ``names`` are those of its blocks, which are judged by a volume; ``joints`` says what closes
-    them, for messages. ``turning`` tells which unknowns are angles that matter up to whole turns
+    them, for messages. ``turning`` marks which unknowns are angles that matter up to whole turns
     only.
     """
 
@@ -43,7 +44,7 @@ class Iterated:
     """The unknowns, in the order in which they were added: numbers, each on a scale of its own, and
     balls by their quaternions.
 
-    Gaps are told to it in the axes of the balls, whose slopes are shorter than those of
+    Gaps are given to it in the axes of the balls, whose slopes are shorter than those of
     quaternions.
     """
 

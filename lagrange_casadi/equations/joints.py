@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..declare.joints import Joint
 from ..declare.parts import Expression, Vector
 from ..geometry.frames import Frame
@@ -107,7 +108,7 @@ def loop_residuals(joint: Joint, parent: Frame, child: Frame) -> tuple[ca.SX, ca
         *_residuals_of_direction(joint, parent, child),
     ]
     phi, phi_rate, phi_acceleration = (
-        ca.vertcat(ca.SX(0, 1), *(residual[k] for residual in residuals)) for k in range(3)
+        column(residual[k] for residual in residuals) for k in range(3)
     )
     return phi, phi_rate, phi_acceleration
 

@@ -18,6 +18,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..declare.directions import most_across
 from ..errors import AssemblyError
 from ..geometry.vectors import AXES
@@ -25,7 +26,7 @@ from .blocks import Block, solving_order
 from .iteration import Iterated, NewtonLoop, place_roughly
 from .linear import LinearSystem
 from .loops import ClosedForm
-from .multibody import Coordinate, Multibody, column
+from .multibody import Coordinate, Multibody
 from .postures import Undecided, directions, is_angle, measured
 from .residuals import loop_residual, reach, redundancy_residual
 from .spherical import SphericalCoordinates

@@ -30,6 +30,7 @@ from dataclasses import dataclass, field
 import casadi as ca
 
 from ..arguments import Graph, public
+from ..arithmetic.scalars import entries
 from ..base.arrays import Expression
 from ..errors import DeclarationError
 from .integrability import Course, no_rates
@@ -172,7 +173,7 @@ class LagrangeSystem:
         known: dict[int, str] = {}
         for name in (*_SYMBOLS, "time"):
             symbols = getattr(self, name)
-            for symbol in ca.vertsplit(symbols) if symbols is not None and symbols.numel() else ():
+            for symbol in () if symbols is None else entries(symbols):
                 if symbol.element_hash() in known:
                     raise DeclarationError(
                         f"symbol '{symbol}' stands both in {known[symbol.element_hash()]} and in"

@@ -25,6 +25,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output, force_members
 from ..base.tables import table_of
@@ -37,7 +38,6 @@ from ..declare.scene import Wanted
 from ..errors import DeclarationError, one_line
 from .checks import Column
 from .indeterminate import Forces
-from .multibody import column
 from .residuals import extent
 from .section_function import Place, Section
 from .strains import Moduli, moduli_of, resultants
@@ -103,7 +103,7 @@ class Completion:
 
     ``function(t, d, d_rate, d_acceleration, z, p)`` has a row for each of ``doubted``, outputs, how
     much it changes with what equilibrium leaves open; for each of ``firm``, links, whether it is
-    loaded by that; and what else :class:`LeastEnergy` tells.
+    loaded by that; and what else :class:`LeastEnergy` has.
     """
 
     doubted: tuple[Output, ...]
@@ -118,7 +118,7 @@ class Completion:
         columns: Mapping[Column, Expression],
         inputs: Sequence[ca.SX],
     ) -> Completion:
-        """Put together what is told of ``forces`` that are among the ``columns`` of a graph, over
+        """Put together what is known of ``forces`` that are among the ``columns`` of a graph, over
         its ``inputs``.
         """
         doubted = {
@@ -135,8 +135,8 @@ class Completion:
         )
 
     def reasons(self, through: Iterable[bool], *, idle: bool) -> tuple[str, ...]:
-        """Tell why something stays open: by which of the firm links it goes ``through``, and
-        whether some of it is ``idle``.
+        """Reasons why something stays indeterminate: by which of the firm links it goes
+        ``through``, and whether some of it is ``idle``.
         """
         loaded = [
             (link, why)
@@ -218,7 +218,7 @@ class _Response:
     """A way in which what is open may change, and what it ``made`` of rows, times their weights
     ``weighed``.
 
-    ``does`` tells whether it did anything, and ``inverse`` is one over the sum of squares, or zero.
+    ``does`` says whether it did anything, and ``inverse`` is one over the sum of squares, or zero.
     """
 
     response: Any
@@ -333,7 +333,7 @@ def _unit(mechanism: Mechanism, member: str) -> Expression:
 def _loading(
     mechanism: Mechanism, link: Link, columns: Mapping[Column, Expression]
 ) -> list[Expression]:
-    """Tell how a link is loaded, in forces: by its section forces, or those of its joints, where
+    """Forces by which a link is loaded: by its section forces, or those of its joints, where
     they act at one place as one.
     """
     if isinstance(link.mass, Density):

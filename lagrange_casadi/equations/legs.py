@@ -103,7 +103,7 @@ def _turned(
     """The turn about an axis that leads from where the head is without it to the target, or where
     both are ``across`` the axis.
 
-    A target on the axis tells no turn: the closure is the square of the sine between the two.
+    A target on the axis determines no turn: the closure is the square of the sine between the two.
     """
     x, y, z = ca.vertsplit(at_rest(ca.vertcat(*head), (first,)))
     start, beside = (x, y, z), cross(axis, target)

@@ -9,6 +9,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 
 
@@ -77,7 +78,7 @@ class LinearSystem:
             x[i] = (
                 turned[i] - sum(self.triangle[i, j] * x[j] for j in range(i + 1, n))
             ) / self.triangle[i, i]
-        return ca.vertcat(ca.SX(0, 1), *x)
+        return column(x)
 
     def solve_transposed(self, right: ca.SX, free: ca.SX) -> Expression:
         """Return x of ``matrix' x = right``, for values of the free unknowns,
@@ -90,7 +91,7 @@ class LinearSystem:
             x.append(
                 (right[i] - sum(self.triangle[j, i] * x[j] for j in range(i))) / self.triangle[i, i]
             )
-        turned = ca.vertcat(ca.SX(0, 1), *x, free)
+        turned = column([*x, free])
         for j, reflection in reversed(list(enumerate(self.reflections))):
             turned = ca.vertcat(turned[:j], _reflect(reflection, turned[j:]))
         return turned

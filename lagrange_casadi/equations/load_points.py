@@ -16,13 +16,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..declare.limits import END
 from ..declare.parts import Link
 from .checks import Column
 from .mobility import load_points_of
-from .multibody import Coordinate, column
+from .multibody import Coordinate
 from .sampling import drawn, vanish
 
 _IN_PLANE = ((("n0",), ("n",), 1), (("f0", "m0"), ("f", "m"), 1))
@@ -65,7 +66,7 @@ def gathered(
         load_points = load_points_of((key for key in columns if isinstance(key, Output)), link.name)
         space = Output("law", link.name, "mx0") in columns
         for tip, load_point, sign in (_IN_SPACE if space else _IN_PLANE) if load_points else ():
-            # The tip comes first: what joins it is told by the law's own coefficients.
+            # The tip comes first: what joins it is in the law's own coefficients.
             named = [([Output("law", link.name, member) for member in tip], ca.SX(1))]
             for name in load_points:
                 place = columns[Output("station", link.name, "station", name)]
@@ -95,7 +96,7 @@ def _together(
     is_open: Callable[[Expression], bool],
 ) -> list[ca.SX]:
     """Loads at places, ratios xi/l: all at one place in the first of them, and none that is open
-    where no section feels it.
+    where no section carries it.
     """
     found = list(loads)
     twice = [[_twice(here, there, coordinates) for there in places] for here in places]
@@ -103,7 +104,7 @@ def _together(
         range(len(places))
     ):  # from the last one on, so that a chain of neighbours hands on what it has
         for i in range(j):
-            # Single precision tells no nearer than so whether places that are written in two ways
+            # Single precision shows no nearer than so whether places that are written in two ways
             # are one.
             near = END["single" if twice[i][j] else "double"]
             one = ca.fabs(ca.fmin(places[i], 1.0) - ca.fmin(places[j], 1.0)) <= near

@@ -8,10 +8,10 @@ The planar dyads, and points that are guided along lines in any way, come down t
   a bar guided at two of its points, ladders and trammels);
 * two directions, L1 e1 + L2 e2 + p = 0: two circles meet, RRR.
 
-Each has two solutions, told apart by a sign. What stands under the root is a product of a sum and a
-difference, so nothing cancels near a dead centre; divided by its largest value it is the square of
-the sine of the transmission angle, here called the *closure*: negative where the links do not
-reach, zero at a dead centre.
+Each has two solutions, distinguished by a sign. What stands under the root is a product of a sum
+and a difference, so nothing cancels near a dead centre; divided by its largest value it is the
+square of the sine of the transmission angle, here called the *closure*: negative where the links do
+not reach, zero at a dead centre.
 
 Two equations may be the x and y of one pin, or be written by different joints and constraints, and
 look alike. So a form is applied where its pattern was verified, coefficient by coefficient, and
@@ -27,9 +27,10 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from .linear import LinearSystem
-from .multibody import Coordinate, column
+from .multibody import Coordinate
 from .sampling import vanish
 
 
@@ -123,7 +124,7 @@ def _spanned(
     """A bar's end that turns about one axis, or slides along one: two points of a circle or a line
     are so far from another one.
 
-    What turns may also lie askew, and its distance from an axis be told: a sine, or a cosine, of
+    What turns may also lie askew, and its distance from an axis be given: a sine, or a cosine, of
     either sign, and both ways round.
     """
     (coordinate,) = unknown

@@ -3,7 +3,7 @@
 The equation of a transmission ties coordinates, as that of a gear does. Its multiplier does not act
 along these, between each gear and its carrier, but where the gears touch, and so pushes them apart
 too: for every motion that the joints allow both do the same work. So the multipliers are those of
-the equation, and reactions and sections feel what acts where they touch.
+the equation, and reactions and sections carry what acts where they touch.
 """
 
 from __future__ import annotations

@@ -26,6 +26,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output, force_members, law_members, load_point_members, local_members
 from ..declare.density import Density
@@ -45,7 +46,7 @@ from .joints import carried, orientation, reaction, supported
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .meshes import braking, pressing_apart, transmissions_of
-from .multibody import Multibody, column, own_coordinate
+from .multibody import Multibody, own_coordinate
 from .multipliers import multipliers_of
 from .pressing import frictions_of, joint_friction
 from .residuals import reach
@@ -58,7 +59,7 @@ class InternalForces:
     parameters.
 
     ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism. Among
-    the columns, a check tells how far drives are from a place where they cannot make the motion,
+    the columns, a check measures how far drives are from a place where they cannot make the motion,
     where they are others than the joints whose motion is given. ``friction`` are the forces of
     frictions.
     """

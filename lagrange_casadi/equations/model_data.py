@@ -5,15 +5,16 @@ parameters.
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
-from ..base.quantities import Kinds, Output
+from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
 from ..base.vocabulary import PRECISIONS, Precision
@@ -39,7 +40,6 @@ from ..declare.times import Timing
 from ..declare.validity import Margins
 from ..errors import UnknownNameError
 from .checks import Column
-from .fibre_stresses import FibreStresses, numbers_of
 from .residuals import extent
 from .section_function import Section
 from .tree import span
@@ -207,9 +207,7 @@ class ModelData(Graphs):
     @symbolic
     def symbols(self) -> ca.SX:
         """The parameters' symbols, in a column."""
-        return ca.vertcat(
-            ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values())
-        )
+        return column(parameter.symbol for parameter in self.parameters.values())
 
     @symbolic
     def mass(self, part: str, p: ca.SX) -> ca.SX:
@@ -241,19 +239,6 @@ class ModelData(Graphs):
     def link(self, name: str, p: Expression) -> Link:
         """A link that has sections and a beam, its numbers as expressions of parameters ``p``."""
         return Link(name, *self.mass_properties(name, p), beam_at(self.template, name, p))
-
-    @symbolic
-    def stress(self, name: str, outputs: Iterable[Output]) -> tuple[FibreStresses, ca.Function]:
-        """The stresses at the fibres of a link whose section law is among outputs, and the link's
-        numbers as a function of parameters.
-        """
-        p = self.symbols
-        link = self.link(name, p)
-        assert isinstance(link.mass, Density)
-        assert link.beam is not None
-        numbers = ca.densify(ca.vertcat(*numbers_of(link.length, link.mass, link.beam)))
-        stresses = FibreStresses.of(outputs, name, link.mass, link.beam)
-        return stresses, ca.Function("numbers", [p], [numbers])
 
     def section(self, link: str, columns: Mapping[Column, Expression], p: Expression) -> Section:
         """The section forces of a link, of columns and parameters ``p`` that are expressions."""

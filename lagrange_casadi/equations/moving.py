@@ -11,6 +11,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output, force_members
 from ..base.tables import ANGLE
@@ -28,7 +29,7 @@ from .drives import pushed
 from .kinematics import Start
 from .mobility import needed_reactions
 from .model_data import template
-from .multibody import Coordinate, Multibody, column, own_coordinate
+from .multibody import Coordinate, Multibody, own_coordinate
 from .revolutions import count_revolutions
 from .tree import span
 from .two_force_links import across_link
@@ -112,7 +113,7 @@ class Moving:
                 columns |= {
                     Output("load", part.source, member): part.members[member] for member in members
                 }
-        placed = self.solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
+        placed = self.solved.evaluate(column(columns.values()))
         return dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True)), loop_angles
 
     def _checks(self) -> dict[Column, Expression]:
@@ -232,7 +233,7 @@ def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Colum
     the third axis is the first.
 
     There (gimbal lock) loops cannot set them, and they cannot give every couple. Their motion is
-    told where it is given.
+    evaluated where it is given.
     """
     found: dict[Column, Any] = {}
     for joint in mechanism.joints.values():

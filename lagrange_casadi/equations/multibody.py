@@ -10,13 +10,13 @@ rotations.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
@@ -197,7 +197,7 @@ class Multibody:
 
     The mobilities are in ground axes, those of the joints in ``own_axes`` in the axes of the body
     that hangs on the joint. ``frames`` are without mobilities; ``accelerated`` are with them, and
-    their accelerations are less that of gravity, as matter feels them. ``efforts`` are the symbols
+    their accelerations are less that of gravity. ``efforts`` are the symbols
     of efforts along other coordinates than those whose motion is given, and ``along`` what a unit
     of effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the
     directions in ground axes about which turns relative to a body turn, by coordinate;
@@ -372,8 +372,3 @@ def change(expression: ca.SX, coordinates: tuple[Coordinate, ...], time: ca.SX) 
     moving = column([*(c.variables for c in coordinates), *(c.rate for c in coordinates), time])
     speed = column([*(c.change for c in coordinates), *(c.acceleration for c in coordinates), 1])
     return ca.jtimes(ca.SX(expression), moving, speed)
-
-
-def column(parts: Iterable[Expression]) -> ca.SX:
-    """Parts one below the other; an empty column where there are none."""
-    return ca.vertcat(ca.SX(0, 1), *parts)

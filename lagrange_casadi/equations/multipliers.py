@@ -9,9 +9,10 @@ from collections.abc import Sequence
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from .kinematics import Kinematics
 from .meshes import transmissions_of
-from .multibody import LoopEquations, Multibody, column
+from .multibody import LoopEquations, Multibody
 
 
 def multipliers_of(

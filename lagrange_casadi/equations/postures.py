@@ -50,11 +50,11 @@ def directions(
     numbers: Numbers,
     known: Collection[Coordinate],
 ) -> dict[str, float]:
-    """Rough directions of bodies [rad]: those that are known by now or told, and those that joints
+    """Rough directions of bodies [rad]: those that are known by now or given, and those that joints
     carry on from these.
 
     A joint carries a direction from one of its bodies to the other where it holds it, or where the
-    posture tells its angle.
+    posture gives its angle.
     """
     mechanism, found = multibody.mechanism, {}
     for name, (direction, of) in measured(multibody, multibody.frames).items():
@@ -101,8 +101,8 @@ class Undecided:
         words: Sequence[str],
         length: float,
     ) -> None:
-        """Note that a loop can be assembled in some ways; the coordinate that differs most is to
-        tell them apart.
+        """Note that a loop can be assembled in some ways; the coordinate that differs most
+        distinguishes them.
         """
 
         def apart(coordinate: Coordinate) -> float:

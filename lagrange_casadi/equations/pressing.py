@@ -33,7 +33,7 @@ class Contact:
 
     Two components are those of a force; or, of a guide that rests on its ``edges``, what presses
     both together, and what a moment presses them together on opposite sides. Of a thread, ``lean``
-    tells how much more one direction of sliding presses than the other [m].
+    says how much more one direction of sliding presses than the other [m].
     """
 
     arm: Any
@@ -173,7 +173,7 @@ def slowest_of(multibody: Multibody | Grown, *, slides: bool) -> tuple[Expressio
         quickest += ca.fabs(driven.acceleration) / size
     quickest += fastest * fastest
     least = _REST * (unit if slides else 1)
-    # Where the drives themselves turn back, their rates are rounding; their accelerations tell how
+    # Where the drives themselves turn back, their rates are rounding; their accelerations show how
     # fast they go beside it.
     return least * ca.sqrt(quickest), least * quickest
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,11 +14,12 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.graph_text import dumps, loads
 from ..base.quantities import Output, law_members, load_point_members
-from ..base.symbolic import Graphs, symbolic
+from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..declare.corners import Corners
 from ..declare.description import Place, Template
 from ..declare.kinks import Smooth
 from ..declare.laws import Laws
+from ..declare.limits import END
 from ..declare.parts import Parameter
 from ..declare.scene import Wanted
 from ..declare.stated import Entries, EquationGraph, LoadGraph, Stated
@@ -25,10 +27,12 @@ from ..declare.times import Timing
 from ..declare.validity import Margins
 from ..errors import PickleError
 from .checks import Check, Column, Kind
+from .fibre_stresses import LinkStress
 from .iteration import NewtonLoop
 from .least_energy import Completion
 from .mobility import load_points_of
 from .model_data import ModelData
+from .section_function import SectionInputs, section
 from .status import Bound, Rule, beside_of, bounds_of, rules_of, status_of
 
 Turns: TypeAlias = tuple[tuple[int, int], ...]
@@ -126,7 +130,7 @@ class Program(Graphs):
         return np.asarray(out[..., self.seen_columns(constraint), :], float)
 
     def seen_columns(self, constraint: str) -> list[int]:
-        """The rows of ``out`` that tell it."""
+        """The rows of ``out`` that have it."""
         return [
             k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint
         ]
@@ -173,6 +177,39 @@ class Program(Graphs):
             for link, outputs in needed.items()
             if all(output in self.outputs for output in outputs)
         )
+
+    @symbolic_property
+    def section(self) -> Mapping[str, ca.Function]:
+        """By the name of each of :attr:`links`, ``section(law, acting, p, xi) -> forces``: the
+        forces of the table [N, N m] at the ratio ``xi``, on the tip's side.
+
+        ``law`` and ``acting`` are those of the link, in the order of the outputs.
+        """
+        found, p = {}, self.data.symbols
+        for link in self.links:
+            inputs = SectionInputs.of(self.outputs, link)
+            length, density = self.data.mass_properties(link, p)
+            sizes = list(map(len, density.cells))
+            function = section(inputs.alike(), density.breaks, sizes, END["double"])
+            law, acting, _, xi = function.sx_in()
+            numbers = ca.vertcat(length, *itertools.chain.from_iterable(density.cells))
+            forces = function(law, acting, numbers, xi)
+            names = ["law", "acting", "p", "xi"]
+            options = {"cse": True}
+            found[link] = ca.Function(
+                "section", [law, acting, p, xi], [forces], names, ["forces"], options
+            )
+        return found
+
+    @symbolic_property
+    def stress(self) -> Mapping[str, LinkStress]:
+        """By the name of each of :attr:`links` that has a beam, its stresses."""
+        p = self.data.symbols
+        return {
+            link: LinkStress.of(self.outputs, self.data.link(link, p), p)
+            for link in self.links
+            if link in self.data.materials
+        }
 
     @cached_property
     def indeterminate(self) -> dict[Output, int]:

@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.interpret import Step, expressed, followable, replay, steps
-from ..arithmetic.scalars import less, product
+from ..arithmetic.scalars import column, less, product
 from ..base.arrays import Expression
 from ..base.symbolic import symbolic
 
@@ -78,7 +78,7 @@ def _replayed(
     """
     inputs = function.sx_in()
     (nonzeros,) = replay(function, [given.nonzeros() for given in inputs], made)
-    out = ca.SX(function.sparsity_out(0), ca.vertcat(ca.SX(0, 1), *nonzeros))
+    out = ca.SX(function.sparsity_out(0), column(nonzeros))
     names = [function.name_in(i) for i in range(function.n_in())]
     return ca.Function(function.name(), inputs, [out], names, [function.name_out(0)], {"cse": True})
 

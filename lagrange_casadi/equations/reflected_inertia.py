@@ -2,8 +2,8 @@
 these with those of the drives.
 
 With E = q'.M q'/2 for the rates q' whose laws are given, and v = R q' for those of the drives, a
-drive alone feels the inertia e.(R^-T M R^-1) e, the other drives at rest. Nothing depends on how
-fast the mechanism moves.
+drive alone accelerates the inertia e.(R^-T M R^-1) e, the other drives at rest. Nothing depends on
+how fast the mechanism moves.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.quantities import Output
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
@@ -22,7 +23,6 @@ from .checks import Column
 from .derive import assembled
 from .kinematics import Start
 from .model_data import ModelData
-from .multibody import column
 from .program import Program
 from .tree import span
 

@@ -11,9 +11,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from .iteration import place_roughly
-from .multibody import Coordinate, Multibody, column
+from .multibody import Coordinate, Multibody
 from .spherical import axes_of, turn
 from .substitution import Numbers
 
@@ -43,7 +44,7 @@ class ReleasedLoops:
 
     ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u, and then by each of
     ``by``; ``turned(u, q)`` the quaternions after the small rotations u of balls, which ``resting``
-    tells. ``first`` is the rough posture.
+    marks. ``first`` is the rough posture.
     """
 
     residuals: Any

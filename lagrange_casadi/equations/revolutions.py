@@ -5,7 +5,7 @@ A loop gives the cosine and sine of an angle, and so the angle but for whole tur
 from what counts turns of itself: the angles of drives, and those that gears and constraints tie to
 them. While the drives go round, the angle goes round as often as some sum of theirs, K . beta with
 whole numbers K, and about that it swings. So the angle is K . beta + centre + swing, where cosine
-and sine tell the swing, which is less than half a turn either way; and no instant needs to know
+and sine give the swing, which is less than half a turn either way; and no instant needs to know
 another. K and the centre are found once, by following the motion of the scene and a whole turn of
 its drive. Wherever a swing is evaluated it is held to :data:`REACH`.
 """
@@ -23,11 +23,12 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..errors import DeclarationError
 from .iteration import NewtonLoop
 from .kinematics import Kinematics, Start
-from .multibody import Multibody, Turned, column
+from .multibody import Multibody, Turned
 
 REACH = math.pi - 0.35
 """Largest swing of an angle [rad] from its middle for which its revolution is certain."""
@@ -126,7 +127,7 @@ class _Rule:
             )
             low, high = float(deviation.min()), float(deviation.max())
             if high - low <= 2.0 * (REACH - 10.0**-_DIGITS):
-                # In few digits, lest the last ones of some library's sines be told in the graph.
+                # In few digits, lest the last ones of some library's sines be seen in the graph.
                 return cls(counts, round((low + high) / 2.0, _DIGITS))
         return None
 
@@ -264,7 +265,7 @@ def depends_on_turns(expression: Expression, angle: Expression) -> bool:
     others = [
         symbol for symbol in ca.symvar(expression) if symbol.element_hash() != angle.element_hash()
     ]
-    function = ca.Function("seen", [angle, ca.vertcat(ca.SX(0, 1), *others)], [expression])
+    function = ca.Function("seen", [angle, column(others)], [expression])
     if not followable(function):
         return True
     operations = {

@@ -2,7 +2,7 @@
 them holds at all.
 
 So a pattern is verified before a rule is applied that needs it, and what rounding leaves of a
-coefficient is told from a coefficient. The points are the same in every process.
+coefficient is distinguished from a coefficient. The points are the same in every process.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
-from .multibody import Coordinate, column
+from .multibody import Coordinate
 from .spherical import SphericalCoordinates, axes_of
 
 COUNT = 64

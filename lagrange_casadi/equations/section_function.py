@@ -6,7 +6,7 @@ along it ``width``, ``end`` and, power by power, its coefficients. ``matter`` is
 of the link (:meth:`.ModelData.mass_properties`): its length, and the coefficients of its density
 per unit of the ratio. The result are the forces of :attr:`.Table.forces`, resultants last.
 
-A section feels what acts beyond its :func:`edge`. Own outputs, derivatives, stresses, exported C
+A section carries what acts beyond its :func:`edge`. Own outputs, derivatives, stresses, exported C
 and the functions along a link that grids are filled from (:mod:`..instants.basis`) all come from
 here.
 """
@@ -21,8 +21,9 @@ from typing import Any, Literal
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression, Operand
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, Terms, table_of
 from ..beams.properties import larger, smaller
@@ -36,20 +37,20 @@ SIDES: tuple[Side, ...] = ("tip", "base")
 
 
 def edge(ratio: Operand, slack: float, side: Side = "tip") -> Operand:
-    """The ratio beyond which a section at a ``ratio`` feels what acts at load points; of numbers,
+    """The ratio beyond which a section at a ``ratio`` carries what acts at load points; of numbers,
     arrays or expressions.
 
     A load point that is less than ``slack`` away is at the section, which then has two values. On
-    the tip's side it does not feel what acts there, on the base's side it does. At the ends of a
-    link there is one value: a section at the tip feels what acts at the tip, and no section feels
-    what acts at the base.
+    the tip's side it does not carry what acts there, on the base's side it does. At the ends of a
+    link there is one value: a section at the tip carries what acts at the tip, and no section
+    carries what acts at the base.
     """
     return smaller(ratio + slack, 1.0 - slack) if side == "tip" else larger(ratio - slack, slack)
 
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """A place along a link, as an expression; ``side`` tells which value is meant where something
+    """A place along a link, as an expression; ``side`` says which value is meant where something
     acts: at a ``station``.
     """
 
@@ -163,9 +164,7 @@ class SectionInputs:
     @classmethod
     def of(cls, outputs: Iterable[Output], link: str) -> SectionInputs:
         """Make it for a link, among others; for a distributed load with its directions."""
-        of_link = dict.fromkeys(
-            output for output in outputs if output.along and output.part == link
-        )
+        of_link = parts_along(dict.fromkeys(outputs), link)
         table = table_of(Output("law", link, "mx0") in of_link)
         acting = [
             Output("station", link, member, name)
@@ -248,25 +247,22 @@ def section(
 
 @functools.cache
 @symbolic
-def along(
-    breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int], *, bends: bool
-) -> ca.Function:
-    """``along(matter, spans, xi) -> rows`` of a link: what coefficients of an axial force, or of a
-    moment, go with.
+def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int]) -> ca.Function:
+    """``along(matter, spans, xi) -> force, bending`` of a link: what coefficients of an axial force
+    and of a moment go with.
 
     First are those of the law, then those of loads along the link, which have so many ``powers``;
-    ``spans`` are width and end of each. It ``bends`` where the moment is meant. Other forces have
-    the same rows: a shear force those of an axial one, a moment that has an arm of -1 the same but
-    for the sign, and the couples of slices those of a force.
+    ``spans`` are width and end of each. Other forces have the same rows: a shear force those of an
+    axial one, a moment that has an arm of -1 the same but for the sign, and the couples of slices
+    those of a force.
     """
-    coefficient = "qf" if bends else "qn"
     acting = [
         Output("spread", "", member, str(load), power)
         for load, many in enumerate(powers)
         for member, power in (
             ("width", None),
             ("end", None),
-            *((coefficient, power) for power in range(many)),
+            *((coefficient, power) for coefficient in ("qn", "qf") for power in range(many)),
         )
     ]
     function = section(
@@ -276,15 +272,19 @@ def along(
         0.0,
     )
     law, loads, mass_properties, xi = function.sx_in()
-    terms = PLANE.sections["bending" if bends else "axial"].coefficients
-    spans = [k for k, output in enumerate(acting) if output.power is None]
-    given = [
-        *(law[PLANE.law.index(term)] for term in terms),
-        *(loads[k] for k in range(len(acting)) if k not in spans),
-    ]
-    force = function(law, loads, mass_properties, xi)[
-        PLANE.forces.index("bending" if bends else "axial")
-    ]
-    rows = ca.densify(ca.jacobian(force, ca.vertcat(*given)))
-    inputs = [mass_properties, ca.vertcat(ca.SX(0, 1), *(loads[k] for k in spans)), xi]
-    return ca.Function("along", inputs, [rows], ["matter", "spans", "xi"], ["rows"], {"cse": True})
+    forces = function(law, loads, mass_properties, xi)
+
+    def rows(force: str, coefficient: str) -> Expression:
+        given = [law[PLANE.law.index(term)] for term in PLANE.sections[force].coefficients]
+        given += [loads[k] for k, output in enumerate(acting) if output.member == coefficient]
+        return ca.densify(ca.jacobian(forces[PLANE.forces.index(force)], ca.vertcat(*given)))
+
+    spans = (loads[k] for k, output in enumerate(acting) if output.power is None)
+    return ca.Function(
+        "along",
+        [mass_properties, column(spans), xi],
+        [rows("axial", "qn"), rows("bending", "qf")],
+        ["matter", "spans", "xi"],
+        ["force", "bending"],
+        {"cse": True},
+    )

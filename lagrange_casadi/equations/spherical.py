@@ -2,8 +2,8 @@
 posture of it is special.
 
 Three turns about axes lose one where the second is at a right angle (gimbal lock). A joint whose
-turns nothing drives, tells or loads needs none of them. Its body has three axes, and the components
-of its angular velocity on these for rates:
+turns nothing drives, reports or loads needs none of them. Its body has three axes, and the
+components of its angular velocity on these for rates:
 
     x' = w_z y - w_y z,    y' = w_x z - w_z x,    z' = w_y x - w_x y.
 
@@ -35,7 +35,7 @@ class SphericalCoordinates:
 
     It hangs on the body ``near``, in ``reverse`` where the tree runs from the joint's child to its
     parent. ``side`` stands for the sign of the cosine of the second of the three turns that are
-    told of it.
+    reported of it.
     """
 
     joint: Joint

@@ -1,5 +1,5 @@
 """Rules of an instant: when it has a result, as one function of its checks; and in which order
-broken ones are told.
+broken ones are reported.
 
 ``status(checks, limits, beside, iterated)`` is the number of the first rule that is broken, from
 one on, or zero. ``checks`` are the columns that are bound, ``limits`` what they must keep to, and
@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.status import Status
@@ -69,12 +70,12 @@ class Bound:
 
     A ``CLOSURE``, of a loop, of three turns, of a bar's roll or of what drives hold, must be above
     its limit, and above its opposite unless links do not reach; so must a ``BRANCH``, whose loop is
-    iterated. Of both ``beside`` tells, as one or zero, whether it comes to zero before the next
+    iterated. Of both ``beside`` says, as one or zero, whether it comes to zero before the next
     instant, or may do so: see :func:`beside_of`. ``GAP`` and ``TURNED`` must be within the limit by
     size; beside the latter stands its change to the next instant. A ``MISFIT``, a ``SLIP``, which
     is what is left of frictions' laws, and what is ``BEYOND`` the ends of a curve must not be above
     it, nor a ``ROW`` by size, times what is beside it: the ``size`` of its terms, a column. What
-    tells of a ``JAM`` must be above its limit. A friction at ``REST`` is above it: what depends on
+    says of a ``JAM`` must be above its limit. A friction at ``REST`` is above it: what depends on
     it is no number there, and the rest is. What is ``OPEN``, or an ``OPEN_MOMENT``, is above it
     where equilibrium does not determine the output ``part``.
     """
@@ -120,7 +121,7 @@ def bounds_of(program: Program) -> tuple[Bound, ...]:
 
 @functools.lru_cache(maxsize=64)
 def rules_of(program: Program) -> tuple[Rule, ...]:
-    """Return the rules of a program in the order in which they are told."""
+    """Return the rules of a program in the order in which they are reported."""
     return tuple(rule for rule, _ in _tests(program))
 
 
@@ -172,7 +173,7 @@ def beside_of(program: Program) -> ca.Function:
         elif bound.kind == "ROW":
             # Where all stands still, what rounding leaves of rates violates nothing.
             found[k] = most
-    out = ca.densify(ca.vertcat(ca.SX(0, 1), *found))
+    out = ca.densify(column(found))
     return ca.Function("beside", inputs, [out], names, ["beside"], {"cse": True})
 
 

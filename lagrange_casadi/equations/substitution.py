@@ -10,7 +10,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arithmetic.scalars import as_expression
+from ..arithmetic.scalars import as_expression, column, entries
 from ..base.arrays import Expression
 
 
@@ -22,7 +22,7 @@ class Expressions:
 
     def note(self, symbols: Expression, values: Expression) -> None:
         """Let expressions stand for symbols, entry by entry."""
-        for symbol, value in zip(_entries(symbols), _entries(values), strict=True):
+        for symbol, value in zip(entries(symbols), entries(values), strict=True):
             self._known[symbol.element_hash()] = symbol, value
 
     def and_of(self, symbols: ca.SX, values: ca.SX) -> Expressions:
@@ -66,24 +66,17 @@ class Numbers:
         """Let numbers stand for symbols, entry by entry."""
         self._known |= {
             symbol.element_hash(): value
-            for symbol, value in zip(_entries(symbols), values, strict=True)
+            for symbol, value in zip(entries(symbols), values, strict=True)
         }
 
     def of(self, expression: Expression) -> list[float]:
         """The entries of an expression all of whose symbols are known."""
         expression = as_expression(expression)
         symbols = ca.symvar(expression)
-        function = ca.Function(
-            "number", [ca.vertcat(ca.SX(0, 1), *symbols)], [ca.densify(ca.vec(expression))]
-        )
+        function = ca.Function("number", [column(symbols)], [ca.densify(ca.vec(expression))])
         return [
             float(x)
             for x in function([self._known[symbol.element_hash()] for symbol in symbols])
             .full()
             .ravel()
         ]
-
-
-def _entries(column: ca.SX) -> list[ca.SX]:
-    column = as_expression(column)
-    return ca.vertsplit(column) if column.numel() else []

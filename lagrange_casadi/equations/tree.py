@@ -123,7 +123,7 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
         if joint.name in driven:
             _refuse_driven(mechanism, joint, branches, given)
         if joint.kind == "screw":
-            # Where its bodies are does not tell how often it has turned.
+            # Where its bodies are does not show how often it has turned.
             raise DeclarationError(
                 f"joint '{joint.name}' is a screw between bodies whose positions already follow"
                 " from drives and other screws; drive the screw itself, or replace it by a"
@@ -156,8 +156,8 @@ def _refuse_unplaced(
 def _refuse_unused(mechanism: Mechanism, two_force_links: Sequence[TwoForceLink]) -> None:
     """Raise :class:`DeclarationError` for a link whose ``between`` or ``beside`` nothing takes.
 
-    A bar takes ``beside``, and so does a joint that is told in the reference posture; ``turned``
-    tells in place of ``between``.
+    A bar takes ``beside``, and so does a joint that is given in the reference posture; ``turned``
+    is named in place of ``between``.
     """
     if not isinstance(mechanism, SpatialMechanism):
         return

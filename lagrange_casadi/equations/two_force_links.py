@@ -1,5 +1,5 @@
 """Bars: slender links between two spherical joints, whose spin about their own axis nothing holds
-and nothing feels.
+and nothing depends on.
 
 A bar has no coordinates. It lies between its two ends, wherever these are, and its length is one
 equation: the square of their distance. Its points move as its ends do, in proportion. So its
@@ -7,7 +7,7 @@ energy, and the work of forces on its axis, hold nothing of a spin.
 
 Its cross-section is turned as the declaration says: at every instant its y axis is the part across
 the bar of the direction ``beside``, which is fixed in the ground. Without that no stress of a
-cross-section that is not round is told.
+cross-section that is not round is determined.
 """
 
 from __future__ import annotations

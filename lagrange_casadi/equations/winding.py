@@ -1,8 +1,8 @@
-"""Turns of screws in loops: a loop tells a direction, and a screw slides by every turn.
+"""Turns of screws in loops: a loop gives a direction, and a screw slides by every turn.
 
 While an angle that counts turns goes round once, the screw's turns by a whole number of turns too.
 So its angle is a sum of such angles, each so often, and about that it swings by less than half a
-turn, which the direction tells.
+turn, which the direction gives.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from .multibody import Coordinate
 from .substitution import Numbers
 
@@ -22,7 +23,7 @@ _STEPS, _DIGITS = 256, 2
 def wound_angles(
     screw: Coordinate, variables: ca.SX, counting: Sequence[Coordinate], numbers: Numbers
 ) -> tuple[ca.SX, ca.SX]:
-    """The variables of a screw's angle with its turns, of those that a loop tells; and how far it
+    """The variables of a screw's angle with its turns, of those that a loop gives; and how far it
     swings.
 
     ``counting`` are the coordinates whose angles count turns, and ``numbers`` where all is at the
@@ -34,7 +35,7 @@ def wound_angles(
         if ca.depends_on(angle, other.variables) and (revolutions := _turns(angle, other, numbers)):
             about += revolutions * other.value
             beside -= revolutions * numbers.of(other.value)[0]
-    # In few digits, lest the last ones of some library's sines be told in the graph.
+    # In few digits, lest the last ones of some library's sines be seen in the graph.
     about += round(beside, _DIGITS)
     deviation = ca.atan2(
         s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about)
@@ -48,7 +49,7 @@ def _turns(angle: ca.SX, other: Coordinate, numbers: Numbers) -> int:
     start = numbers.of(other.value)[0]
     placed = ca.substitute(angle, other.variables, other.placed(other.value, turn))
     remaining = [symbol for symbol in ca.symvar(placed) if not ca.is_equal(symbol, turn)]
-    row = ca.Function("row", [turn, ca.vertcat(ca.SX(0, 1), *remaining)], [placed])
+    row = ca.Function("row", [turn, column(remaining)], [placed])
     known = [numbers.of(symbol)[0] for symbol in remaining]
     angles = [float(row(start + math.tau * k / _STEPS, known)) for k in range(_STEPS + 1)]
     gone = np.unwrap(angles)

@@ -1,5 +1,5 @@
-"""A unit of FMI 2.0, for simulation tools: an archive with the description, a library, the sources
-and a page to read.
+"""A unit of FMI 2.0, for simulation tools: an archive with the description, a library, the sources,
+golden vectors and a page to read.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from ..portable.header import header
 from ..portable.source import Source
 from ..portable.text import indented, template
 from .fmu_description import Description, page
+from .fmu_golden import FILE, golden_script, golden_vectors
 
 _HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 _EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -44,9 +45,9 @@ def check_tools() -> None:
     _compiler()
 
 
-def fmu(source: Source, p: Array, by: str = "") -> bytes:
-    """The archive ``<prefix>.fmu`` of a program whose parameters start with ``p``; ``by`` says what
-    moves it, see :class:`.Description`.
+def fmu(source: Source, p: Array, by: str = "") -> dict[str, bytes]:
+    """Return the archive ``<prefix>.fmu`` of a program whose parameters start with ``p``, and the
+    script that tests it; ``by`` says what moves it, see :class:`.Description`.
 
     The same program gives the same bytes, as far as the compiler does. Raises
     :class:`CompilerError` for what it refuses, :class:`StoreError` for what FMPy finds wrong, and
@@ -67,14 +68,18 @@ def fmu(source: Source, p: Array, by: str = "") -> bytes:
     files = {f"sources/{file}": text.encode() for file, text in sources.items()}
     files["modelDescription.xml"] = description.xml.encode()
     files["documentation/index.html"] = page(description).encode()
+    files[FILE] = golden_vectors(description).encode()
     files[f"binaries/{fmpy.platform}/{library}"] = _built(
         sources, description.sources, library, _compiler()
     )
     archive = _archive(files)
     findings = _findings(archive)
     if findings:
-        raise StoreError(f"FMPy finds {prefix}.fmu wrong: {' '.join(findings[0].split())}")
-    return archive
+        raise StoreError(f"FMPy reports an error in {prefix}.fmu: {' '.join(findings[0].split())}")
+    return {
+        f"{prefix}.fmu": archive,
+        f"{prefix}_fmu_test.py": golden_script(description).encode(),
+    }
 
 
 def wrapper(description: Description) -> str:

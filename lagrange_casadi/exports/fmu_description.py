@@ -262,11 +262,11 @@ def _entries(function: ca.Function, place: int) -> list[tuple[int, int]]:
 _ABOUT = """\
 Efforts of the drives, reactions of the joints and forces inside the links of a mechanism, at any
 instant of any motion of its drives: everything follows from the inputs, the parameters and the
-time, and nothing is integrated. Where there is no result, fmi2Discard is returned; for a parameter
-that is refused, fmi2Error; and the reason is logged. Angles that loops set go on from the last
-instant by the nearest turn, and loops that are iterated are followed from there, so instants must
-be near each other. In Co-Simulation, inputs are held during a step: what is read after it is of the
-inputs before, unless they are set anew."""
+time, and nothing is integrated. If there is no result, fmi2Discard is returned; if a parameter is
+refused, fmi2Error; and the reason is logged. Angles that follow from loops continue from the last
+instant by the nearest revolution, and iterated loops start from its solution, so instants must be
+near each other. In Co-Simulation, inputs are constant during a step: outputs that are read after it
+belong to the inputs before it, unless inputs are set again."""
 
 
 def page(description: Description) -> str:

@@ -37,7 +37,7 @@ MANIFEST = Manifest(
     "lagrange-casadi export",
     "export into",
     "an export",
-    "choose another folder, or say force=True, which touches no other file",
+    "choose another folder, or set force=True, which changes no other file",
 )
 _BUILD = "build"
 """Build folder in README: a new export neither stops at it nor touches it."""
@@ -84,9 +84,9 @@ def export(
         changed since. Files of others are never touched; those of the earlier export that are no
         longer written are removed, unless they were changed.
     fmu
-        Also write ``<prefix>.fmu``, a unit of FMI 2.0, whose inputs are the motion of the drives;
-        with ``"time"`` the scene's motion is inside, and with the name of a coordinate, as
-        ``"crank"``, its place is the input. Needs FMPy and a C compiler.
+        Also write ``<prefix>.fmu``, a unit of FMI 2.0 whose inputs are the motion of the drives,
+        and a script that tests it; with ``"time"`` the scene's motion is inside, and with the name
+        of a coordinate, as ``"crank"``, its place is the input. Needs FMPy and a C compiler.
     wasm
         Also write ``<prefix>.wasm``, with a wrapper in JavaScript, its types and
         ``README.wasm.md``. Needs ziglang.
@@ -136,17 +136,17 @@ def export(
         writer for writer, asked in ((for_control, control), (blocks, structured_text)) if asked
     ]
     files |= {file: text.encode() for writer in more for file, text in writer(source).items()}
-    unit = f"{agreed.prefix}.fmu"
+    units = (f"{agreed.prefix}.fmu", f"{agreed.prefix}_fmu_test.py") if fmu else ()
     known = MANIFEST.known(folder)
     allowed: dict[str, Any] = {"beside": force, "changed": force, "apart": _BUILD}
-    MANIFEST.check(folder, [*files, *([unit] if fmu else [])], **allowed)
+    MANIFEST.check(folder, [*files, *units], **allowed)
     if known and f"{agreed.prefix}.h" not in known and not force:
         raise PathError(
             f"cannot export into {folder}: it holds an export of another name; {MANIFEST.way_out}"
         )
     if fmu:
         by = fmu if isinstance(fmu, str) else ""
-        files[unit] = archive(source, np.array(list(source.values.values())), by)
+        files |= archive(source, np.array(list(source.values.values())), by)
     with MANIFEST.filling(folder, _manifest(source), alone=True, **allowed) as draft:
         for file, content in files.items():
             (draft / file).write_bytes(content)

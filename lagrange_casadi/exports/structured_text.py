@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.interpret import operation_name, steps
+from ..arithmetic.interpret import INFIX, operation_name, steps
 from ..base.quantities import Output
 from ..base.status import Status
 from ..errors import DeclarationError
@@ -32,15 +32,8 @@ _TWO |= {name: f"LC_{name.upper()}" for name in ("atan2", "fmod", "remainder", "
 _WRITTEN = {
     **{getattr(ca, f"OP_{name.upper()}"): f"{own}({{0}})" for name, own in _ONE.items()},
     **{getattr(ca, f"OP_{name.upper()}"): f"{own}({{0}}, {{1}})" for name, own in _TWO.items()},
-    ca.OP_ADD: "{0} + {1}",
-    ca.OP_SUB: "{0} - {1}",
-    ca.OP_MUL: "{0} * {1}",
-    ca.OP_DIV: "{0} / {1}",
-    ca.OP_NEG: "-{0}",
-    ca.OP_SQ: "{0} * {0}",
-    ca.OP_TWICE: "{0} + {0}",
+    **INFIX,
     ca.OP_INV: "1.0 / {0}",
-    ca.OP_ASSIGN: "{0}",
     ca.OP_HYPOT: "SQRT({0} * {0} + {1} * {1})",
     ca.OP_LT: "SEL({0} < {1}, 0.0, 1.0)",
     ca.OP_LE: "SEL({0} <= {1}, 0.0, 1.0)",
@@ -52,6 +45,11 @@ _WRITTEN = {
     ca.OP_SIGN: "SEL({0} > 0.0, SEL({0} < 0.0, {0}, -1.0), 1.0)",
     ca.OP_IF_ELSE_ZERO: "SEL({0} <> 0.0, 0.0, {1})",
 }
+
+_FINITE = ("IF NOT (y[n] - y[n] = 0.0) THEN", "valid := FALSE;", "END_IF;")
+
+_LEAST = 1e-37
+"""Outputs below it are compared with zero: matiec reads numbers of LREAL in the range of REAL."""
 
 
 def structured_text(source: Source) -> dict[str, str]:
@@ -80,14 +78,14 @@ def structured_text(source: Source) -> dict[str, str]:
         "inputs": indented(f"{name} : LREAL;" for name in given),
         "outputs": indented(f"{name} : LREAL;" for name in taken),
         "columns": len(source.exported.columns) - 1,
+        "finite": "\n".join(_loop("n", 0, len(source.exported.columns) - 1, _FINITE)),
         "registers": indented(instant.declared()),
         "motion_registers": indented(drive.declared()),
         "body": "\n".join(body),
         "motion": "\n".join(motion),
         "taken": "\n".join(outputs),
-        "start": _number(float(source.golden.times[0])),
-        "test": "\n".join(_test(source, given, taken)),
     }
+    words |= _test(source, given, taken)
     return {f"{c.prefix}.st": template("structured.st", **words)}
 
 
@@ -106,11 +104,9 @@ class _Block:
             start = f" := [{', '.join(map(_number, self.source.guess))}]" if name == "z" else ""
             yield f"{name} : ARRAY[0..{max(size, 1) - 1}] OF LREAL{start};"
         if "z" in self.arrays:
-            yield from ("size : LREAL;", "before : LREAL;")
+            yield from ("k : DINT;", "size : LREAL;", "before : LREAL;")
         for name, numbers in self.tables.items():
-            yield f"{name} : ARRAY[0..{len(numbers) - 1}] OF LREAL := ["
-            rows = [numbers[k : k + 6] for k in range(0, len(numbers), 6)]
-            yield ",\n    ".join("  " + ", ".join(map(_number, row)) for row in rows) + "];"
+            yield from _table(name, numbers)
 
     def array(self, name: str, size: int) -> list[str]:
         """Declare an array; return its elements."""
@@ -161,25 +157,24 @@ class _Block:
         """Yield the statements that close loops from where they stood."""
         exported, newton = self.source.exported, self.source.exported.program.newton
         assert newton is not None
+        stood, c, turn = self.array("z", len(z)), self.array("c", len(z)), _number(math.tau)
+        step, given = exported.functions["loops"], [z, counted, self.parameters()]
+        moved = [f"{now} := {now} + {more};" for now, more in zip(z, c, strict=True)]
+        whole = [
+            f" - {turn} * LC_FLOOR({now} / {turn} + 0.5)" if turning else ""
+            for now, turning in zip(z, newton.turning, strict=True)
+        ]
         rule = {key: _number(float(value)) for key, value in exported.rule.items()}
-        stood, c = self.array("z", len(z)), self.array("c", len(z))
-        yield from (f"{now} := {then};" for now, then in zip(z, stood, strict=True))
-        yield from ("size := 1.0;", "before := 1.0;")
-        yield f"FOR n := 1 TO {int(exported.rule['steps'])} DO"
-        yield f"IF NOT (size < {rule['done']}) THEN"
-        yield "before := size;"
-        step = exported.functions["loops"]
-        yield from self.lines(step, [z, counted, self.parameters()], [c, ["size"]], within="k")
-        yield from (f"{now} := {now} + {more};" for now, more in zip(z, c, strict=True))
-        yield from ("END_IF;", "END_FOR;")
-        yield f"IF size < {rule['lost']} THEN"
-        turn = _number(math.tau)
-        for then, now, turning in zip(stood, z, newton.turning, strict=True):
-            whole = f" - {turn} * LC_FLOOR({now} / {turn} + 0.5)" if turning else ""
-            yield f"{then} := {now}{whole};"
-        yield from ("ELSE", "valid := FALSE;", "END_IF;")
-        yield f"IF size > {rule['rate']} * before AND size > {rule['rounding']} THEN"
-        yield from (f"iterated := {_number(float(Status.SLOW))};", "END_IF;")
+        body = [f"IF NOT (size < {rule['done']}) THEN", "before := size;"]
+        body += [*self.lines(step, given, [c, ["size"]], within="k"), *moved, "END_IF;"]
+        yield template(
+            "structured_loops.st",
+            **rule,
+            begin="\n".join(f"{now} := {then};" for now, then in zip(z, stood, strict=True)),
+            iterate="\n".join(_loop("n", 1, int(exported.rule["steps"]), body)),
+            keep="\n".join(map("{} := {}{};".format, stood, z, whole)),
+            slow=_number(float(Status.SLOW)),
+        ).rstrip()
 
     def parameters(self) -> list[str]:
         """Return the parameters as numbers."""
@@ -241,29 +236,44 @@ class _Block:
             yield f"{target} := {name}[LREAL_TO_DINT({given})];"
             return
         yield from (f"x := {given};", f"{target} := 0.0;")
-        yield f"FOR {counter} := 0 TO {len(numbers) - 1} DO"
-        yield from (f"IF {name}[{counter}] <= x THEN", f"{target} := {target} + 1.0;", "END_IF;")
-        yield "END_FOR;"
+        test = [f"IF {name}[{counter}] <= x THEN", f"{target} := {target} + 1.0;", "END_IF;"]
+        yield from _loop(counter, 0, len(numbers) - 1, test)
 
 
-def _test(source: Source, given: Sequence[str], taken: Sequence[str]) -> Iterator[str]:
-    """Yield a program that follows the motion and compares outputs at golden instants."""
-    g, c = source.golden, source.contract
-    before = float(g.times[0])
-    for number, t in enumerate(g.times.tolist()):
-        count = g.steps if number else 1
-        yield f"FOR n := 1 TO {count} DO"
-        yield f"t := SEL(n = {count}, t + {_number((t - before) / count)}, {_number(t)});"
-        yield "drive(t := t);"
-        yield f"unit({', '.join(f'{name} := drive.{name}' for name in given)});"
-        yield "END_FOR;"
-        before = t
-        yield from ("IF NOT unit.valid THEN", "failed := failed + 1;", "END_IF;")
-        for k, (name, m) in enumerate(zip(taken, c.outputs, strict=True)):
-            gap = f"unit.{name} - ({_number(float(g.outputs[number, k]))})"
-            gap = f"LC_DIRECTION({gap})" if m.wrapped else gap
-            yield f"IF NOT (ABS({gap}) <= {_number(float(g.outputs_off[k]))}) THEN"
-            yield from ("failed := failed + 1;", "END_IF;")
+def _table(name: str, numbers: Iterable[float]) -> Iterator[str]:
+    """Yield the declaration of an array of numbers."""
+    texts = [_number(float(one)) for one in numbers]
+    yield f"{name} : ARRAY[0..{len(texts) - 1}] OF LREAL := ["
+    rows = (", ".join(texts[k : k + 6]) for k in range(0, len(texts), 6))
+    yield ",\n    ".join(f"  {row}" for row in rows) + "];"
+
+
+def _loop(counter: str, first: int, last: int, body: Sequence[str]) -> list[str]:
+    """Return a loop; of one turn its body alone, which matiec would leave out."""
+    head = f"FOR {counter} := {first} TO {last} DO"
+    return [f"{counter} := {first};", *body] if last == first else [head, *body, "END_FOR;"]
+
+
+def _test(source: Source, given: Sequence[str], taken: Sequence[str]) -> dict[str, str]:
+    """Return words of a program that follows the motion and compares outputs at golden instants."""
+    g, c, count = source.golden, source.contract, len(taken)
+    numbers = np.where(np.abs(g.outputs) > _LEAST, g.outputs, 0.0)
+    inputs = ", ".join(f"{name} := drive.{name}" for name in given)
+    share = f"DINT_TO_LREAL(n) / {_number(float(g.steps))}"
+    step = f"t := SEL(n = {g.steps}, before + {share} * (times[k] - before), times[k]);"
+    body = [step, "drive(t := t);", f"unit({inputs});"]
+    body = [*_loop("n", 1, g.steps, body), "before := t;"]
+    body += ["IF NOT unit.valid THEN", "failed := failed + 1;", "END_IF;"]
+    for j, (name, m) in enumerate(zip(taken, c.outputs, strict=True)):
+        gap = f"unit.{name} - golden[k * {count} + {j}]"
+        gap = f"LC_DIRECTION({gap})" if m.wrapped else gap
+        off = _number(max(float(g.outputs_off[j]), _LEAST))
+        body += [f"IF NOT (ABS({gap}) <= {off}) THEN", "failed := failed + 1;", "END_IF;"]
+    return {
+        "start": _number(float(g.times[0])),
+        "golden": indented([*_table("times", g.times), *_table("golden", numbers.ravel())]),
+        "test": "\n".join(_loop("k", 0, g.times.size - 1, body)),
+    }
 
 
 def _number(value: float) -> str:

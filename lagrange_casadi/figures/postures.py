@@ -77,12 +77,12 @@ def draw_postures(scene: Scene, file: BinaryIO) -> tuple[list[str], bool]:
     pictures = _apart([solution for _, solution in found])
     words, notes = f"{len(found)} ways to assemble it", []
     if len(pictures) < len(found):
-        notes.append("Ways that share a picture differ by turns that it does not show.")
+        notes.append("Postures with one picture differ by rotations that it does not show.")
     if possible > _ALL:
         words = f"{len(found)} of at most {possible} ways to assemble it"
         notes.append(
-            "For the others put the first entry of a row into the scene's posture, and run again:"
-            " the picture then has the ways that agree with it."
+            "To see the others, put the first entry of a row into the scene's posture, and run"
+            " again: the picture then has the postures with this entry."
         )
     note = [line for sentence in notes for line in textwrap.wrap(sentence, _WIDE + 4)]
     columns = min(math.ceil(math.sqrt(len(pictures))), 4)

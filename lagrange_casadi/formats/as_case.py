@@ -19,7 +19,7 @@ from ..base.arrays import Array
 from ..errors import escaped
 from .checks import EXACT, opened
 from .laws import LawError, of_pi, python, text_of, tuple_of
-from .record import COORDINATES, GROUND, ROWS, Body, Frame, Joint, Law, Model, Tie
+from .record import GROUND, MOVES, ROWS, Body, Frame, Joint, Law, Model, Tie
 
 WIDTH = 96
 """Characters of a line, at most, where it can be broken."""
@@ -289,7 +289,7 @@ class _Case:
         """
         along = self.model.frames(tie)[0].axes[:, 2]
         for joint in self.model.joints.values():
-            names = [one for one in COORDINATES[joint.kind] if one in ("", "turn")]
+            names = [one for one, _, _ in MOVES[joint.kind] if one in ("", "turn")]
             mine = body in (joint.parent, joint.child) and not {tie.parent, tie.child} <= {
                 joint.parent,
                 joint.child,

@@ -7,13 +7,14 @@ about z of its marker I. Curves of the series of results that a file may have ar
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..base.arrays import Array
+from .elements import Element
 from .record import (
     GROUND,
     Body,
@@ -66,228 +67,193 @@ _NUMBERS |= dict.fromkeys(
     ("SphSphJoint", "CylSphJoint", "RevCylJoint", "RevRevJoint"), "distanceIJ"
 )
 
+_MOTIONS = {
+    "RotationalMotion": ("RotationZ", "turn", "revolute"),
+    "TranslationalMotion": ("TranslationZ", "slide", "prismatic"),
+}
+"""Property with the law of a motion, its coordinate, and the kind of joint that has it alone."""
+
 _HEADS = ("freeCAD: 3D CAD with Motion Simulation  by  askoh.com", "OndselSolver")
 _DEEPEST = 40
 
 
-@dataclass(eq=False)
-class _Line:
+class _Line(Element):
     """A line, and what stands below it one tab further."""
 
-    text: str
-    at: int
-    below: list[_Line] = field(default_factory=list)
+    form = "{}"
 
-    @property
-    def where(self) -> str:
-        return f"line {self.at}, {self.text[:40]}"
+    def below(self, name: str) -> Iterator[_Line]:
+        """Yield what stands below the lines of a text below it."""
+        return (one for group in self.all(name) for one in group.inside)
+
+    def value(self, name: str) -> str:
+        """Return the text below the line of a text."""
+        found = self.needed(name).inside
+        return found[0].name if found else ""
+
+    def number(self, name: str, where: str = "") -> float:
+        """Return the number below the line of a text."""
+        return number(self.model, where or self.where, self.value(name), name)
+
+    def vector(self, name: str) -> Array:
+        """Return three numbers below the line of a text."""
+        return numbers(self.model, self.needed(name).where, self.value(name), name, 3)
+
+    def frame(self) -> Frame:
+        """Return the place and axes below it."""
+        place, rows = self.vector("Position3D"), self.needed("RotationMatrix")
+        axes = [numbers(self.model, rows.where, one.name, "axes", 3) for one in rows.inside]
+        if len(axes) != 3:
+            raise rows.refuse("expected three rows")
+        return Frame(place, rotation(self.model, rows.where, np.array(axes)))
 
 
 def read(path: Path, text: str) -> Model:
     """Return the model of a file. Raises :class:`.ModelFileError`, which names line and element."""
-    return _Reader(Model(path.stem, path.name, gravity=(0.0, 0.0, 0.0)), text).read()
+    model = Model(path.stem, path.name, gravity=(0.0, 0.0, 0.0))
+    return _Reader(model, _tree(model, text)).read()
+
+
+def _tree(model: Model, text: str) -> _Line:
+    """Return the line ``Assembly``, with what is below it; the series after it are left out."""
+    lines = text.splitlines()
+    if not lines or lines[0].strip() not in _HEADS:
+        raise model.refuse("line 1", "expected the first line of an assembly of FreeCAD")
+    above = [_Line(model, "", 1)]
+    for at, line in enumerate(lines[1:], 2):
+        if line.startswith("TimeSeries"):
+            break
+        data = line.lstrip("\t")
+        depth = len(line) - len(data)
+        if not data.strip():
+            continue
+        if depth > len(above) - 1 or depth > _DEEPEST:
+            raise model.refuse(f"line {at}", "has too many tabs for what is above it")
+        del above[depth + 1 :]
+        above[-1].inside.append(one := _Line(model, data.strip(), at))
+        above.append(one)
+    return above[0].needed("Assembly")
 
 
 class _Reader:
     """A file under way: the model, and where its markers are."""
 
-    def __init__(self, model: Model, text: str) -> None:
-        self.model = model
+    def __init__(self, model: Model, root: _Line) -> None:
+        self.model, self.root = model, root
         self.markers: dict[str, tuple[str, Frame]] = {}
         self.named: dict[str, str] = {}
-        self.root = self.tree(text)
 
     def read(self) -> Model:
         """Return the model."""
-        model, root = self.model, self.root
-        local = self.value(root, "Name")
-        model.name = model.name_of("mechanism", local, root.where, {})
-        if not np.allclose(self.frame(root).axes, np.eye(3)) or any(self.frame(root).place):
+        model, root, stated = self.model, self.root, self.root.value("Name")
+        model.name = model.name_of("mechanism", stated, root.where, {})
+        if not np.allclose(root.frame().axes, np.eye(3)) or any(root.frame().place):
             model.notes.append(
                 "The placement of the assembly itself is ignored: the assembly is the ground."
             )
-        self.points(root, GROUND, f"/{local}")
-        for part in self.all(root, "Parts"):
-            if part.text != "Part":
-                raise model.refuse(part.where, "is not supported here; expected a Part")
-            self.part(part, f"/{local}")
-        sets = self.below(root, "ConstraintSets")
-        for joint in self.all(sets, "Joints"):
-            self.joint(joint, f"/{local}")
-        for motion in self.all(sets, "Motions"):
+        self.points(root, GROUND, f"/{stated}")
+        for part in root.below("Parts"):
+            if part.name != "Part":
+                raise part.refuse("is not supported here; expected a Part")
+            self.part(part, f"/{stated}")
+        sets = root.needed("ConstraintSets")
+        for joint in sets.below("Joints"):
+            self.joint(joint, f"/{stated}")
+        for motion in sets.below("Motions"):
             self.motion(motion)
-        for group, parent in (
-            ("Limits", sets),
-            ("GeneralConstraintSets", sets),
-            ("ForceTorques", root),
-        ):
-            for one in self.all(parent, group):
-                model.notes.append(f"{one.text} of line {one.at} is ignored.")
-        x, y, z = self.vector(root, "ConstantGravity")
+        ignored = [*sets.below("Limits"), *sets.below("GeneralConstraintSets")]
+        for one in (*ignored, *root.below("ForceTorques")):
+            model.notes.append(f"{one.name} of line {one.line} is ignored.")
+        x, y, z = root.vector("ConstantGravity")
         model.gravity = (float(x), float(y), float(z))
         self.times()
         return model
 
-    def tree(self, text: str) -> _Line:
-        """Return the line ``Assembly``, with what is below it; the series after it are left out."""
-        lines = text.splitlines()
-        if not lines or lines[0].strip() not in _HEADS:
-            raise self.model.refuse("line 1", "expected the first line of an assembly of FreeCAD")
-        root = _Line("", 0)
-        above = [root]
-        for at, line in enumerate(lines[1:], 2):
-            if line.startswith("TimeSeries"):
-                break
-            data = line.lstrip("\t")
-            depth = len(line) - len(data)
-            if not data.strip():
-                continue
-            if depth > len(above) - 1 or depth > _DEEPEST:
-                raise self.model.refuse(f"line {at}", "has too many tabs for what is above it")
-            del above[depth + 1 :]
-            above[-1].below.append(one := _Line(data.strip(), at))
-            above.append(one)
-        return self.below(root, "Assembly")
-
-    def below(self, line: _Line, text: str) -> _Line:
-        """Return the line of a text below another. Raises :class:`.ModelFileError` for none."""
-        for one in line.below:
-            if one.text == text:
-                return one
-        raise self.model.refuse(line.where if line.at else "", f"lacks {text}")
-
-    def all(self, line: _Line, text: str) -> Iterator[_Line]:
-        """Yield what stands below a line of this text."""
-        for one in line.below:
-            if one.text == text:
-                yield from one.below
-
-    def value(self, line: _Line, text: str) -> str:
-        """Return the text below a line of this text."""
-        found = self.below(line, text)
-        return found.below[0].text if found.below else ""
-
-    def vector(self, line: _Line, text: str) -> Array:
-        """Return three numbers below a line of this text."""
-        data = self.value(line, text)
-        return numbers(self.model, self.below(line, text).where, data, text, 3)
-
-    def frame(self, line: _Line) -> Frame:
-        """Return a place and axes."""
-        place, rows = self.vector(line, "Position3D"), self.below(line, "RotationMatrix")
-        data = [numbers(self.model, rows.where, one.text, "axes", 3) for one in rows.below]
-        if len(data) != 3:
-            raise self.model.refuse(rows.where, "expected three rows")
-        return Frame(place, rotation(self.model, rows.where, np.array(data)))
-
     def points(self, line: _Line, body: str, path: str) -> None:
         """Keep the markers of a body; one on a curve has no place."""
-        for point in self.all(line, "RefPoints"):
-            frame = self.frame(point)
-            for marker in self.all(point, "Markers"):
-                name = f"{path}/{self.value(marker, 'Name')}"
-                self.markers[name] = (body, frame.then(self.frame(marker)))
+        for point in line.below("RefPoints"):
+            frame = point.frame()
+            for marker in point.below("Markers"):
+                name = f"{path}/{marker.value('Name')}"
+                self.markers[name] = (body, frame.then(marker.frame()))
 
     def part(self, line: _Line, path: str) -> None:
         """Read a body."""
-        model, data = self.model, self.value(line, "Name")
-        where = f"line {line.at}, Part {data}"
-        name = model.name_of("body", data, where, model.bodies)
-        mass = self.below(line, "PrincipalMassMarker")
-        frame = self.frame(mass)
-        moments = self.vector(mass, "MomentOfInertias")
-        inertia = frame.axes @ np.diag(moments) @ frame.axes.T
-        heavy = number(model, mass.where, self.value(mass, "Mass"), "Mass")
-        model.bodies[name] = Body(name, heavy, frame.place, inertia, self.frame(line), where=where)
-        self.points(line, name, f"{path}/{data}")
+        stated, mass = line.value("Name"), line.needed("PrincipalMassMarker")
+        centre, heavy = mass.frame(), mass.number("Mass")
+        inertia = centre.axes @ np.diag(mass.vector("MomentOfInertias")) @ centre.axes.T
+        given, where = (heavy, centre.place, inertia, line.frame()), f"{line.where} {stated}"
+        self.points(line, self.model.add(Body, stated, where, *given), f"{path}/{stated}")
 
-    def marker(self, line: _Line, text: str) -> tuple[str, Frame]:
+    def marker(self, line: _Line, name: str) -> tuple[str, Frame]:
         """Return the body and the frame of a marker that a line names."""
-        data = self.value(line, text)
-        if data not in self.markers:
-            words = f"unknown marker '{data}'; valid: {', '.join(self.markers)}"
-            raise self.model.refuse(f"line {line.at}, {line.text}", words)
+        if (data := line.value(name)) not in self.markers:
+            raise line.refuse(f"unknown marker '{data}'; valid: {', '.join(self.markers)}")
         return self.markers[data]
 
     def joint(self, line: _Line, path: str) -> None:
         """Read a joint between two markers."""
-        model, data = self.model, self.value(line, "Name")
-        where = f"line {line.at}, {line.text} {data}"
-        taken = {**model.joints, **model.ties}
-        name = self.named[f"{path}/{data}"] = model.name_of("joint", data, where, taken)
-        if line.text not in KINDS and line.text not in TIES:
-            raise model.refuse(where, f"is not supported; valid: {', '.join([*KINDS, *TIES])}")
+        model, stated, kind, value = self.model, line.value("Name"), line.name, 0.0
+        where = f"{line.where} {stated}"
+        if kind not in KINDS and kind not in TIES:
+            words = f"is not supported; valid: {', '.join([*KINDS, *TIES])}"
+            raise model.refuse(where, words)
         (parent, near), (child, far) = self.marker(line, "MarkerI"), self.marker(line, "MarkerJ")
-        key = _NUMBERS.get(line.text, "")
-        has = any(one.text == key for one in line.below)
-        value = number(model, where, self.value(line, key), key) if has else 0.0
-        if line.text in KINDS:
-            kind = KINDS[line.text]
+        if line.first(key := _NUMBERS.get(kind, "")) is not None:
+            value = line.number(key, where)
+        if kind in KINDS:
             near = near.then(Frame(np.array([0.0, 0.0, value])))
-            model.joints[name] = Joint(name, kind, parent, child, near, far, where=where)
+            name = model.add(Joint, stated, where, KINDS[kind], parent, child, near, far)
         else:
-            tie = Tie(name, parent, child, near, far, TIES[line.text], where)
-            if line.text == "GearJoint":
-                one, other = (
-                    number(model, where, self.value(line, key), key)
-                    for key in ("radiusI", "radiusJ")
-                )
+            if kind == "GearJoint":
+                one, other = (line.number(key, where) for key in ("radiusI", "radiusJ"))
                 if not one or not other:
                     raise model.refuse(where, "a radius of zero is impossible")
                 value = one / other
-            rows = tuple(self.row(tie, row, line.text, value) for row in tie.rows)
-            model.ties[name] = Tie(name, parent, child, near, far, rows, where)
+            frames = model.frame_of(parent).then(near), model.frame_of(child).then(far)
+            rows = tuple(self.row(frames, row, kind, value) for row in TIES[kind])
+            name = model.add(Tie, stated, where, parent, child, near, far, rows)
+        self.named[f"{path}/{stated}"] = name
 
-    def row(self, tie: Tie, row: Row, kind: str, value: float) -> Row:
+    def row(self, frames: tuple[Frame, Frame], row: Row, kind: str, value: float) -> Row:
         """Return a row of a joint with its number; one that turns keeps what it is in the file."""
-        near, far = self.model.frames(tie)
+        near, far = frames
         known = near.relative(far)
         if row.kind == "slide and turn":
             factor = value if kind == "RackPinionJoint" else -value / math.tau
             angle = math.atan2(known.axes[1, 0], known.axes[0, 0])
             found = float(known.place[row.i]) + factor * angle
-            return Row(row.kind, row.i, value=_clean(found), factor=factor, angle=_clean(angle))
+            return replace(row, value=_clean(found), factor=factor, angle=_clean(angle))
         if row.kind == "wheels":
             back = far.relative(near).place
             first = _clean(math.atan2(known.place[1], known.place[0]))
             second = _clean(math.atan2(back[1], back[0]))
             found = second + value * first
-            return Row(row.kind, value=found, factor=value, angle=first, other=second)
+            return replace(row, value=found, factor=value, angle=first, other=second)
         if kind == "AngleJoint":
-            return Row(row.kind, row.i, row.j, math.cos(value))
+            return replace(row, value=math.cos(value))
         if row.kind.startswith("distance"):
-            return Row(row.kind, row.i, row.j, value**2)
-        return Row(row.kind, row.i, row.j, value) if row.kind == "slide" else row
+            return replace(row, value=value**2)
+        return replace(row, value=value) if row.kind == "slide" else row
 
     def motion(self, line: _Line) -> None:
         """Read the motion of a joint."""
-        model, data = self.model, self.value(line, "Name")
-        where = f"line {line.at}, {line.text} {data}"
-        laws: Mapping[str, tuple[str, str]] = {
-            "RotationalMotion": ("RotationZ", "turn"),
-            "TranslationalMotion": ("TranslationZ", "slide"),
-        }
-        if line.text not in laws:
-            raise model.refuse(where, f"is not supported; valid: {', '.join(laws)}")
-        key, direction = laws[line.text]
-        path = self.value(line, "MotionJoint")
-        joint = model.joints.get(self.named.get(path, ""))
+        model, where = self.model, f"{line.where} {line.value('Name')}"
+        if line.name not in _MOTIONS:
+            raise model.refuse(where, f"is not supported; valid: {', '.join(_MOTIONS)}")
+        key, direction, single = _MOTIONS[line.name]
+        joint = model.joints.get(self.named.get(path := line.value("MotionJoint"), ""))
         if joint is None:
             valid = ", ".join(path for path, name in self.named.items() if name in model.joints)
             raise model.refuse(where, f"unknown joint '{path}'; valid: {valid}")
-        single = {"revolute": "turn", "prismatic": "slide"}.get(joint.kind)
-        coordinate = joint.name if single == direction else f"{joint.name}:{direction}"
-        model.motions[coordinate] = Law(self.value(line, key), where=where)
+        coordinate = joint.name if joint.kind == single else f"{joint.name}:{direction}"
+        model.motions[coordinate] = Law(line.value(key), where=where)
 
     def times(self) -> None:
         """Read the instants, where the file has a simulation."""
-        if not any(one.text == "SimulationParameters" for one in self.root.below):
+        if (data := self.root.first("SimulationParameters")) is None:
             return
-        data = self.below(self.root, "SimulationParameters")
-        start, stop, step = (
-            number(self.model, data.where, self.value(data, key), key)
-            for key in ("tstart", "tend", "hout")
-        )
+        start, stop, step = (data.number(key) for key in ("tstart", "tend", "hout"))
         count = round((stop - start) / step) + 1 if step > 0.0 else 101
         self.model.span = (start, stop, count if 1 < count <= 100_001 else 101)
 

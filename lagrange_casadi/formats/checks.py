@@ -76,7 +76,7 @@ def _body(model: Model, body: Body) -> Body:
     if excess > EXACT * moments[2]:
         model.notes.append(
             f"{what}: its largest principal moment of inertia exceeds the sum of the other two by"
-            f" {excess:.1e} kg m^2, which is taken for rounding"
+            f" {excess:.1e} kg m^2, which is taken as rounding"
         )
     return replace(body, inertia=inertia)
 
@@ -100,7 +100,7 @@ def _connected(model: Model) -> None:
                 return
     for body in model.bodies.values():
         if body.name not in reached:
-            words = f"body '{body.name}' is joined to nothing that hangs on the ground"
+            words = f"body '{body.name}' is not connected to the ground"
             raise model.refuse(body.where, words)
 
 
@@ -123,8 +123,8 @@ def _spins(model: Model) -> None:
         near, far = held
         model.joints[last.name] = replace(last, kind="universal", on_parent=near, on_child=far)
         model.notes.append(
-            f"body '{name}' lies between two spherical joints, and its spin about itself loads"
-            f" nothing: joint '{last.name}' is universal here"
+            f"body '{name}' lies between two spherical joints, and its rotation about the line"
+            f" between them has no effect: joint '{last.name}' is made universal"
         )
 
 
@@ -147,8 +147,8 @@ def _rounding(model: Model) -> None:
         if max(gap / size, angle) > SLACK or max(gap / size, angle) <= EXACT:
             continue
         model.notes.append(
-            f"joint '{joint.name}': its two frames miss each other by {gap:.1e} m and {angle:.1e}"
-            " rad, which is taken for rounding: the child's place and the parent's axes hold"
+            f"joint '{joint.name}': its two frames differ by {gap:.1e} m and {angle:.1e} rad,"
+            " which is taken as rounding: the child's place and the parent's axes are used"
         )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from .checks import spinning
-from .record import GROUND, HELD, Frame, Joint, Law, Model, Tie
+from .record import GROUND, MOVES, Frame, Joint, Law, Model, Tie
 
 RANK = 1e-8
 """Singular values that are smaller, of the largest, are none."""
@@ -129,9 +129,10 @@ def _twists(model: Model, joint: Joint) -> list[tuple[str, Array]]:
     the ground's origin over the mechanism's size, and the angular one.
     """
     near, far = model.frames(joint)
+    moves = zip(joint.coordinates, MOVES[joint.kind], strict=True)
     return [
-        (name, _twist(kind, near, far, joint.lead) * _scale(model))
-        for name, kind in zip(joint.coordinates, _moves(joint.kind), strict=True)
+        (name, _twist(move, axis, near, far, joint.lead) * _scale(model))
+        for name, (_, move, axis) in moves
     ]
 
 
@@ -139,25 +140,9 @@ def _scale(model: Model) -> Array:
     return np.array([1.0 / model.size()] * 3 + [1.0] * 3)
 
 
-def _moves(kind: str) -> list[str]:
-    """Return along or about which axis each coordinate of a kind moves."""
-    slides, angles = HELD[kind]
-    match kind:
-        case "screw":
-            return ["screw"]
-        case "universal":
-            return ["turn z", "turn second"]
-        case "weld":
-            return []
-    return [f"slide {a}" for a in "xyz" if a not in slides] + [
-        f"turn {a}" for a in "xyz" if a not in angles
-    ]
-
-
-def _twist(move: str, near: Frame, far: Frame, lead: float) -> Array:
-    kind, _, axis = move.partition(" ")
-    along = far.axes[:, 2] if axis == "second" else near.axes[:, "xyz".find(axis or "z")]
-    if kind == "slide":
+def _twist(move: str, axis: str, near: Frame, far: Frame, lead: float) -> Array:
+    along = far.axes[:, 2] if axis == "w" else near.axes[:, "xyz".index(axis)]
+    if move == "slide":
         return np.concatenate([along, np.zeros(3)])
-    slide = lead / (2.0 * np.pi) * along if kind == "screw" else np.zeros(3)
+    slide = lead / (2.0 * np.pi) * along if move == "screw" else np.zeros(3)
     return np.concatenate([np.cross(near.place, along) + slide, along])

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +14,9 @@ import numpy as np
 
 from ..base.arrays import Json
 from ..errors import shown
+from .elements import Element
 from .record import (
-    COORDINATES,
+    MOVES,
     Body,
     Coupling,
     Frame,
@@ -31,27 +32,85 @@ from .record import (
 SCHEMA, VERSION = "lagrange_casadi.model", 1
 """Name of the format in a file."""
 
-TOP = (
-    "schema",
-    "version",
-    "name",
-    "units",
-    "gravity",
-    "time",
-    "bodies",
-    "joints",
-    "couplings",
-    "motions",
-    "posture",
-    "drives",
-    "notes",
-)
+TOP = ("schema", "version", "name", "units", "gravity", "time", "bodies", "joints", "couplings",
+       "motions", "posture", "drives", "notes")  # fmt: skip
 FRAME = ("place", "axes", "z")
 BODY = ("name", "mass", "centre", "inertia", "rod", "point", "places", *FRAME)
 JOINT = ("name", "kind", "parent", "child", "on_parent", "on_child", "lead")
 COUPLING = ("name", "first", "second", "ratio", "offset")
 
-Data = Mapping[str, Any]
+
+class _Object(Element):
+    """An object of the file; its name is its path."""
+
+    form = "'{}'"
+
+    @property
+    def where(self) -> str:
+        """The path of the object."""
+        return self.name
+
+    def at(self, key: str) -> str:
+        """Return the path of an entry."""
+        return f"{self.name}.{key}" if self.name else key
+
+    def objects(self, key: str, valid: Sequence[str], *needed: str) -> Iterator[_Object]:
+        """Yield the objects in a list of it."""
+        for k, one in enumerate(self.list(key)):
+            yield _object(self.model, f"{self.at(key)}[{k}]", one, valid, *needed)
+
+    def list(self, key: str) -> list[object]:
+        """Return a list in it, which is empty if it is not there."""
+        return _list(self.model, self.at(key), self.given.get(key, []))
+
+    def table(self, key: str) -> dict[str, object]:
+        """Return an object in it of any keys, empty if it is not there."""
+        return _object(self.model, self.at(key), self.given.get(key, {})).given
+
+    def word(self, key: str, usual: str = "") -> str:
+        """Return a text in it."""
+        return _text(self.model, self.at(key), self.given.get(key, usual))
+
+    def frame(self, key: str = "") -> Frame:
+        """Return a frame in it: its place, and either its three axes, or the direction of z."""
+        one = self
+        if key:
+            one = _object(self.model, self.at(key), self.given.get(key, {}), FRAME)
+        place = one.triple("place", (0.0, 0.0, 0.0))
+        if "axes" in one.given:
+            where = one.at("axes")
+            axes = np.array([numbers(one.model, where, row, "axes", 3) for row in one.list("axes")])
+            if axes.shape != (3, 3):
+                raise one.model.refuse(where, "expected the directions of x, y and z")
+            return Frame(place, rotation(one.model, where, axes.T))
+        return Frame(place, about_axis(one.direction("z"))) if "z" in one.given else Frame(place)
+
+
+def _object(
+    model: Model, path: str, data: object, valid: Sequence[str] = (), *needed: str
+) -> _Object:
+    """Return an object of valid keys, if there are any, of which some are needed."""
+    if not isinstance(data, dict):
+        raise model.refuse(path, f"expected an object, got {shown(data)}")
+    for key in data:
+        if valid and key not in valid:
+            raise model.refuse(path, f"unknown key {shown(key)}; valid: {', '.join(valid)}")
+    for key in needed:
+        if key not in data:
+            raise model.refuse(path, f"lacks '{key}'")
+    return _Object(model, path, 0, data)
+
+
+def _list(model: Model, where: str, data: object) -> list[object]:
+    if not isinstance(data, list | tuple):
+        raise model.refuse(where, f"expected a list, got {shown(data)}")
+    return list(data)
+
+
+def _text(model: Model, where: str, given: object) -> str:
+    if not isinstance(given, str) or not given or len(given) > 200:
+        raise model.refuse(where, f"expected a text, got {shown(given)}")
+    return given
 
 
 def read(path: Path, text: str) -> Model:
@@ -61,37 +120,32 @@ def read(path: Path, text: str) -> Model:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise model.refuse("", f"no JSON: {error}") from None
-    _keys(model, "", data, TOP, ("schema", "version", "bodies", "joints"))
+    top = _object(model, "", data, TOP, "schema", "version", "bodies", "joints")
     if data["schema"] != SCHEMA or data["version"] != VERSION:
         expected = f'"schema": "{SCHEMA}", "version": {VERSION}'
         got = f"{shown(data['schema'])}, {shown(data['version'])}"
         raise model.refuse("", f"expected {expected}, got {got}")
     if data.get("units", "SI") != "SI":
         raise model.refuse("units", f'expected "SI", got {shown(data["units"])}')
-    model.name = _text(model, "name", data.get("name", model.name))
-    x, y, z = numbers(model, "gravity", data.get("gravity", (0.0, 0.0, -9.81)), "gravity", 3)
+    model.name = top.word("name", model.name)
+    x, y, z = top.triple("gravity", model.gravity)
     model.gravity = (float(x), float(y), float(z))
-    for k, one in enumerate(_list(model, "bodies", data["bodies"])):
-        body = _body(model, f"bodies[{k}]", one)
-        model.bodies[body.name] = body
-    for k, one in enumerate(_list(model, "joints", data["joints"])):
-        joint = _joint(model, f"joints[{k}]", one)
-        model.joints[joint.name] = joint
-    for k, one in enumerate(_list(model, "couplings", data.get("couplings", []))):
-        coupling = _coupling(model, f"couplings[{k}]", one)
-        model.couplings[coupling.name] = coupling
-    for name, one in _table(model, "motions", data.get("motions", {})).items():
-        model.motions[name] = _law(model, f"motions.{name}", one)
-    for name, one in _table(model, "posture", data.get("posture", {})).items():
-        model.posture[name] = number(model, f"posture.{name}", one, "value")
+    for one in top.objects("bodies", BODY, "name", "mass"):
+        _body(one)
+    for one in top.objects("joints", JOINT, "name", "kind", "parent", "child"):
+        _joint(one)
+    for one in top.objects("couplings", COUPLING, "name", "first", "second", "ratio"):
+        joints, ratio = (one.word("first"), one.word("second")), one.amount("ratio")
+        model.add(Coupling, one.word("name"), one.where, *joints, ratio, one.amount("offset", 0.0))
+    for name, law in top.table("motions").items():
+        model.motions[name] = _law(model, f"motions.{name}", law)
+    for name, value in top.table("posture").items():
+        model.posture[name] = number(model, f"posture.{name}", value, "value")
     if "drives" in data:
-        names = _list(model, "drives", data["drives"])
-        model.drives = [_text(model, "drives", one) for one in names]
+        model.drives = [_text(model, "drives", one) for one in top.list("drives")]
     if "time" in data:
         model.span = _span(model, data["time"])
-    model.notes = [
-        _text(model, "notes", one) for one in _list(model, "notes", data.get("notes", []))
-    ]
+    model.notes = [_text(model, "notes", one) for one in top.list("notes")]
     return model
 
 
@@ -143,124 +197,56 @@ def _frame_data(frame: Frame) -> dict[str, Json]:
     return data
 
 
-def _body(model: Model, where: str, data: Data) -> Body:
-    _keys(model, where, data, BODY, ("name", "mass"))
-    name = model.name_of("body", _text(model, where, data["name"]), where, model.bodies)
-    mass = number(model, f"{where}.mass", data["mass"], "mass")
-    frame = _frame(model, where, {key: data[key] for key in FRAME if key in data})
+def _body(one: _Object) -> None:
+    model, name, mass = one.model, one.word("name"), one.amount("mass")
+    given, inertia, rod = one.given.get("inertia"), None, None
+    centre, frame = one.triple("centre", (0.0, 0.0, 0.0)), one.frame()
     places = {
-        one: numbers(model, f"{where}.places.{one}", place, "place", 3)
-        for one, place in _table(model, f"{where}.places", data.get("places", {})).items()
+        place: numbers(model, f"{one.at('places')}.{place}", at, "place", 3)
+        for place, at in one.table("places").items()
     }
-    if "rod" in data:
-        ends = _list(model, f"{where}.rod", data["rod"])
+    if "rod" in one.given:
+        ends = one.list("rod")
         if len(ends) != 2:
-            raise model.refuse(f"{where}.rod", "expected two places")
-        start, end = (numbers(model, f"{where}.rod", one, "rod", 3) for one in ends)
-        body = Body.slender(name, mass, (start, end), where)
-        return Body(name, mass, body.centre, body.inertia, frame, places, body.rod, where=where)
-    centre = numbers(model, f"{where}.centre", data.get("centre", (0.0, 0.0, 0.0)), "centre", 3)
-    inertia, given = None, data.get("inertia")
-    if given is not None and all(isinstance(one, Sequence) for one in _list(model, where, given)):
-        rows = [numbers(model, f"{where}.inertia", one, "inertia", 3) for one in given]
-        inertia = np.array(rows)
+            raise model.refuse(one.at("rod"), "expected two places")
+        start, end = (numbers(model, one.at("rod"), place, "rod", 3) for place in ends)
+        body = Body.slender(name, mass, (start, end))
+        centre, inertia, rod = body.centre, body.inertia, body.rod
+    elif isinstance(given, Sequence) and all(isinstance(row, Sequence) for row in given):
+        where = one.at("inertia")
+        inertia = np.array([numbers(model, where, row, "inertia", 3) for row in given])
         if inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0.0):
-            raise model.refuse(
-                f"{where}.inertia", "expected three moments or three rows, symmetric"
-            )
+            raise model.refuse(where, "expected three moments or three rows, symmetric")
     elif given is not None:
-        inertia = np.diag(numbers(model, f"{where}.inertia", given, "inertia", 3))
-    point = data.get("point", False) is True
-    return Body(name, mass, centre, inertia, frame, places, point=point, where=where)
+        inertia = np.diag(one.triple("inertia"))
+    point = one.given.get("point", False) is True
+    model.add(Body, name, one.where, mass, centre, inertia, frame, places, rod, point)
 
 
-def _joint(model: Model, where: str, data: Data) -> Joint:
-    _keys(model, where, data, JOINT, ("name", "kind", "parent", "child"))
-    name = model.name_of("joint", _text(model, where, data["name"]), where, model.joints)
-    if data["kind"] not in COORDINATES:
-        valid = ", ".join(COORDINATES)
-        words = f"joint '{name}': unknown kind {shown(data['kind'])}; valid: {valid}"
-        raise model.refuse(f"{where}.kind", words)
-    parent, child = (_text(model, f"{where}.{key}", data[key]) for key in ("parent", "child"))
-    near, far = (
-        _frame(model, f"{where}.{key}", data.get(key, {})) for key in ("on_parent", "on_child")
-    )
-    lead = number(model, f"{where}.lead", data.get("lead", 0.0), "lead")
-    return Joint(name, data["kind"], parent, child, near, far, lead, where)
-
-
-def _frame(model: Model, where: str, data: Data) -> Frame:
-    """Return a frame: its place, and either its three axes, or the direction of z."""
-    _keys(model, where, data, FRAME, ())
-    place = numbers(model, f"{where}.place", data.get("place", (0.0, 0.0, 0.0)), "place", 3)
-    if "axes" in data:
-        rows = _list(model, f"{where}.axes", data["axes"])
-        axes = np.array([numbers(model, f"{where}.axes", row, "axes", 3) for row in rows]).T
-        if axes.shape != (3, 3):
-            raise model.refuse(f"{where}.axes", "expected the directions of x, y and z")
-        return Frame(place, rotation(model, f"{where}.axes", axes))
-    if "z" in data:
-        z = numbers(model, f"{where}.z", data["z"], "z", 3)
-        if not np.any(z):
-            raise model.refuse(f"{where}.z", "expected a direction, got zero")
-        return Frame(place, about_axis(z))
-    return Frame(place)
-
-
-def _coupling(model: Model, where: str, data: Data) -> Coupling:
-    _keys(model, where, data, COUPLING, ("name", "first", "second", "ratio"))
-    name = model.name_of("coupling", _text(model, where, data["name"]), where, model.couplings)
-    first, second = (_text(model, f"{where}.{key}", data[key]) for key in ("first", "second"))
-    ratio = number(model, f"{where}.ratio", data["ratio"], "ratio")
-    offset = number(model, f"{where}.offset", data.get("offset", 0.0), "offset")
-    return Coupling(name, first, second, ratio, offset, where)
+def _joint(one: _Object) -> None:
+    if one.given["kind"] not in [*MOVES]:
+        kind, valid = shown(one.given["kind"]), ", ".join(MOVES)
+        words = f"joint '{one.word('name')}': unknown kind {kind}; valid: {valid}"
+        raise one.model.refuse(one.at("kind"), words)
+    bodies = one.word("parent"), one.word("child")
+    frames, lead = (one.frame("on_parent"), one.frame("on_child")), one.amount("lead", 0.0)
+    one.model.add(Joint, one.word("name"), one.where, one.given["kind"], *bodies, *frames, lead)
 
 
 def _law(model: Model, where: str, given: object) -> Law:
     if isinstance(given, str):
         return Law(given, where=where)
-    table = _table(model, where, given)
-    _keys(model, where, table, ("times", "values"), ("times", "values"))
-    count = len(_list(model, where, table["times"]))
-    rows = [numbers(model, f"{where}.{key}", table[key], key, count) for key in ("times", "values")]
-    return Law(samples=(tuple(rows[0].tolist()), tuple(rows[1].tolist())), where=where)
+    keys = ("times", "values")
+    one = _object(model, where, given, keys, *keys)
+    count = len(one.list("times"))
+    times, values = (numbers(model, one.at(key), one.given[key], key, count) for key in keys)
+    return Law(samples=(tuple(times.tolist()), tuple(values.tolist())), where=where)
 
 
 def _span(model: Model, given: object) -> tuple[float, float, int]:
-    table = _table(model, "time", given)
-    _keys(model, "time", table, ("start", "stop", "count"), ("start", "stop", "count"))
-    start, stop = (number(model, f"time.{key}", table[key], key) for key in ("start", "stop"))
-    count = table["count"]
+    keys = ("start", "stop", "count")
+    one = _object(model, "time", given, keys, *keys)
+    count = one.given["count"]
     if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= 1_000_000:
         raise model.refuse("time.count", f"expected 1 to 1000000, got {shown(count)}")
-    return start, stop, count
-
-
-def _keys(
-    model: Model, where: str, data: object, valid: Sequence[str], needed: Sequence[str]
-) -> None:
-    table = _table(model, where, data)
-    for key in table:
-        if key not in valid:
-            raise model.refuse(where, f"unknown key {shown(key)}; valid: {', '.join(valid)}")
-    for key in needed:
-        if key not in table:
-            raise model.refuse(where, f"lacks '{key}'")
-
-
-def _table(model: Model, where: str, given: object) -> dict[str, Any]:
-    if not isinstance(given, dict):
-        raise model.refuse(where, f"expected an object, got {shown(given)}")
-    return given
-
-
-def _list(model: Model, where: str, data: object) -> list[Any]:
-    if not isinstance(data, list | tuple):
-        raise model.refuse(where, f"expected a list, got {shown(data)}")
-    return list(data)
-
-
-def _text(model: Model, where: str, given: object) -> str:
-    if not isinstance(given, str) or not given or len(given) > 200:
-        raise model.refuse(where, f"expected a text, got {shown(given)}")
-    return given
+    return one.amount("start"), one.amount("stop"), count

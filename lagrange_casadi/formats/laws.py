@@ -5,7 +5,9 @@ from __future__ import annotations
 import ast
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+
+from numpy.polynomial import Polynomial
 
 from .record import LARGEST
 
@@ -26,8 +28,6 @@ _OPERATORS: dict[type[ast.operator], str] = {
     ast.Div: "/",
     ast.Pow: "**",
 }
-
-Coefficients = tuple[float, ...]
 
 
 class LawError(ValueError):
@@ -84,52 +84,39 @@ def python(text: str, less: float = 0.0) -> str:
     """Return a law, less a number, as what a case has for it, in the words of ``motion``."""
     tree = parsed(text)
     try:
-        found = list(_coefficients(tree))
+        found = (_polynomial(tree) - less).trim().coef
     except LawError:
         shift = f" - {of_pi(less)}" if less > 0 else f" + {of_pi(-less)}" if less else ""
         return f"expression(lambda t: {ast.unparse(tree)}{shift})"
-    found[0] -= less
-    while len(found) > 1 and found[-1] == 0.0:
-        found.pop()
-    return f"polynomial({', '.join(map(of_pi, found))})"
+    return f"polynomial({', '.join(map(of_pi, found.tolist()))})"
 
 
-def _coefficients(node: ast.expr) -> Coefficients:
-    """Return the coefficients of a polynomial of t. Raises :class:`LawError` for other laws."""
+def _polynomial(node: ast.expr) -> Polynomial:
+    """Return a law as a polynomial of t. Raises :class:`LawError` for others."""
     match node:
         case ast.Constant(value=int() | float() as value):
-            return (float(value),)
-        case ast.Name(id="t"):
-            return (0.0, 1.0)
-        case ast.Name(id="pi"):
-            return (math.pi,)
+            return Polynomial([float(value)])
+        case ast.Name(id=name):
+            return Polynomial([0.0, 1.0] if name == "t" else [math.pi])
         case ast.UnaryOp(op=sign, operand=inner):
-            factor = -1.0 if isinstance(sign, ast.USub) else 1.0
-            return tuple(factor * one for one in _coefficients(inner))
+            return -_polynomial(inner) if isinstance(sign, ast.USub) else _polynomial(inner)
         case ast.BinOp(left=left, op=operator, right=right):
-            return _combined(operator, _coefficients(left), _coefficients(right))
-    raise LawError("no polynomial")
-
-
-def _combined(operator: ast.operator, one: Coefficients, other: Coefficients) -> Coefficients:
-    if isinstance(operator, ast.Add | ast.Sub):
-        sign = -1.0 if isinstance(operator, ast.Sub) else 1.0
-        longest = max(len(one), len(other))
-        pad: Callable[[Coefficients], Coefficients] = lambda c: c + (0.0,) * (longest - len(c))  # noqa: E731
-        return tuple(a + sign * b for a, b in zip(pad(one), pad(other), strict=True))
-    if isinstance(operator, ast.Mult):
-        product = [0.0] * (len(one) + len(other) - 1)
-        for i, a in enumerate(one):
-            for j, b in enumerate(other):
-                product[i + j] += a * b
-        return tuple(product)
-    if len(other) == 1 and isinstance(operator, ast.Div) and other[0] != 0.0:
-        return tuple(a / other[0] for a in one)
-    if len(other) == 1 and isinstance(operator, ast.Pow) and other[0] in (0.0, 1.0, 2.0, 3.0):
-        power: Coefficients = (1.0,)
-        for _ in range(int(other[0])):
-            power = _combined(ast.Mult(), power, one)
-        return power
+            one, other = _polynomial(left), _polynomial(right)
+            whole, *rest = other.coef.tolist()
+            made: Polynomial | None = None
+            match operator:
+                case ast.Add():
+                    made = one + other
+                case ast.Sub():
+                    made = one - other
+                case ast.Mult():
+                    made = one * other
+                case ast.Div() if whole and not rest:
+                    made = one / whole
+                case ast.Pow() if whole in (0.0, 1.0, 2.0, 3.0) and not rest:
+                    made = one ** int(whole)
+            if made is not None:
+                return made
     raise LawError("no polynomial")
 
 

@@ -14,8 +14,19 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..errors import MissingPackageError, shown
-from .record import GROUND, Body, Coupling, Frame, Joint, Model, about_axis, rotation, turned
-from .xml_tree import Element, parsed
+from .elements import Element, parsed
+from .record import (
+    GROUND,
+    LARGEST,
+    Body,
+    Coupling,
+    Frame,
+    Joint,
+    Model,
+    about_axis,
+    rotation,
+    turned,
+)
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -48,8 +59,12 @@ def read(path: Path, text: str) -> Model:
 
 
 def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -> None:
-    """Raise :class:`.ModelFileError` for a file outside of the folder; included ones are read."""
+    """Raise :class:`.ModelFileError` for a file outside of the folder, and for a number that no
+    machine has; included files are read.
+    """
     for key, data in line.given.items():
+        if any(map(_gigantic, data.split())):
+            raise line.refuse(f"{key}: expected numbers of at most {LARGEST:g}, got {shown(data)}")
         if key not in (*_FOLDERS, *_FILES):
             continue
         there = (base / data).resolve()
@@ -62,6 +77,13 @@ def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -
             _inside(model, folder, parsed(model, included, ""), there.parent, depth + 1)
     for one in line.inside:
         _inside(model, folder, one, base, depth)
+
+
+def _gigantic(word: str) -> bool:
+    try:
+        return abs(float(word)) > LARGEST and not word.strip("+-").isalpha()
+    except ValueError:
+        return False
 
 
 class _Reader:
@@ -108,34 +130,27 @@ class _Reader:
 
     def body(self, k: int) -> None:
         """Declare a body, and the joints that it hangs on."""
-        model, m, data = self.model, self.m, self.called("BODY", k)
-        where = f"body {shown(data)}"
-        name = self.bodies[k] = model.name_of("body", data, where, model.bodies)
-        axes = self.rotation(m.body_iquat[k])
-        inertia = axes @ np.diag(m.body_inertia[k]) @ axes.T
-        mass, frame = float(m.body_mass[k]), self.frame(k)
-        model.bodies[name] = Body(name, mass, m.body_ipos[k].copy(), inertia, frame, where=where)
-        above = self.bodies[int(m.body_parentid[k])]
+        model, m, stated = self.model, self.m, self.called("BODY", k)
+        where, axes, frame = f"body {shown(stated)}", self.rotation(m.body_iquat[k]), self.frame(k)
+        inertia, mass = axes @ np.diag(m.body_inertia[k]) @ axes.T, float(m.body_mass[k])
+        name = model.add(Body, stated, where, mass, m.body_ipos[k].copy(), inertia, frame)
+        self.bodies[k], above = name, self.bodies[int(m.body_parentid[k])]
         first, count = int(m.body_jntadr[k]), int(m.body_jntnum[k])
         if not count:
             near = model.frame_of(above).relative(frame)
-            joint = model.name_of("joint", f"{name}_fixed", where, model.joints)
-            model.joints[joint] = Joint(joint, "weld", above, name, near, Frame(), where=where)
+            model.add(Joint, f"{name}_fixed", where, "weld", above, name, near, Frame())
         for j in range(first, first + count):
             below = name
             if j < first + count - 1:
-                below = model.name_of("body", f"{name}_{j - first + 1}", where, model.bodies)
-                zero = np.zeros((3, 3))
-                model.bodies[below] = Body(below, 0.0, np.zeros(3), zero, frame, where=where)
+                none = 0.0, np.zeros(3), np.zeros((3, 3)), frame
+                below = model.add(Body, f"{name}_{j - first + 1}", where, *none)
             self.joint(j, above, below, frame)
             above = below
 
     def joint(self, j: int, above: str, below: str, frame: Frame) -> None:
         """Declare a joint; in the reference posture its coordinate is ``ref``."""
-        model, m, data = self.model, self.m, self.called("JOINT", j)
+        model, m, stated = self.model, self.m, self.called("JOINT", j)
         kind = ("free", "spherical", "prismatic", "revolute")[int(m.jnt_type[j])]
-        where = f"joint {shown(data)}"
-        name = self.joints[j] = model.name_of("joint", data, where, model.joints)
         at, far = frame.then(Frame(m.jnt_pos[j].copy())), Frame(m.jnt_pos[j].copy())
         if kind == "free":
             at, far = Frame(), Frame()
@@ -146,8 +161,8 @@ class _Reader:
                 far = far.then(Frame(axes=turned(np.array([0.0, 0.0, 1.0]), -ref)))
             else:
                 at = at.then(Frame(np.array([0.0, 0.0, -ref])))
-        near = model.frame_of(above).relative(at)
-        model.joints[name] = Joint(name, kind, above, below, near, far, where=where)
+        near, where = model.frame_of(above).relative(at), f"joint {shown(stated)}"
+        self.joints[j] = model.add(Joint, stated, where, kind, above, below, near, far)
 
     def equality(self, k: int) -> None:
         """Declare an equality: connect and weld close loops, joint couples two of them."""
@@ -160,15 +175,13 @@ class _Reader:
         if kind == kinds.mjEQ_JOINT:
             if np.any(data[2:5]) or other < 0:
                 raise model.refuse(where, "is not supported: its polynomial is not linear")
-            name = model.name_of("coupling", stated, where, model.couplings)
             starts = [float(m.qpos0[m.jnt_qposadr[j]]) for j in (one, other)]
             offset = float(data[0]) + starts[0] - float(data[1]) * starts[1]
-            first, second = self.joints[other], self.joints[one]
-            model.couplings[name] = Coupling(name, first, second, float(data[1]), offset, where)
+            joints = self.joints[other], self.joints[one]
+            model.add(Coupling, stated, where, *joints, float(data[1]), offset)
             return
         if kind not in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD):
             raise model.refuse(where, "is not supported; valid: connect, weld, joint")
-        name = model.name_of("joint", stated, where, model.joints)
         if sites:
             near, far = self.site(one), self.site(other)
             one, other = int(m.site_bodyid[one]), int(m.site_bodyid[other])
@@ -179,7 +192,7 @@ class _Reader:
             near = Frame(data[3:6].copy(), self.rotation(data[6:10])).then(far)
         shape = "weld" if kind == kinds.mjEQ_WELD else "spherical"
         ends = self.bodies[one], self.bodies[other]
-        model.joints[name] = Joint(name, shape, *ends, near, far, where=where)
+        model.add(Joint, stated, where, shape, *ends, near, far)
 
     def site(self, k: int) -> Frame:
         """Return the frame of a site on its body."""
@@ -201,7 +214,7 @@ class _Reader:
             "Armature, the inertia of motors at joints": np.any(m.dof_armature),
             "Contacts": m.npair > 0 or (np.any(m.geom_contype) and m.ngeom > 1),
             "Tendons": m.ntendon > 0,
-            "Actuators, but for the joints that they drive": m.nu > 0,
+            "Actuators, except which joints they drive": m.nu > 0,
             "Keyframes": m.nkey > 0,
         }
         notes += [f"{what}: not read." for what, there in data.items() if there]

@@ -9,11 +9,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from ..base.arrays import Array
+from ..declare.joints import IN_SPACE
 from ..errors import ModelFileError, shown
 
 GROUND = "ground"
@@ -35,34 +37,16 @@ ROWS: dict[str, str] = {
 has the axes x, y, z; the child's is at q and has u, v, w; e and f are one of each.
 """
 
-COORDINATES: dict[str, tuple[str, ...]] = {
-    "revolute": ("",),
-    "prismatic": ("",),
-    "screw": ("",),
-    "cylindrical": ("slide", "turn"),
-    "universal": ("turn_1", "turn_2"),
-    "spherical": ("turn_1", "turn_2", "turn_3"),
-    "planar": ("slide_1", "slide_2", "turn"),
-    "slot": ("slide", "turn_1", "turn_2", "turn_3"),
-    "weld": (),
-    "free": ("slide_1", "slide_2", "slide_3", "turn_1", "turn_2", "turn_3"),
-}
-"""The kinds of joints, and what their coordinates are called: of one alone by the joint's name."""
+_AXES = {"spherical": "xyz", "free": "xyz", "universal": "zw"}
 
-HELD: dict[str, tuple[str, str]] = {
-    "revolute": ("xyz", "xy"),
-    "prismatic": ("xy", "xyz"),
-    "screw": ("xy", "xy"),
-    "cylindrical": ("xy", "xy"),
-    "universal": ("xyz", ""),
-    "spherical": ("xyz", ""),
-    "planar": ("z", "xy"),
-    "slot": ("xy", ""),
-    "weld": ("xyz", "xyz"),
-    "free": ("", ""),
+MOVES: dict[str, tuple[tuple[str, str, str], ...]] = {
+    kind: tuple(
+        (name or "", move, _AXES.get(kind, "zxy")[direction]) for name, move, direction in freedoms
+    )
+    for kind, freedoms in IN_SPACE.items()
 }
-"""The axes of the parent's frame along which a kind holds the places of its two frames together,
-and about which it holds their axes; a universal joint's second axis is apart.
+"""The name of each coordinate of a kind of joint, empty for one alone, how it moves, and along or
+about which axis of the parent's frame; w is z of the child's.
 """
 
 
@@ -136,7 +120,7 @@ class Joint:
     @property
     def coordinates(self) -> tuple[str, ...]:
         """The full names of its coordinates."""
-        names = COORDINATES[self.kind]
+        names = (name for name, _, _ in MOVES[self.kind])
         return tuple(f"{self.name}:{name}" if name else self.name for name in names)
 
 
@@ -193,6 +177,9 @@ class Law:
     where: str = ""
 
 
+Part = Body | Joint | Coupling | Tie
+
+
 @dataclass(eq=False)
 class Model:
     """A mechanism as a file describes it. ``notes`` say what was ignored, and what was cleaned.
@@ -201,7 +188,8 @@ class Model:
     are rough values of coordinates at the start, from which loops that are open in the reference
     posture are assembled. ``drives`` are the joints whose efforts make the motion, where these are
     not those that have one; ``preferred`` are joints that are driven first. ``called`` are the
-    file's names of parts that have another one here.
+    file's names of parts that have another one here; ``named`` are names here by the kind of a part
+    and its name of the file.
     """
 
     name: str
@@ -218,6 +206,7 @@ class Model:
     preferred: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     called: dict[str, str] = field(default_factory=dict)
+    named: dict[tuple[str, str], str] = field(default_factory=dict)
 
     def refuse(self, where: str, words: str) -> ModelFileError:
         """Return the error of an element of the file."""
@@ -233,7 +222,25 @@ class Model:
             name = f"{name}_{kind}"
         if name != stated:
             self.called[name] = stated
+        self.named[kind, stated] = name
         return name
+
+    def add(self, part: type[Part], stated: str, where: str, *given: Any) -> str:
+        """Add a body, joint, coupling or tie under its name of the file; return its name here."""
+        parts: dict[type[Part], dict[str, Any]] = {Body: self.bodies, Coupling: self.couplings}
+        parts |= {Joint: self.joints, Tie: self.ties}
+        kind = "joint" if part is Tie else part.__name__.lower()
+        taken = {**self.joints, **self.ties} if kind == "joint" else parts[part]
+        name = self.name_of(kind, stated, where, taken)
+        parts[part][name] = replace(part(name, *given), where=where)
+        return name
+
+    def find(self, kind: str, stated: str, where: str) -> str:
+        """Return the name here of a part that the file names."""
+        if (kind, stated) in self.named:
+            return self.named[kind, stated]
+        valid = ", ".join(name for of, name in self.named if of == kind)
+        raise self.refuse(where, f"unknown {kind} {shown(stated)}; valid: {valid}")
 
     def frame_of(self, body: str) -> Frame:
         """Return where a body is in the reference posture."""
@@ -249,23 +256,15 @@ class Model:
     def at_reference(self, joint: Joint) -> list[float]:
         """Return the coordinates of a joint in the reference posture, in their order."""
         near, far = self.frames(joint)
-        known = near.relative(far)
-        x, y, z = (float(number) for number in known.place)
-        turn = math.atan2(known.axes[1, 0], known.axes[0, 0])
-        about = _three_turns(known.axes)
-        found: dict[str, list[float]] = {
-            "revolute": [turn],
-            "prismatic": [z],
-            "screw": [turn],
-            "cylindrical": [z, turn],
-            "universal": [0.0, 0.0],
-            "spherical": about,
-            "planar": [x, y, turn],
-            "slot": [z, *about],
-            "weld": [],
-            "free": [x, y, z, *about],
-        }
-        return found[joint.kind]
+        known, moves = near.relative(far), MOVES[joint.kind]
+        order = ["xyzw".index(axis) for _, move, axis in moves if move != "slide"]
+        turns = [0.0, 0.0]
+        if len(order) == 1:
+            turns = [math.atan2(known.axes[1, 0], known.axes[0, 0])]
+        elif len(order) == 3:
+            turns = _three_turns(known.axes[np.ix_(order, order)])
+        slides = [known.place["xyz".index(axis)] for _, move, axis in moves if move == "slide"]
+        return [*map(float, slides), *turns[: len(order)]]
 
     def size(self) -> float:
         """Return the extent of what joints and centres of mass span [m]."""
@@ -277,8 +276,10 @@ class Model:
         """Return by how much the frames of a joint miss what it holds: in m, and in rad."""
         near, far = self.frames(joint)
         known = near.relative(far)
-        slides, angles = HELD[joint.kind]
-        gap = math.hypot(*(float(known.place["xyz".index(axis)]) for axis in slides))
+        free = {(move, axis) for _, move, axis in MOVES[joint.kind]}
+        held = [k for k, axis in enumerate("xyz") if not {("slide", axis), ("screw", axis)} & free]
+        gap = math.hypot(*known.place[held].tolist())
+        turns = sum(move != "slide" for move, _ in free)
         if any(one != GROUND and self.bodies[one].point for one in (joint.parent, joint.child)):
             return gap, 0.0
         if joint.kind == "universal":
@@ -287,11 +288,11 @@ class Model:
             turn = math.atan2(known.axes[1, 0], known.axes[0, 0])
             away = (float(known.place[2]) - joint.lead * turn / math.tau) / (joint.lead or 1.0)
             gap = math.hypot(gap, joint.lead * (away - round(away)))
-        if angles == "xyz":
+        if not turns:
             cosine = min(1.0, max(-1.0, (float(np.trace(known.axes)) - 1.0) / 2.0))
             return gap, math.hypot(math.acos(cosine) if cosine < 0.9 else 0.0, _small(known.axes))
         tilt = math.hypot(float(known.axes[0, 2]), float(known.axes[1, 2]))
-        return gap, math.atan2(tilt, float(known.axes[2, 2])) if angles else 0.0
+        return gap, math.atan2(tilt, float(known.axes[2, 2])) if turns == 1 else 0.0
 
 
 def _small(axes: Array) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..errors import shown
+from .elements import Element, parsed
 from .record import (
     GROUND,
     MOMENTS,
@@ -21,7 +22,6 @@ from .record import (
     rotation,
     rpy,
 )
-from .xml_tree import Element, parsed
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -47,7 +47,7 @@ def read(path: Path, text: str) -> Model:
     root = parsed(model, text, "sdf")
     world = root.first("world")
     if world is not None and (line := world.first("gravity")) is not None:
-        x, y, z = line.numbers(line.text, "gravity", 3)
+        x, y, z = line.numbers("gravity", 3)
         model.gravity = (float(x), float(y), float(z))
     line = (world or root).needed("model")
     others = [one for one in (world or root).all("model") if one is not line]
@@ -64,8 +64,6 @@ class _Reader:
         self.model, self.line = model, line
         self.named = line.by_name("link", "frame", "joint")
         self.own = self.pose(line.first("pose"))
-        self.bodies: dict[str, str] = {}
-        self.joints: dict[str, str] = {}
 
     def read(self) -> Model:
         """Return the model."""
@@ -93,32 +91,22 @@ class _Reader:
 
     def body(self, link: Element) -> None:
         """Declare a link as a body."""
-        model, data = self.model, link.attribute("name")
-        name = self.bodies[data] = model.name_of("body", data, link.where, model.bodies)
-        inertial, mass = link.first("inertial"), 1.0
+        inertial = link.first("inertial")
         if inertial is None or inertial.first("inertia") is None:
             words = "lacks <inertia>, in place of which Gazebo has 1 kg and 1 kg m^2"
             raise (inertial or link).refuse(words)
-        if (line := inertial.first("mass")) is not None:
-            mass = line.number(line.text.strip(), "mass")
-        centre = self.pose(inertial.first("pose"))
+        mass, centre = inertial.inner("mass", 1.0), self.pose(inertial.first("pose"))
         moments = inertial.needed("inertia")
-        six = [self.value(moments, key, 1.0 if key[1] == key[2] else 0.0) for key in MOMENTS]
-        inertia = inertia_of(six, centre.axes)
-        frame = self.frame(data, ())
-        model.bodies[name] = Body(name, mass, centre.place, inertia, frame, where=link.where)
+        six = [moments.inner(key, 1.0 if key[1] == key[2] else 0.0) for key in MOMENTS]
+        inertia, frame = inertia_of(six, centre.axes), self.frame(link.attribute("name"), ())
+        self.model.add(Body, link.attribute("name"), link.where, mass, centre.place, inertia, frame)
 
     def joint(self, line: Element) -> None:
         """Declare a joint, whose frames coincide as the model stands."""
-        model, data = self.model, line.attribute("name")
-        kind = KINDS.get(line.attribute("type"))
-        if kind is None:
-            words = f"unknown type {shown(line.given['type'])}; valid: {', '.join(KINDS)}, gearbox"
-            raise line.refuse(words)
-        name = self.joints[data] = model.name_of("joint", data, line.where, model.joints)
+        model, data, lead = self.model, line.attribute("name"), 0.0
+        kind = line.choice("type", KINDS, "gearbox")
         parent, child = self.end(line, "parent"), self.end(line, "child")
-        frame = self.frame(data, ())
-        near = far = frame
+        near = far = frame = self.frame(data, ())
         if kind in ("revolute", "prismatic", "screw", "universal"):
             first = self.axis(line, "axis", frame)
             near = far = Frame(frame.place, about_axis(first))
@@ -127,19 +115,10 @@ class _Reader:
                 if abs(first @ second) > 1e-6:
                     raise line.refuse("its two axes are not at right angles")
                 far = Frame(frame.place, about_axis(second))
-        lead = 0.0
         if kind == "screw":
-            lead = self.value(line.needed("screw_thread_pitch"), "", 0.0)
-        model.joints[name] = Joint(
-            name,
-            kind,
-            parent,
-            child,
-            model.frame_of(parent).relative(near),
-            model.frame_of(child).relative(far),
-            lead,
-            line.where,
-        )
+            lead = line.needed("screw_thread_pitch").inner()
+        near, far = model.frame_of(parent).relative(near), model.frame_of(child).relative(far)
+        model.add(Joint, data, line.where, kind, parent, child, near, far, lead)
 
     def couplings(self, line: Element) -> None:
         """Declare what ties a joint to another one: a mimic, a gearbox."""
@@ -148,22 +127,21 @@ class _Reader:
         if axis is not None and (mimic := axis.first("mimic")) is not None:
             other = mimic.attribute("joint")
             ratio, offset, reference = (
-                self.value(mimic, key, usual)
-                for key, usual in (("multiplier", 0.0), ("offset", 0.0), ("reference", 0.0))
+                mimic.inner(key) for key in ("multiplier", "offset", "reference")
             )
             self.coupling(mimic, f"{data}_mimic", (other, data), ratio, offset - ratio * reference)
         if line.given["type"] != "gearbox":
             return
-        ratio = self.value(line, "gearbox_ratio", 1.0)
+        ratio = line.inner("gearbox_ratio", 1.0)
         carrier = line.needed("gearbox_reference_body").text.strip()
         ends = []
         for side in ("parent", "child"):
-            body = self.end(line, side)
+            bodies = {self.end(line, side), model.named.get(("body", carrier), GROUND)}
             found = [
                 name
-                for name, local in self.joints.items()
-                if {model.joints[local].parent, model.joints[local].child}
-                == {body, self.bodies.get(carrier, GROUND)}
+                for name in (one.attribute("name") for one in self.line.all("joint"))
+                if (joint := model.joints.get(model.named.get(("joint", name), "")))
+                and {joint.parent, joint.child} == bodies
             ]
             if len(found) != 1:
                 words = f"its {side} has no joint on the reference body {shown(carrier)}"
@@ -175,22 +153,15 @@ class _Reader:
         self, line: Element, stated: str, joints: tuple[str, str], ratio: float, offset: float
     ) -> None:
         """Declare second = ratio first + offset."""
-        model = self.model
-        for joint in joints:
-            if joint not in self.joints:
-                words = f"unknown joint {shown(joint)}; valid: {', '.join(self.joints)}"
-                raise line.refuse(words)
-        name = model.name_of("coupling", stated, line.where, model.couplings)
-        first, second = (self.joints[joint] for joint in joints)
-        model.couplings[name] = Coupling(name, first, second, ratio, offset, line.where)
+        first, second = (self.model.find("joint", joint, line.where) for joint in joints)
+        self.model.add(Coupling, stated, line.where, first, second, ratio, offset)
 
     def axis(self, line: Element, key: str, frame: Frame) -> Array:
         """Return the direction of a joint's axis, on the ground's axes."""
         data = line.needed(key)
-        xyz, given = data.first("xyz"), np.array([0.0, 0.0, 1.0])
-        on = frame
+        xyz, given, on = data.first("xyz"), np.array([0.0, 0.0, 1.0]), frame
         if xyz is not None:
-            given = xyz.numbers(xyz.text, "xyz", 3)
+            given = xyz.numbers("xyz", 3)
             if expressed := xyz.given.get("expressed_in"):
                 on = self.known(xyz, expressed, ())
         legacy = data.first("use_parent_model_frame")
@@ -207,14 +178,14 @@ class _Reader:
         for _ in range(len(self.named) + 1):
             if name == "world":
                 return GROUND
-            if name in self.bodies:
-                return self.bodies[name]
+            if ("body", name) in self.model.named:
+                return self.model.named["body", name]
             frame = self.named.get(name)
             if frame is None or frame.name != "frame":
                 break
             name = frame.given.get("attached_to", "")
-        words = f"unknown link {shown(data.text.strip())}; valid: world, {', '.join(self.bodies)}"
-        raise data.refuse(words)
+        valid = ", ".join(["world", *(one.given["name"] for one in self.line.all("link"))])
+        raise data.refuse(f"unknown link {shown(data.text.strip())}; valid: {valid}")
 
     def frame(self, name: str, above: tuple[str, ...]) -> Frame:
         """Return where a link, frame or joint is; poses may be given relative to each other."""
@@ -245,16 +216,8 @@ class _Reader:
         """Return the frame of a pose: a place, and roll, pitch and yaw."""
         if line is None or not line.text.strip():
             return Frame()
-        data = line.text
         if line.given.get("rotation_format", "euler_rpy") != "euler_rpy":
             raise line.refuse("rotation_format: expected euler_rpy")
-        six = line.numbers(data, "pose", 6)
+        six = line.numbers("pose", 6)
         angles = np.radians(six[3:]) if line.given.get("degrees") in ("true", "1") else six[3:]
         return Frame(six[:3], rotation(self.model, line.where, rpy(angles)))
-
-    def value(self, line: Element, key: str, usual: float) -> float:
-        """Return the number in an element, or in one that is in it."""
-        found = line if not key else line.first(key)
-        if found is None:
-            return usual
-        return found.number(found.text.strip(), key or line.name)

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..errors import shown
+from .elements import Element, parsed
 from .record import (
     GROUND,
     MOMENTS,
@@ -24,11 +25,9 @@ from .record import (
     Model,
     about_axis,
     inertia_of,
-    number,
     rotation,
     rpy,
 )
-from .xml_tree import Element, parsed
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -70,7 +69,6 @@ class _Robot:
         self.model, self.root = model, root
         self.links = root.by_name("link")
         self.on: dict[str, tuple[str, Frame]] = {}
-        self.names: dict[str, str] = {}
 
     def read(self) -> Model:
         """Return the model."""
@@ -87,8 +85,7 @@ class _Robot:
         while waiting:
             ready = [one for one in waiting if self.side(one, _ONE)[0] in placed]
             if not ready:
-                words = "its links hang on nothing that leads to the root"
-                raise model.refuse(waiting[0].where, words)
+                raise waiting[0].refuse("its links are not connected to the root")
             self.grow(ready[0], placed)
             waiting = [one for one in waiting if one is not ready[0]]
         for loop in self.root.all(*_LOOPS):
@@ -105,9 +102,9 @@ class _Robot:
 
     def grow(self, line: Element, placed: dict[str, Frame]) -> None:
         """Read a joint: its link is placed by it, or closes a loop."""
-        kind = self.kind(line)
+        kind = line.choice("type", KINDS)
         (parent, _), (child, _) = self.side(line, _ONE), self.side(line, _OTHER)
-        origin, again = self.origin(line.first("origin")), child in placed
+        origin, again = self.origin(line), child in placed
         massless = self.links[child].first("inertial") is None
         if not again:
             placed[child] = placed[parent].then(origin)
@@ -123,28 +120,22 @@ class _Robot:
         self, line: Element, kind: str, one: tuple[str, Frame], other: tuple[str, Frame]
     ) -> None:
         """Declare a joint between frames of two links."""
-        data = line.attribute("name")
-        name = self.names[data] = self.model.name_of("joint", data, line.where, self.model.joints)
-        (parent, near), (child, far) = (
-            (self.on[link][0], self.on[link][1].then(frame)) for link, frame in (one, other)
-        )
-        self.model.joints[name] = Joint(name, kind, parent, child, near, far, where=line.where)
+        ends = [self.on[link][1].then(frame) for link, frame in (one, other)]
+        bodies = [self.on[link][0] for link, _ in (one, other)]
+        self.model.add(Joint, line.attribute("name"), line.where, kind, *bodies, *ends)
 
     def loop(self, line: Element, placed: dict[str, Frame]) -> None:
         """Read a loop that an element of its own closes."""
-        kind = self.kind(line)
+        kind, axis = line.choice("type", KINDS), line.first("parent_axis", "axis")
         (parent, near), (child, far) = self.side(line, _ONE), self.side(line, _OTHER)
         near = near.then(self.axes(line, kind, "parent_axis", "axis"))
-        if kind == "universal" or line.first("child_axis") is not None:
-            far = far.then(self.axes(line, kind, "child_axis", "axis"))
+        apart = kind == "universal" or line.first("child_axis") is not None
+        if axis is not None and axis.given.get("frame") == "parent" and not apart:
+            # The axis is given on the parent alone: the child's is where it is at zero.
+            known = placed[child].relative(placed[parent].then(near))
+            far = Frame(far.place, rotation(self.model, line.where, known.axes))
         else:
-            given = line.first("parent_axis", "axis")
-            if given is not None and given.given.get("frame") == "parent":
-                # The axis is given on the parent alone: the child's is where it is at zero.
-                known = placed[child].relative(placed[parent].then(near))
-                far = Frame(far.place, rotation(self.model, line.where, known.axes))
-            else:
-                far = far.then(self.axes(line, kind, "parent_axis", "axis"))
+            far = far.then(self.axes(line, kind, "child_axis" if apart else "parent_axis", "axis"))
         self.add(line, kind, (parent, near), (child, far))
 
     def ball_constraint(self, line: Element) -> None:
@@ -152,9 +143,7 @@ class _Robot:
         sides = []
         for letter, point in (("A", "p_AP"), ("B", "p_BQ")):
             body = line.needed(f"drake:ball_constraint_body_{letter}")
-            place = line.needed(f"drake:ball_constraint_{point}")
-            data = place.attribute("value")
-            at = place.numbers(data, point, 3)
+            at = line.needed(f"drake:ball_constraint_{point}").triple("value", what=point)
             sides.append((self.known(body, body.attribute("name")), Frame(at)))
         line.given.setdefault("name", f"ball_{len(self.model.joints)}")
         self.add(line, "spherical", sides[0], sides[1])
@@ -163,41 +152,37 @@ class _Robot:
         """Read that a joint follows another one."""
         if (mimic := joint.first("mimic")) is None:
             return
-        model, first = self.model, self.joint(mimic, "joint")
-        second = self.joint(joint, "name")
-        ratio, offset = (
-            mimic.number(mimic.given.get(key, usual), key)
-            for key, usual in (("multiplier", "1"), ("offset", "0"))
-        )
-        name = f"{second}_mimic"
-        model.couplings[name] = Coupling(name, first, second, ratio, offset, where=mimic.where)
+        first = self.model.find("joint", mimic.attribute("joint"), mimic.where)
+        second = self.model.find("joint", joint.attribute("name"), joint.where)
+        ratio, offset = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
+        stated = f"{second}_mimic"
+        self.model.couplings[stated] = Coupling(stated, first, second, ratio, offset, mimic.where)
 
     def coupling(self, line: Element, joints: list[Element]) -> None:
         """Read a coupling of two links' joints."""
-        model, above = self.model, {self.side(one, _OTHER)[0]: one for one in reversed(joints)}
+        above = {self.side(one, _OTHER)[0]: one for one in reversed(joints)}
         links = [self.side(line, side)[0] for side in (_ONE, _OTHER)]
         for link in links:
             if link not in above:
                 raise line.refuse(f"link {shown(link)} has no joint")
         if len({self.side(above[link], _ONE)[0] for link in links}) > 1:
             raise line.refuse("is supported only if both its links have the same parent")
-        first, second = (self.joint(above[link], "name") for link in links)
-        value = line.needed("ratio").attribute("value")
-        ratio = line.number(value, "ratio")
-        data = line.attribute("name")
-        name = model.name_of("coupling", data, line.where, model.couplings)
-        model.couplings[name] = Coupling(name, first, second, ratio, where=line.where)
+        first, second = (
+            self.model.find("joint", above[link].attribute("name"), line.where) for link in links
+        )
+        ratio = line.needed("ratio").amount("value", what="ratio")
+        self.model.add(Coupling, line.attribute("name"), line.where, first, second, ratio)
 
     def actuators(self) -> None:
         """Read which joints have a drive."""
         for group in self.root.all("transmission", "ros2_control"):
             for joint in group.all("joint"):
                 if group.name == "transmission" or joint.first("command_interface") is not None:
-                    self.model.preferred.append(self.joint(joint, "name"))
+                    name = self.model.find("joint", joint.attribute("name"), joint.where)
+                    self.model.preferred.append(name)
         if any(group.first("actuator") for group in self.root.all("transmission")):
-            self.model.notes.append(
-                "Reductions of transmissions are not read: efforts are at joints."
-            )
+            words = "Reductions of transmissions are not read: efforts are at joints."
+            self.model.notes.append(words)
 
     def left_out(self, joints: list[Element]) -> None:
         """Note what was not read."""
@@ -206,7 +191,7 @@ class _Robot:
             for joint in joints
             for one in joint.all("dynamics")
             for key in ("damping", "friction")
-            if one.number(one.given.get(key) or "0", key)
+            if one.given.get(key) and one.amount(key)
         }
         if losses:
             self.model.notes.append(f"Damping and friction are not read: {', '.join(losses)}.")
@@ -220,30 +205,14 @@ class _Robot:
 
     def body(self, stated: str, frame: Frame) -> str:
         """Declare a link as a body."""
-        model, link = self.model, self.links[stated]
-        name = model.name_of("body", stated, link.where, model.bodies)
-        inertial = link.first("inertial")
-        if inertial is None:
-            none = np.zeros(3)
-            model.bodies[name] = Body(name, 0.0, none, np.diag(none), frame, where=link.where)
-            return name
-        line = inertial.needed("mass")
-        mass = line.number(line.attribute("value"), "mass")
-        origin, inertia = self.origin(inertial.first("origin")), None
-        if (stated_inertia := inertial.first("inertia")) is not None:
-            where, given = stated_inertia.where, stated_inertia.given
-            six = [number(model, where, given.get(key, "0"), key) for key in MOMENTS]
-            inertia = inertia_of(six, origin.axes)
-        model.bodies[name] = Body(name, mass, origin.place, inertia, frame, where=link.where)
-        return name
-
-    def kind(self, line: Element) -> str:
-        """Return the kind of a joint."""
-        data = line.attribute("type")
-        if data not in KINDS:
-            words = f"unknown type {shown(data)}; valid: {', '.join(KINDS)}"
-            raise line.refuse(words)
-        return KINDS[data]
+        link, mass, centre = self.links[stated], 0.0, Frame()
+        inertial, inertia = link.first("inertial"), np.zeros((3, 3))
+        if inertial is not None:
+            mass = inertial.needed("mass").amount("value", what="mass")
+            centre, moments = self.origin(inertial), inertial.first("inertia")
+            six = [0.0 if moments is None else moments.amount(key, 0.0) for key in MOMENTS]
+            inertia = inertia_of(six, centre.axes)
+        return self.model.add(Body, stated, link.where, mass, centre.place, inertia, frame)
 
     def axes(self, line: Element, kind: str, *names: str) -> Frame:
         """Return a frame whose z is the axis of a joint, where its kind has one."""
@@ -251,19 +220,14 @@ class _Robot:
             return Frame()
         axis: Array = np.array([1.0, 0.0, 0.0])
         if (found := line.first(*(names or ("axis",)))) is not None:
-            data = found.attribute("xyz")
-            axis = found.numbers(data, "axis", 3)
-            if not np.any(axis):
-                raise found.refuse("expected a direction, got zero")
+            axis = found.direction("xyz", "axis")
         return Frame(axes=about_axis(axis))
 
-    def origin(self, line: Element | None) -> Frame:
-        """Return the frame that ``xyz`` and ``rpy`` give."""
-        if line is None:
+    def origin(self, owner: Element, name: str = "origin") -> Frame:
+        """Return the frame that ``xyz`` and ``rpy`` of an element's origin give."""
+        if (line := owner.first(name) if name else owner) is None:
             return Frame()
-        place, angles = (
-            line.numbers(line.given.get(key, "0 0 0"), key, 3) for key in ("xyz", "rpy")
-        )
+        place, angles = line.triple("xyz", "0 0 0"), line.triple("rpy", "0 0 0")
         return Frame(place, rotation(self.model, line.where, rpy(angles)))
 
     def side(self, line: Element, names: tuple[str, ...]) -> tuple[str, Frame]:
@@ -271,25 +235,14 @@ class _Robot:
         found = line.first(*names)
         if found is None and names == _OTHER:  # some write link1 twice
             found = next(iter(list(line.all("link1"))[1:2]), None)
-        if found is None:
-            raise line.refuse(f"lacks <{names[0]}>")
-        link = self.known(found, found.attribute("link"))
-        beside = line.first(f"{found.name}_origin")
-        return link, self.origin(found.first("origin") or beside or found)
-
-    def joint(self, line: Element, key: str) -> str:
-        """Return a joint's name in the record. Raises :class:`.ModelFileError` for one that is not
-        there.
-        """
-        data = line.attribute(key)
-        if data not in self.names:
-            words = f"unknown joint {shown(data)}; valid: {', '.join(self.names)}"
-            raise line.refuse(words)
-        return self.names[data]
+        found = found or line.needed(*names)
+        link, beside = self.known(found, found.attribute("link")), f"{found.name}_origin"
+        if found.first("origin") is None and line.first(beside) is not None:
+            return link, self.origin(line, beside)
+        return link, self.origin(found, "origin" if found.first("origin") is not None else "")
 
     def known(self, line: Element, link: str) -> str:
         """Return a link's name. Raises :class:`.ModelFileError` for one that is not there."""
         if link not in self.links:
-            words = f"unknown link {shown(link)}; valid: {', '.join(self.links)}"
-            raise line.refuse(words)
+            raise line.refuse(f"unknown link {shown(link)}; valid: {', '.join(self.links)}")
         return link

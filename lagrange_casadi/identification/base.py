@@ -85,8 +85,8 @@ def base_of(columns: Array, ranking: Ranking) -> Base:
     sizes = norms * ranking.scales
     present = np.flatnonzero(sizes > _RANK * sizes.max(initial=0.0))
     left = triangle(columns[:, present] / norms[present])
-    order = _pivoted(left)
-    plain = _ranked(left, np.argsort(np.argsort(ranking.order)[present]).tolist())
+    order = _independent(left)
+    plain = _independent(left, np.argsort(np.argsort(ranking.order)[present]).tolist())
     conditions = [float(np.linalg.cond(left[:, some])) if some else 1.0 for some in (order, plain)]
     if len(plain) == len(order) and conditions[1] <= _WORSE * conditions[0]:
         order = plain
@@ -104,34 +104,20 @@ def base_of(columns: Array, ranking: Ranking) -> Base:
     )
 
 
-def _pivoted(columns: Array) -> list[int]:
-    """Return as many columns of norm 1 as the rank, each the farthest from those before it.
+def _independent(columns: Array, ranks: Sequence[int] = ()) -> list[int]:
+    """Return as many columns of norm 1 as the rank: in an order those that do not depend on the
+    ones before them, or without one, each the farthest from those before it.
 
     Each column is orthogonalized twice, which is enough (Giraud, Langou, 2002).
     """
     rest, order = columns.copy(), []
-    for _ in range(columns.shape[1]):
+    for k in range(columns.shape[1]):
         far = np.linalg.norm(rest, axis=0)
-        best = int(np.argmax(far))
-        if far[best] <= _RANK:
-            break
-        order.append(best)
-        _remove(rest, rest[:, best] / far[best])
-        rest[:, best] = 0.0
+        best = ranks[k] if ranks else int(np.argmax(far))
+        if far[best] > _RANK:
+            order.append(best)
+            direction = rest[:, best] / far[best]
+            for _ in range(2):
+                rest -= np.outer(direction, direction @ rest)
+            rest[:, best] = 0.0
     return order
-
-
-def _ranked(columns: Array, ranks: Sequence[int]) -> list[int]:
-    """Return the columns of norm 1 that do not depend on those before them in an order."""
-    rest, order = columns.copy(), []
-    for k in ranks:
-        far = float(np.linalg.norm(rest[:, k]))
-        if far > _RANK:
-            order.append(k)
-            _remove(rest, rest[:, k] / far)
-    return order
-
-
-def _remove(rest: Array, direction: Array) -> None:
-    for _ in range(2):
-        rest -= np.outer(direction, direction @ rest)

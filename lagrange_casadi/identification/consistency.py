@@ -10,7 +10,7 @@ so each step stays consistent.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.symbolic import Graphs, symbolic
 from ..equations.program import Program
@@ -46,6 +47,7 @@ class Consistency(Graphs):
 
     ``positive(theta)`` has the masses of bodies and the principal minors' matrices, entry by entry;
     ``masses`` is how many masses come first, ``orders`` the orders of the matrices behind them.
+    ``bodies`` are the names of those of each mass, and of each matrix.
     """
 
     positive: ca.Function
@@ -55,6 +57,7 @@ class Consistency(Graphs):
     scales: Array
     low: Array
     high: Array
+    bodies: tuple[str, ...]
 
     @classmethod
     @symbolic
@@ -64,30 +67,49 @@ class Consistency(Graphs):
         """Make the conditions of the bodies whose mass properties depend on unknown parameters."""
         theta, p = ca.SX.sym("theta", len(numbers)), ca.SX(ca.DM(defaults))
         p[list(numbers)] = theta
-        masses: list[Expression] = []
-        matrices: list[Any] = []
+        masses: dict[str, Expression] = {}
+        matrices: dict[str, Any] = {}
         content = program.data.template.content["bodies"]
         every = ca.vertsplit(program.data.masses(p))
         for name, mass in zip(content, every, strict=False):
             if _depends(mass, theta):
-                masses.append(mass)
+                masses[name] = mass
             inertia = (program.data.template.placed(content[name], p).get("centre") or {}).get(
                 "inertia"
             )
             if inertia is not None and _depends(matrix := _second_moments(inertia), theta):
-                matrices.append(matrix)
-        rows = [*masses, *(entry for matrix in matrices for entry in _lower(matrix))]
-        function = ca.Function("positive", [theta], [ca.densify(ca.vertcat(ca.SX(0, 1), *rows))])
+                matrices[name] = matrix
+        rows = [*masses.values(), *(x for matrix in matrices.values() for x in _lower(matrix))]
+        function = ca.Function("positive", [theta], [ca.densify(column(rows))])
         parameters = [list(program.data.parameters.values())[k] for k in numbers]
         return cls(
             function,
             len(masses),
-            tuple(matrix.size1() for matrix in matrices),
+            tuple(matrix.size1() for matrix in matrices.values()),
             defaults[list(numbers)],
             scales,
             np.array([one.low for one in parameters]),
             np.array([one.high for one in parameters]),
+            (*masses, *matrices),
         )
+
+    def impossible(self, theta: Array) -> tuple[str, ...]:
+        """Return the bodies whose mass is not positive, or whose inertia no body can have."""
+        values = np.asarray(self.positive(theta)).ravel()
+        values[~np.isfinite(values)] = -1.0  # an inertia about the centre of no mass
+        least = [*values[: self.masses], *(roots.min() for roots, _ in self._matrices(values))]
+        wrong = [name for name, low in zip(self.bodies, least, strict=True) if not low > 0.0]
+        return tuple(dict.fromkeys(wrong))
+
+    def _matrices(self, values: Array) -> Iterator[tuple[Array, Array]]:
+        """Yield eigenvalues and eigenvectors of each matrix of the conditions."""
+        start = self.masses
+        for order in self.orders:
+            matrix = np.zeros((order, order))
+            places = np.tril_indices(order)
+            matrix[places] = values[start : start + places[0].size]
+            start += places[0].size
+            yield np.linalg.eigh(matrix)  # reads the lower half
 
     @symbolic
     def step(self, triangle: Array, right: Array, theta: Array) -> Array:
@@ -141,7 +163,7 @@ class Consistency(Graphs):
                     lower[i, j] = ca.exp(free[start]) if i == j else free[start]
                     start += 1
             rows += _lower(lower @ lower.T)
-        return ca.vertcat(ca.SX(0, 1), *rows)
+        return column(rows)
 
     def _begin(self, theta: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
         """Return free numbers near values of the parameters, the sizes of the conditions, and which
@@ -154,13 +176,9 @@ class Consistency(Graphs):
         sizes[: self.masses] = largest
         free[: self.masses] = np.log(np.maximum(values[: self.masses], _LEAST * largest))
         start = self.masses
-        for order in self.orders:
+        for order, (roots, axes) in zip(self.orders, self._matrices(values), strict=True):
             places = np.tril_indices(order)
             stop = start + places[0].size
-            matrix = np.zeros((order, order))
-            matrix[places] = values[start:stop]
-            matrix = matrix + np.tril(matrix, -1).T
-            roots, axes = np.linalg.eigh(matrix)
             largest = np.abs(roots).max() or 1.0
             near = (axes * np.maximum(roots, _LEAST * largest)) @ axes.T
             lower = np.linalg.cholesky(near)

@@ -10,31 +10,37 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 
 from ..arguments import Count, Positive, public
 from ..base.arrays import Array, Expression
+from ..base.symbolic import symbolic
 from ..base.vocabulary import Backend
 from ..case import Case, scene_of
 from ..declare.motion import Motion, expression
 from ..declare.scene import Scene
 from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..instants.evaluation_method import EvaluationMethod
-from .base import Base, Ranking, base_of
+from .base import Base, Ranking, base_of, triangle
 from .regressor import DrivenMotion, Regressor
 
-_SAMPLES = 64
-"""Instants for each harmonic: between them a series exceeds its largest sample by 0.12 %."""
+_SAMPLES, _HELD = 64, 32
+"""Instants for each harmonic at which limits are checked, and held while a motion is improved:
+between the former a series exceeds its largest sample by 0.12 %.
+"""
 
 _MARGIN = 1.0 - (math.pi / _SAMPLES) ** 2 / 2.0
 _INSTANTS = 96
 """Instants at which derivatives are evaluated."""
 
-_DRAWN = 64
-_GROWS, _SHRINKS = 1.5, 0.9
-"""Factors of the width of the search after a step that is better, and one that is not."""
+_DRAWN, _STARTS = 64, 3
+"""Motions that are drawn, and how many of the best are improved."""
+
+_QUIET = ("print_time", "error_on_fail", "show_eval_warnings")
+_IPOPT = {"print_level": 0, "sb": "yes", "tol": 1e-4, "hessian_approximation": "limited-memory"}
 
 
 @public
@@ -45,7 +51,8 @@ class Excitation:
     ``sines`` and ``cosines`` are amplitudes of each harmonic, and ``centres`` the means, by drive
     [rad or m]. ``condition`` is that of the base, in columns of norm 1, and ``first`` that of the
     best of the motions drawn at random from which the search began. ``base`` are the combinations
-    that the motion determines.
+    that the motion determines. ``error`` is the geometric mean of their standard errors, over that
+    of the best motion drawn.
     """
 
     period: float
@@ -55,6 +62,7 @@ class Excitation:
     condition: float
     first: float
     base: tuple[str, ...]
+    error: float
 
     @property
     def motion(self) -> dict[str, Motion]:
@@ -78,14 +86,16 @@ def excite(
     quantities: Sequence[str] | None = None,
     period: Positive = 10.0,
     harmonics: Count = 4,
-    steps: Count = 300,
+    steps: Count = 100,
     parameters: Mapping[str, float] | None = None,
     backend: Backend = "auto",
 ) -> Excitation:
     """Return a motion within limits that determines unknown parameters well.
 
-    A random search, the same in every run, minimises the condition number of the base. The motion
-    reaches a limit of each drive.
+    The motion is D-optimal: it makes the determinant of the regressor's square largest, so the
+    volume in which the parameters are uncertain least, for noise that is equal in all quantities.
+    IPOPT finds it with exact derivatives, from the best of 64 random motions, which are the same in
+    every run.
 
     Parameters
     ----------
@@ -103,7 +113,7 @@ def excite(
     harmonics
         Number of harmonics of each drive.
     steps
-        Number of motions that are tried after the first 64.
+        Number of iterations of IPOPT at most, from each of three motions.
     parameters
         Values of parameters, in place of the defaults.
     backend
@@ -149,9 +159,24 @@ def _limits(drive: str, given: Sequence[float]) -> list[float]:
     return numbers
 
 
+class _Judged(NamedTuple):
+    """A series of coefficients (1 + 2 harmonics, drives), those of the mean, the sines and the
+    cosines; the base that it determines, and the geometric mean of its standard errors for noise 1.
+    """
+
+    series: Array
+    base: Base
+    error: float
+
+    @property
+    def order(self) -> tuple[int, float]:
+        """Key by which the best motion is the first."""
+        return -len(self.base.chosen), self.error
+
+
 @dataclass(frozen=True, eq=False)
 class _Search:
-    """A search among series with amplitudes (drives, 2, harmonics) over the limits (drives, 4)."""
+    """A search among series within the limits (drives, 4)."""
 
     regressor: Regressor
     names: tuple[str, ...]
@@ -161,78 +186,131 @@ class _Search:
     harmonics: int
 
     def run(self, steps: int) -> Excitation:
-        """Draw motions, and change the best by normal deviates whose width adapts."""
-        generator = np.random.default_rng(0)
-        shape = len(self.limits), 2, self.harmonics
-        drawn = [generator.standard_normal(shape) for _ in range(_DRAWN)]
-        (rank, first), best = min(((self._cost(x), k) for k, x in enumerate(drawn)), key=_first)
-        if not math.isfinite(first):
+        """Draw motions, and improve the best of them."""
+        generator, drives = np.random.default_rng(0), self.regressor.program.driven
+        shape = len(drives), 2, self.harmonics
+        motions = [
+            self._judged(self._drawn(generator.standard_normal(shape))) for _ in range(_DRAWN)
+        ]
+        drawn = sorted(filter(None, motions), key=lambda one: one.order)
+        if not drawn:
             raise AssemblyError(
                 f"mechanism '{self.regressor.program.data.name}' cannot follow any of {_DRAWN}"
                 " random motions within the limits; expected narrower limits"
             )
-        x, cost, width = drawn[best], (rank, first), 0.5
-        for _ in range(steps):
-            other = x + width * generator.standard_normal(shape)
-            if (found := self._cost(other)) < cost:
-                x, cost, width = other, found, width * _GROWS
-            else:
-                width = max(width * _SHRINKS, 1e-3)
-        centres, amplitudes = self._scaled(x)
-        base = self._base(centres, amplitudes)
-        drives = self.regressor.program.driven
+        improved = [self._judged(series) for series in self._improved(drawn[:_STARTS], steps)]
+        best = min(drawn[0], *filter(None, improved), key=lambda one: one.order)
+        sines, cosines = np.split(best.series[1:], 2)
         return Excitation(
             self.period,
-            dict(zip(drives, centres.tolist(), strict=True)),
-            dict(zip(drives, amplitudes[:, 0], strict=True)),
-            dict(zip(drives, amplitudes[:, 1], strict=True)),
-            base.condition,
-            first,
-            base.words(self.names),
+            dict(zip(drives, best.series[0].tolist(), strict=True)),
+            dict(zip(drives, sines.T, strict=True)),
+            dict(zip(drives, cosines.T, strict=True)),
+            best.base.condition,
+            drawn[0].base.condition,
+            best.base.words(self.names),
+            best.error / drawn[0].error,
         )
 
-    def _cost(self, x: Array) -> tuple[int, float]:
-        """Return the number of combinations that a motion leaves unexcited, and its condition."""
-        try:
-            base = self._base(*self._scaled(x))
-        except AssemblyError:
-            return len(self.names), math.inf
-        return len(self.names) - len(base.chosen), base.condition
-
-    def _scaled(self, x: Array) -> tuple[Array, Array]:
-        """Return the centres and amplitudes with which each drive touches one of its limits."""
-        x = x / np.arange(1, self.harmonics + 1)
-        count = _SAMPLES * self.harmonics
-        d, rate, acceleration = self._series(x, np.arange(count) * self.period / count)
-        low, high, speed, most = self.limits.T
-        scale = np.minimum(
-            speed / np.abs(rate).max(axis=0), most / np.abs(acceleration).max(axis=0)
-        )
-        scale = _MARGIN * np.minimum(scale, (high - low) / np.ptp(d, axis=0))
-        middle = (d.max(axis=0) + d.min(axis=0)) / 2.0
-        return (low + high) / 2.0 - scale * middle, x * scale[:, None, None]
-
-    def _series(self, x: Array, t: Array) -> tuple[Array, Array, Array]:
-        """Return coordinates, rates and accelerations (n, drives) of amplitudes."""
+    def _rows(self, count: int) -> Array:
+        """Return the rows by which coefficients give coordinates, rates and accelerations at so
+        many instants of the period: (3, count, 1 + 2 harmonics).
+        """
         order = np.arange(1, self.harmonics + 1) * math.tau / self.period
-        sine, cosine = np.sin(np.outer(t, order)), np.cos(np.outer(t, order))
-        a, b = x[:, 0].T, x[:, 1].T
-        rate = (cosine * order) @ a - (sine * order) @ b
-        return sine @ a + cosine @ b, rate, -(sine * order**2) @ a - (cosine * order**2) @ b
+        angle = np.outer(self._times(count), order)
+        sine, cosine, one = np.sin(angle), np.cos(angle), np.ones((count, 1))
+        return np.stack(
+            [
+                np.hstack([one, sine, cosine]),
+                np.hstack([0.0 * one, order * cosine, -order * sine]),
+                np.hstack([0.0 * one, -(order**2) * sine, -(order**2) * cosine]),
+            ]
+        )
 
-    def _base(self, centres: Array, amplitudes: Array) -> Base:
-        t = np.arange(_INSTANTS) * self.period / _INSTANTS
-        d, rate, acceleration = self._series(amplitudes, t)
-        motion = DrivenMotion(t, d + centres, rate, acceleration)
-        z = self.regressor.follow(motion, self.p)
-        slopes = self.regressor.at(motion, z, self.p)[1].reshape(-1, len(self.names))
+    def _times(self, count: int) -> Array:
+        return np.arange(count) * self.period / count
+
+    def _drawn(self, x: Array) -> Array:
+        """Return the series of deviates (drives, 2, harmonics) that reaches limits of drives."""
+        x = x / np.arange(1, self.harmonics + 1)
+        series = np.vstack([np.zeros((1, len(x))), x[:, 0].T, x[:, 1].T])
+        d = self._rows(_SAMPLES * self.harmonics)[0] @ series
+        low, high = self.limits.T[:2]
+        scale = (high - low) / np.ptp(d, axis=0)
+        series *= scale
+        series[0] = (low + high) / 2.0 - scale * (d.max(axis=0) + d.min(axis=0)) / 2.0
+        return self._within(series)
+
+    def _within(self, series: Array) -> Array:
+        """Return a series whose amplitudes are reduced to the limits."""
+        d, rate, acceleration = self._rows(_SAMPLES * self.harmonics) @ series
+        low, high, speed, most = self.limits.T
+        away, mean = d - series[0], series[0]
+        shares = [np.abs(rate) / speed, np.abs(acceleration) / most]
+        shares += [away / (high - mean), away / (low - mean)]
+        series[1:] /= np.maximum(np.max(shares, axis=(0, 1)) / _MARGIN, 1.0)
+        return series
+
+    def _followed(self, series: Array) -> tuple[DrivenMotion, Array]:
+        """Return the motion of a series at some instants, and the iterated coordinates."""
+        motion = DrivenMotion(self._times(_INSTANTS), *(self._rows(_INSTANTS) @ series))
+        return motion, self.regressor.follow(motion, self.p)
+
+    def _judged(self, series: Array) -> _Judged | None:
+        """Return how well a motion determines parameters; None if it cannot be followed."""
+        try:
+            slopes = self.regressor.at(*self._followed(series), self.p)[1]
+        except AssemblyError:
+            return None
+        slopes = slopes.reshape(-1, len(self.names))
         slopes = slopes[np.isfinite(slopes).all(axis=1)]
         if len(slopes) < len(self.names):
-            raise AssemblyError("the mechanism cannot follow the motion at enough instants")
-        numbers = [list(self.regressor.program.data.parameters).index(name) for name in self.names]
-        units = [self.regressor.program.data.parameters[name].unit for name in self.names]
-        return base_of(slopes, Ranking.of(self.p[numbers], units))
+            return None
+        parameters = self.regressor.program.data.parameters
+        numbers = [list(parameters).index(name) for name in self.names]
+        units = [parameters[name].unit for name in self.names]
+        base = base_of(slopes, Ranking.of(self.p[numbers], units))
+        sizes = np.abs(np.diag(triangle(slopes[:, list(base.chosen)])))
+        return _Judged(series, base, float(np.exp(-np.log(sizes).mean())))
 
-
-def _first(pair: tuple[tuple[int, float], int]) -> tuple[int, float]:
-    return pair[0]
+    @symbolic
+    def _improved(self, starts: Sequence[_Judged], steps: int) -> list[Array]:
+        """Return the series that IPOPT finds from others. Iterated coordinates are unknowns too, so
+        loops need not close on the way.
+        """
+        t, loop = self._times(_INSTANTS), self.regressor.program.newton
+        low, high, speed, most = self.limits.T
+        size = np.tile((high - low) / 2.0, (1 + 2 * self.harmonics, 1))
+        x = ca.MX.sym("x", *size.shape)
+        z = ca.MX.sym("z", 0 if loop is None else len(loop.guess), t.size)
+        motion = [ca.mtimes(ca.DM(rows), x * size).T for rows in self._rows(t.size)]
+        given, p = ca.DM(t).T, ca.repmat(ca.DM(self.p), 1, t.size)
+        found = self.regressor.batch.function.map(t.size)(given, *motion, z, p)
+        slopes = ca.reshape(found, 1 + len(self.names), -1)
+        slopes = slopes[[1 + k for k in starts[0].base.chosen], :]
+        square = ca.SX.sym("square", slopes.size1(), slopes.size1())
+        roots = ca.log(ca.diag(ca.chol(square)))
+        error = ca.Function("error", [square], [-ca.sum1(roots) / slopes.size1()])
+        limited, below, above = [], [], []
+        ends = (low, high), (-speed, speed), (-most, most)
+        for rows, (least, largest) in zip(self._rows(_HELD * self.harmonics), ends, strict=True):
+            limited.append(ca.mtimes(ca.DM(rows), x * (size / (largest - least))))
+            below.append(np.repeat(least / (largest - least), len(rows)))
+            above.append(np.repeat(largest / (largest - least), len(rows)))
+        if loop is not None:
+            limited.append(loop.step.map(t.size)(z, given, motion[0], p)[0])
+            below.append(np.zeros(z.numel()))
+            above.append(np.zeros(z.numel()))
+        program = {"x": ca.veccat(x, z), "f": error(ca.mtimes(slopes, slopes.T))}
+        options: dict[str, object] = dict.fromkeys(_QUIET, False)
+        options |= {"ipopt": {**_IPOPT, "max_iter": steps}}
+        program["g"] = ca.veccat(*limited)
+        solver = ca.nlpsol("excitation", "ipopt", program, options)
+        bounds = {"lbg": np.concatenate(below), "ubg": np.concatenate(above)}
+        improved = []
+        for start in starts:
+            begun = self._followed(start.series)[1].ravel()
+            found = solver(x0=np.concatenate([(start.series / size).T.ravel(), begun]), **bounds)
+            series = np.asarray(found["x"]).ravel()[: size.size].reshape(size.T.shape).T * size
+            improved.append(self._within(series))
+        return improved

@@ -231,6 +231,12 @@ def fit(data: Data, z: Array, loss: Loss, ranking: Ranking) -> Fit:
         base = base_of(columns, ranking)
         if not base.chosen:
             raise DeclarationError("nothing that is measured depends on the unknown parameters")
+        if right.size <= len(base.chosen) and not loss.whole:
+            raise DeclarationError(
+                f"{right.size} measured values do not determine {theta.size - len(base.absent)}"
+                " unknown parameters with a standard error; expected more rows, fewer unknown"
+                " parameters, or prior values"
+            )
         step = _step(columns, right, base, theta, loss)
         theta, z, rows, step = _taken(data, (theta, z, rows), step, root, loss, total)
         moved = float(np.linalg.norm(columns @ step))
@@ -280,6 +286,8 @@ def _step(columns: Array, right: Array, base: Base, theta: Array, loss: Loss) ->
     """Return the change of the parameters that makes linear residuals least."""
     step = np.zeros(theta.size)
     if loss.whole:
+        columns = columns.copy()
+        columns[:, list(base.absent)] = 0.0  # else their rounding counts
         prior = np.isfinite(loss.spread)
         rows = np.diag(1.0 / loss.spread)[prior]
         columns = np.vstack([columns, rows])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ..instants.evaluation_method import EvaluationMethod
 from .base import Ranking, base_of, triangle
 from .consistency import Consistency
 from .fit import Data, Fit, Loss, fit, nonlinear
-from .measurements import Filter, Measurements
+from .measurements import Filter, Measurements, check_units
 from .regressor import DrivenMotion, Regressor
 
 _ROUNDED = 1e-8
@@ -88,6 +88,10 @@ class Identification:
     weight Huber's loss lowered, and ``cutoffs`` the frequencies [Hz] at which the smoothing of each
     drive's coordinate halves the power.
     ``covariance`` is that of the base parameters.
+
+    ``initial`` are the values from which the search began, ``prior`` their standard deviations, of
+    those that have one. ``impossible`` are bodies whose mass is not positive, or whose inertia no
+    body can have.
     """
 
     name: str
@@ -109,6 +113,36 @@ class Identification:
     covariance: Array
     regressor: Regressor
     parameters: Mapping[str, float]
+    initial: Mapping[str, float]
+    prior: Mapping[str, float]
+    impossible: tuple[str, ...]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on what the values depend on, and what was not determined."""
+        found = [
+            f"forces are not linear in {name}, with {', '.join(others)}: found by iteration"
+            for name, others in self.nonlinear.items()
+        ]
+        if self.absent:
+            found.append(f"nothing measured depends on {', '.join(self.absent)}")
+        for words in self.unexcited:
+            found.append(
+                f"this motion does not determine {words}; other speeds and accelerations do"
+            )
+        for drive, cutoff in self.cutoffs.items():
+            if cutoff < math.inf:
+                found.append(f"{drive} is smoothed, half the power at {cutoff:.3g} Hz")
+        if self.cutoff is not None:
+            found.append(
+                f"forces are filtered without delay, half the power at {self.cutoff:.3g} Hz"
+            )
+        if self.impossible:
+            found.append(
+                f"no body has the mass and inertia found for {', '.join(self.impossible)};"
+                " consistent=True finds some that a body can have"
+            )
+        return tuple(found)
 
     @property
     def setting(self) -> str:
@@ -138,9 +172,9 @@ class Identification:
             If the mechanism cannot follow the measured motion.
         """
         regressor = self.regressor
+        measured = _measured(measurements, regressor)
         motion = measurements.motion(regressor.program.driven, trim)
         p = np.array(list((dict(self.parameters) | dict(self.values)).values()))
-        measured = _measured(measurements, regressor.quantities)
         return _compared(regressor, motion, measured, p, regressor.follow(motion, p))
 
 
@@ -198,7 +232,8 @@ def identify(
     UnknownNameError
         For parameters or columns that there are not.
     DeclarationError
-        If nothing that is measured depends on the unknown parameters.
+        If nothing that is measured depends on the unknown parameters, for a column in a unit of
+        another quantity, and if there are not more measured values than combinations to determine.
     AssemblyError
         If the mechanism cannot follow the measured motion.
     AccuracyError
@@ -207,9 +242,9 @@ def identify(
     scene = scene_of(scene)
     names = tuple(scene.parameters) if unknown is None else tuple(dict.fromkeys(unknown))
     if not names:
-        raise DeclarationError("identify: expected unknown parameters; the scene declares none")
+        raise DeclarationError("identify: expected at least one unknown parameter, got none")
     if lost := [name for name in prior or {} if name not in names]:
-        raise UnknownNameError("unknown parameter of prior=", lost, names)
+        raise UnknownNameError("parameter of prior=", lost, names)
     drives = tuple(scene.laws)
     quantities = measurements.quantities(drives)
     if not quantities:
@@ -221,9 +256,10 @@ def identify(
     regressor = Regressor.of(scene, quantities, names, EvaluationMethod(backend))
     p = np.array(list(values.values()))
     numbers = tuple(list(values).index(name) for name in names)
+    measured = _measured(measurements, regressor)
     motion = measurements.motion(regressor.program.driven, trim)
     low_pass = None if cutoff is None else Filter(measurements.t, cutoff)
-    data = Data(regressor, motion, _measured(measurements, quantities), p, numbers, low_pass)
+    data = Data(regressor, motion, measured, p, numbers, low_pass)
     z = regressor.follow(motion, p)
     ranking = Ranking.of(data.theta, [scene.parameters[name].unit for name in names])
     spread = np.array([(prior or {}).get(name, math.inf) for name in names])
@@ -236,17 +272,19 @@ def identify(
         raise DeclarationError(
             f"{measurements.name}: noise of '{zero[0]}': expected a number above 0"
         )
-    consistency = None
-    if consistent:
-        consistency = Consistency.of(regressor.program, p, numbers, ranking.scales)
-    loss = Loss(given, robust, data.theta, spread, consistency)
+    consistency = Consistency.of(regressor.program, p, numbers, ranking.scales)
+    loss = Loss(given, robust, data.theta, spread, consistency if consistent else None)
     curved = nonlinear(data, z, names, ranking.scales)
     found = fit(data, z, loss, ranking)
-    return _result(scene, measurements, data, found, (names, curved, ranking), cutoff)
+    result = _result(scene, measurements, data, found, (names, curved, ranking), cutoff)
+    impossible = consistency.impossible(found.theta)
+    return replace(result, prior=dict(prior or {}), impossible=impossible)
 
 
-def _measured(measurements: Measurements, quantities: Sequence[str]) -> Array:
-    """Return the columns of quantities, (n, quantities)."""
+def _measured(measurements: Measurements, regressor: Regressor) -> Array:
+    """Return the columns of quantities, (n, quantities), whose units are checked."""
+    quantities = regressor.quantities
+    check_units(measurements, regressor.expected)
     if lost := [name for name in quantities if name not in measurements.columns]:
         raise UnknownNameError("column", lost, measurements.columns, place=measurements.name)
     return np.stack([measurements.columns[name] for name in quantities], axis=1)
@@ -324,6 +362,9 @@ def _result(
         covariance=covariance,
         regressor=regressor,
         parameters=regressor.program.data.values(p),
+        initial=dict(zip(names, data.theta.tolist(), strict=True)),
+        prior={},
+        impossible=(),
     )
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -16,19 +17,22 @@ from ..base.csv_rows import headings, read_rows
 from ..base.units import UNITS
 from ..declare.curves import curve
 from ..errors import DeclarationError, UnknownNameError
-from .regressor import DrivenMotion
+from .regressor import MOTION, DrivenMotion
 
-_SIZES = {word: size for words in UNITS.values() for word, size in words.items()} | {
-    **dict.fromkeys(("", "1", "N", "N m", "Nm", "rad/s", "m/s", "rad/s^2", "m/s^2"), 1.0),
-    "kN": 1e3,
-    "kN m": 1e3,
-    "mN m": 1e-3,
-    "ustrain": 1e-6,
-    "mm/s": 1e-3,
-    "mm/s^2": 1e-3,
-    "deg/s": math.radians(1.0),
-    "deg/s^2": math.radians(1.0),
+_UNITS: dict[str, dict[str, float]] = {
+    **UNITS,
+    "rad/s": {"rad/s": 1.0, "deg/s": math.radians(1.0)},
+    "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": math.radians(1.0)},
+    "m/s": {"m/s": 1.0, "mm/s": 1e-3},
+    "m/s^2": {"m/s^2": 1.0, "mm/s^2": 1e-3},
+    "N": {"N": 1.0, "kN": 1e3},
+    "N m": {"N m": 1.0, "Nm": 1.0, "kN m": 1e3, "mN m": 1e-3},
+    "W": {"W": 1.0, "kW": 1e3},
+    "1": {"1": 1.0, "ustrain": 1e-6},
 }
+"""Units that a column may have, and their sizes, for each SI unit."""
+
+_SIZES = {word: (unit, size) for unit, words in _UNITS.items() for word, size in words.items()}
 _COUNTS = ("count", "counts")
 _EMPTY = ("", "nan", "na", "n/a", "null", "-")
 """Cells of values that are missing."""
@@ -62,24 +66,34 @@ class Measurements:
         of a force weighs it. Forces that are not named have theirs estimated.
     name
         Name for messages.
+    units
+        Units in which columns were measured, by name, as ``deg`` or ``N m``. :func:`.identify`
+        refuses a column whose unit is not one of its quantity.
 
     Raises
     ------
     DeclarationError
-        For times that do not increase, columns of other lengths, and noise that is negative.
+        For times that do not increase, columns of other lengths or without values, and noise that
+        is negative.
     """
 
     t: Array
     columns: Mapping[str, Array]
     noise: Mapping[str, NotNegative] = field(default_factory=dict)
     name: str = "measurements"
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         t = np.asarray(self.t, float)
-        if t.ndim != 1 or t.size < _FEWEST or not (np.diff(t) > 0.0).all():
+        if t.ndim != 1 or t.size < _FEWEST:
             raise DeclarationError(
-                f"{self.name}: expected at least {_FEWEST} times that increase, got"
-                f" {t.size} from {t[0] if t.size else math.nan:g}"
+                f"{self.name}: expected at least {_FEWEST} rows of measurements, got {t.size}"
+            )
+        if not (rising := np.diff(t) > 0.0).all():
+            k = int(np.argmin(rising))
+            raise DeclarationError(
+                f"{self.name}: expected times that increase, got {t[k]:.9g} s and then"
+                f" {t[k + 1]:.9g} s in rows {k + 1} and {k + 2}"
             )
         columns = {name: np.asarray(values, float) for name, values in self.columns.items()}
         for name, values in columns.items():
@@ -88,6 +102,8 @@ class Measurements:
                     f"{self.name}: column '{name}': expected {t.size} values, one a time, got"
                     f" {values.size}"
                 )
+            if not np.isfinite(values).any():
+                raise DeclarationError(f"{self.name}: column '{name}' has no values")
         if unknown := [name for name in self.noise if name not in columns]:
             raise UnknownNameError("column of noise=", unknown, columns, place=self.name)
         object.__setattr__(self, "t", t)
@@ -95,7 +111,7 @@ class Measurements:
 
     def quantities(self, drives: Sequence[str]) -> tuple[str, ...]:
         """Return the names of the forces: the columns that are no motion of the drives."""
-        moving = {f"{drive}{end}" for drive in drives for end in ("", "_rate", "_acceleration")}
+        moving = {f"{drive}{end}" for drive in drives for end in MOTION}
         return tuple(name for name in self.columns if name not in moving)
 
     def motion(self, drives: Sequence[str], trim: float = 0.0) -> DrivenMotion:
@@ -105,14 +121,14 @@ class Measurements:
         its noise from the points. NaN stands for ``trim`` [s] at both ends.
 
         Raises :class:`.UnknownNameError` for a drive without a column, :class:`.DeclarationError`
-        for too few values of one.
+        for too few values of one, and if nothing is left.
         """
         parts = []
         for drive in drives:
             if drive not in self.columns:
                 raise UnknownNameError("column of a drive", drive, self.columns, place=self.name)
             values = self.columns[drive]
-            found = [values, *(self.columns.get(f"{drive}{e}") for e in ("_rate", "_acceleration"))]
+            found = [values, *(self.columns.get(f"{drive}{e}") for e in MOTION[1:])]
             if any(column is None or np.isnan(column).any() for column in found):
                 spline = self._spline(drive)
                 noisy = self.noise.get(drive, 0.0) > 0.0
@@ -128,6 +144,10 @@ class Measurements:
             for k in range(3)
         )
         outside = (self.t < self.t[0] + trim) | (self.t > self.t[-1] - trim)
+        if outside.all():
+            raise DeclarationError(
+                f"trim={trim:g}: expected less than half of the {np.ptp(self.t):g} s of {self.name}"
+            )
         acceleration[outside] = np.nan
         return DrivenMotion(self.t, d, rate, acceleration)
 
@@ -147,8 +167,12 @@ class Measurements:
         weight = float(jumps @ away / (jumps @ jumps)) * float(np.diff(t).mean())
         return float(((math.sqrt(2.0) - 1.0) / weight) ** 0.25 / math.tau)
 
-    def _spline(self, drive: str) -> list[Array]:
-        """Return coordinate, rate and acceleration of the smoothing spline of a drive."""
+    @cached_property
+    def _spline(self) -> Callable[[str], list[Array]]:
+        """Coordinate, rate and acceleration of the smoothing spline of a drive, built once."""
+        return cache(self._smoothed)
+
+    def _smoothed(self, drive: str) -> list[Array]:
         values = self.columns[drive]
         known = np.isfinite(values)
         if known.sum() < _FEWEST or not (known[0] and known[-1]):
@@ -166,6 +190,19 @@ class Measurements:
             b + u * (2.0 * c + 3.0 * u * d),
             2.0 * c + 6.0 * u * d,
         ]
+
+
+def check_units(measurements: Measurements, expected: Mapping[str, str]) -> None:
+    """Raise :class:`.DeclarationError` for a column in a unit of another quantity than that of its
+    ``expected`` SI unit.
+    """
+    for name, unit in expected.items():
+        word = measurements.units.get(name, unit)
+        if (_SIZES[word][0] if word in _SIZES else word) != unit:
+            some = ", ".join(_UNITS.get(unit, [unit]))
+            raise DeclarationError(
+                f"{measurements.name}: column '{name}' is in {word}; expected {some}"
+            )
 
 
 def _filled(column: Array, other: Array) -> Array:
@@ -217,7 +254,9 @@ def read_measurements(
     """
     rows = read_rows(path, "columns of times, motion and forces")
     heads = headings(next(rows).cells)
-    plain = {head: k for k, (head, _) in enumerate(heads)}
+    plain = [head for head, _ in heads]
+    if twice := [head for head in plain if plain.count(head) > 1]:
+        raise DeclarationError(f"{path}: expected one column '{twice[0]}', got {len(twice)}")
     chosen = {**(names or {}), "t": time}
     if lost := [head for head in chosen.values() if head not in plain]:
         raise UnknownNameError("column", lost, plain, place=str(path))
@@ -230,20 +269,23 @@ def read_measurements(
             if math.isnan(value) and cell.lower() not in _EMPTY:
                 raise DeclarationError(f"{row.where}: expected a number, got {cell!r}")
             found[-1].append(value)
-    columns, deviations = {}, {}
+    columns, deviations, units = {}, {}, {}
     table = np.array(found, float).reshape(-1, len(heads)).T
     for (head, unit), values in zip(heads, table, strict=True):
         name = named.get(head, head)
         size = _size(str(path), head, unit, counts_per_turn)
         columns[name] = size * values
+        if unit:
+            units[name] = "rad" if unit in _COUNTS else unit
         if name in (noise or {}):
             deviations[name] = size * dict(noise or {})[name]
         elif unit in _COUNTS:
             deviations[name] = size * _QUANTUM
     if unknown := [name for name in noise or {} if name not in columns]:
         raise UnknownNameError("column of noise=", unknown, columns, place=str(path))
-    t = columns.pop("t")
-    return Measurements(t, columns, deviations, Path(path).name)
+    found_in = Measurements(columns.pop("t"), columns, deviations, Path(path).name, units)
+    check_units(found_in, {"t": "s"})
+    return found_in
 
 
 def _size(path: str, head: str, unit: str, counts_per_turn: float | None) -> float:
@@ -254,9 +296,9 @@ def _size(path: str, head: str, unit: str, counts_per_turn: float | None) -> flo
                 f"{path}: column {head} is in counts; expected counts_per_turn=, a number above 0"
             )
         return math.tau / counts_per_turn
-    if unit not in _SIZES:
-        raise UnknownNameError("unit", unit, [*filter(None, _SIZES), "counts"], place=path)
-    return _SIZES[unit]
+    if unit and unit not in _SIZES:
+        raise UnknownNameError("unit", unit, [*_SIZES, "counts"], place=path)
+    return _SIZES[unit][1] if unit else 1.0
 
 
 @dataclass(frozen=True, eq=False)

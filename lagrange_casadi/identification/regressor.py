@@ -15,17 +15,17 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
-from ..declare.limits import END
 from ..declare.scene import Scene
 from ..equations.checks import Column
 from ..equations.derive import compile_scene
 from ..equations.program import Program
 from ..equations.reciprocals import differentiable
-from ..equations.section_function import Place
+from ..equations.section_function import SectionInputs
 from ..equations.stress import CrossSections
 from ..errors import AssemblyError, UnknownNameError
 from ..instants.backends import begun
@@ -40,6 +40,9 @@ _STRIDE = 0.1
 
 _STEPS, _CLOSED = 60, 1e-13
 """Steps of Newton's method at most, and the relative correction at which a loop is closed."""
+
+MOTION = ("", "_rate", "_acceleration")
+"""Ends of the names of a drive's coordinate, rate and acceleration."""
 
 _NAMES = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
 
@@ -126,6 +129,14 @@ class Regressor(Graphs):
         batch = Batch.of(function, method)
         return cls(program, tuple(quantities), units, tuple(unknown), batch)
 
+    @property
+    def expected(self) -> dict[str, str]:
+        """SI units of all that may be measured: the motion of the drives, and the quantities."""
+        moving = [f"{drive}{end}" for drive in self.program.driven for end in MOTION]
+        kinds = self.program.data.kinds
+        found = {name: Output.of(f"motion:{name}").unit(kinds) for name in moving}
+        return found | dict(zip(self.quantities, self.units, strict=True))
+
     def at(self, motion: DrivenMotion, z: Array, p: Array) -> tuple[Array, Array]:
         """Return values (n, quantities), and their derivatives (n, quantities, unknown)."""
         given = {"t": (motion.t[:, None], 1), "d": (motion.d, 1), "d_rate": (motion.rate, 1)}
@@ -194,7 +205,8 @@ def _wanted(scene: Scene, quantities: Sequence[str]) -> list[str]:
             wanted.append("effort" if kind == "effort" else f"{kind}:{part.partition(':')[0]}")
     for name, want in zip(quantities, wanted, strict=True):
         if want.partition(":")[0] not in (*_FORCES, "section") or want not in scene.outputs:
-            forces = [one for one in scene.outputs if one.partition(":")[0] in _FORCES]
+            forces = [one for one in scene.outputs if one.partition(":")[0] in _FORCES[1:]]
+            forces = [f"effort:{drive}" for drive in scene.laws] + forces
             raise UnknownNameError("measured quantity", name, forces)
     return list(dict.fromkeys(wanted))
 
@@ -229,13 +241,15 @@ def _quantity(
     if place is None:
         output = Output.of(name)
         return columns[output], output.unit(data.kinds)
-    table, section = table_of(data.space), data.section(place.link, columns, p)
-    if place.kind == "section" and place.member not in table.forces:
-        raise UnknownNameError("section force", place.member, table.forces)
-    at = Place(ca.SX(place.ratio))
+    names, inputs = table_of(data.space).forces, SectionInputs.of(program.outputs, place.link)
+    if place.kind == "section" and place.member not in names:
+        raise UnknownNameError("section force", place.member, names)
+    law, acting = (column(columns[one] for one in some) for some in (inputs.law, inputs.acting))
+    values = program.section[place.link](law, acting, p, place.ratio)
+    section = dict(zip(names, ca.vertsplit(values), strict=True))
     if place.kind == "section":
         output = Output("section", place.link, place.member)
-        return section.at(place.member, at, END["double"]), output.unit(data.kinds)
+        return section[place.member], output.unit(data.kinds)
     if place.link not in data.materials:
         raise UnknownNameError("link with a beam", place.link, data.materials)
     link = data.link(place.link, p)
@@ -246,7 +260,7 @@ def _quantity(
     fibres = sections.fibres(cell).names
     if place.member not in fibres:
         raise UnknownNameError("fibre", place.member, fibres)
-    forces = [section.at(force, at, END["double"]) for force in sections.forces]
+    forces = [section[force] for force in sections.forces]
     normal, _, _ = sections.stresses(cell, place.ratio, [fibres.index(place.member)], forces)
     elasticity = link.beam.material.needs(f"quantity '{name}'", "elasticity")[0]
     return normal / elasticity, "1"

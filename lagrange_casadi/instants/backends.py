@@ -41,11 +41,11 @@ _LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {
 _NEEDS = {
     "lanes": (
         "backend 'lanes' needs a C++ compiler: none of $CXX, c++, g++, clang++ or the Python"
-        " package ziglang is there"
+        " package ziglang was found"
     ),
     "c": (
         "backend 'c' needs a C compiler: none of $CC, cc, gcc, clang or the Python package ziglang"
-        " is there"
+        " was found"
     ),
 }
 _TRIED = "c++, g++, clang++, cc, gcc, clang, ziglang"

@@ -9,7 +9,7 @@ differentiation: no difference of large numbers is taken.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,7 +24,7 @@ from ..equations.checks import FRACTIONS, Check, Column
 from ..equations.kinematics import describe_coordinate, where
 from ..equations.program import Program
 from ..errors import DeclarationError
-from .rules import beside
+from .rules import beside, first_broken, limits
 
 TURNS = 4
 """Number of the longest periods."""
@@ -40,9 +40,6 @@ unit.
 
 _ROUNDING = 16 * 2.0**-52
 """Rounding relative to the largest value of a unit."""
-
-_GAP = 1e-8
-"""Largest residual of a loop's equations, relative to the mechanism's extent."""
 
 _PROBES = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (0.5, 0.0), (-0.1, 0.1), (1e-3, 0.0))
 _NAMED = 3
@@ -148,8 +145,8 @@ class Drive:
             timed += [Check("closure", name) for name in program.newton.names]
         if timed:
             raise DeclarationError(
-                f"table: expected columns that the angle of joint '{joint}' decides, but time"
-                f" itself enters {_listed(timed)}"
+                f"table: expected outputs that depend on the angle of joint '{joint}' alone, but"
+                f" these depend on the time: {_listed(timed)}"
             )
         slope = ca.jacobian(out, rate)
         rows = [out, slope, ca.jacobian(slope, rate) / 2, ca.jacobian(out, acceleration)]
@@ -239,11 +236,12 @@ class Drive:
         values = self.terms_at(angles, places)
         columns = (bound.column for bound in self.program.bounds)
         found = dict(zip(columns, beside(self.program, values[0], 0.0), strict=True))
-        for name, passes in self._closures(found):
-            if passes.any():
-                near = describe_coordinate(self.joint, "angle", angles[int(np.argmax(passes))])
+        for closing, k in self.program.checks("closure").items():
+            if found[k].any():
+                near = describe_coordinate(self.joint, "angle", angles[int(np.argmax(found[k]))])
                 raise DeclarationError(
-                    f"{name} is at a dead centre, or about a degree from one, near {near}"
+                    f"table: the loop closed by {self.program.data.closing(closing)} is at a dead"
+                    f" centre, or about a degree from one, near {near}"
                 )
         wrapped = values[0, self.wrapped].copy()
         course = Course(angles, places, np.unwrap(wrapped))
@@ -251,32 +249,28 @@ class Drive:
         return course, values
 
     def _refuse(self, angles: Array, values: Array) -> None:
-        for name, closure in self._closures(values[0]):
-            if not (closure > 0.0).all():
-                bad = angles[int(np.argmax(~(closure > 0.0)))]
-                raise DeclarationError(f"{name} cannot be closed{self._not_round(bad)}")
-        limit = _GAP * self.program.extent(self.p)
-        for closing, k in self.program.checks("gap").items():
-            near = np.abs(values[0, k]) <= limit
-            if not near.all():
-                bad = angles[int(np.argmax(~near))]
-                what = f"what was found for the loop closed by '{closing}' does not close it"
-                raise DeclarationError(f"table: {what}{self._not_round(bad)}")
+        program, still = self.program, np.zeros(angles.size)
+        most = limits(program, "double", None, program.extent(self.p))
+        sizes = np.array([still + (bound.kind == "ROW") for bound in program.bounds])
+        broken = first_broken(program, values[0], most, sizes.reshape(-1, still.size), still)
+        loops = {k for kind in ("closure", "gap") for k in program.checks(kind).values()}
+        for i in np.flatnonzero(broken):
+            bound = program.bounds[program.rules[broken[i] - 1].bound or 0]
+            if bound.column in loops:
+                loop = f"the loop closed by {program.data.closing(str(bound.part))}"
+                gap = f"the solution of {loop} does not close it"
+                what = gap if bound.kind == "GAP" else f"{loop} cannot be closed"
+                raise DeclarationError(f"table: {what}{self._not_round(angles[i])}")
         found = np.argwhere(~np.isfinite(values).all(axis=0))
         if found.size:
             k, i = found[0]
             at = where([(self.joint, "angle", angles[i])])
             raise DeclarationError(f"table: '{self.program.names[k]}' is not finite at rest{at}")
 
-    def _closures(self, columns: Array | Mapping[int, Array]) -> Iterator[tuple[str, Array]]:
-        """The closures among the columns, with the beginning of a message."""
-        for closing, k in self.program.checks("closure").items():
-            yield f"table: the loop closed by {self.program.data.closing(closing)}", columns[k]
-
     def _not_round(self, angle: float) -> str:
         return (
-            f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way"
-            " round"
+            f"{where([(self.joint, 'angle', angle)])}; expected a drive that can make whole"
+            " revolutions"
         )
 
 
@@ -288,7 +282,7 @@ def the_drive(program: Program) -> str:
     if len(program.driven) != 1:
         named = ", ".join(f"'{name}'" for name in program.driven) or "none"
         raise DeclarationError(
-            f"table: expected one driven joint, whose angle decides all, got {named}"
+            f"table: expected one driven joint, whose angle determines all, got {named}"
         )
     (joint,) = program.driven
     if program.data.kinds.coordinates[joint] != "angle":

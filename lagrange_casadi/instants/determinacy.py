@@ -86,12 +86,12 @@ def _beyond(
 
 
 def determinate(
-    program: Program, t: Array, p: Array, *, telling: bool = False
+    program: Program, t: Array, p: Array, *, reusable: bool = False
 ) -> tuple[Program, tuple[Output, ...]]:
     """The graph without the outputs that are open at some of the instants, for parameters ``p``;
     and these outputs.
 
-    With ``telling`` the program keeps the check of the other outputs, for other parameters and
+    With ``reusable`` the program keeps the check of the other outputs, for other parameters and
     instants.
     """
     if not program.indeterminate:
@@ -102,7 +102,7 @@ def determinate(
     )
     others = (
         ()
-        if telling
+        if reusable
         else tuple(output for output in program.indeterminate if output not in indeterminate)
     )
     return _without(

@@ -11,13 +11,16 @@ import ctypes
 import functools
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from importlib import resources
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
-from ..base.space import require
+from ..base.space import cores, require
 from ..base.threads import in_threads
 from ..codegen import find_compiler
 from ..codegen.calls import Call
@@ -26,8 +29,8 @@ from ..declare.limits import END
 from ..equations.section_function import edge
 from ..errors import CompilerError, DeclarationError, warn
 
-WORTH_COMPILING = 1 << 14
-"""Values from which on compiled code fills a grid."""
+WORTH_COMPILING = 1 << 9
+"""Values from which on compiled code fills grids."""
 
 _STREAMING = 1 << 24
 """Bytes from which on a grid goes past the caches."""
@@ -54,9 +57,7 @@ _SUM = {
     "beyond": "const double*",
     "out": "double*",
 }
-GRID = Call(
-    "lagrange_casadi_grid_call", {"n": "long long", "k": "long long", **_SUM, "streams": "int"}
-)
+GRID = Call("lagrange_casadi_grid_call", {"k": "long long", **_SUM, "streams": "int"})
 LARGEST = Call(
     "lagrange_casadi_largest_call",
     {"designs": "long long", "n": "long long", "k": "long long", **_SUM},
@@ -64,104 +65,160 @@ LARGEST = Call(
 """Arguments of the functions of ``grids.c``, which describes each."""
 
 Load = tuple[Array, Array, Array]
-"""Station, constant and slope of what acts there: sections on its base side feel constant + slope
+"""Station, constant and slope of what acts there: sections on its base side carry constant + slope
 (station - u).
 """
 
 
+@dataclass(frozen=True, eq=False)
+class Functions:
+    """Functions along a link, a row each, (terms, xi)."""
+
+    rows: Array
+
+    @cached_property
+    def padded(self) -> tuple[Array, int]:
+        """The rows with zeros up to a whole number of lines, and their address."""
+        terms, k = self.rows.shape
+        whole = empty("the functions along a link", (terms, -(-k // _LINE) * _LINE))
+        whole[:, :k], whole[:, k:] = self.rows, 0.0
+        return whole, whole.ctypes.data
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Factors of a grid that change over time: ``columns``, which go with functions along the link,
+    and ``loads``.
+
+    With two ``planes`` there are as many columns and loads for each, one plane's after the other's,
+    and the grid is the size of both sums.
+    """
+
+    columns: Sequence[Array]
+    loads: Sequence[Load] = ()
+    planes: int = 1
+
+    @cached_property
+    def arrays(self) -> list[Array]:
+        """Columns and loads one after another, as C takes them."""
+        return [
+            np.ascontiguousarray(row, dtype=np.float64)
+            for row in (*self.columns, *(row for load in self.loads for row in load))
+        ]
+
+    @cached_property
+    def addresses(self) -> ctypes.Array[ctypes.c_void_p]:
+        """Addresses of the arrays."""
+        return (ctypes.c_void_p * len(self.arrays))(*(row.ctypes.data for row in self.arrays))
+
+    @cached_property
+    def members(self) -> dict[str, int]:
+        """Members of a call of C."""
+        columns, first = len(self.columns), ctypes.addressof(self.addresses)
+        return {
+            "planes": self.planes,
+            "terms": columns // self.planes,
+            "columns": first,
+            "loads": (len(self.arrays) - columns) // (3 * self.planes),
+            "acting": first + columns * ctypes.sizeof(ctypes.c_void_p),
+        }
+
+
+Sum: TypeAlias = tuple[Columns, Functions]
+"""Columns of a grid, and functions that go with them: as many, or more."""
+
+
 def fill(
-    columns: Sequence[Array],
-    basis: Array,
-    loads: Sequence[Load],
+    sums: Sequence[Sum],
     u: Array,
     out: Array,
-    threads: int = 1,
-    planes: int = 1,
+    threads: int | None = 1,
     slack: float = END["double"],
 ) -> None:
-    """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what
-    acts at stations.
+    """Fill grids ``out`` (sums, t, xi), each with the sum of columns (t) times functions (xi), and
+    with what acts at load points.
 
-    The rows of ``basis`` are one or more, and ``columns`` as many; ``u`` are the ratios. With two
-    ``planes`` there are as many columns for each, one plane's after the other's, as loads are, and
-    ``out`` is the size of both sums. ``slack`` is that of :func:`.edge`. Raises
-    :class:`DeclarationError` for an ``out`` of another shape.
+    ``u`` are the ratios; ``slack`` is that of :func:`.edge`; ``threads`` is None for one a core.
+    Raises :class:`DeclarationError` for an ``out`` of another shape.
     """
-    if out.shape != (columns[0].size, u.size):
-        raise DeclarationError(
-            f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}"
-        )
-    plain = out.flags.c_contiguous and out.dtype == np.float64
-    library = (
-        _compiled() if plain and out.size >= WORTH_COMPILING and len(columns) <= _MOST else None
-    )
+    n, k = sums[0][0].columns[0].size, u.size
+    if out.shape != (len(sums), n, k):
+        raise DeclarationError(f"out: expected an array of shape {(n, k)}, got {out.shape[1:]}")
+    plain = out[0].flags.c_contiguous and out.dtype == np.float64
+    most = max(len(columns.columns) for columns, _ in sums)
+    library = _compiled() if plain and out.size >= WORTH_COMPILING and most <= _MOST else None
     if library is None:
-        _fill_in_blocks(columns, basis, loads, u, out, planes, slack)
+        for (columns, functions), rows in zip(sums, out, strict=True):
+            _fill_in_blocks(columns, functions.rows, u, rows, slack)
         return
-    n, k = out.shape
-    functions = empty("the functions along a link", (len(basis), -(-k // _LINE) * _LINE))
-    functions[:, :k], functions[:, k:] = basis, 0.0
-    flat, ratios = _flat(columns, loads), np.ascontiguousarray(u, dtype=np.float64)
-    beyond = edge(ratios, slack)
-    shares = max(1, min(threads, out.size // _SHARE, n))
-    size = -(-n // shares)
-
-    def run(start: int) -> None:
-        rows = (ctypes.c_void_p * len(flat))(
-            *(row.ctypes.data + start * row.itemsize for row in flat)
+    at = after = None
+    if any(columns.loads for columns, _ in sums):
+        u = np.ascontiguousarray(u, dtype=np.float64)
+        beyond = edge(u, slack)
+        at, after = u.ctypes.data, beyond.ctypes.data
+    first, streams = out.ctypes.data, int(out[0].nbytes >= _STREAMING)
+    calls = (GRID.type * len(sums))()
+    for i, (columns, functions) in enumerate(sums):
+        rows, basis = functions.padded
+        calls[i] = GRID.made(
+            k=k,
+            stride=rows.shape[1],
+            basis=basis,
+            u=at,
+            beyond=after,
+            out=first + i * out.strides[0],
+            streams=streams,
+            **columns.members,
         )
-        here = _sum(len(columns), planes, rows, functions, ratios, beyond) | {
-            "out": out[start:].ctypes.data
-        }
-        library.lagrange_casadi_grid(
-            GRID.made(n=min(size, n - start), k=k, streams=int(out.nbytes >= _STREAMING), **here)
-        )
-
-    in_threads(run, range(0, n, size), shares)
+    entry, shares = library.lagrange_casadi_grids, out.size // _SHARE
+    shares = max(1, min(shares, n, threads or cores())) if shares > 1 else 1
+    share = -(-n // shares)
+    in_threads(lambda i: entry(calls, len(sums), i, min(i + share, n)), range(0, n, share), shares)
 
 
-def largest(
-    columns: Sequence[Array],
-    basis: Array,
-    loads: Sequence[Load],
-    u: Array,
-    planes: int = 1,
-    slack: float = END["double"],
-) -> Array:
+def largest(given: Sum, u: Array, slack: float = END["double"]) -> Array:
     """Over the instants of n designs the value largest in size at each ratio, with its sign: (n,
     xi).
 
-    ``columns`` and what ``loads`` consist of are (n, t), ``basis`` is (terms, n, xi); see
-    :func:`fill`. Of values of one size the positive one is given; a design whose columns or loads
-    are not all finite has NaN.
+    Columns and what loads consist of are (n, t), functions (terms, n, xi); see :func:`fill`. Of
+    values of one size the positive one is given; a design whose columns or loads are not all finite
+    has NaN.
     """
-    n, t = columns[0].shape
+    columns, basis = given[0], given[1].rows
+    n, t = columns.columns[0].shape
     out = np.empty((n, u.size))
-    finite = np.all(
-        [
-            np.isfinite(row).all(axis=1)
-            for row in (*columns, *(row for load in loads for row in load))
-        ],
-        axis=0,
-    )
-    library = _compiled() if t * out.size >= WORTH_COMPILING and len(columns) <= _MOST else None
+    finite = np.all([np.isfinite(row).all(axis=1) for row in columns.arrays], axis=0)
+    compile_it = t * out.size >= WORTH_COMPILING and len(columns.columns) <= _MOST
+    library = _compiled() if compile_it else None
     if library is None:
         for i in range(n):
             grid = np.empty((t, u.size))
-            acting = [(a[i], b[i], c[i]) for a, b, c in loads]
-            _fill_in_blocks(
-                [column[i] for column in columns], basis[:, i], acting, u, grid, planes, slack
+            design = Columns(
+                [column[i] for column in columns.columns],
+                [(a[i], b[i], c[i]) for a, b, c in columns.loads],
+                columns.planes,
             )
+            _fill_in_blocks(design, basis[:, i], u, grid, slack)
             high, low = grid.max(axis=0), grid.min(axis=0)
             out[i] = np.where(high >= -low, high, low)
         out[~finite] = np.nan
         return out
-    flat, ratios = _flat(columns, loads), np.ascontiguousarray(u, dtype=np.float64)
+    ratios = np.ascontiguousarray(u, dtype=np.float64)
     functions = np.ascontiguousarray(basis, dtype=np.float64).reshape(len(basis), -1)
-    rows = (ctypes.c_void_p * len(flat))(*(array.ctypes.data for array in flat))
     beyond = edge(ratios, slack)
-    whole = _sum(len(columns), planes, rows, functions, ratios, beyond) | {"out": out.ctypes.data}
-    library.lagrange_casadi_largest(LARGEST.made(designs=n, n=t, k=u.size, **whole))
+    library.lagrange_casadi_largest(
+        LARGEST.made(
+            designs=n,
+            n=t,
+            k=u.size,
+            stride=functions.shape[1],
+            basis=functions.ctypes.data,
+            u=ratios.ctypes.data,
+            beyond=beyond.ctypes.data,
+            out=out.ctypes.data,
+            **columns.members,
+        )
+    )
     out[~finite] = np.nan
     return out
 
@@ -180,60 +237,18 @@ def empty(what: str, shape: tuple[int, ...], dtype: npt.DTypeLike = np.float64) 
     return capacity[first : first + count].reshape(shape)
 
 
-def _flat(columns: Sequence[Array], loads: Sequence[Load]) -> list[Array]:
-    """Columns and loads one after another, as C takes them."""
-    return [
-        np.ascontiguousarray(row, dtype=np.float64)
-        for row in (*columns, *(row for load in loads for row in load))
-    ]
-
-
-def _sum(
-    columns: int,
-    planes: int,
-    rows: ctypes.Array[ctypes.c_void_p],
-    functions: Array,
-    ratios: Array,
-    beyond: Array,
-) -> dict[str, int]:
-    """Arguments of a call: ``rows`` are the addresses of the columns, so many, and of the loads'
-    parts; functions have a row each.
-    """
-    first = ctypes.addressof(rows)
-    return {
-        "planes": planes,
-        "terms": columns // planes,
-        "columns": first,
-        "stride": functions.shape[1],
-        "basis": functions.ctypes.data,
-        "loads": (len(rows) - columns) // (3 * planes),
-        "acting": first + columns * ctypes.sizeof(ctypes.c_void_p),
-        "u": ratios.ctypes.data,
-        "beyond": beyond.ctypes.data,
-    }
-
-
-def _fill_in_blocks(
-    columns: Sequence[Array],
-    basis: Array,
-    loads: Sequence[Load],
-    u: Array,
-    out: Array,
-    planes: int,
-    slack: float,
-) -> None:
-    height = max(1, _BLOCK // max(1, out.shape[1]))
-    terms, many = len(columns) // planes, len(loads) // planes
+def _fill_in_blocks(columns: Columns, basis: Array, u: Array, out: Array, slack: float) -> None:
+    height, planes = max(1, _BLOCK // max(1, out.shape[1])), columns.planes
+    terms, many = len(columns.columns) // planes, len(columns.loads) // planes
     for start in range(0, out.shape[0], height):
         block = slice(start, start + height)
         rows = out[block]
         for plane in range(planes):
             values = np.empty(rows.shape) if plane else rows
-            terms_here = [column[block] for column in columns[plane * terms : (plane + 1) * terms]]
             _sum_up(
-                terms_here,
+                [c[block] for c in columns.columns[plane * terms : (plane + 1) * terms]],
                 basis,
-                [_cut(load, block) for load in loads[plane * many : (plane + 1) * many]],
+                [_cut(load, block) for load in columns.loads[plane * many : (plane + 1) * many]],
                 u,
                 values,
                 slack,
@@ -256,7 +271,7 @@ def _sum_up(
     slack: float,
 ) -> None:
     np.multiply(columns[0][:, None], basis[0], out=rows)
-    for column, function in zip(columns[1:], basis[1:], strict=True):
+    for column, function in zip(columns[1:], basis[1:], strict=False):
         rows += column[:, None] * function
     for load_point, constant, slope in loads:
         at = load_point[:, None]
@@ -278,6 +293,7 @@ def _compiled() -> ctypes.CDLL | None:
     except CompilerError as error:
         warn(f"{error}; NumPy fills the grids")
         return None
-    for name, call in (("lagrange_casadi_grid", GRID), ("lagrange_casadi_largest", LARGEST)):
-        call.declare(getattr(library, name))
+    some = (ctypes.c_longlong,) * 3
+    GRID.declare(library.lagrange_casadi_grids, *some)
+    LARGEST.declare(library.lagrange_casadi_largest)
     return library

@@ -156,7 +156,7 @@ def _tried(held: HeldEfforts, inputs: list[ca.DM]) -> tuple[Array, _Reasons]:
             why.append(
                 (
                     (tried[:, k] > _BENDS).any(axis=0),
-                    f"friction '{name}' slides, and changes with those at rest",
+                    f"friction '{name}' slides, and depends on those at rest",
                 )
             )
         elif kind == "jam":

@@ -93,7 +93,7 @@ class DistributedLoad(_Load):
         return DistributedLoad(self.name, value("width"), value("end"), terms)
 
     def bound(self, direction: str, length: float, *, arm: bool) -> Array | float:
-        """The largest size of what any section feels of it where its coefficients have any sign,
+        """The largest size of what any section carries of it if its coefficients have any sign,
         wherever it begins and ends.
         """
         lever = length if arm else 1.0

@@ -6,14 +6,13 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES
-from ..arithmetic.interpret import interpret, numpy_arithmetic
 from ..base.arrays import Array
 from ..base.status import Status
 from ..base.vocabulary import Precision
@@ -26,7 +25,7 @@ from ..equations.status import Bound, Rule, outside
 from ..errors import AssemblyError
 from .backends import Evaluated, run
 from .evaluation_method import EvaluationMethod
-from .rules import beside, limits
+from .rules import beside, first_broken, limits
 
 _JAM = (
     "friction has no unique solution there (jamming); reduce mu, lengthen the guide, or push"
@@ -63,9 +62,8 @@ def refusal(
         program.bounds, limits(program, precision, method.newton, program.extent(p)), strict=True
     )
     most = [math.inf if bound.kind.startswith("OPEN") else limit for bound, limit in shares]
-    numbers = _first_broken(
-        program, evaluated, most, _beside(program, evaluated.out, most, t, p, method)
-    )
+    near = _beside(program, evaluated.out, most, t, p, method)
+    numbers = first_broken(program, evaluated.out, most, near, evaluated.status)
     if not numbers.any() and not (evaluated.status == Status.NOT_FINITE).any():
         return None
     statuses = np.array([Status.OK, *(rule.status for rule in program.rules)])[numbers]
@@ -94,30 +92,6 @@ def refusal(
             ),
         )
     return replace(refused, message=_beyond(program, p, precision, at) or refused.message)
-
-
-def _first_broken(
-    program: Program, evaluated: Evaluated, most: Sequence[float], beside: Array
-) -> npt.NDArray[np.intp]:
-    """The number of the first rule that each instant breaks (t,), or zero."""
-    checks = [evaluated.out[bound.column] for bound in program.bounds]
-    shares = [*map(np.float64, most)]
-
-    def numbers(
-        checks: Iterable[Array], beside: Iterable[Array], status: Array
-    ) -> npt.NDArray[np.intp]:
-        given = [[np.asarray(row, float) for row in checks], shares, [*beside], [status]]
-        (found,) = interpret(program.status, given, numpy_arithmetic())
-        return np.broadcast_to(found[0], status.shape).astype(np.intp)
-
-    if not evaluated.status.any():
-        # A rule is kept within an interval: if the least and the largest keep it, all do.
-        few, near = (
-            [np.array([row.min(), row.max()]) for row in rows] for rows in (checks, [*beside])
-        )
-        if not (np.isnan([*few, *near]).any() or numbers(few, near, np.zeros(2)).any()):
-            return np.zeros(evaluated.status.shape, np.intp)
-    return numbers(checks, beside, evaluated.status.astype(float))
 
 
 def _beside(
@@ -194,7 +168,7 @@ def _beyond(program: Program, p: Array, precision: Precision, at: str) -> str | 
         length = body["length"]
         if length is not None and not low <= length <= high:
             what = (
-                f"link '{name}' is {length:.3g} m long, and {precision} precision can only square"
+                f"link '{name}' is {length:.3g} m long, but squares in {precision} precision need"
                 f" {low:.1g} to {high:.1g} m"
             )
             return f"the mechanism has no result {at}: {what}"

@@ -5,9 +5,11 @@ are evaluated.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..arithmetic.compensated import ROUNDING
 from ..arithmetic.interpret import interpret, numpy_arithmetic
@@ -116,6 +118,38 @@ def beside(program: Program, out: Array, outside: float) -> Array:
         shifted = [[row[k : k + count] for row in longer] for k in range(4)]
         (found,) = interpret(program.beside, [*shifted, found], numpy_arithmetic())
     return np.array([np.broadcast_to(row, count) for row in found], float).reshape(-1, count)
+
+
+def first_broken(
+    program: Program,
+    out: Array,
+    most: Sequence[float],
+    beside: Array,
+    status: npt.NDArray[np.generic],
+) -> npt.NDArray[np.intp]:
+    """The number of the first rule that each instant of columns ``out`` (columns, t) breaks (t,),
+    or zero.
+
+    ``most`` are the limits, ``beside`` (bounds, t) the values beside checks, ``status`` (t,) that
+    of iterated loops.
+    """
+    checks, shares = [out[bound.column] for bound in program.bounds], [*map(np.float64, most)]
+
+    def numbers(
+        checks: Iterable[Array], beside: Iterable[Array], status: Array
+    ) -> npt.NDArray[np.intp]:
+        given = [[np.asarray(row, float) for row in checks], shares, [*beside], [status]]
+        (found,) = interpret(program.status, given, numpy_arithmetic())
+        return np.broadcast_to(found[0], status.shape).astype(np.intp)
+
+    if not status.any():
+        # A rule is kept within an interval: if the least and the largest keep it, all do.
+        few, near = (
+            [np.array([row.min(), row.max()]) for row in rows] for rows in (checks, [*beside])
+        )
+        if not (np.isnan([*few, *near]).any() or numbers(few, near, np.zeros(2)).any()):
+            return np.zeros(status.shape, np.intp)
+    return numbers(checks, beside, status.astype(float))
 
 
 def _depends_on_others(bound: Bound, row: Array) -> bool:

@@ -11,7 +11,7 @@ stations changes.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,7 +21,7 @@ import numpy.typing as npt
 from ..base.arrays import Array, Operand
 from ..base.brief import Brief
 from ..base.quantities import Output
-from ..base.space import cores, require
+from ..base.space import require
 from ..base.tables import PLANE, SPACE, Table
 from ..declare.density import NumericDensity
 from ..declare.limits import END
@@ -82,11 +82,21 @@ class SectionLaw(Brief):
         size = (self.coefficients["n0"].size, xi.u.size if isinstance(xi, Basis) else xi.size)
         if out is None:
             require(f"a grid of {force}", size)
-        basis = xi if isinstance(xi, Basis) else self.basis(xi)
-        out = grids.empty(f"a grid of {force}", size) if out is None else out
-        columns, rows, acting, planes = self._planes(force, basis)
-        grids.fill(columns, rows, acting, basis.u, out, threads or cores(), planes, self.slack)
+            out = grids.empty(f"a grid of {force}", size)
+        self.on_grids((force,), xi, out[None], threads)
         return out
+
+    def on_grids(
+        self,
+        forces: Sequence[str],
+        xi: Array | Basis,
+        out: Array,
+        threads: int | None = None,
+    ) -> None:
+        """Fill ``out`` (forces, t, xi) with the grids that :meth:`on_grid` gives, by one call."""
+        basis = xi if isinstance(xi, Basis) else self.basis(xi)
+        sums = [self._sum(force, basis) for force in forces]
+        grids.fill(sums, basis.u, out, threads, self.slack)
 
     def largest(self, force: str, basis: Basis) -> Array:
         """Largest size of a force over the instants, (n, xi), for n laws whose members are (n, t),
@@ -95,8 +105,7 @@ class SectionLaw(Brief):
         It has its sign, the positive one where both are as large, and is NaN of a law that is not
         finite throughout.
         """
-        columns, rows, acting, planes = self._planes(force, basis)
-        return grids.largest(columns, rows, acting, basis.u, planes, self.slack)
+        return grids.largest(self._sum(force, basis), basis.u, self.slack)
 
     def during(self, instants: slice | npt.NDArray[np.generic]) -> SectionLaw:
         """The law at some of the instants."""
@@ -110,7 +119,7 @@ class SectionLaw(Brief):
         )
 
     def at(self, force: str, xi: Operand, side: Side = "tip") -> Array:
-        """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is
+        """A force at ratios of shape (t, ...), one row an instant; ``side`` says which value is
         meant at a station.
         """
         u = np.asarray(xi, dtype=float)
@@ -171,13 +180,14 @@ class SectionLaw(Brief):
         ]
         basis, found = self.basis(u), {}
         for force in self.table.sections:
-            columns, rows = self._terms(force, basis)
+            columns, functions = self._terms(force, basis)
+            rows = functions.rows
             gaps = sum(
                 change[..., None] * row
-                for change, row in zip(changes._terms(force, basis)[0], rows, strict=True)
+                for change, row in zip(changes._terms(force, basis)[0], rows, strict=False)
             )
             sizes = sum(
-                np.abs(column[:, None] * row) for column, row in zip(columns, rows, strict=True)
+                np.abs(column[:, None] * row) for column, row in zip(columns, rows, strict=False)
             )
             terms = self.table.sections[force]
             for distributed, moving in zip(
@@ -295,9 +305,10 @@ class SectionLaw(Brief):
         if len(parts := self._parts(force)) > 1:
             return math.hypot(*(self.bound(part, xi) for part in parts))
         bare = replace(self, distributed_loads=())
-        columns, rows = bare._terms(force, bare.basis(xi))
+        columns, functions = bare._terms(force, bare.basis(xi))
         size = sum(
-            np.abs(column)[:, None] * np.abs(row) for column, row in zip(columns, rows, strict=True)
+            np.abs(column)[:, None] * np.abs(row)
+            for column, row in zip(columns, functions.rows, strict=False)
         )
         for distributed in self.distributed_loads:
             size = size + distributed.bound(
@@ -430,19 +441,29 @@ class SectionLaw(Brief):
             marks += [np.full_like(self.coefficients["n0"], jump) for jump in self.density.jumps]
         return [np.clip(mark, 0.0, 1.0) for mark in marks]
 
-    def _planes(self, force: str, basis: Basis) -> tuple[list[Array], Array, list[grids.Load], int]:
-        """Functions along the link, and columns and loads of a force, or of all that it is the size
-        of, one after another.
-        """
+    def _sum(self, force: str, basis: Basis) -> grids.Sum:
+        """Terms of a force, or of all that it is the size of, one after another."""
+        if force in self._kept:
+            columns, bends = self._kept[force]
+            return columns, basis.functions[bends]
         parts = self._parts(force)
         terms = [self._terms(part, basis) for part in parts]
-        acting = [self._acting(part, load) for part in parts for load in self.loads]
-        return (
-            [column for columns, _ in terms for column in columns],
-            terms[0][1],
-            acting,
+        columns = grids.Columns(
+            [column for of_part, _ in terms for column in of_part],
+            [self._acting(part, load) for part in parts for load in self.loads],
             len(parts),
         )
+        own = {id(values) for values in self.coefficients.values()}
+        if all(id(row) in own for row in columns.arrays):
+            self._kept[force] = columns, bool(self.table.sections[parts[0]].arm)
+        return columns, terms[0][1]
+
+    @cached_property
+    def _kept(self) -> dict[str, tuple[grids.Columns, bool]]:
+        """Columns of forces that consist of arrays of this law, which stay where they are, and
+        whether they are those of a bending moment.
+        """
+        return {}
 
     @property
     def _thick(self) -> bool:
@@ -453,15 +474,18 @@ class SectionLaw(Brief):
             for couple in self.table.couples
         )
 
-    def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
+    def _terms(self, force: str, basis: Basis) -> tuple[list[Array], grids.Functions]:
         terms = self.table.sections[force]
         columns = [self.coefficients[name] for name in terms.coefficients]
         return basis.of(terms, columns, self.distributed_loads)
 
     def _smooth(self, force: str, u: Array) -> Array:
-        columns, rows = self._terms(force, self.basis(u))
+        columns, functions = self._terms(force, self.basis(u))
         return np.asarray(
-            sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True))
+            sum(
+                _column(column, u) * row
+                for column, row in zip(columns, functions.rows, strict=False)
+            )
         )
 
     def _acting(self, force: str, load: AnyPointLoad) -> grids.Load:

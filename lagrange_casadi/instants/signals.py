@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array, Operand
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..base.status import Status
 from ..base.tables import table_of
 from ..codegen.search import Search
@@ -70,7 +70,7 @@ def section_forces(
     """
     body = description["bodies"][link]
     length, density = body["length"], density_of(body)
-    of_link = {output: k for output, k in rows.items() if output.along and output.part == link}
+    of_link = parts_along(rows, link)
     return {
         force: SectionForce(force, link, of_link, length, density)
         for force in table_of(in_space(description)).forces
@@ -78,7 +78,7 @@ def section_forces(
 
 
 Quantity: TypeAlias = "tuple[int, ...] | Along"
-"""A column, some that are the components of a vector whose size is meant, or what is told along a
+"""A column, some that are the components of a vector whose size is meant, or what is known along a
 link, as a section force.
 """
 
@@ -88,7 +88,7 @@ class Signals:
     """Quantities of a graph, interpreted for parameters ``p`` over instants ``t``, with iterated
     coordinates ``z`` there.
 
-    ``turned`` are, by the number of an angle that loops set, its values at the instants, which tell
+    ``turned`` are, by the number of an angle that loops set, its values at the instants, which show
     its turns. ``rounding`` (watched, 1) is how far from zero each of the watched counts as zero.
     """
 
@@ -113,7 +113,7 @@ class Signals:
 
         ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are
         that have it. ``search`` is the compiled search; without it the reference serves. ``listed``
-        says which local peaks are told too. ``sampled`` peaks are those at the instants.
+        says which local peaks are reported too. ``sampled`` peaks are those at the instants.
         """
         samples = self.samples(self.t, self.z, np.arange(self.t.size))
         first = self.columns(self.t[:1], self.z[:, :1])
@@ -159,7 +159,7 @@ class Signals:
         return z, status == Status.NOT_CONVERGED
 
     def samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
-        """All curves at times next to instants, where the iterated coordinates are told."""
+        """All curves at times next to instants, at which the iterated coordinates are known."""
         blocks = [slice(start, start + _BLOCK) for start in range(0, t.size, _BLOCK)]
         parts = [self._samples(t[block], z[:, block], near[block]) for block in blocks]
         return Samples(*(np.concatenate(rows, axis=1) for rows in zip(*parts, strict=True)))
@@ -179,7 +179,7 @@ class Signals:
         return t[None], *self.interpreter.program.motion(t[None], self.p), z, self.p
 
     def columns(self, t: Array, z: Array) -> Array:
-        """The graph's columns at times, (columns, t), where the iterated coordinates are told."""
+        """The graph's columns at times, (columns, t), with the iterated coordinates known."""
         return self.interpreter.columns(t, self.p, z)
 
     def curves(self, columns: Array, near: npt.NDArray[np.intp]) -> list[tuple[Array, Array]]:

@@ -123,7 +123,7 @@ class Solution:
 
     @cached_property
     def _kinds(self) -> Kinds:
-        """Kinds of coordinates, by which units of outputs are told."""
+        """Kinds of coordinates, which determine the units of outputs."""
         return kinds_of_described(self.description)
 
     @cached_property

@@ -30,8 +30,8 @@ def zeros_of_shear(
 
     It is monotonic on either side of its turning point ``middle``, whatever the density, so it has
     one zero there or none. Where it has none, that end is taken at which it is nearer to zero.
-    ``rises`` tells whether it rises before its turning point: where that is at an end, its values
-    there differ by rounding alone, and do not tell.
+    ``rises`` says whether it rises before its turning point: where that is at an end, its values
+    there differ by rounding alone, and do not decide.
     """
     places = np.stack([low, middle, high])
     ends = np.stack([shear(u) for u in (low, middle, high)])

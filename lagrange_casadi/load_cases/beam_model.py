@@ -69,7 +69,7 @@ def beam_model(case: LoadCase, rod: Rod, nodes: Mapping[str, str]) -> Iterator[s
     yield "*ELASTIC"
     yield listed([elastic[0], poisson])
     yield from ("*DENSITY", f"{rod.beam.material.density:.12g}")
-    yield "** Supports bear nothing: the loads are in equilibrium."
+    yield "** The supports carry no load: the loads are in equilibrium."
     yield from ("*BOUNDARY", "BASE, 1, 3", "TIP, 2, 3", "WITHIN, 4", "*STEP", "*STATIC")
     yield "** Loads of joints, with inertia and weight as forces of nodes"
     yield "*CLOAD"

@@ -14,7 +14,6 @@ import numpy.typing as npt
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.quantities import Output
 from ..beams.beam import beam_from_numbers
 from ..case import Case, scene_of
 from ..declare.declared import Declared
@@ -24,7 +23,7 @@ from ..declare.stated import Triple
 from ..equations.derive import compile_scene
 from ..errors import CertificateError, DeclarationError, UnknownNameError
 from ..instants.solution import Solution
-from ..verification.balance import all_actions
+from ..verification.balance import all_actions, forces_needed
 from ..verification.certificate import placed_of, reported_of, tolerance
 from ..verification.placing import Moving
 from ..verification.vectors import Vector
@@ -119,24 +118,9 @@ def _declared(solution: Solution, link: str, scene: Scene | Case | None) -> Decl
 
 def _check_reported(solution: Solution, declared: Declared, link: str) -> None:
     """Raise :class:`DeclarationError` for forces that the solution does not have."""
-    joints = {
-        name: joint
-        for name, joint in declared.joints.items()
-        if link in (joint.parent.body, joint.child.body)
-    }
-    axes = (axis.coordinate for joint in joints.values() for axis in joint.axes)
-    loads = (
-        name
-        for name, load in declared.loads.items()
-        if any(point.body == link for point in load.points)
-    )
-    needed = {
-        **{f"reaction:{name}": Output("reaction", name, "fx") for name in joints},
-        **{f"effort:{name}": Output("effort", name) for name in axes if name in declared.drives},
-        **{f"load:{name}": Output("load", name, "fx") for name in loads},
-        **{f"multiplier:{name}": Output("multiplier", name) for name in declared.multipliers},
-    }
-    if missing := [name for name, output in needed.items() if output not in solution.outputs]:
+    needed = forces_needed(declared, link)
+    missing = [f"{one.group}:{one.part}" for one in needed if one not in solution.outputs]
+    if missing:
         raise DeclarationError(
             f"load cases of link '{link}' need {', '.join(missing)}, which the solution does not"
             " have; evaluate with wanted='all'"

@@ -6,7 +6,6 @@ import csv
 import io
 import math
 import os
-from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from pathlib import Path
@@ -126,31 +125,24 @@ def write_spectrum(
     if not np.isfinite(history).all():
         raise DeclarationError(f"spectrum of '{name}': it is indeterminate at some instants")
     number = count("spectrum: classes", classes, 0)
-    cycles = [cycle for cycle in counted(history, repeating=repeating) if cycle.size > 0.0]
-    found: dict[tuple[float, ...], float] = defaultdict(float)
-    widest, lowest = float(np.ptp(history)), float(history.min())
-    for cycle in cycles:
-        size, mean = cycle.size, cycle.mean
-        if number:
-            ranges, means = (
-                _class_of(value, start, widest, number)
-                for value, start in ((size, 0.0), (mean, lowest))
-            )
-            key = (sum(ranges) / 2, sum(means) / 2, *ranges, *means)
-        else:
-            key = (size, mean, size, size, mean, mean)
-        found[key] += cycle.times
-    rows = [(*key[:2], times, *key[2:]) for key, times in sorted(found.items())]
+    cycles = np.array(
+        [(one.size, one.mean, one.times) for one in counted(history, repeating=repeating)]
+    ).reshape(-1, 3)
+    size, mean, times = cycles[cycles[:, 0] > 0.0].T
+    if number:
+        lowest, widest = float(history.min()), float(np.ptp(history))
+        ranges, means = (np.linspace(x, x + widest, number + 1) for x in (0.0, lowest))
+        found, _, _ = np.histogram2d(size, mean, bins=(ranges, means), weights=times)
+        i, j = np.nonzero(found)
+        ends = ranges[i], ranges[i + 1], means[j], means[j + 1]
+        rows = [(ends[0] + ends[1]) / 2, (ends[2] + ends[3]) / 2, found[i, j], *ends]
+    else:
+        (size, mean), same = np.unique([size, mean], axis=1, return_inverse=True)
+        rows = [size, mean, np.bincount(same.ravel(), times), size, size, mean, mean]
     seconds = float(np.ptp(solution.t))
     again = "which repeat" if repeating else "once"
     text = f"# {name} [{unit}], counted over {seconds:.9g} s, {again}\n"
-    _write(Path(path), text, [_HEADS, *rows])
-
-
-def _class_of(value: float, start: float, width: float, count: int) -> tuple[float, float]:
-    """Return the ends of the class that a value is in."""
-    k = min(int((value - start) / width * count), count - 1)
-    return start + width * k / count, start + width * (k + 1) / count
+    _write(Path(path), text, [_HEADS, *np.column_stack(rows).tolist()])
 
 
 def _history(solution: Solution, name: str) -> tuple[Array, str]:

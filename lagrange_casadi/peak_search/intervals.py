@@ -51,10 +51,10 @@ class Peaks:
     """Value of each quantity that is largest in size, with its sign, its time and ratio xi/l, and
     whether it is reported.
 
-    A peak that is not told is at least this, which was found. ``tops``, where they are asked for,
-    (q, :data:`TOPS`, 4), are local peaks in no order: the number of the curve among its quantity's
-    own, NaN where there are no more, time, ratio and value. ``error``, of peaks that are those of
-    the instants, is how much larger each may be between them.
+    A peak that is not located is at least this, which was found. ``tops``, where they are asked
+    for, (q, :data:`TOPS`, 4), are local peaks in no order: the number of the curve among its
+    quantity's own, NaN where there are no more, time, ratio and value. ``error``, of peaks that are
+    those of the instants, is how much larger each may be between them.
     """
 
     value: Array
@@ -145,8 +145,8 @@ def sides(
     """The times just before and just after a kink or a jump in a step, and of itself, and what
     there is; None where none is found.
 
-    They are ``beside`` it, as far as the step goes. What is watched tells where it is: between both
-    it passes its number.
+    They are ``beside`` it, as far as the step goes. The watched values show where it is: between
+    both it passes its number.
     """
     start, stop = interval.t[step], interval.t[step + 1]
     beside = max(beside, SPACING * float(np.abs(interval.t).max()))

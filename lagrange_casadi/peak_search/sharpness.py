@@ -4,7 +4,7 @@ rotations and powers of its graph, to be watched.
 Every quantity is made of time by a graph of operations. Sums and products make nothing sharp; what
 does is a divisor that nearly vanishes, a comparison that changes, an angle that turns far between
 two instants, or a steep function. The arguments of all such operations are smooth wherever those
-inside them are, so their values at the instants tell between which of them something may rise and
+inside them are, so their values at the instants show between which of them something may rise and
 fall unseen. :mod:`.between` reads them.
 """
 
@@ -22,6 +22,7 @@ import numpy.typing as npt
 from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Operand
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
@@ -98,7 +99,7 @@ class Sharpness:
             found.visit(ca.Function("wanted", inputs, [out], {"cse": True}), inputs)
         if followable(program.laws.motion):
             found.visit(program.laws.motion, [inputs[0], inputs[-1]])
-        rows = ca.densify(ca.vertcat(ca.SX(0, 1), *(row for row, _ in found.kept.values())))
+        rows = ca.densify(column(row for row, _ in found.kept.values()))
         watched = ca.Function("watched", inputs, [rows], names, ["out"], {"cse": True})
         return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(sorted(knots)))
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
@@ -33,8 +34,8 @@ class ExportedProgram:
 
     ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all
     vectors. ``cycle`` is a table to be read instead of an instant, and ``still`` are stations that
-    are told beside it, for they do not move. ``sections`` are, of each link that has them, the name
-    of the function that gives its section forces, and what that takes.
+    are given beside it, for they do not move. ``sections`` are, of each link that has them, the
+    name of the function that gives its section forces, and what that takes.
     """
 
     program: Program
@@ -158,9 +159,7 @@ def _status(
         y[where[program.columns[bound.size]]] if bound.kind == "ROW" else 0.0
         for bound in program.bounds
     ]
-    rule = program.status(
-        *(ca.vertcat(ca.SX(0, 1), *each) for each in (given, most, sizes)), iterated
-    )
+    rule = program.status(*(column(each) for each in (given, most, sizes)), iterated)
     return ca.Function("status", [y, mass_properties, iterated], [ca.densify(rule)], {"cse": True})
 
 
@@ -186,7 +185,7 @@ def _mass_properties(program: Program, symbols: ca.SX, *, extent_first: bool) ->
     for name in program.links:
         length, density = program.data.mass_properties(name, symbols)
         found += [length, *(c for cell in density.cells for c in cell)]
-    return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
+    return ca.Function("matter", [symbols], [ca.densify(column(found))])
 
 
 def _sections(
@@ -219,5 +218,5 @@ def _sound(program: Program, symbols: ca.SX, precision: Precision) -> tuple[ca.F
     positive, others = (
         [x for x in values if isinstance(x, ca.SX) and not x.is_constant()] for values in both
     )
-    out = ca.densify(ca.vertcat(ca.SX(0, 1), *positive, *others))
+    out = ca.densify(column([*positive, *others]))
     return ca.Function("sound", [symbols], [out], {"cse": True}), len(positive)

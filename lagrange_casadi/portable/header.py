@@ -55,21 +55,23 @@ def header(source: Source) -> str:
         parameters=_parameters(c),
         inputs="\n".join(member(p, m.name, m.comment) for m in c.inputs),
         outputs_note=(
-            " Angles that loops set are within a turn." if any(m.wrapped for m in c.outputs) else ""
+            " Angles that follow from loops are within one turn."
+            if any(m.wrapped for m in c.outputs)
+            else ""
         ),
         outputs="\n".join(member(p, m.name, m.comment) for m in c.outputs),
         links=_links(c) + (types(c, source.slopes) if source.slopes else ""),
         model="\n".join(f"  {line}" for line in _model(source)),
         for_parameters=", for parameters, or 0 for the defaults" if c.settings else "",
         anew=(
-            " Begins anew: iterated loops are where the scene's motion begins."
+            " Starts again: iterated loops start from the scene's first instant."
             if source.iterated
             else ""
         ),
         given=f", const {p}_parameters* parameters" if c.settings else "",
         span=f", from {span[0]:.6g} to {span[1]:.6g} s" if math.isfinite(span[0]) else "",
         pair_note=(
-            "\n   The time is time + time_rest, for single precision holds few digits of it;"
+            "\n   The time is time + time_rest, because single precision has few digits;"
             " time_rest may be 0."
             if c.rests
             else ""

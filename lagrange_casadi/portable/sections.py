@@ -25,13 +25,13 @@ LAW_IN_SPACE = """ Those of a section law are for _section, which is all you nee
    or loads it between its ends, beyond xi."""
 
 LOADED = """
-   And then loads along the link, of which a section feels what acts beyond it: per length the sums
+   And then loads along the link; those beyond a section act on it: per length the sums
    of qn0, qn1, qn2, ... and of qf0, qf1, qf2, ... (in space qfy0, ... and qfz0, ...) times 1, s,
    s^2, ..., where s = (end - xi/l)/width is between 0 and 1."""
 THICK = """
    And then the rotary inertia of slices, couples along the link: per length the sums of cx0, cx1,
-   ..., of cy0, ... and of cz0, ... times 1, s, ..., of which torsion, bending_y and bending_z feel
-   what acts beyond the section."""
+   ..., of cy0, ... and of cz0, ... times 1, s, ...; those beyond a section change its torsion,
+   bending_y and bending_z."""
 
 
 def law_in_words(c: Contract) -> str:
@@ -93,7 +93,7 @@ def in_words(table: Table) -> str:
 
 
 def about(table: Table, force: str) -> str:
-    """A force as the header tells it: its unit, sign and range."""
+    """A force as the header describes it: its unit, sign and range."""
     row = table.row("section", force)
     sign = row.sign.removeprefix(f"{ON_INBOARD}, ").partition(f": {ON_INBOARD}")[0]
     signed = len(table.parts("section", force)) == 1

@@ -72,7 +72,7 @@ def sourced(
     instants = instants_of(compiled.laws, data.timing, values).t
     whole, (compiled, indeterminate) = (
         compiled,
-        determinate(compiled, instants, p, telling=table is None),
+        determinate(compiled, instants, p, reusable=table is None),
     )
     # What rounding alone makes of it: all steps that loops want, and no table.
     exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm")

@@ -98,7 +98,7 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
 
 
 def same_runs(first: Solution, second: Solution) -> bool:
-    """Tell two runs that have the same instants, and the same values of all quantities."""
+    """Return whether two runs have the same instants, and the same values of all quantities."""
     return (
         np.array_equal(first.t, second.t)
         and first.outputs.keys() == second.outputs.keys()

@@ -37,7 +37,7 @@ def summary(sweep: Sweep) -> str:
     names = [
         name
         for name, column in sweep.columns.items()
-        if not column.axes and name.startswith(("peak:", "mean:", "rms:"))
+        if not column.axes and name.startswith(("peak:", "mean:", "rms:", "fluctuation:"))
     ]
     shown = [*sweep.parameters, *with_errors(sweep, names)[:_ROWS]]
     ends = dict.fromkeys(shown, (np.inf, -np.inf))

@@ -1,6 +1,4 @@
-"""A page that shows all figures of a folder, for whoever has a browser and a folder of fifty
-pictures.
-"""
+"""Pages of figures: one that shows all figures of a folder, and what other such pages share."""
 
 from __future__ import annotations
 
@@ -52,10 +50,15 @@ def write_index(title: str, pictures: Sequence[Path], folder: Path) -> None:
         f' loading="lazy"></a><figcaption>{file}</figcaption></figure>\n'
         for name, file in escaped
     )
-    text = (
+    text = document(f"{title}: figures", title, f"<nav>\n{links}</nav>\n<main>\n{figures}</main>\n")
+    (folder / NAME).write_text(text, encoding="utf-8")
+
+
+def document(title: str, head: str, body: str, style: str = "") -> str:
+    """Return a page with a ``title``, a first line, and a ``body``, which is HTML."""
+    return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{html.escape(title)}: figures</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n"
-        f"<h1>{html.escape(title)}</h1>\n<nav>\n{links}</nav>\n<main>\n{figures}</main>\n</body>\n</html>\n"
+        f"<title>{html.escape(title)}</title>\n<style>{_STYLE}{style}</style>\n</head>\n<body>\n"
+        f"<h1>{html.escape(head)}</h1>\n{body}</body>\n</html>\n"
     )
-    (folder / NAME).write_text(text, encoding="utf-8")

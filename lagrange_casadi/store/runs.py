@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import h5py
 import numpy as np
@@ -24,8 +25,15 @@ from ..base.arrays import Array
 from ..base.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
 from ..base.quantities import Output
 from ..base.seal import kind_of, seal
-from ..base.tables import SPACE
-from ..declare.description import check_places, pieces_of, shape_of, values_of
+from ..base.tables import ANGLE, LENGTH, SPACE
+from ..declare.description import (
+    Description,
+    check_places,
+    motions_of,
+    pieces_of,
+    shape_of,
+    values_of,
+)
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..declare.wanted_names import SENSITIVITY
@@ -41,11 +49,10 @@ from ..instants.held import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
 from ..verification.certificate import COARSE, TOLERANCE, blur, certify
-from .numbers import check_numbers, drive_axis, numbers
 from .opening import SCHEMA, opened_file
 from .scales import LARGE, Scales
 from .slopes import add_slopes, check_slopes, slopes_of
-from .untrusted import check_links, parsed, shown
+from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
 from .words import conventions, say, unlike, unlike_conventions
 
 SCHEMA_VERSION = 7
@@ -314,14 +321,16 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
             yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
     yield from unlike(dataset, solution.unit(name), quantity.attributes)
     if strange := dataset.attrs.keys() - {*quantity.attributes, *_BESIDE}:
-        yield f"{place}: {min(strange)} is not the schema's"
+        yield f"{place}: {min(strange)} is not in the schema"
     for axis, scale in enumerate(quantity.axes):
         if file[scale] not in dataset.dims[axis].values():
             yield f"{place}: axis {axis} has no scale /{scale}"
 
 
 def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
-    """Times and ratios: finite, and said to be these; and the parameters, which are told twice."""
+    """Times and ratios: finite, and said to be these; and the parameters, which are stated
+    twice.
+    """
     for axis, values in (("t", solution.t), ("xi", solution.xi)):
         if not np.isfinite(values).all():
             yield f"{axis}: holds values that are not finite"
@@ -595,3 +604,42 @@ def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
         )
         found[name] = Holding(least, largest, solution.unit(Output("effort", name)), reason)
     return found
+
+
+if TYPE_CHECKING:
+    import h5py
+
+
+def drive_axis(
+    dataset: h5py.Dataset, shape: tuple[int, ...], description: Description
+) -> DriveAxis:
+    """The coordinate by which instants were asked for.
+
+    Raises ``ValueError`` for that of a joint which is not driven.
+    """
+    values, joint, unit = (
+        numbers(dataset, shape),
+        shown(dataset.attrs["joint"]),
+        shown(dataset.attrs["units"]),
+    )
+    kind = motions_of(description).get(joint)
+    if kind is None or unit != (LENGTH if kind == "slide" else ANGLE):
+        raise ValueError(
+            f"the instants are over '{joint}' in {unit}, which is no drive's coordinate"
+        )
+    return DriveAxis(joint, unit, values)
+
+
+def numbers(dataset: h5py.Dataset, shape: tuple[int, ...] | None = None) -> Array:
+    """The numbers of a dataset, of a shape if one is given.
+
+    Raises ``ValueError`` for what has others.
+    """
+    check_numbers(dataset, shape)
+    return np.asarray(dataset[()], np.float64)
+
+
+def check_numbers(dataset: h5py.Dataset, shape: Sequence[int] | None) -> None:
+    """Raise ``ValueError`` for a dataset that has no numbers, or another shape."""
+    check_dataset(dataset, shape)
+    check_chunks(dataset)

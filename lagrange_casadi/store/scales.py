@@ -1,4 +1,4 @@
-"""Dimension scales: which axis of a dataset runs along which, told as HDF5's own library tells it,
+"""Dimension scales: which axis of a dataset runs along which, stated as HDF5's own library does,
 but each list written once.
 
 ``H5DSattach_scale`` writes the list of all that a scale belongs to anew with each that joins: a

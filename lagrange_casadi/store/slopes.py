@@ -50,12 +50,12 @@ def slopes_of(
             lambda place, item: places.append(place) if isinstance(item, h5py.Dataset) else None
         )
     if set(group) - solution.description["parameters"].keys():
-        raise ValueError("there are sensitivities by what is no parameter")
+        raise ValueError("there are sensitivities by names that are not parameters")
     expected_names = {
         f"{name}/{str(o).replace(':', '/')}": (name, o) for name in group for o in expected
     }
     if set(places) != set(expected_names):
-        raise ValueError("the sensitivities are not those of all quantities")
+        raise ValueError("the sensitivities are not of all quantities")
     for place, (name, output) in expected_names.items():
         shape = tuple(lengths[axis] for axis in output.quantity.axes)
         found.setdefault(name, {})[output] = numbers(group[place], shape)
@@ -77,7 +77,7 @@ def check_slopes(file: h5py.File, solution: Solution) -> Iterator[str]:
             yield f"{place}: holds values that are not finite"
         for key, value in ({"units": found.unit} | found.attributes).items():
             if file[place].attrs.get(key) != value:
-                yield f"{place}: {key} is not the schema's"
+                yield f"{place}: {key} differs from the schema"
         for axis, scale in enumerate(found.output.quantity.axes):
             if file[scale] not in file[place].dims[axis].values():
                 yield f"{place}: axis {axis} has no scale /{scale}"

@@ -23,7 +23,7 @@ Shape = Any
 """``str``, ``int``, ``float`` or ``bool``, or None for null; a tuple of shapes, any of which will
 do; ``[shape]`` for a list, and ``[shape, shape, ...]`` for one of so many; ``{str: shape}`` for a
 mapping of any names, ``{"name": shape, ...}`` for one that has these, at least; or a function that
-tells the shape by the value."""
+shows the shape by the value."""
 
 
 @contextmanager

@@ -29,7 +29,7 @@ def unlike(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> Iterat
     if dataset.attrs.get("units") != unit:
         yield f"{place}: units {dataset.attrs.get('units')!r}, expected {unit!r}"
     yield from (
-        f"{place}: {key} is not the schema's"
+        f"{place}: {key} differs from the schema"
         for key, text in words.items()
         if dataset.attrs.get(key) != text
     )
@@ -38,7 +38,7 @@ def unlike(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> Iterat
 def unlike_conventions(file: h5py.File, table: Table) -> Iterator[str]:
     """Yield what a file says otherwise of all that it holds, a line each."""
     yield from (
-        f"{key}: not the schema's"
+        f"{key}: differs from the schema"
         for key, text in conventions(table).items()
         if file.attrs.get(key) != text
     )

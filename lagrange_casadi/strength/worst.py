@@ -27,7 +27,7 @@ from .member import Member
 
 _MISSED = 0.02
 """Fraction of a score by which its local maximum is above it at the places that are looked at, at
-most where these do not tell.
+most where these do not suffice.
 """
 
 _LEAST, _TRAVELLING = 8, 8

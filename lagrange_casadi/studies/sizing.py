@@ -12,6 +12,7 @@ from functools import partial
 import casadi as ca
 
 from ..arguments import Positive, public
+from ..arithmetic.scalars import column
 from ..base.numerals import readable
 from ..beams.beam import Beam
 from ..beams.profiles import Profile
@@ -389,9 +390,7 @@ def _slot(
     """Find the profiles that may be a link's own. Raises :class:`_UnfitError`."""
     owners: dict[str, str] = {}
     shapes = list(
-        beam_at(
-            described, link, ca.vertcat(ca.SX(0, 1), *(one.symbol for one in parameters.values()))
-        ).course.shapes()
+        beam_at(described, link, column(one.symbol for one in parameters.values())).course.shapes()
     )
     for name in profiles[0].dimensions:
         if lacking := [shape.kind for shape in shapes if name not in shape.dimensions]:

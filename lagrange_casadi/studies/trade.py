@@ -157,8 +157,8 @@ class Trade:
                 return one
         best = min(self.measurements, key=lambda one: one.largest)
         raise AccuracyError(
-            f"no method of evaluating '{self.case}' keeps {accuracy:g} of the peak; the best, "
-            f"{best.method.options}, keeps {best.largest:.2g} ({best.worst} is worst)"
+            f"no method evaluates '{self.case}' to {accuracy:g} of the peak; the best, "
+            f"{best.method.options}, has an error of {best.largest:.2g} (in {best.worst})"
         )
 
     def as_dict(self) -> dict[str, Json]:

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ..base.quantities import Output
+from ..declare.declared import Declared
 from ..declare.stated import Equation
 from .closure import Residuals
 from .contacts import actions, sense
@@ -85,12 +86,23 @@ def forces_reported(placed: Placed) -> bool:
     declared, outputs = placed.declared, placed.reported.outputs
     if len(declared.equations) < len(declared.multipliers):
         return False
-    needed = [Output("reaction", name, "fx") for name in declared.joints]
-    needed += [Output("load", name, "fx") for name in declared.loads]
+    needed = [*forces_needed(declared)]
     needed += [output for output in outputs if output.group in ("reaction", "load")]
-    needed += [Output("effort", name) for name in declared.drives]
-    needed += [Output("multiplier", name) for name in declared.multipliers]
     return all(output in outputs and np.isfinite(outputs[output]).all() for output in needed)
+
+
+def forces_needed(declared: Declared, body: str = "") -> Iterator[Output]:
+    """Yield an output of every force that acts on a body; of every force if no body is named."""
+    everything, axes = not body, set[str]()
+    for name, joint in declared.joints.items():
+        if everything or body in (joint.parent.body, joint.child.body):
+            axes |= {axis.coordinate for axis in joint.axes}
+            yield Output("reaction", name, "fx")
+    yield from (Output("effort", name) for name in declared.drives if everything or name in axes)
+    for name, load in declared.loads.items():
+        if everything or any(point.body == body for point in load.points):
+            yield Output("load", name, "fx")
+    yield from (Output("multiplier", name) for name in declared.multipliers)
 
 
 def balance(placed: Placed, digits: Digits) -> dict[str, list[Residuals]]:

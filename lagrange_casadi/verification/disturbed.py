@@ -167,7 +167,7 @@ def effects(instants: Instants, out: Array, angles: npt.NDArray[np.bool_]) -> tu
     (columns, n), with closed loops.
 
     The last row is what was done to ``out``, a result, whose ``angles`` among its columns are known
-    up to whole turns. It tells on which side of a jump to look.
+    up to whole turns. It decides on which side of a jump to look.
     """
     z, _ = _closed(instants, _STEPS)
     course = _followed(instants, {})
@@ -315,7 +315,7 @@ def _columns(
     handed: Sequence[Array] | None = None,
     shape: tuple[int, ...] | None = None,
 ) -> Array:
-    """The columns by an arithmetic that is told each operation's number, code and operands; ``z``
+    """The columns by an arithmetic that receives each operation's number, code and operands; ``z``
     may wait for what is counted.
     """
     count = itertools.count()

@@ -66,7 +66,7 @@ class Engine {
     return this.own.batch(this.model, count, this.in, this.out, this.told);
   }
 
-  /** The forces inside a link at a ratio xi/l, for the outputs with a number; null where there are none, for a reason that is told. */
+  /** The forces inside a link at a ratio xi/l, for the outputs with a number; null if there are none; `failed` is the status with the reason. */
   section(link, xi, number = 0) {
     const place = this.out + this.real.BYTES_PER_ELEMENT * this.layout.outputs * number;
     this.failed = this.own.section(this.model, place, link, xi, this.forces);

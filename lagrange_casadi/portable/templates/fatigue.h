@@ -1,4 +1,4 @@
-/* Damage of a stress that is told step by step: rainflow counting in bounded memory, ASTM E1049-85, section 5.4.4.
+/* Damage of a stress that is given step by step: rainflow counting in bounded memory, ASTM E1049-85, section 5.4.4.
 
    ${p}_fatigue_material steel = ${example};
    ${p}_fatigue counter = {0};
@@ -69,7 +69,7 @@ static inline void ${p}_fatigue_close(${p}_fatigue* f, const ${p}_fatigue_materi
   }
 }
 
-/* Tell the next stress; 0 where it is no finite number, and is passed over. */
+/* Add the next stress; 0 if it is not a finite number, which is left out. */
 static inline int ${p}_fatigue_add(${p}_fatigue* f, const ${p}_fatigue_material* m, double stress) {
   double* p = f->points;
   int k;

@@ -61,7 +61,7 @@ static const char turning[OUTPUTS] = {
 $turning
 };
 
-static fmi2Status tell(const Unit* unit, fmi2Status status, const char* what, const char* more) {
+static fmi2Status report(const Unit* unit, fmi2Status status, const char* what, const char* more) {
   const int discard = status == fmi2Discard;
   char message[512];
   if (unit->logger && (unit->discards || !discard)) {
@@ -77,17 +77,17 @@ static fmi2Status judged(const Unit* unit, ${p}_status status) {
   char at[64];
   if (status == ${P}_OK) return fmi2OK;
   snprintf(at, sizeof at, "t = %.9g s: ", unit->state.time);
-  return tell(unit, hopeless ? fmi2Error : fmi2Discard, at, ${p}_message(status));
+  return report(unit, hopeless ? fmi2Error : fmi2Discard, at, ${p}_message(status));
 }
 
 static int out_of_order(const Unit* unit, unsigned modes, const char* function) {
   if (unit->state.mode & modes) return 0;
-  tell(unit, fmi2Error, function, " is called out of order");
+  report(unit, fmi2Error, function, " is called out of order");
   return 1;
 }
 
 static fmi2Status unsupported(fmi2Component c, const char* function) {
-  return tell((const Unit*) c, fmi2Error, function, " is not supported");
+  return report((const Unit*) c, fmi2Error, function, " is not supported");
 }
 
 static void reset(State* state) {

@@ -12,7 +12,7 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t many, con
     if (!strcmp(categories[i], "logStatusDiscard")) {
       unit->discards = on;
     } else if (strcmp(categories[i], "logStatusError") != 0) {
-      return tell(unit, fmi2Error, "no such category to log: ", categories[i]);
+      return report(unit, fmi2Error, "no such category to log: ", categories[i]);
     }
   }
   return fmi2OK;
@@ -26,7 +26,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   (void) type;
   (void) resources;
   (void) visible;
-  (void) logging; /* what fails is told in any case */
+  (void) logging; /* failures are always logged */
   if (!functions || !functions->allocateMemory || !functions->freeMemory || !name) return NULL;
   reset(&made.state);
   made.logger = functions->logger;
@@ -39,7 +39,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   if (!made.name) return NULL;
   memcpy(made.name, name, length);
   if (!guid || strcmp(guid, GUID) != 0) {
-    tell(&made, fmi2Error, "the GUID differs from that of this unit: ", guid ? guid : "none");
+    report(&made, fmi2Error, "the GUID differs from that of this unit: ", guid ? guid : "none");
     made.release(made.name);
     return NULL;
   }
@@ -114,7 +114,7 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
     } else if (TIMED && vr[i] == VALUES + OUTPUTS) {
       value[i] = unit->state.time;
     } else {
-      return tell(unit, fmi2Error, "fmi2GetReal: no such variable", "");
+      return report(unit, fmi2Error, "fmi2GetReal: no such variable", "");
     }
   }
   return status;
@@ -126,7 +126,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
   size_t i;
   if (out_of_order(unit, INSTANTIATED | INITIALIZING | RUNNING, "fmi2SetReal")) return fmi2Error;
   for (i = 0; i < nvr; ++i) {
-    if (vr[i] >= VALUES) return tell(unit, fmi2Error, "fmi2SetReal: no such input or parameter", "");
+    if (vr[i] >= VALUES) return report(unit, fmi2Error, "fmi2SetReal: no such input or parameter", "");
     if (state->values[vr[i]] == value[i]) continue;
 $check    state->values[vr[i]] = value[i];
     state->current = 0;
@@ -153,14 +153,14 @@ NONE_OF(String)
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* kept) {
   Unit* unit = (Unit*) c;
   if (!*kept) *kept = unit->allocate(1, sizeof(State));
-  if (!*kept) return tell(unit, fmi2Error, "fmi2GetFMUstate: no memory", "");
+  if (!*kept) return report(unit, fmi2Error, "fmi2GetFMUstate: no memory", "");
   memcpy(*kept, &unit->state, sizeof(State));
   return fmi2OK;
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate kept) {
   Unit* unit = (Unit*) c;
-  if (!kept) return tell(unit, fmi2Error, "fmi2SetFMUstate: there is no state", "");
+  if (!kept) return report(unit, fmi2Error, "fmi2SetFMUstate: there is no state", "");
   memcpy(&unit->state, kept, sizeof(State));
   return fmi2OK;
 }

@@ -13,7 +13,7 @@
 
    A function that fails returns why, and fills what it should have filled with NaN. Calls that share a model must not run at the
    same time; calls with a model each may, and those that take a const model. Do not compile with -ffast-math or what it stands
-   for: there NaN is not told from a number. Ranges "over the scene's motion" are what its author saw, no limits.
+   for: there NaN is not distinguished from a number. Ranges "over the scene's motion" are what its author saw, no limits.
 
    $story
 

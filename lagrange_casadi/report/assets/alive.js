@@ -12,7 +12,7 @@ class Alive {
     this.why = null;
     this.read();
     const kept = [...this.targets, ...this.paths, ...this.curves.flatMap((curve) => [...curve.series.values()].flat())].map((one) => one.array);
-    // What the module does not tell, as residuals, is of the file's design alone.
+    // What the module does not compute, as residuals, is of the file's design alone.
     const toldOf = new Set(told.of.map(([number]) => number));
     this.unknown = contents.series.filter((one) => one.group !== "section" && !toldOf.has(one.values)).map((one) => array(one.values));
     const rowsTold = new Set([...this.targets.map((target) => target.row), ...this.curves.flatMap((curve) => [...curve.rowOf.values()])]);

@@ -1,6 +1,6 @@
 // Where along a link its forces are smallest and largest at an instant, exactly: in pieces of the link they are polynomials.
 
-/** The law of a link in a live page. `sourceOf` tells which output an array of the page is. */
+/** The law of a link in a live page. `sourceOf` gives the output that an array of the page is. */
 class Along {
   constructor(entry, told, engine, sourceOf) {
     Object.assign(this, { entry, told, engine });
@@ -108,7 +108,7 @@ class Along {
     return found;
   }
 
-  /** Tell of every instant, with its number, what each determined force is there: smallest, where, largest, where, largest in size,
+  /** Report of every instant, with its number, what each determined force is there: smallest, where, largest, where, largest in size,
    *  where. The numbers hold until the next instant. Unless `whole`, what is beyond nothing that was found for this design is left out:
    *  the ends of the cycle are the same. */
   reachAll(count, whole, tell) {

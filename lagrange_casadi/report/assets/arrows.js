@@ -1,4 +1,4 @@
-// Forces and moments as arrows, all forces to one scale and all moments to another, both told beside the picture.
+// Forces and moments as arrows, all forces to one scale and all moments to another, both written beside the picture.
 
 const KINDS = { reaction: "reactions", effort: "efforts", load: "loads" };
 

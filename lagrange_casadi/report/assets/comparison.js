@@ -42,7 +42,7 @@ function buildComparison() {
   });
 }
 
-/** The line by which a run is drawn: the second one is dashed, so that both are told apart without colours. */
+/** The line by which a run is drawn: the second one is dashed, so that both are distinguished without colours. */
 function swatch(k) {
   return drawn("svg", { width: 26, height: 8, "aria-hidden": "true" }, drawn("line", { x1: 1, x2: 25, y1: 4, y2: 4, class: `curve of-${k}`, "stroke-dasharray": k ? "7 3" : "" }));
 }

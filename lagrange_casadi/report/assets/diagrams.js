@@ -12,7 +12,7 @@ function diagramLinks() {
   return sections.filter((section) => knownForces(section).some(signed) && governing(section.link));
 }
 
-/** Values of a force that are told: at ends, on both sides of jumps, and where it turns; the largest first, those of ends next. */
+/** Values of a force that are written: at ends, on both sides of jumps, and where it turns; the largest first, those of ends next. */
 function marksOf({ ratios, values }) {
   const last = ratios.length - 1;
   const least = 1e-6 * largestOf(values);

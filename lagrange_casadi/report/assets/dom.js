@@ -54,7 +54,7 @@ function chooser(label, entries, chosen, change) {
 
 const said = element("div", { class: "unseen", role: "status", "aria-live": "polite" });
 
-/** Tell those who do not see the page. */
+/** Announce to those who do not see the page. */
 function announce(words) {
   said.textContent = words;
 }

@@ -80,7 +80,7 @@ class Heat {
     else this.paint(Math.max(2, Math.round(this.across.to - this.across.from)));
   }
 
-  /** Tell the ends of the colours, and where the force is largest. */
+  /** Write the ends of the colours, and where the force is largest. */
   markEnds() {
     const { field, up } = this;
     const row = field.row?.();

@@ -38,7 +38,7 @@ function goTo([time, value]) {
   else player.seek(instantAt(time), time);
 }
 
-/** Show the instant of the clock of both runs: tell the other what it is, and go where it says. */
+/** Show the instant of the clock of both runs: send it to the other, and go where the other says. */
 function goTogether() {
   let following = false;
   player.watchers.add(() => {

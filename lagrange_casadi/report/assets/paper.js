@@ -26,7 +26,7 @@ class Paper {
     this.inks.bodies = Array.from({ length: BODY_COLOURS }, (_, k) => ink(`body-${k}`));
   }
 
-  /** Fit the canvas's own points to those of the screen, or to a size that is told. */
+  /** Fit the canvas's own points to those of the screen, or to a size that is given. */
   resize(width = this.canvas.clientWidth || 640, height = this.canvas.clientHeight || 420, ratio = window.devicePixelRatio || 1) {
     [this.width, this.height] = [width, height];
     this.ratio = Math.min(ratio, 3);
@@ -106,7 +106,7 @@ class Paper {
     }
   }
 
-  /** A pattern of slanted lines, by which what is negative is told without colours. */
+  /** A pattern of slanted lines, by which negative values are recognised without colours. */
   hatched(colour) {
     if (!this.hatch) {
       const tile = document.createElement("canvas");

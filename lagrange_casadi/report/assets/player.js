@@ -10,7 +10,7 @@ class Player {
     this.renew();
   }
 
-  /** Show an instant by its number, at a time of the clock, and tell all who watch. */
+  /** Show an instant by its number, at a time of the clock, and notify all who watch. */
   seek(instant, time) {
     this.instant = Math.max(0, Math.min(instants.count - 1, instant));
     this.time = time ?? instants.t[this.instant];

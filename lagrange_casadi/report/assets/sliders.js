@@ -94,7 +94,7 @@ function shortest(value, wide) {
   return Number(value.toFixed(digits));
 }
 
-/** Show the designs that the page around this one sends, by values of parameters, and tell it that this one is ready. */
+/** Show the designs that the page around this one sends, by values of parameters, and send it that this one is ready. */
 function listenToPage() {
   window.addEventListener("message", (event) => {
     if (event.source !== window.parent || typeof event.data?.design !== "object") return;

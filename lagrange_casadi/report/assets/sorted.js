@@ -1,6 +1,6 @@
 // Tables that can be sorted, and copied as CSV.
 
-/** A table: heads as [words, how a cell is told, what it is sorted by]; `chosen` hears of a row that is pressed, and `told` says what that does; of more rows than `most` the first are shown.
+/** A table: heads as [words, how a cell is written, what it is sorted by]; `chosen` hears of a row that is pressed, and `told` says what that does; of more rows than `most` the first are shown.
  *
  * `plain` are heads for the copy, whose numbers are those of the file: SI, with all their digits. */
 function sortedTable(caption, heads, rows, { chosen = null, told = "Show this instant", aside = null, plain = heads, most = Infinity } = {}) {

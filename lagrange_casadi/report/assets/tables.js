@@ -1,4 +1,4 @@
-// The tables of a report, and what else is told in words.
+// The tables of a report, and what else is said in words.
 
 /** The largest size of each unit. */
 function sizesOfUnits() {

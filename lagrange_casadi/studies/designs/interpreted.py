@@ -100,7 +100,7 @@ class InterpretedDesigns:
         method: EvaluationMethod,
         listed: Listed | None,
     ) -> dict[str, Array] | None:
-        """Peaks and means of a design that has a result; None where a peak cannot be told."""
+        """Peaks and means of a design that has a result; None if a peak cannot be located."""
         program, reduction = self.program, self.kept.reduction
         indeterminate = {
             program.indeterminate[output]

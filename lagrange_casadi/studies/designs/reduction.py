@@ -9,6 +9,7 @@ from typing import Any
 
 import casadi as ca
 
+from ...arithmetic.scalars import column
 from ...base.arrays import Array
 from ...base.quantities import AVERAGED, Output, compared
 from ...base.symbolic import symbolic
@@ -34,7 +35,7 @@ def stages_of(
     """Stages that evaluate all designs: in pairs if angles count many turns, or may for some
     parameters.
 
-    ``alike`` tells that all designs have the instants ``t``.
+    ``alike`` says that all designs have the instants ``t``.
     """
     time, p = program.laws.motion.sx_in()
     if method.precision == "single" or (
@@ -178,9 +179,7 @@ def _mass_properties(
         length, density = data.mass_properties(link, symbols)
         rest += mass_properties_of(part, length, density.cells)
     rest += limits(program, method.precision, method.newton, positive[0])
-    out = ca.densify(
-        ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest)))
-    )
+    out = ca.densify(column(ca.SX(value) for value in (*positive, *others, *rest)))
     return (
         ca.Function("matter_of", [symbols], [out], {"cse": True}),
         len(positive),

@@ -102,7 +102,7 @@ class Descent:
         )
 
     def _best(self) -> _Iterate:
-        """The best design on the way; of those that are as good, as far as limits that hold tell,
+        """The best design on the way; of those that are as good, as far as limits that hold show,
         the one that converged.
         """
         best = min(reversed(self.iterates), key=lambda one: self._merit(one.evaluated))
@@ -129,7 +129,7 @@ class Descent:
         return excess, rounded(objective, self.scales[0])
 
     def _note(self, evaluated: EvaluatedDesign) -> None:
-        """Keep a design in the history, and tell of it."""
+        """Keep a design in the history, and report it."""
         objective, excess = evaluated.value(self.problem.objective), self.problem.excess(evaluated)
         row = (
             objective,

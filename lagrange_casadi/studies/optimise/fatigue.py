@@ -23,7 +23,7 @@ import numpy.typing as npt
 from ...base.arrays import Expression
 from ...base.quantities import Output
 from ...beams.material import Material
-from ...equations.fibre_stresses import FibreStresses
+from ...equations.fibre_stresses import LinkStress
 from ...equations.program import Program
 from ...errors import DeclarationError
 from ...instants.statistics import counted
@@ -50,27 +50,27 @@ class Tired:
         """Material of the link."""
         return self.program.data.materials[self.link]
 
-    @cached_property
-    def stress(self) -> tuple[FibreStresses, Any]:
-        """Stresses at the fibres of the link, and its numbers as a function of parameters."""
-        return self.program.data.stress(self.link, self.program.outputs)
+    @property
+    def stress(self) -> LinkStress:
+        """Stresses in the link."""
+        return self.program.stress[self.link]
 
     @cached_property
     def rows(self) -> list[int]:
         """The columns that are members of the link's law."""
-        return [self.program.outputs[member] for member in self.stress[0].members]
+        return [self.program.outputs[member] for member in self.stress.fibres.members]
 
     @cached_property
     def first(self) -> dict[int, int]:
         """The number of the first fibre of each part of the link, by the part's identity."""
-        parts = self.stress[0].parts()
+        parts = self.stress.fibres.parts()
         counts = itertools.accumulate((len(part.fibres) for part in parts), initial=0)
         return {id(part): count for part, count in zip(parts, counts, strict=False)}
 
     @property
     def fibres(self) -> int:
         """Number of fibres of all parts."""
-        return sum(len(part.fibres) for part in self.stress[0].parts())
+        return sum(len(part.fibres) for part in self.stress.fibres.parts())
 
     def points(self, sampled: SampledDesign) -> list[Point]:
         """The worst swings of a design, one a local maximum along a fibre, the worst first: a
@@ -78,17 +78,17 @@ class Tired:
 
         Raises :class:`.DeclarationError` where a load travels along the link.
         """
-        stresses, numbers = self.stress
+        stress = self.stress
         members = sampled.history.columns[self.rows]
         instants = np.flatnonzero(counted(members))
         members = members[None][:, :, instants]
         if not instants.size:
             return []
-        if not stresses.is_still(members)[0]:
+        if not stress.fibres.is_still(members)[0]:
             raise DeclarationError(
                 f"a load moves along link '{self.link}'; its fatigue is available in sweeps only"
             )
-        histories = LinkHistories(stresses, members, numbers(sampled.p).full().T)
+        histories = LinkHistories(stress.fibres, members, stress.numbers(sampled.p).full().T)
         (maxima,) = histories.maxima(use_score(self.material), KEEP)
         return [self._point(sampled, histories, maximum, instants) for maximum in maxima]
 
@@ -116,11 +116,11 @@ class Tired:
         """Normal stresses of all fibres, then their shear stresses along y and along z, of columns
         at an instant and at a place of each part: expressions.
         """
-        stresses, numbers = self.stress
+        numbers = self.stress.numbers(p)
         members = ca.vertcat(*(out[row] for row in self.rows))
         found: list[list[Expression]] = [[], [], []]
-        for part in stresses.parts():
-            values = part.stresses(members, numbers(p), x)
+        for part in self.stress.fibres.parts():
+            values = part.stresses(members, numbers, x)
             many = len(part.fibres)
             shears = ca.SX(2, many)
             for number, axis in enumerate(part.axes):

@@ -17,7 +17,7 @@ from typing import IO, Any
 
 from ...base.arrays import Json
 from ...base.locks import lock
-from ...base.publish import check_writable, settled, telling
+from ...base.publish import check_writable, reporting, settled
 from ...errors import BusyError, PathError, StoreError
 from ...store.untrusted import check_shape
 from ..sweep.plan import difference
@@ -57,7 +57,7 @@ class Journal:
         key = _key(task)
         self.known[key] = run
         if self.file is not None and self.target is not None:
-            with telling(journal_of(self.target)):
+            with reporting(journal_of(self.target)):
                 self.file.write(_line({"of": key, "trail": run.words}))
                 self.file.flush()
                 os.fsync(self.file.fileno())
@@ -83,7 +83,7 @@ def kept(
         return
     check_writable(target, hdf5=True)
     path = journal_of(target)
-    with telling(path):
+    with reporting(path):
         begun = path.exists() and not (path.is_file() and _holds_nothing(path.read_bytes()))
     if begun and not (resume or force):
         raise PathError(
@@ -92,7 +92,7 @@ def kept(
         )
     journal, ours = Journal(target), False
     try:
-        with telling(path), path.open("a+b") as file:
+        with reporting(path), path.open("a+b") as file:
             try:
                 lock(file.fileno())
             except BlockingIOError:

@@ -16,8 +16,11 @@ import casadi as ca
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.quantities import Output
 from ...base.symbolic import symbolic
 from ...errors import DeclarationError
+from ..designs.energy import DriveEnergy
+from ..designs.engine import DesignEngine
 from .conditions import Conditions, conditions
 from .problem import Box, Problem
 from .sampled_design import Point
@@ -94,6 +97,56 @@ class _Built:
     rows: list[slice]
 
 
+class Energy(ca.Callback):
+    """The fluctuation of energy of a drive as a function of all parameters: evaluated as it is,
+    with its derivatives of the first order.
+    """
+
+    def __init__(self, engine: DesignEngine, drive: Output) -> None:
+        super().__init__()
+        self.energy, self.size = DriveEnergy(engine, drive), len(engine.parameters)
+        self.slopes: list[ca.Callback] = []
+        self.construct("fluctuation", {})
+
+    def get_sparsity_in(self, _: int) -> ca.Sparsity:
+        """All parameters."""
+        return ca.Sparsity.dense(self.size)
+
+    def eval(self, arg: Sequence[Any]) -> list[Any]:
+        """Evaluate it."""
+        return [self.energy.fluctuation(np.asarray(arg[0], float).ravel())]
+
+    def has_jacobian(self) -> bool:
+        """Return True."""
+        return True
+
+    def get_jacobian(
+        self, name: str, _inputs: Sequence[str], _outputs: Sequence[str], options: dict[str, Any]
+    ) -> ca.Function:
+        """The derivatives by all parameters."""
+        self.slopes.append(_EnergySlopes(self.energy, self.size, name, options))
+        return self.slopes[-1]
+
+
+class _EnergySlopes(ca.Callback):
+    def __init__(self, energy: DriveEnergy, size: int, name: str, options: dict[str, Any]) -> None:
+        super().__init__()
+        self.energy, self.size = energy, size
+        self.construct(name, options)
+
+    def get_n_in(self) -> int:
+        return 2
+
+    def get_sparsity_in(self, number: int) -> ca.Sparsity:
+        return ca.Sparsity.dense(self.size if number == 0 else 1)
+
+    def get_sparsity_out(self, _: int) -> ca.Sparsity:
+        return ca.Sparsity.dense(1, self.size)
+
+    def eval(self, arg: Sequence[Any]) -> list[Any]:
+        return [self.energy.slopes(np.asarray(arg[0], float).ravel())[None]]
+
+
 class NonlinearProgram:
     """The program of a problem, whose limits are numbers that it is given; it is built once for
     each size.
@@ -101,31 +154,32 @@ class NonlinearProgram:
 
     @symbolic
     def __init__(
-        self, values: PointValues, box: Box, problem: Problem, instants: int, least_closure: float
+        self, engine: DesignEngine, values: PointValues, box: Box, problem: Problem, least: float
     ) -> None:
         if not ca.has_nlpsol("ipopt"):
             raise DeclarationError(
                 "optimise: the CasADi at hand has no IPOPT; install CasADi from PyPI, whose wheel"
                 " contains it"
             )
-        self.values, self.box, self.instants, self.least_closure = (
-            values,
-            box,
-            instants,
-            least_closure,
-        )
+        self.values, self.box, self.instants, self.least_closure = values, box, engine.count, least
         self.objective, self.terms = problem.objective, problem.terms
         self.closures = values.closures()
+        self.energies = {
+            term: Energy(engine, term.output)
+            for term in self.terms
+            if term.output is not None and term.kind == "fluctuation"
+        }
         self.large = (
             values.program.instant.n_instructions() > _LARGE
             or values.program.instant.size1_in("z") > 0
+            or bool(self.energies)
         )
         self.built: dict[int, _Built] = {}
 
     def solve(
         self, x: Array, held: Sequence[Held], closures: Sequence[Point], averages: Sequence[Point]
     ) -> Found:
-        """The best design near shares ``x``, as far as points tell: those of ``held`` terms,
+        """The best design near shares ``x``, as far as points show: those of ``held`` terms,
         objective first, and of ``closures``.
 
         ``averages`` are all instants, for means.
@@ -256,19 +310,18 @@ class NonlinearProgram:
         best: Any = level
         for number, term in enumerate(held):
             output, (limit, over) = term.term.output, (limits[0, number], limits[1, number])
-            if output is None or term.term.averaged:
-                of_parameters = (
-                    term.term.of_parameters(self.values.program.data) if output is None else None
-                )
-                value = (
-                    self._average(term.term, p, guesses)
-                    if of_parameters is None
-                    else of_parameters(p)
-                )
+            if not term.term.pointed:
+                if term.term in self.energies:
+                    value = self.energies[term.term](p)
+                elif term.term.averaged:
+                    value = self._average(term.term, p, guesses)
+                else:
+                    value = term.term.of_parameters(self.values.program.data)(p)
                 row = (-value if term.least else value) * over - limit
                 best = value * over if number == 0 else best
                 held_rows = ca.MX(0, 1) if number == 0 else row
             else:
+                assert output is not None
                 followed = self.values.of(output)
                 value, sign = points(followed.moved, followed.size, moved=True)
                 held_rows = ca.vec(sign * value * over - (level if number == 0 else limit))

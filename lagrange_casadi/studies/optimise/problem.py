@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,18 +12,21 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array, Json, Operand
+from ...base.numerals import real
 from ...base.vocabulary import Backend
 from ...declare.scene import Scene
 from ...declare.times import Times, Timing
 from ...equations.fingerprint import sources
+from ...equations.model_data import materials_of, template
 from ...errors import DeclarationError, UnknownNameError, check_kind
 from ...instants.evaluation_method import EvaluationMethod
+from ...strength.fatigue import lacking, strengths
 from ..designs.engine import DesignEngine
 from ..peaks import wanted_for
+from ..sweep.meanings import WAYS
 from .evaluated_design import EvaluatedDesign
 from .fatigue import tired_link
 from .search_run import HOLDS
-from .strength_limits import constraints_of
 from .terms import Constraint, Term
 
 
@@ -217,7 +221,11 @@ class Question:
             if term.kind == "peak" and (link := tired_link(term.output)):
                 scene.wants([f"safety:{link}"])
                 continue
-            there = engine.efforts if term.averaged else engine.quantities
+            if term.kind == "fluctuation" and term.output not in engine.drives:
+                raise UnknownNameError(
+                    "effort of a joint whose motion is given", term.name, map(str, engine.drives)
+                )
+            there = engine.quantities if term.pointed else engine.efforts
             if term.output is not None and term.name not in there:
                 raise UnknownNameError(f"quantity with a {term.kind}", term.name, there)
         return engine
@@ -230,7 +238,7 @@ class Question:
             "versions": made.versions,
             "sources": sources(),
             "compiler": f"{made.backend} {made.compiler} {made.flags} {made.method}",
-            "scene": program.identity or "cannot be told",
+            "scene": program.identity or "cannot be identified",
             "mechanism": program.data.at(program.data.defaults),
             "t": self.timing.words(program.data.symbols),
             "minimise": list(map(str, self.objectives)),
@@ -248,3 +256,42 @@ class Question:
         }
         plain: dict[str, Any] = json.loads(json.dumps(content))
         return plain
+
+
+_LEAST = re.compile(
+    r"\s*least:(safety|yield|buckling|fatigue):([^<>=!:]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*"
+)
+
+
+def constraints_of(text: str, scene: Scene) -> list[Constraint]:
+    """The constraints that a text says: ``least:safety:LINK >= NUMBER`` is one for each way to
+    fail, any other text one.
+
+    Raises :class:`.DeclarationError` for what is none, and where fatigue is to be limited of a
+    material that lacks a number.
+    """
+    found = _LEAST.fullmatch(text) if isinstance(text, str) else None
+    if found is None:
+        return [Constraint.parse(text, scene.parameters)]
+    mode, link, relation, number = found.groups()
+    scene.wants([f"safety:{link}"])
+    try:
+        factor = real(number)
+    except ValueError:
+        factor = math.nan
+    if not (0.0 < factor < math.inf and relation.startswith(">")):
+        raise DeclarationError(
+            f"'{text}': expected a least factor of safety, as least:safety:{link} >= 2"
+        )
+    material = materials_of(template(scene).content)[link]
+    if mode == "fatigue":
+        strengths(material, "goodman")
+    modes = (
+        tuple(w for w in WAYS if w != "fatigue" or not lacking(material))
+        if mode == "safety"
+        else (mode,)
+    )
+    return [
+        Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", scene.parameters)
+        for each in modes
+    ]

@@ -106,8 +106,9 @@ def optimise(
         A scene, or a case from :func:`.load_case`. Workers of a cluster do not need its file.
     minimise
         ``peak:QUANTITY``, the largest magnitude of a quantity over the whole motion;
-        ``max:QUANTITY``, its largest value; ``mean:`` or ``rms:`` of an effort or an output; or a
-        parameter's name. A list of them asks for a :class:`.Front`: designs of which none is better
+        ``max:QUANTITY``, its largest value; ``mean:`` or ``rms:`` of an effort or an output;
+        ``fluctuation:effort:JOINT``, the fluctuation of energy of a drive [J]; or a parameter's
+        name. A list of them asks for a :class:`.Front`: designs of which none is better
         in all of them.
     over
         The parameters to choose, each with its lower and upper bound.

@@ -58,7 +58,7 @@ class SearchRun:
 
     @classmethod
     def read(cls, words: Mapping[str, Any]) -> SearchRun:
-        """One from what :attr:`words` told."""
+        """A run from its :attr:`words`."""
         lists = {name: tuple(words[name]) for name in ("start", "end", "multipliers", "bounds")}
         return cls(**{**words, **lists, "history": tuple(map(tuple, words["history"]))})
 

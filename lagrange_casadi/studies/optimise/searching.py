@@ -52,7 +52,7 @@ class LocalExecutor:
 
 @dataclass(eq=False)
 class Search:
-    """A finder, what is known of its ways, and who goes the others; ``stopped`` tells that an
+    """A solver, its known runs, and what executes the others; ``stopped`` says that an
     interrupt came.
     """
 

@@ -52,7 +52,7 @@ class Solver:
         solver = cls(question, engine, evaluator)
         solver.program(
             Problem(question.objectives[0], question.constraints)
-        )  # what cannot be differentiated is told at once
+        )  # what cannot be differentiated is refused at once
         if idle := [name for name in question.box.names if not solver._matters(name)]:
             named = ", ".join(f"'{name}'" for name in idle)
             raise DeclarationError(
@@ -80,9 +80,9 @@ class Solver:
         """Program of a problem, for any limits."""
         known = (problem.objective, *((c.term, c.least) for c in problem.constraints))
         if known not in self.programs:
-            evaluator, box, count = self.evaluator, self.question.box, self.engine.count
+            evaluator, box = self.evaluator, self.question.box
             self.programs[known] = NonlinearProgram(
-                evaluator.values, box, problem, count, evaluator.least_closure
+                self.engine, evaluator.values, box, problem, evaluator.least_closure
             )
         return self.programs[known]
 

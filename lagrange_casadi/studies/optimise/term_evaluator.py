@@ -12,6 +12,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.status import Status
+from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
 from .evaluated_design import EvaluatedDesign, Signed
@@ -48,7 +49,7 @@ class TermEvaluator:
         return self._evaluated(p, sampled.history.outcome, 0, sampled)
 
     def screen(self, rows: Array) -> list[EvaluatedDesign]:
-        """Many designs (n, parameters) at once, by what lanes of designs tell alone where that is
+        """Many designs (n, parameters) at once, by what lanes of designs give alone where that is
         enough.
         """
         self.evaluations += len(rows)
@@ -78,7 +79,7 @@ class TermEvaluator:
         values, points = {}, {}
         for term in self.terms:
             signed: list[Signed] = []
-            if sampled is not None and term.output is not None and not term.averaged:
+            if sampled is not None and term.pointed:
                 signed = self._points(sampled, term)
             points[term] = tuple(signed)
             if term.output is None:
@@ -96,6 +97,8 @@ class TermEvaluator:
                 )
             elif term.kind == "peak":
                 values[term] = abs(float(found.value[row, self.engine.quantities.index(term.name)]))
+            elif term.kind == "fluctuation":
+                values[term] = DriveEnergy(self.engine, term.output).fluctuation(p)
             elif term.averaged:
                 values[term] = float(
                     getattr(found, term.kind)[row, self.engine.efforts.index(term.name)]
@@ -120,7 +123,7 @@ class TermEvaluator:
         """A peak at a kink or a jump that goes with the chosen parameters, seen by designs beside
         this one.
 
-        The told peak of each is by the same switch where it is near. What does not move is the
+        The reported peak of each is by the same switch where it is near. What does not move is the
         point itself.
         """
         x, size = box.share(p), len(box.names)

@@ -1,5 +1,5 @@
-"""Terms of a search, to be minimised or limited: a peak, a largest or smallest value, a mean, or a
-parameter.
+"""Terms of a search, to be minimised or limited: a peak, a largest or smallest value, a mean, the
+fluctuation of energy of a drive, or a parameter.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ...equations.model_data import ModelData
 from ...errors import DeclarationError
 from .fatigue import tired_link
 
-Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "mass", "parameter"]
+Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "fluctuation", "mass", "parameter"]
 
 KINDS: Mapping[Kind, str] = {
     "peak": "the largest size of a quantity over the motion",
@@ -27,6 +27,7 @@ KINDS: Mapping[Kind, str] = {
     "min": "its smallest value",
     "mean": "the mean of an effort or an output",
     "rms": "the root of its mean square",
+    "fluctuation": "the fluctuation of energy of an effort",
 }
 """First words of a term."""
 
@@ -34,7 +35,7 @@ MASS: Literal["mass"] = "mass"
 """The mass of a part, or of ``all``."""
 
 _AVERAGES: tuple[Kind, ...] = ("mean", "rms")
-_UPPER: tuple[Kind, ...] = ("peak", "max", "rms")
+_UPPER: tuple[Kind, ...] = ("peak", "max", "rms", "fluctuation")
 _CONSTRAINT = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
 _EXAMPLE = "peak:section:rod:bending <= 12"
 
@@ -68,6 +69,11 @@ class Term:
                     raise DeclarationError(
                         f"'{text}': means exist of {', '.join(AVERAGED)} only; use peak:{name}"
                     )
+                if kind == "fluctuation" and output.group != "effort":
+                    raise DeclarationError(
+                        f"'{text}': a fluctuation of energy is that of an effort, as"
+                        " fluctuation:effort:O"
+                    )
                 return cls(kind, str(output))
         if text.strip() in parameters:
             return cls("parameter", text.strip())
@@ -80,8 +86,13 @@ class Term:
 
     @property
     def averaged(self) -> bool:
-        """True if it is made of all instants."""
+        """True if it is a mean over all instants."""
         return self.kind in _AVERAGES
+
+    @property
+    def pointed(self) -> bool:
+        """True if it is the largest of values at points, of which a search knows some."""
+        return self.kind in ("peak", "max", "min")
 
     @property
     def output(self) -> Output | None:
@@ -104,6 +115,8 @@ class Term:
         """Unit of the term."""
         if self.kind == MASS:
             return "kg"
+        if self.kind == "fluctuation":
+            return "J"
         if tired_link(self.output):
             return "1"
         return (
@@ -147,7 +160,9 @@ class Constraint:
                 f"'{text}': a smallest value has only a lower limit; use max:{term.name}"
             )
         if term.kind == "peak" and limit < 0.0:
-            raise DeclarationError(f"'{text}': a peak is a size, which is not below {limit:g}")
+            raise DeclarationError(
+                f"'{text}': a peak is a magnitude, so it cannot be {limit:g} or less"
+            )
         return cls(term, limit, least)
 
     def excess(self, value: float) -> float:

@@ -1,7 +1,7 @@
 """Quantities of a graph at a point as CasADi functions of the parameters, with derivatives of any
 order.
 
-A moment is told by its share of the time from the first instant to the last, so that instants may
+A moment is given by its share of the time from the first instant to the last, so that instants may
 go with the parameters.
 
 Iterated coordinates are the solution of the loops there, by ``casadi.rootfinder``: its derivatives

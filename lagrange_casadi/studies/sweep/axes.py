@@ -151,7 +151,7 @@ class Values:
             raise DeclarationError(f"the value {twice:g} is listed twice")
 
     def __str__(self) -> str:
-        # Values that are those of a range are told as it is, for they make the same sweep.
+        # Values of a range are described as the range, because they make the same sweep.
         if self.count > 1 and self.values[0] < self.values[-1]:
             same = Range(self.values[0], self.values[-1], self.count)
             if np.array_equal(same.at(np.arange(self.count)), self._array):

@@ -10,7 +10,7 @@ from contextlib import ExitStack, closing
 from itertools import islice
 from pathlib import Path
 
-from ...base.publish import check_writable, telling, uninterrupted
+from ...base.publish import check_writable, reporting, uninterrupted
 from ...base.seal import VerifiedFile, seal
 from ...errors import (
     ClusterError,
@@ -150,7 +150,7 @@ def _fill(
     append: Callable[[Sequence[bytes]], None] | None = None
     joined = 0
     with (
-        telling(folder.target),
+        reporting(folder.target),
         closing(workers.results(plan, queue)) as blocks,
         ExitStack() as stack,
     ):
@@ -191,7 +191,7 @@ def _fill(
             raise StoreError(
                 f"{folder.path}: no part continues after {counted(joined)} of {grouped(plan.size)}"
             )
-    with telling(folder.target):
+    with reporting(folder.target):
         verified = seal(folder.joined, SCHEMA)
     folder.publish()
     return verified

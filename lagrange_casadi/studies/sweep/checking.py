@@ -90,7 +90,7 @@ def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
 
 
 def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
-    """Compare what a file tells twice: the case and its parameters, and the axes with what was
+    """Compare what a file states twice: the case and its parameters, and the axes with what was
     asked for.
     """
     identity: Mapping[str, Any] = sweep.identity
@@ -133,7 +133,7 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[s
         missing += int(np.sum(~there & (states == 0)))
         surplus += int(np.sum(there & (states != Status.OK)))
     if unknown:
-        yield f"{kept.name}: {unknown} of the designs have a status that is none"
+        yield f"{kept.name}: {unknown} of the designs have an unknown status"
     if wrong:
         yield (
             f"{counted(wrong)}, of those that were checked in full, without a certificate: others"

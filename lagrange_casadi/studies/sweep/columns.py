@@ -6,30 +6,35 @@ A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
+from ...arithmetic.scalars import column
 from ...base.arrays import Array, Operand
 from ...base.quantities import Output
 from ...base.status import Status
 from ...base.tables import Table, table_of
 from ...base.vocabulary import KEEPS, Keep
+from ...declare.density import Density
 from ...declare.wanted_names import SENSITIVITY
 from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...errors import DeclarationError, UnknownNameError
+from ...instants.laws import law_of
+from ...instants.section_law import SectionLaw
 from ...instants.statistics import of_counted
+from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
 from .chunks import encoded
 from .column import MISSING, Column
 from .instant_axis import InstantAxis
-from .link_properties import LinkProperties
-from .meanings import ERROR, LEAST, LIFE, MASS, STATUS, TIMES, Meanings
+from .meanings import ERROR, FLUCTUATION, LEAST, LIFE, MASS, STATUS, TIMES, Meanings
 from .strength import Kept
 
 KINDS = (
@@ -41,6 +46,7 @@ KINDS = (
     ERROR,
     "mean",
     "rms",
+    FLUCTUATION,
     SENSITIVITY,
     "peak_at",
     "history",
@@ -57,6 +63,9 @@ _AT_HAND = 1 << 22
 _GRID_COST = 5e-10
 """Seconds of a section force at an instant and a ratio."""
 
+_FLUCTUATION_COST = 3e-3
+"""Seconds of a fluctuation of energy."""
+
 _SLOPES_COST = 3e-4
 """Seconds of the derivatives of a design's peaks."""
 
@@ -72,14 +81,13 @@ class Harvest:
     """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the
     ratios kept, none where empty.
 
-    ``data`` are those of the mechanism; by the ``whole`` graph designs are looked at closely.
+    By the ``whole`` graph designs are looked at closely.
 
     ``safety`` and ``life`` are the links of which these are kept. By the parameters ``by`` the
-    derivatives of peaks are kept too.
+    derivatives of peaks are kept too, and with ``fluctuation`` that of the energy of drives.
     """
 
     engine: DesignEngine
-    data: ModelData
     whole: Program
     keep: Keep
     axis: InstantAxis
@@ -87,15 +95,26 @@ class Harvest:
     safety: tuple[str, ...] = ()
     life: tuple[str, ...] = ()
     by: tuple[str, ...] = ()
+    fluctuation: bool = False
 
     def __post_init__(self) -> None:
         check_keep(self.keep)
+        if self.fluctuation and not self.engine.drives:
+            raise DeclarationError(
+                "fluctuation: it is that of the energy of efforts of joints whose motion is given,"
+                " and none is in wanted=; want effort"
+            )
         if self.xi.size and not self._links:
             raise DeclarationError("xi: ratios apply to section forces, and none is in wanted=")
         if self.keep == "laws" and not self._links:
             raise DeclarationError(
                 "keep laws: laws describe section forces, and none is in wanted="
             )
+
+    @property
+    def data(self) -> ModelData:
+        """Data of the mechanism."""
+        return self.engine.program.data
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
@@ -108,6 +127,7 @@ class Harvest:
             for kind in self._of_peaks(quantity)
         }
         names |= {f"{kind}:{name}": () for name in engine.efforts for kind in _MEANS}
+        names |= {f"{FLUCTUATION}:{name}": () for name in self._drives}
         for parameter in self.by:
             names |= {f"{SENSITIVITY}:{parameter}:peak:{name}": () for name in engine.quantities}
             names |= {
@@ -168,6 +188,7 @@ class Harvest:
         """
         grids = len(self._table.forces) * len(self._links) * self.axis.values.size * self.xi.size
         seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.by else 0.0)
+        seconds += _FLUCTUATION_COST * len(self._drives)
         return max(
             1,
             min(
@@ -219,6 +240,7 @@ class Harvest:
                 found.append(outcome.error[:, k])
         for k in range(len(self.engine.efforts)):
             found += [outcome.mean[:, k], outcome.rms[:, k]]
+        found += self._fluctuations(outcome, p)
         if self.by:
             peaks, means = self.engine.slopes_at(p, outcome), self.engine.mean_slopes_at(p, outcome)
             for number in map(list(self.data.parameters).index, self.by):
@@ -257,7 +279,7 @@ class Harvest:
             if output.group == "section"
         }
         made = (engine.quantities, engine.columns)
-        return Kept(self.data, self.safety, self.life, *made, indeterminate)
+        return Kept(self.engine.program, self.safety, self.life, *made, indeterminate)
 
     @property
     def _histories(self) -> bool:
@@ -299,6 +321,21 @@ class Harvest:
             if self.keep == "histories" or Output.of(name).along
         )
 
+    @property
+    def _drives(self) -> tuple[Output, ...]:
+        """The efforts of which the fluctuation of energy is kept."""
+        return self.engine.drives if self.fluctuation else ()
+
+    def _fluctuations(self, outcome: Outcome, p: Array) -> list[Array]:
+        """The fluctuation of energy of each drive, (designs,)."""
+        found = []
+        for drive in self._drives:
+            energy, column = DriveEnergy(self.engine, drive), np.full(len(p), np.nan)
+            for k in np.flatnonzero(outcome.status == Status.OK):
+                column[k] = energy.fluctuation(p[k])
+            found.append(column)
+        return found
+
     def _of_peaks(self, quantity: Output) -> list[str]:
         """The kinds of columns of the peak of a quantity."""
         over = ["peak_over"] if self.axis.joint else []
@@ -336,8 +373,42 @@ class Harvest:
                     law = mass_properties.law(
                         {output: series[i, k] for output, k in rows.items()}, p[i]
                     )
-                    basis = law.basis(self.xi)
-                    for force, grid in zip(self._table.forces, grids, strict=True):
-                        law.on_grid(force, basis, grid[i], threads=1)
+                    law.on_grids(self._table.forces, self.xi, grids[:, i], threads=1)
                 whole += list(grids)
         return largest, whole
+
+
+@dataclass(frozen=True, eq=False)
+class LinkProperties:
+    """A link's length and density over the parameters, without deriving either anew for each
+    design.
+
+    Laws are made of what was evaluated in a ``precision``.
+    """
+
+    link: str
+    density: Density
+    numbers: Any
+    precision: str
+
+    @classmethod
+    def of(cls, data: ModelData, name: str, precision: str) -> LinkProperties:
+        """Make it for a link."""
+        length, density = data.mass_properties(name, data.symbols)
+        cells = [c for cell in density.cells for c in cell]
+        numbers = ca.Function("matter", [data.symbols], [ca.densify(column([length, *cells]))])
+        return cls(name, density, numbers, precision)
+
+    def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
+        """The law from its coefficients and loads, (t,), of a design (parameters,).
+
+        Or the laws of n designs: members are (n, t), length and density (n, 1).
+        """
+        length, *cells = (
+            self.numbers(p.T).full()[..., None]
+            if p.ndim > 1
+            else self.numbers(p).full().ravel().tolist()
+        )
+        rest = iter(cells)
+        density = self.density.at(lambda _: next(rest), length)
+        return law_of(self.link, members, length, density, self.precision)

@@ -120,7 +120,7 @@ def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple
                 f"parameter '{name}' cannot be drawn over and stay at {at[name]:g} as well"
             )
         if over.count(name) > 1:
-            raise DeclarationError(f"parameter '{name}' is to be drawn over twice")
+            raise DeclarationError(f"over: parameter '{name}' is listed twice")
         if name not in changed:
             others = f"; those that vary: {', '.join(changed)}" if changed else ""
             raise DeclarationError(

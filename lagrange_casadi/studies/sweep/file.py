@@ -29,14 +29,14 @@ from .chunks import FILTERS
 from .column import Column
 from .columns import KINDS
 from .instant_axis import InstantAxis
-from .meanings import ERROR, LEAST, LIFE, MASS
+from .meanings import ERROR, FLUCTUATION, LEAST, LIFE, MASS
 from .plan import SCHEMA, Plan
 
 WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 """Attributes that are JSON; the others of a plan's identity are as they stand."""
 
 _CHUNK = 1 << 15
-_SOME = ("peak_over", ERROR, SENSITIVITY, LEAST, LIFE, MASS)
+_SOME = ("peak_over", ERROR, FLUCTUATION, SENSITIVITY, LEAST, LIFE, MASS)
 """Kinds of columns that not every file has."""
 
 _TAKEN = ("grid", *(kind for kind in KINDS if kind not in _SOME), DESIGN, "t", "xi")

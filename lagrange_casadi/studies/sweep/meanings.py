@@ -36,6 +36,9 @@ TIMES = "history:t"
 ERROR = "peak_error"
 """Kind of columns that bound how much larger a peak between instants may be than at them."""
 
+FLUCTUATION = "fluctuation"
+"""Kind of columns of the fluctuation of energy of drives."""
+
 LEAST, LIFE, MASS = "least", "life", "mass"
 """Kinds of columns on the strength of links."""
 
@@ -60,6 +63,7 @@ _BESIDE = {
     "peak_xi": ("ratio xi/l of the peak: ", "1"),
     ERROR: ("bound of how much larger the peak is between the instants, infinite if none: ", ""),
     "rms": ("root of the mean square over time: ", ""),
+    FLUCTUATION: ("fluctuation of the energy beyond that of the mean: ", "J"),
 }
 """Kinds that have none, and their units, if these are not the quantity's."""
 

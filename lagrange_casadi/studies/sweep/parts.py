@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import BinaryIO, TypedDict
 
 from ...base.locks import lock
-from ...base.publish import flush, put, settled, telling
+from ...base.publish import flush, put, reporting, settled
 from ...errors import BusyError, PathError, StoreError, one_line
 from ...store.untrusted import parsed
 from .column import Column
@@ -119,7 +119,7 @@ class Folder:
 
         Raises :class:`BusyError` where another process holds it.
         """
-        with telling(self.target):
+        with reporting(self.target):
             self._refuse_foreign()
             number = self._lock()
         try:
@@ -190,7 +190,7 @@ class Folder:
 
     def begin(self, identity: Identity, *, forced: bool = False) -> None:
         """Say what the parts will be of, and remove what is there of another sweep."""
-        with telling(self.target):
+        with reporting(self.target):
             self._clear()
             if forced:
                 (self.path / _FORCED).touch()
@@ -210,7 +210,7 @@ class Folder:
         }
         head = json.dumps({"start": start, "stop": stop, "columns": sums}).encode()
         lines = head + b"\n" + hashlib.sha256(head).hexdigest().encode() + b"\n"
-        with telling(self.target):
+        with reporting(self.target):
             self._publish(name, [lines, *contents])
         return Part(self.path / name, start, stop, sum(map(len, contents)), tuple(sums))
 
@@ -242,7 +242,7 @@ class Folder:
                 flaw = (
                     part.flaw()
                     if part
-                    else "its head or length, or an earlier one holds the same designs"
+                    else "its header or length, or an earlier one has the same designs"
                 )
             except FileNotFoundError:  # a sweep at work has come to its end
                 continue
@@ -260,7 +260,7 @@ class Folder:
 
     def publish(self) -> None:
         """Put the joined file into its place, and remove the folder."""
-        with telling(self.target):
+        with reporting(self.target):
             flush(self.joined)
             put(self.joined, self.target)
             flush(self.target.parent)

@@ -352,12 +352,13 @@ class Sweep:
     @cached_property
     def meanings(self) -> Meanings:
         """Meanings of columns and axes, by their names."""
-        axis = next((name for name in (OVER, CYCLE) if name in self._over), "t")
-        return Meanings.of(
-            self.description,
-            axis,
-            self.identity["t"][3] if len(self.identity["t"]) > 3 else "",
+        times = self.identity["t"]
+        joint = times[3] if len(times) > 3 else ""
+        shared = not joint and not any(isinstance(bound, str) for bound in times[:2])
+        axis = next(
+            (name for name in (OVER, CYCLE) if name in self._over), "t" if shared else CYCLE
         )
+        return Meanings.of(self.description, axis, joint)
 
     @cached_property
     def _units(self) -> dict[str, str]:

@@ -53,6 +53,7 @@ _KINDS = {
     "peak_error": "error of the peak",
     "mean": "mean",
     "rms": "rms",
+    "fluctuation": "fluctuation",
 }
 
 

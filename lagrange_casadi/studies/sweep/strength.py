@@ -16,10 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.quantities import Output
 from ...declare.masses import ALL
-from ...equations.fibre_stresses import FibreStresses
 from ...equations.model_data import ModelData
+from ...equations.program import Program
 from ...instants.statistics import counted
 from ...strength.fatigue import Score, damage_score, lacking, use_score
 from ...strength.worst import LinkHistories
@@ -42,12 +41,17 @@ class Kept:
     designs.
     """
 
-    data: ModelData
+    program: Program
     safety: tuple[str, ...]
     life: tuple[str, ...]
     quantities: tuple[str, ...]
     series: tuple[str, ...]
     indeterminate: Collection[str] = ()
+
+    @property
+    def data(self) -> ModelData:
+        """Data of the program."""
+        return self.program.data
 
     @property
     def histories(self) -> bool:
@@ -126,17 +130,17 @@ class Kept:
         assert series is not None
         if not there.size:
             return share, lives
-        (stresses, numbers), material = self._stresses[link], self.data.materials[link]
-        chosen = [self.series.index(str(member)) for member in stresses.members]
-        members, matter = series[there][:, chosen], numbers(p[there].T).full().T
+        stress, material = self.program.stress[link], self.data.materials[link]
+        chosen = [self.series.index(str(member)) for member in stress.fibres.members]
+        members, matter = series[there][:, chosen], stress.numbers(p[there].T).full().T
         counts = np.array([counted(member) for member in members])
-        kinds = np.column_stack([stresses.is_still(members), counts])
+        kinds = np.column_stack([stress.fibres.is_still(members), counts])
         for still, *moving in np.unique(kinds, axis=0).tolist():
             alike = (kinds == [still, *moving]).all(axis=1)
             some, values = there[alike], members[alike][..., moving]
             if not any(moving):
                 continue
-            histories = LinkHistories(stresses, values, matter[alike], still)
+            histories = LinkHistories(stress.fibres, values, matter[alike], still)
             share[some] = _largest(histories, use_score(material))
             if link not in self.life:
                 continue
@@ -147,11 +151,6 @@ class Kept:
                     histories.of_designs(worn), damage_score(material)
                 )
         return share, lives
-
-    @cached_property
-    def _stresses(self) -> dict[str, tuple[FibreStresses, ca.Function]]:
-        outputs = [*map(Output.of, self.series)]
-        return {name: self.data.stress(name, outputs) for name in self.links}
 
     @cached_property
     def _masses(self) -> ca.Function:

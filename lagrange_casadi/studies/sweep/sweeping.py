@@ -42,6 +42,7 @@ def sweep(
     wanted: Outputs | None = None,
     keep: Keep = "peaks",
     peaks: PeakSearch = "exact",
+    fluctuation: bool = False,
     backend: Backend = "auto",
     precision: Precision = "double",
     newton: Annotated[int | None, LATER] = None,
@@ -82,6 +83,10 @@ def sweep(
     peaks
         ``exact``, sought between the instants; or ``sampled``, those of the instants, each with an
         error in ``peak_error:QUANTITY``.
+    fluctuation
+        Also keep the fluctuation of energy of each drive [J], in ``fluctuation:effort:JOINT``: the
+        largest swing of the work of its effort beyond that of the mean effort, which a flywheel
+        takes up.
     backend, precision, newton, flags
         Method of evaluation: see :class:`.EvaluationMethod`.
     workers
@@ -119,7 +124,7 @@ def sweep(
     one, designs = scene_of(scene), designs_of(grid)
     method = EvaluationMethod(backend, precision, newton, None, flags)
     request = Request(parameters, t, over, xi, wanted, method)
-    plan = Plan.of(one, designs, request, keep, peaks=peaks, many=many)
+    plan = Plan.of(one, designs, request, keep, peaks=peaks, fluctuation=fluctuation, many=many)
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     if isinstance(scene, Case) and not keeper:

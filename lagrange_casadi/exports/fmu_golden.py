@@ -1,0 +1,48 @@
+"""Golden vectors of a unit of FMI, and a script that compares the unit with them by FMPy."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+
+import numpy as np
+
+from ..portable.text import template
+from .fmu_description import Description
+
+FILE = "resources/golden.csv"
+"""Path of the golden vectors in the unit."""
+
+
+def golden_vectors(description: Description) -> str:
+    """Return a table: times [s], inputs and outputs under the names of the unit's variables; first
+    by how much an output may be off.
+
+    Between two golden instants there are those over which iterated loops are followed, without
+    outputs.
+    """
+    source, inputs = description.source, [m.source for m in description.inputs]
+    golden, program = source.golden, source.exported.program
+    times = [golden.times[:1]]
+    for start, stop in itertools.pairwise(golden.times):
+        times.append(np.linspace(start, stop, golden.steps + 1)[1:])
+    instants = np.concatenate(times)
+    moved = np.vstack([order.full() for order in program.motion(instants[None, :], description.p)])
+    given = moved[[list(description.start).index(name) for name in inputs]].T
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    names = [m.path for m in (*description.inputs, *description.contract.outputs)]
+    rows.writerow(["time", *names])
+    rows.writerow(["within", *("" for _ in inputs), *golden.outputs_off.tolist()])
+    for k, (t, row) in enumerate(zip(instants.tolist(), given.tolist(), strict=True)):
+        at, between = divmod(k, golden.steps)
+        found = itertools.repeat("", len(golden.outputs_off)) if between else golden.outputs[at]
+        rows.writerow([t, *row, *map(str, found)])
+    return text.getvalue()
+
+
+def golden_script(description: Description) -> str:
+    """Return the text of the script ``<prefix>_fmu_test.py``."""
+    turning = [m.path for m in description.contract.outputs if m.wrapped]
+    return template("fmu_test.py.in", **description.source.words, file=FILE, turning=turning)
