@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import math
 import os
 import sys
 import types
@@ -118,6 +119,24 @@ class _Asked:
     defaults: Mapping[str, object]
     required: frozenset[str]
 
+    @functools.cached_property
+    def placed(self) -> tuple[tuple[int, str, _Kind, object], ...]:
+        """Place, name, kind and default of each argument of a kind that may be given by its
+        place.
+        """
+        return tuple(
+            (k, name, self.kinds[name], self.defaults[name])
+            for k, name in enumerate(self.positional)
+            if name in self.kinds
+        )
+
+    @functools.cached_property
+    def fewest(self) -> float:
+        """Number of arguments that a call without names gives at least."""
+        lacking = [k for k, name in enumerate(self.defaults, 1) if name in self.required]
+        named = self.required.difference(self.positional)
+        return math.inf if named or not self.defaults else max(lacking, default=0)
+
     @classmethod
     def of(cls, signature: inspect.Signature, kinds: Mapping[str, _Kind]) -> _Asked:
         """Make them of a signature."""
@@ -134,6 +153,8 @@ class _Asked:
 
     def fits(self, given: Sequence[object], named: Mapping[str, object]) -> bool:
         """Return whether arguments are all that a function needs, each once."""
+        if not named:
+            return self.fewest <= len(given) <= len(self.positional)
         if len(given) > len(self.positional) or not self.defaults:
             return False
         placed = self.positional[: len(given)]
@@ -171,13 +192,11 @@ def _looking(function: Callable[_P, _Result], kinds: bool = True) -> Callable[_P
             for name, each in named.items():
                 if (kind := known.get(name)) and each is not expected.defaults[name]:
                     named[name] = read(kind, name, each)
-            placed = [
-                read(kind, name, each)
-                if (kind := known.get(name)) and each is not expected.defaults[name]
-                else each
-                for name, each in zip(expected.positional, given, strict=False)
-            ]
-            return function(*typing.cast(Any, placed), **named)
+            placed: Any = list(given)
+            for k, name, kind, default in expected.placed:
+                if k < len(placed) and placed[k] is not default:
+                    placed[k] = read(kind, name, placed[k])
+            return function(*placed, **named)
         try:
             bound = signature.bind(*given, **named)
         except TypeError as wrong:

@@ -18,6 +18,7 @@ RENAMED: Mapping[str, str] = {
     "Elasticity.told": "completed",
     "Holding.untold": "reason",
     "Measurement.rung": "method",
+    "Mechanism.own": "ownership",
     "Motion.demands": "parameter_constraints",
     "Motion.told": "description",
     "Motor.at_most": "short_time_torque",

@@ -384,11 +384,6 @@ def pendulum(law, gravity=G, load=None, **keywords):
     return Scene(m, {"pin": law}, **keywords)
 
 
-def lobes(t):
-    """Two lobes of almost one height."""
-    return ca.exp(-(((t - 1.0) / 0.2) ** 2)) + (1 + 1e-5) * ca.exp(-(((t - 2.05) / 0.2) ** 2))
-
-
 def counting(motion, load, **parameters):
     """A driven crank with a load on its rod; ``load(m, angle)`` is a force on the slider along its
     guide.

@@ -49,6 +49,11 @@ class Formula:
         self.columns = ("effort:O", *(f"section:rod:law:{name}" for name in laws))
         self.count, self.pause, self.threads, self.calls = count, pause, [], []
 
+    def of(self, program, *_):
+        """The engine of a program."""
+        self.program = program
+        return self
+
     def failures(self, p, whole):
         return {}
 
@@ -78,7 +83,7 @@ class Formula:
 def use(monkeypatch, **keywords):
     """Let sweeps use one :class:`Formula`, which is given back."""
     engine = Formula(**keywords)
-    monkeypatch.setattr(plan, "compiled", lambda *_: engine)
+    monkeypatch.setattr(plan, "compiled", engine.of)
     return engine
 
 

@@ -10,7 +10,19 @@ from types import ModuleType
 import pytest
 
 import lagrange_casadi
-from lagrange_casadi import beams, elements, motion
+from lagrange_casadi import (
+    actuators,
+    animation,
+    beams,
+    bearings,
+    density,
+    elements,
+    figures,
+    forward,
+    motion,
+    peaks,
+    strength,
+)
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
 FIRST = {"What", "Whether", "Of", "Those", "How", "Where", "Why", "Which", "Its", "Their", "Theirs"}
@@ -70,16 +82,22 @@ def functions(*doors: ModuleType) -> Iterator[Callable[..., object]]:
                 yield thing
 
 
+MODULES = (actuators, animation, beams, bearings, density, elements, figures, forward, motion)
+MODULES += (peaks, strength)
+
+
 @pytest.mark.quick
 @pytest.mark.parametrize(
-    "function", [*functions(beams, elements, motion)], ids=lambda one: one.__name__
+    "function", [*functions(*MODULES)], ids=lambda one: f"{one.__module__}.{one.__name__}"
 )
-def test_a_function_that_declares_says_what_it_takes_and_gives(function):
-    text = inspect.getdoc(function)
+def test_a_public_function_says_what_it_takes_and_gives(function):
+    """Its docstring has numpydoc's sections, and describes each of its arguments."""
+    signature, text = inspect.signature(function), inspect.getdoc(function)
     sections = re.split(r"^(\w+)\n-+$", text, flags=re.MULTILINE)
     found = dict(zip(sections[1::2], sections[2::2], strict=True))
-    assert {"Parameters", "Returns"} <= found.keys() <= {"Parameters", "Returns", "Raises"}
+    assert found.keys() <= {"Parameters", "Returns", "Yields", "Raises", "Notes"}
+    assert ({"Returns", "Yields"} & found.keys()) or signature.return_annotation == "None"
     described = re.findall(r"^(\S.*)$", found["Parameters"], flags=re.MULTILINE)
     named = [line.partition(" : ")[0] for line in described]
     given = {one.lstrip("*") for line in named for one in line.split(", ")}
-    assert given == {*inspect.signature(function).parameters}
+    assert given == {*signature.parameters}

@@ -247,7 +247,7 @@ def test_what_is_missing_is_said_before_anything_is_written(tmp_path, monkeypatc
 
 def test_a_finding_of_fmpy_is_an_error(tmp_path, monkeypatch):
     monkeypatch.setattr("fmpy.validation.validate_fmu", lambda path: ["a unit\nis wrong"])
-    with pytest.raises(StoreError, match=r"slider_crank\.fmu wrong: a unit is wrong"):
+    with pytest.raises(StoreError, match=r"reports an error in slider_crank\.fmu: a unit is wrong"):
         export(slider_crank(), tmp_path / "out", fmu=True)
     assert not (tmp_path / "out").exists()
 

@@ -140,6 +140,35 @@ def test_a_flywheel_holds_a_fluctuation_by_elliptic_integrals(fluctuation, speed
     assert found.textbook == pytest.approx(whole, rel=fluctuation)
 
 
+def test_a_punch_slows_a_motor_as_a_textbook_prints():
+    """Budynas and Nisbett's solutions to Shigley's Mechanical Engineering Design, chapter 16, page
+    417: a motor of T = 2690.4 - 21.41 w turns 110.72 lbf in s^2; of each 10 s a punch takes 1560
+    lbf in for 0.5 s, which slows it from 124.41 to 117.81 rad/s, a fluctuation of 0.0545.
+    """
+    motor = forward.expression(lambda t, angle, speed: 2690.4 - 21.41 * speed)
+    punch = forward.expression(lambda t, angle, speed: 1560.0 * (t < 0.5))
+    found = free(rotor(110.72), drive=motor, load=punch, start=(0.0, 124.41), t=(0.0, 10.0, 201))
+    assert found.speed[10] == pytest.approx(117.81, abs=0.01)
+    assert found.speed[-1] == pytest.approx(124.41, abs=0.01)
+    assert np.ptp(found.speed) / found.speed[[0, 10]].mean() == pytest.approx(0.0545, abs=1e-4)
+
+
+def test_an_engine_and_its_machine_have_the_energy_that_a_textbook_prints():
+    """Scilab's companion (FOSSEE) to a Theory of Machines, chapter 6, illustration 10: 15000 +
+    8000 sin(2 x) against 15000 - 6000 cos(x) at 200 rpm; it prints 15,124 J for 15125.
+    """
+    found = flywheel(
+        rotor(),
+        fluctuation=0.02,
+        load=forward.expression(lambda t, x, w: -6000.0 * ca.cos(x) - 8000.0 * ca.sin(2.0 * x)),
+        start=(0.0, 200.0 * math.tau / 60.0),
+        count=41,
+        wanted=["effort"],
+    )
+    assert found.energy == pytest.approx(15125.0, rel=1e-10)
+    assert found.inertia == pytest.approx(found.textbook - 0.5, rel=0.01)
+
+
 def test_a_steady_cycle_repeats_and_its_powers_are_in_balance():
     scene = slider_crank({"O": polynomial(0.3, 10.0)}, friction=0.1)
     found = free(scene, drive=forward.dc_motor(50.0, 30.0), load=4.9, steady=True, count=201)
@@ -455,6 +484,14 @@ def arm():
             lambda: free(rotor(), drive=forward.power(9.0), start=(0.0, 0.0)),
             "its drive is without bound at the start",
         ),
+        (
+            lambda: free(
+                rotor(), drive=forward.expression(lambda t, a, w: -50.0 * ca.sign(w - 9.0))
+            ),
+            "reached t = 0.01.* s, rate 9; a law is stiff or jumps back and forth",
+        ),
+        (lambda: forward.dc_motor(5.0, -30.0), "torque and speed must have one sign"),
+        (lambda: forward.induction_motor(5.0, 0.0, 30.0), "breakdown_slip must be positive"),
         (lambda: free(rotor(), drive=5.0, steady=True), "nothing in it depends on the speed"),
         (lambda: free(rotor(), steady=True, t=(0, 1, 5)), "t and steady exclude each other"),
         (

@@ -353,19 +353,6 @@ def test_a_gear_counts_turns_however_coarse_the_instants(given):
     np.testing.assert_allclose(solution.pose("b").angle, expected, rtol=1e-14)
 
 
-def test_what_a_drive_turns_is_counted_and_what_a_loop_turns_unwrapped():
-    """A drive of many turns between two instants: the pin between it and a rod that only swings
-    turns as the drive does.
-    """
-    solution = evaluate(slider_crank(), t=(0, 1, 40))
-    assert np.abs(solution.pose("rod").angle).max() < 0.6
-    np.testing.assert_allclose(
-        solution.motion("A").value,
-        solution.pose("rod").angle - solution.motion("O").value,
-        atol=1e-12,
-    )
-
-
 @pytest.mark.parametrize("kind", ["weld", "prismatic"])
 def test_a_drive_on_a_link_held_at_a_parameters_angle(kind):
     m = Mechanism("held")
@@ -380,27 +367,6 @@ def test_a_drive_on_a_link_held_at_a_parameters_angle(kind):
     m.revolute("J", a.tip, b)
     solution = evaluate(Scene(m, motion))
     assert solution.effort("J")[0] == pytest.approx(9.81 / 2 * math.cos(0.3), rel=1e-14)
-
-
-def test_a_gear_on_what_a_loop_turns_goes_on_where_that_is_wrapped():
-    """A drag link: the follower goes all the way round, and a gear with it."""
-    m = Mechanism("drag_link")
-    a, b, c = (
-        m.link(name, length=length, mass=1)
-        for name, length in (("a", 0.3), ("b", 0.25), ("c", 0.3))
-    )
-    wheel = m.link("wheel", length=0.1, mass=1)
-    m.revolute("A", m.ground, a)
-    m.revolute("B", a.tip, b)
-    m.revolute("C", b.tip, c.tip)
-    follower = m.revolute("D", m.ground.at(0.1, 0), c)
-    m.gear("mesh", follower, m.revolute("E", m.ground.at(1, 0), wheel), ratio=-2.0)
-    solution = evaluate(
-        Scene(m, {"A": polynomial(0.5, 7.0)}, t=(0, 2, 401), posture={"b": 2.5, "c": 1.7})
-    )
-    turned, driven = solution.motion("D").value, solution.motion("E").value
-    assert np.ptp(turned) > 4 * math.pi
-    np.testing.assert_allclose(np.diff(driven), -2.0 * np.diff(turned), atol=1e-12)
 
 
 @pytest.mark.sampled(5)

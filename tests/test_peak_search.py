@@ -108,6 +108,10 @@ SIGNALS = {
         lambda x: tent(x, 1.013, 4e-3) + 1.1 * tent(x, 1.023, 4e-3) + 0.2 * x,
         [1.013, 1.023],
     ),
+    "two bells, the lower one at an instant": (
+        lambda x: bell(x, 0.6, 0.2) + (1 + 1e-5) * bell(x, 1.62, 0.2),
+        [],
+    ),
     "two bells between two instants": (
         lambda x: 0.97 * bell(x, 1.013, 0.3 * STEP) + 1.04 * bell(x, 1.035, 0.3 * STEP),
         [],

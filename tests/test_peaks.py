@@ -10,7 +10,7 @@ import pytest
 from balance import settle
 from conftest import CASES, NAMES, PLANAR
 from internals import forces, rates, refine, shortfall
-from mechanisms import LENGTH, MASS, G, four_bar, lobes, parallelogram, pendulum
+from mechanisms import LENGTH, MASS, G, four_bar, parallelogram, pendulum
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
@@ -94,16 +94,6 @@ def test_peaks_of_a_turning_pendulum_are_exact():
     assert peaks["motion:pin"] == solution.peak("motion:pin")
 
 
-@pytest.mark.quick
-def test_the_higher_of_two_peaks_is_found_where_the_instants_tell_otherwise():
-    scene = pendulum(motion.expression(lobes), t=(0, 3.0, 31))
-    solution = evaluate(scene, wanted=["motion"])
-    assert solution.peak("motion:pin").t == pytest.approx(1.0)
-    (peak,) = refine(scene, solution, ["motion:pin"])
-    assert peak.t == pytest.approx(2.05, abs=1e-9)
-    assert peak.value == pytest.approx(1 + 1e-5, rel=1e-11)
-
-
 def test_a_peak_at_the_knot_of_a_spline():
     """Without gravity the effort is I theta'', which a cubic spline makes a polygon: its peak is
     the knot's, a kink.
@@ -122,20 +112,6 @@ def test_a_peak_at_the_knot_of_a_spline():
     )
     assert peaks["effort:pin"].value == pytest.approx(MASS * LENGTH**2 / 3 * bends[k], rel=1e-12)
     assert peaks["effort:pin"].t == pytest.approx(times[k], abs=1e-12 * solution.t[-1])
-
-
-def test_a_jump_is_approached_from_its_higher_side():
-    """A load that grows with the angle and is gone from a radian on; its supremum is there, and is
-    never reached.
-    """
-    scene = pendulum(
-        motion.polynomial(0.0, 2.0), load=lambda angle: 7 * angle * (angle < 1), t=(0, 1, 12)
-    )
-    solution = evaluate(scene)
-    (peak,) = refine(scene, solution, ["load:push:fx"])
-    assert solution.peak("load:push:fx").value < 6.5
-    assert 7 * (1 - 1e-12) < peak.value < 7
-    assert 0.5 * (1 - 1e-12) < peak.t < 0.5
 
 
 def test_a_pole_is_infinite():
@@ -217,13 +193,6 @@ def test_what_is_not_determined_stays_so():
     assert "reaction:A:fx" not in forces(solution)
     assert np.isfinite([peaks[name].value for name in forces(solution)]).all()
     assert shortfall(scene, [31])[0].refined_worst < 1e-12
-
-
-@pytest.mark.quick
-def test_one_instant_has_its_own_peak():
-    scene = pendulum(motion.polynomial(0.1, 3.0))
-    solution = evaluate(scene, t=(0.2, 0.2, 1))
-    assert refine(scene, solution) == [solution.peak(name) for name in solution.names()]
 
 
 def test_a_solution_brings_its_parameters_and_outputs(tmp_path, slider_crank):

@@ -266,6 +266,10 @@ def test_a_loop_that_an_equality_connects(reading):
 MJCF_MISUSE = {
     "another root": ("<robot/>", "line 1, <robot>: expected <mujoco>"),
     "entities": ('<!DOCTYPE mujoco SYSTEM "x"><mujoco/>', "line 1: document types and entities"),
+    "gigantic": (
+        mjcf('<body><inertial mass="1e300" pos="0 0 0" diaginertia="1 1 1"/></body>'),
+        "<inertial>: mass: expected numbers of at most 1e+12, got '1e300'",
+    ),
     "what it refuses": (mjcf('<body><joint type="hinge"/></body>'), "MuJoCo refuses it: "),
     "out of the folder": (
         mjcf("", '<asset><mesh name="m" file="../../m.stl"/></asset>'),

@@ -150,32 +150,6 @@ def spun(forces):
     return np.array([axial, math.hypot(y, z), torsion, math.hypot(about_y, about_z)])
 
 
-@pytest.mark.parametrize("kind", ["prismatic", "cylindrical", "screw"])
-def test_either_body_of_a_guide_may_be_the_parent(kind):
-    """A slender rod slides through a turning bush: told from the bush to the rod, and from the rod
-    to the bush.
-    """
-    told = []
-    for sign in (1, -1):
-        m = SpatialMechanism("guide")
-        bush, rod = m.link("bush", length=0.5, mass=1.0), m.link("rod", length=0.6, mass=2.0)
-        m.universal("A", m.ground, bush, axis=(0, 0, 1), second=(0, 1, 0))
-        ends = (bush.tip, rod) if sign > 0 else (rod, bush.tip)
-        getattr(m, kind)(
-            "B", *ends, axis=(sign, 0, 0), **({"lead": 0.3} if kind == "screw" else {})
-        )
-        laws = {"A": (motion.polynomial(0.3, 0.7, 0.5), motion.polynomial(0.1, -0.4, 0.8))}
-        laws |= {
-            name: motion.polynomial(-0.2, 0.4, 0.3)
-            for name in m.coordinates
-            if name.startswith("B")
-        }
-        told.append(evaluate(Scene(m, laws, t=(0, 0.5, 5)), wanted=["effort", "reaction:A"]))
-    one, other = told
-    for name in (key for key in one.series if key.startswith(("effort:", "reaction:A:"))):
-        assert np.max(np.abs(one.series[name] - other.series[name])) < 1e-12, name
-
-
 def turning_crank(turns=3, **options):
     """A slider-crank whose crank and rod are joined so that they slide too, along the pin: that
     joint closes the loop.

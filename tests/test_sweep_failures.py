@@ -113,7 +113,7 @@ PROGRAM = """
     import sweeps
     from lagrange_casadi.errors import LagrangeCasadiError
     from lagrange_casadi.studies.sweep import plan, sweep
-    plan.compiled = lambda *_: sweeps.Formula(pause={pause})
+    plan.compiled = sweeps.Formula(pause={pause}).of
     # Python would leave bytecode cut off for others.
     sys.dont_write_bytecode = True
     resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))

@@ -33,19 +33,30 @@ said.
 
 @public
 def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
-    """The motors of a CSV file, one a row, below a head of columns in any order and beside others.
+    """Read motors from a CSV file.
 
-    The columns are name, stall_torque, rated_torque, peak_torque [N m], rated_speed, max_speed
-    [1/min] and inertia [kg m^2]; of linear motors name, stall_force, rated_force, peak_force [N],
-    rated_speed, max_speed [m/s] and mass [kg]. There may be knee_speed with end_torque or
-    end_force, and time_constant [s]: a motor whose cell is empty has none. Other units stand with
-    the column, as ``inertia [kg cm^2]``. Cells are parted as :func:`.read_rows` says.
+    Parameters
+    ----------
+    path : path
+        A file with a motor in each row, and these columns in any order: name, stall_torque,
+        rated_torque, peak_torque [N m], rated_speed, max_speed [1/min] and inertia [kg m^2]; of
+        linear motors name, stall_force, rated_force, peak_force [N], rated_speed, max_speed [m/s]
+        and mass [kg]. Optional are knee_speed with end_torque or end_force, and time_constant [s].
+        Other units stand in the head, as ``inertia [kg cm^2]``. Cells are separated as
+        :func:`.read_rows` describes. If there is no such file, ``"servo"`` and ``"induction"`` are
+        classes of motors, whose numbers follow from a rule and are no maker's.
 
-    Where there is no such file, the name of a class of motors is one, servo or induction: their
-    numbers follow from the rule of :mod:`.classes`, and are no maker's.
+    Returns
+    -------
+    list of Motor
+        The motors, in the order of the file.
 
-    Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a
-    column that is missing, and for a line that is no motor, by its number.
+    Raises
+    ------
+    PathError
+        If the file cannot be read.
+    DeclarationError
+        For a column that is missing, or a row that is not a motor, with the number of its line.
     """
     if str(path) in CLASSES and not Path(path).exists():
         return CLASSES[str(path)].motors(str(path))

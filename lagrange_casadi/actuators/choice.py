@@ -57,11 +57,26 @@ class Choice:
 def assess(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
     """Compare a motor with the requirements of a duty.
 
-    Heat is the root mean square of its torque over what it bears continuously at the mean speed; of
-    a motor with a ``time_constant`` the root of its largest warmth in a cycle that goes on over and
-    over. The peak torque is beside what it gives at the speed of that instant. Raises
-    :class:`.DeclarationError` for a linear motor where the duty is that of a rotary one, and the
-    reverse.
+    Parameters
+    ----------
+    motor : Motor
+        The motor.
+    duty : Duty
+        Result of :func:`.duty_of`, with the inertia of this motor.
+    refused : tuple of str
+        Reasons why other motors were refused, for the result.
+
+    Returns
+    -------
+    Choice
+        Shares of the limits of heat, peak torque and speed; above 1 the motor is not suitable. Heat
+        is the root mean square of the torque over the continuous torque at the mean speed, or with
+        a ``time_constant`` the root of the largest temperature rise in a repeated cycle.
+
+    Raises
+    ------
+    DeclarationError
+        For a linear motor and a rotary duty, or the reverse.
     """
     if motor.linear != duty.linear:
         kinds = ("a rotary", "a linear")
@@ -85,14 +100,30 @@ def select(
     *,
     ratios: Sequence[float] = (1.0,),
 ) -> Choice:
-    """The smallest motor that serves, by rated power, with the ratio that heats it least.
+    """Choose the smallest suitable motor, with the gear ratio that heats it least.
 
-    ``duty(ratio, inertia)`` is what a ratio asks of a motor whose rotor has an inertia, as ``lambda
-    ratio, inertia: duty_of(solution, "J", ratio=ratio, inertia=inertia)``. A motor serves where no
-    share of its limits is above 1, as :func:`assess` has them.
+    Parameters
+    ----------
+    motors : iterable of Motor
+        The motors, as of :func:`.read_motors`.
+    duty : callable
+        ``duty(ratio, inertia)`` returns the :class:`Duty` of a motor behind a ratio, with the
+        inertia of its rotor, as ``lambda ratio, inertia: duty_of(solution, "J", ratio=ratio,
+        inertia=inertia)``.
+    ratios : sequence of float
+        The gear ratios to try.
 
-    Raises :class:`.NoDesignError` where none serves, with the motor that comes nearest, and
-    :class:`.DeclarationError` for none.
+    Returns
+    -------
+    Choice
+        The motor with the least rated power of which no share, as of :func:`assess`, is above 1.
+
+    Raises
+    ------
+    NoDesignError
+        If no motor is suitable; the message names the nearest.
+    DeclarationError
+        Without motors or ratios.
     """
     given = sorted(motors, key=lambda motor: (motor.rated_power, motor.name))
     if not given or not list(ratios):

@@ -154,19 +154,41 @@ def duty_of(
     carried: Array | None = None,
     holding: Holding | None = None,
 ) -> Duty:
-    """The duty of a drive's motor, from a solution that has the drive's effort and its motion.
+    """Return the requirements of a drive on its motor, from a solution.
 
-    ``ratio`` is how many times as fast as the drive the motor turns, for a drive that slides in
-    rad/m; a negative one turns it the other way. ``efficiency`` is that of the gearbox, ``inertia``
-    [kg m^2] that of the motor's rotor and what turns with it. A ``linear`` motor pushes a drive
-    that slides; its inertia is the mass of its moving part [kg], and its ratio usually 1.
-    ``carried`` is the result of :func:`.inertia_at` for the drive, for the ratio of inertias.
-    ``holding`` is the range of its efforts, by default the solution's: where joints with friction
-    rest, the effort is the end of the range that is larger in size.
+    Parameters
+    ----------
+    solution : Solution
+        Has the effort and the motion of the drive, over a whole cycle.
+    joint : str
+        The driven joint.
+    ratio : float
+        Speed of the motor over that of the drive [1, or rad/m for a drive that slides]; negative if
+        it turns the other way.
+    efficiency : float
+        Efficiency of the gearbox, above 0 and at most 1.
+    inertia : float
+        Inertia of the motor's rotor and what turns with it [kg m^2]; of a linear motor the mass of
+        its moving part [kg].
+    linear : bool
+        A linear motor, for a drive that slides; its ratio is usually 1.
+    carried : array, optional
+        Result of :func:`.inertia_at` for the drive (t,), for the ratio of inertias.
+    holding : Holding, optional
+        Range of the efforts while joints with friction are at rest, by default that of the
+        solution. The end of the range with the larger magnitude is used.
 
-    Raises :class:`.UnknownNameError` for what is no drive of the solution,
-    :class:`.DeclarationError` for numbers that cannot be, for fewer than two instants, and where
-    the effort is indeterminate, as where a joint with friction rests.
+    Returns
+    -------
+    Duty
+        Torque, speed and power over time, with their means and peaks.
+
+    Raises
+    ------
+    UnknownNameError
+        If the joint is not a drive of the solution.
+    DeclarationError
+        For numbers out of range, fewer than two instants, or an effort that is indeterminate.
     """
     drives = [
         str(name).partition(":")[2] for name in solution.names() if str(name).startswith("effort:")

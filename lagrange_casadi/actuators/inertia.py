@@ -28,16 +28,33 @@ def inertia_at(
     t: Times | None = None,
     over: Over | None = None,
 ) -> Array:
-    """The inertia reflected to a drive at the scene's instants, or at others, (t,) [kg m^2; kg of a
-    drive that slides].
+    """Return the inertia reflected to a drive, at every instant.
 
-    It is twice the kinetic energy of all that moves where the drive moves at unit rate and other
-    drives are at rest, whatever the motion: at rest too. A mechanism's varies over its cycle. It is
-    infinite where the drive cannot move the mechanism, at a dead centre. Where friction is, it is
-    without it.
+    Parameters
+    ----------
+    scene : Scene
+        A mechanism and its motion.
+    joint : str
+        The driven joint.
+    parameters : mapping, optional
+        Values of parameters, by name.
+    t, over : tuple, optional
+        Other instants, as of :func:`.evaluate`.
 
-    Raises :class:`.UnknownNameError` for what is no drive, :class:`.DeclarationError` where drives
-    and motions are not as many, and as :func:`.evaluate` does.
+    Returns
+    -------
+    array
+        Inertia (t,) [kg m^2; kg of a drive that slides]: twice the kinetic energy of everything
+        that moves if the drive moves at unit rate and the other drives are at rest. It does not
+        depend on the rates of the motion, nor on friction. It is infinite at a dead centre, at
+        which the drive cannot move the mechanism.
+
+    Raises
+    ------
+    UnknownNameError
+        If the joint is not a drive.
+    DeclarationError
+        If there are not as many drives as motions, and as :func:`.evaluate` does.
     """
     values = scene.values(parameters)
     reflected = reflected_inertia(scene, values)

@@ -17,10 +17,23 @@ from .motor import Motor
 @public
 @one_at_a_time()
 def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
-    """Draw a duty's points of torque over speed, its root mean square at its mean speed, and the
-    limits of a motor, into a file.
+    """Draw torque over speed of a duty, with the limits of a motor, into a file.
 
-    Raises as :func:`check_picture` does.
+    Parameters
+    ----------
+    duty : Duty
+        Result of :func:`.duty_of`.
+    path : path
+        File of the picture; its ending says whether it is PNG, SVG or PDF.
+    motor : Motor, optional
+        Its limits are drawn too.
+
+    Raises
+    ------
+    PathError
+        If the file cannot be written.
+    DeclarationError
+        For another ending.
     """
     check_picture(path)
     target = Path(path)

@@ -89,8 +89,19 @@ class Film:
 
 
 def check_ending(path: Path) -> None:
-    """Raise :class:`.DeclarationError` for a name with another ending,
-    :class:`.LagrangeCasadiError` for an MP4 without ffmpeg.
+    """Check that an animation can be written into a file of this name.
+
+    Parameters
+    ----------
+    path : Path
+        Name of the file.
+
+    Raises
+    ------
+    DeclarationError
+        If it has another ending than .gif, .mp4, .svg and .glb.
+    LagrangeCasadiError
+        For an MP4, if ffmpeg is not found.
     """
     if path.suffix.lower() not in ENDINGS:
         raise DeclarationError(
@@ -124,15 +135,32 @@ class Animation:
 def write_animation(
     solution: Solution, path: str | os.PathLike[str], film: Film | None = None
 ) -> Animation:
-    """Write one cycle of a solution as a GIF, an MP4, an animated SVG or glTF, replacing the file
-    at ``path`` whole or not at all.
+    """Write one cycle of a solution as a GIF, an MP4, an animated SVG or glTF.
 
-    What it returns is shown by a notebook.
+    Parameters
+    ----------
+    solution : Solution
+        Has the motion of all bodies, and the forces that are shown.
+    path : path
+        The file, which ends in .gif, .mp4, .svg or .glb. It is replaced whole or not at all.
+    film : Film, optional
+        Width, rate, duration and forces.
 
-    Raises :class:`.DeclarationError` where the solution lacks the motion of its bodies, or forces
-    that are asked for, and where ``path`` has another ending; :class:`.PathError` and
-    :class:`.StoreError` where the file cannot be written; :class:`.LagrangeCasadiError` where an
-    MP4 is asked for and ffmpeg is not found.
+    Returns
+    -------
+    Animation
+        The file; a notebook shows it.
+
+    Raises
+    ------
+    DeclarationError
+        If the solution lacks the motion or the forces, or the ending is another.
+    PathError
+        If the file cannot be written.
+    StoreError
+        If writing fails.
+    LagrangeCasadiError
+        For an MP4, if ffmpeg is not found.
     """
     target, film = Path(path), film or Film()
     check_ending(target)

@@ -21,3 +21,10 @@ Operand: TypeAlias = Any
 
 Json: TypeAlias = str | float | Sequence["Json"] | Mapping[str, "Json"] | None
 """A value that JSON holds."""
+
+
+def spread(size: int, most: int) -> npt.NDArray[np.intp]:
+    """The numbers of so many things, or of at most so many of them that are evenly spread, the
+    first and the last among them.
+    """
+    return np.linspace(0, size - 1, min(size, most)).astype(np.intp)

@@ -11,9 +11,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from ..errors import check_kind
 from .tables import PLANE, SPACE, Quantity, Table, table_of
+
+Value = TypeVar("Value")
 
 FORCES = PLANE.forces
 """The section forces of planar mechanisms."""
@@ -183,3 +186,8 @@ class Output:
 def quotient(unit: str, by: str) -> str:
     """The unit of a derivative: ``N m/m``, and ``N/(kg/m)`` of what is itself one."""
     return unit if by == "1" else f"{unit}/{by}" if by.isalnum() else f"{unit}/({by})"
+
+
+def parts_along(outputs: Mapping[Output, Value], link: str) -> dict[Output, Value]:
+    """The parts of a link's section forces among outputs."""
+    return {o: value for o, value in outputs.items() if o.along and o.part == link}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -57,34 +58,21 @@ def free_command(
     check_target(target)
     law = None if drive is None else _law(drive).geared(geared)
     begin = None if start is None else _numbers("--start", start, 2)
+    machine: dict[str, Any] = {
+        "drive": law,
+        "load": load,
+        "start": begin,
+        "cycle": math.tau * cycle,
+        "count": count,
+        "parameters": parameters(settings),
+        "wanted": want or None,
+    }
     wheel = None
     if fluctuation is not None:
-        wheel = flywheel(
-            loaded.scene,
-            fluctuation=fluctuation,
-            drive=law,
-            load=load,
-            start=begin,
-            cycle=math.tau * cycle,
-            count=count,
-            parameters=parameters(settings),
-            wanted=want or None,
-        )
+        wheel = flywheel(loaded.scene, fluctuation=fluctuation, **machine)
         found = wheel.motion
     else:
-        found = free(
-            loaded.scene,
-            drive=law,
-            load=load,
-            inertia=inertia,
-            start=begin,
-            t=t,
-            steady=steady,
-            cycle=math.tau * cycle,
-            count=count,
-            parameters=parameters(settings),
-            wanted=want or None,
-        )
+        found = free(loaded.scene, inertia=inertia, t=t, steady=steady, **machine)
     for line in _lines(found):
         echo(line)
     if wheel is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import click
@@ -74,15 +74,8 @@ def _describe_file(solution: Solution) -> None:
         first, last = (solution.over.drawn(solution.over.values[k]) for k in (0, -1))
         echo(f"in equal steps of {solution.over.label}: {first:.6g} to {last:.6g}")
     echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
-    echo(
-        f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler}"
-        f" {provenance.flags}".rstrip()
-    )
-    echo(f"method: {provenance.method}")
-    echo(
-        "versions:"
-        f" {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}"
-    )
+    made = (provenance.backend, provenance.precision, provenance.compiler, provenance.flags)
+    _describe_method(made, provenance.method, provenance.versions)
     for note in solution.notes:
         echo(f"note: {note}")
     for line in not_evaluated_lines(solution):
@@ -106,15 +99,16 @@ def _describe_sweep(identity: Identity) -> None:
     )
     if xi:
         echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
-    echo(
-        f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']}"
-        f" {identity['flags']}".rstrip()
-    )
-    echo(f"method: {identity['rung']}")
-    echo(
-        "versions:"
-        f" {', '.join(f'{name} {version}' for name, version in identity['versions'].items())}"
-    )
+    made = (identity["backend"], identity["precision"], identity["compiler"], identity["flags"])
+    _describe_method(made, identity["rung"], identity["versions"])
+
+
+def _describe_method(made: Sequence[str], method: str, versions: Mapping[str, str]) -> None:
+    """Describe the backend, precision, compiler and flags that made numbers, and their method."""
+    backend, *others = made
+    echo(f"backend: {backend}, {' '.join(others)}".rstrip())
+    echo(f"method: {method}")
+    echo(f"versions: {', '.join(f'{name} {version}' for name, version in versions.items())}")
 
 
 def _describe_whole(sweep: Sweep) -> None:

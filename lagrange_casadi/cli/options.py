@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import click
 
@@ -30,6 +30,8 @@ BOUNDS = "NAME=LEAST:LARGEST"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 Number = TypeVar("Number")
+Kind: TypeAlias = "click.ParamType[Any] | Callable[[str], object]"
+"""Reader of an option's value."""
 
 
 class _Path(click.Path):
@@ -265,7 +267,9 @@ def _together(*options: Option) -> Option:
     return decorate
 
 
-def value(name: str, kind: Any, metavar: str, says: str, *, default: float | None = None) -> Option:
+def value(
+    name: str, kind: Kind, metavar: str, says: str, *, default: float | None = None
+) -> Option:
     """A value of a kind, which help shows if it has a default."""
     shown = default is not None
     return click.option(
@@ -274,7 +278,13 @@ def value(name: str, kind: Any, metavar: str, says: str, *, default: float | Non
 
 
 def several(
-    name: str, metavar: str, says: str, *, kind: Any = None, into: str = "", required: bool = False
+    name: str,
+    metavar: str,
+    says: str,
+    *,
+    kind: Kind | None = None,
+    into: str = "",
+    required: bool = False,
 ) -> Option:
     """Values of an option that is repeatable, for the argument ``into``."""
     names = [name, into] if into else [name]

@@ -19,6 +19,9 @@ from ..instants.statistics import Statistics
 _ROUNDING = 5e-7
 """Errors below this share of the largest value of their unit are rounding."""
 _DIGITS = 6
+NOT_FOUND = "; the peak between the instants was not found, use more instants"
+"""End of the line of a peak of which only the ``least`` size is known."""
+
 _INDETERMINATE = "indeterminate"
 _CARDS = {
     ("effort", ""): "effort",
@@ -241,11 +244,7 @@ def peak_line(solution: Solution, peak: Peak, scale: float | None = None, width:
         where = f"{solution.over.shown(peak.over)}, {where}"
     error = error_of(solution, peak.name)
     value = shown(peak, error, _size(peak) if scale is None else scale)
-    more = (
-        ""
-        if peak.least is None
-        else ("; the peak between the instants was not found, use more instants")
-    )
+    more = "" if peak.least is None else NOT_FOUND
     return f"  {peak.name:<{width}} {value:>12} {peak.unit:<4} at {where}{more}"
 
 

@@ -15,7 +15,7 @@ from ..strength.parts import not_evaluated
 from ..strength.safety import Life, Safety
 from ..strength.stress import Stress, StressPeak
 from ..studies.strength_peaks import refine_safety, refine_stress
-from .report import card, ratio
+from .report import NOT_FOUND, card, ratio
 
 _BAR = 40
 _GUESS = 1e3
@@ -150,11 +150,7 @@ def _peak(link: str, peak: StressPeak) -> str:
     )
     least = peak.least
     value = f"{peak.value / 1e6 + 0.0:.6g}" if least is None else f">= {least / 1e6:.6g}"
-    more = (
-        ""
-        if least is None
-        else ("; the peak between the instants was not found, use more instants")
-    )
+    more = "" if least is None else NOT_FOUND
     return f"  {f'stress:{link}:{peak.kind}':<28} {value:>12} MPa  at {where}{more}"
 
 

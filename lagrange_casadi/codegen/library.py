@@ -132,9 +132,8 @@ class Library:
         """Return a function that does what :meth:`evaluate` does, from the contents of the arrays
         when it is called.
         """
-        assert all(
-            rows.ndim == 1 or rows.strides == out.strides or not rows.size for rows in (t, z)
-        )
+        assert t.ndim == 1 or t.strides == out.strides or not t.size
+        assert not z.size or z.strides == out.strides
         n = t.shape[-1]
         call, entry = _instants(t, p, guess, z, out, status), self.entries[EVALUATE]
         share = max(_CUT, self.share())
@@ -145,13 +144,16 @@ class Library:
 
         def evaluate(_kept: object = (t, p, z, out)) -> None:
             self._follow(call, guess, status)
+            if size >= n:
+                entry(call, 0, n)
+                return
             in_threads(lambda i: entry(call, i, min(i + size, n)), range(0, n, size), shares)
 
         return evaluate
 
     def _follow(self, call: ctypes.Structure, guess: Array, status: Status) -> None:
         if not guess.size:
-            status[:] = 0
+            status.fill(0)
             return
         reach = max(1, _LONGEST * _WORTH_A_THREAD // (self.weight * self.steps * _SLOWER))
         for i in range(0, call.n, reach):
@@ -266,8 +268,8 @@ def _instants(
         stride=apart,
         t=t.ctypes.data,
         p=p.ctypes.data,
-        guess=guess.ctypes.data,
-        z=z.ctypes.data,
+        guess=guess.ctypes.data if guess.size else None,
+        z=z.ctypes.data if z.size else None,
         out=None if out is None else out.ctypes.data,
         apart=apart,
         status=status.ctypes.data,

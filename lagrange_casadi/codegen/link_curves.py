@@ -13,6 +13,7 @@ from typing import Any
 
 from ..base.arrays import Expression
 from ..base.tables import SPACE
+from ..declare.density import shifted
 from ..peak_search.polynomials import interpolation
 
 
@@ -187,11 +188,7 @@ def mass_properties_of(
     beyond: tuple[Any, Any, Any] = (0.0, 0.0, 0.0)
     found: list[list[Any]] = []
     for a, b, cell in reversed(list(zip(link.breaks, link.breaks[1:], cells, strict=False))):
-        turned = [
-            (-1) ** j
-            * sum(c * math.comb(n, j) * b ** (n - j) for n, c in enumerate(cell) if n >= j)
-            for j in range(len(cell))
-        ]
+        turned = [(-1) ** j * c for j, c in enumerate(shifted(cell, b))]
         turned += [0.0] * (link.terms - len(turned))
         found.append([*beyond, *turned])
         x = b - a

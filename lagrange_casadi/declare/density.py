@@ -84,9 +84,9 @@ class Density:
         ):
             high, low = 1.0 - u if b == 1.0 else larger(b - u), 0.0 if a == 0.0 else larger(a - u)
             parts = _differences(high, low, len(cell) + 2)
-            for j, shifted in enumerate(_shift(cell, u)):
+            for j, term in enumerate(shifted(cell, u)):
                 for k in range(3):
-                    found[k] = found[k] + shifted * (parts[j + k] / (j + k + 1))
+                    found[k] = found[k] + term * (parts[j + k] / (j + k + 1))
         return found[0] * scale, found[1] * scale, found[2] * scale
 
     def cell_at(self, u: float) -> tuple[Expression, ...]:
@@ -167,9 +167,9 @@ class NumericDensity:
             zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True
         ):
             parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
-            for j, shifted in enumerate(_shift(cell, u) if len(cell) > 1 else cell):
+            for j, term in enumerate(shifted(cell, u) if len(cell) > 1 else cell):
                 for k in range(3):
-                    found[k] = found[k] + shifted * parts[j + k] / (j + k + 1)
+                    found[k] = found[k] + term * parts[j + k] / (j + k + 1)
         return tuple(found)
 
     def at(self, u: Array) -> Array:
@@ -185,20 +185,40 @@ class NumericDensity:
 
 @public
 def uniform(mass: Symbolic) -> Density:
-    """A link of one density throughout, by its whole mass [kg], a number or an expression in
-    parameters.
+    """Return a constant density, by the whole mass of the link.
+
+    Parameters
+    ----------
+    mass : float or casadi.SX
+        Mass of the link [kg], a number or an expression of parameters.
+
+    Returns
+    -------
+    Density
+        Mass per length [kg/m].
     """
     return Density((0.0, 1.0), ((mass,),), per_length=False)
 
 
 @public
 def polynomial(*coefficients: Symbolic) -> Density:
-    """c0 + c1 u + c2 u^2 + ...
+    """Return the density c0 + c1 u + c2 u^2 + ... [kg/m], with u = xi/l.
 
-    [kg/m] with u = xi/l; ``polynomial(a, b - a)`` tapers from a at the base to b at the tip.
+    Parameters
+    ----------
+    *coefficients : float or casadi.SX
+        The coefficients [kg/m], numbers or expressions of parameters. ``polynomial(a, b - a)``
+        tapers from a at the base to b at the tip.
 
-    Coefficients are numbers or expressions in parameters. Raises :class:`DeclarationError` without
-    a coefficient.
+    Returns
+    -------
+    Density
+        Mass per length [kg/m].
+
+    Raises
+    ------
+    DeclarationError
+        Without a coefficient.
     """
     if not coefficients:
         raise DeclarationError("density polynomial: expected at least one coefficient")
@@ -207,10 +227,24 @@ def polynomial(*coefficients: Symbolic) -> Density:
 
 @public
 def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
-    """Linear between values [kg/m] at ratios xi/l that rise from 0 to 1.
+    """Return a density that is linear between values at ratios xi/l.
 
-    Raises :class:`DeclarationError` for tables that do not increase, do not reach from 0 to 1, or
-    are negative.
+    Parameters
+    ----------
+    ratios : sequence of float
+        Ratios xi/l (n,) that increase from 0 to 1.
+    values : sequence of float
+        Mass per length there (n,) [kg/m].
+
+    Returns
+    -------
+    Density
+        Mass per length [kg/m].
+
+    Raises
+    ------
+    DeclarationError
+        If ratios do not increase or do not reach from 0 to 1, or a value is negative.
     """
     u, v = rows("density table", ratios, values, 2)
     if (u[0], u[-1]) != (0.0, 1.0):
@@ -226,16 +260,31 @@ def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
 
 @public
 def thick(density: Density, *, yy: Expression, zz: Expression, yz: Expression = 0.0) -> Density:
-    """A density of slices that have rotary inertia, of a link in space, by second moments of mass
-    per length [kg m].
+    """Return a density of slices that have rotary inertia, for a link in space.
 
-    ``yy``, ``zz`` and ``yz`` are the sums over a slice of y y, z z and y z times mass, on the axes
-    of the link's cross-section: of a homogeneous bar the density of its material times its area's
-    second moments. Each is a number or an expression of parameters, or is given along the
-    link by a function of this module, whose values are then in kg m. A round bar of diameter d has
-    yy = zz = d^2/16 times its mass per length.
+    Parameters
+    ----------
+    density : Density
+        Mass per length [kg/m].
+    yy, zz, yz : float, casadi.SX or Density
+        Second moments of mass per length [kg m]: the sums over a slice of y y, z z and y z times
+        mass, on the axes of the link's cross-section. Each is a number, an expression of
+        parameters, or a function of this module, whose values are then in kg m.
 
-    Raises :class:`DeclarationError` for what is no density.
+    Returns
+    -------
+    Density
+        Mass per length with its second moments.
+
+    Raises
+    ------
+    DeclarationError
+        If ``density`` is not a density.
+
+    Notes
+    -----
+    For a homogeneous bar, the second moments are the density of its material times the second
+    moments of its area. A round bar of diameter d has yy = zz = d^2/16 times its mass per length.
     """
     if not isinstance(density, Density):
         raise DeclarationError(
@@ -254,10 +303,22 @@ def thick(density: Density, *, yy: Expression, zz: Expression, yz: Expression = 
 
 @public
 def along(curve: Curve) -> Density:
-    """A smooth :func:`.curve` through values [kg/m] over the ratio xi/l, from 0 to 1.
+    """Return a density along a smooth curve.
 
-    Raises :class:`DeclarationError` for what is no curve, or does not reach from 0 to 1. A density
-    that is negative between the values is refused where it is used.
+    Parameters
+    ----------
+    curve : Curve
+        A :func:`.curve` through values [kg/m] over the ratio xi/l, from 0 to 1.
+
+    Returns
+    -------
+    Density
+        Mass per length [kg/m]. A value that is negative is refused when the density is used.
+
+    Raises
+    ------
+    DeclarationError
+        If it is not a curve, is periodic, or does not reach from 0 to 1.
     """
     if not isinstance(curve, Curve):
         raise DeclarationError(
@@ -272,15 +333,7 @@ def along(curve: Curve) -> Density:
     for start, cell in zip(curve.starts, curve.cells, strict=True):
         # In powers of the ratio, not of what is beyond the start; by fractions, for these terms
         # nearly cancel.
-        about = Fraction(start)
-        powers = [
-            sum(
-                Fraction(c) * math.comb(j, k) * (-about) ** (j - k)
-                for j, c in enumerate(cell)
-                if j >= k
-            )
-            for k in range(4)
-        ]
+        powers = shifted([Fraction(c) for c in cell], -Fraction(start))
         cells.append(tuple(float(power) for power in powers))
     return Density((*curve.starts, 1.0), tuple(cells), per_length=True)
 
@@ -315,7 +368,7 @@ def _differences(high: Operand, low: Operand, count: int) -> list[Operand]:
     return found
 
 
-def _shift(cell: Sequence[Expression], u: Operand) -> list[Operand]:
+def shifted(cell: Sequence[Expression], u: Operand) -> list[Operand]:
     """Coefficients of p(u + x) as a polynomial in x."""
     return [
         sum(c * math.comb(n, j) * u ** (n - j) for n, c in enumerate(cell) if n >= j)

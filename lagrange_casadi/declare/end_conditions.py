@@ -23,14 +23,33 @@ ENDS: tuple[End, ...] = ("pinned", "clamped", "free", "guided")
 
 @public
 def effective_lengths(description: Description, link: str) -> tuple[float, float]:
-    """The effective lengths of a link as a column over its own, where it bends along y and along z,
-    by the joints at its ends.
+    """Return the effective length factors of a link as a column, from the joints at its ends.
 
-    In a plane a pin lets the end turn and holds it out of the plane; a weld, a slide, or the drive
-    of a pin holds it. A link that is pinned at both ends has 1, one of which an end is held 2, for
-    nothing holds its other end sideways, and held at both 1. Out of the plane a link that is joined
-    at both ends has 1/2, else 2. In space it has 1, or 2 where an end is free. These are the
-    theoretical numbers (Timoshenko and Gere, table of section 2.4).
+    Parameters
+    ----------
+    description : Mapping
+        The description of a solution, ``solution.description``.
+    link : str
+        Name of the link.
+
+    Returns
+    -------
+    tuple of float
+        Effective length over length, for bending along y and along z.
+
+    Raises
+    ------
+    DeclarationError
+        If ``description`` is not that of a solution.
+
+    Notes
+    -----
+    In a plane a pin lets the end rotate in the plane, and holds it out of the plane; a weld, a
+    slide, or the drive of a pin holds it in the plane too. In the plane the factor is 1 if both
+    ends are pinned, 2 if one end is held, because nothing holds the other end sideways, and 1 if
+    both are held. Out of the plane it is 1/2 if both ends have joints, else 2. In space it is 1, or
+    2 if an end is free. These are the theoretical numbers (Timoshenko and Gere, *Theory of Elastic
+    Stability*, section 2.4).
     """
     if not (isinstance(description, Mapping) and {"bodies", "joints"} <= {*description}):
         raise DeclarationError(

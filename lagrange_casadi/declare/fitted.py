@@ -81,20 +81,31 @@ _MAY_BE_ZERO = ("gap", "axial", "radial")
 
 @public
 def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
-    """Say what a joint of a mechanism is made of: of each kind one part at most, for
-    ``safety:JOINT``.
+    """Fit a pin, a plain bearing or a rolling bearing to a joint, for ``safety:JOINT``.
 
     A joint that turns takes all kinds, a bearing of :func:`.two_bearings` a plain or a rolling one,
     and a joint that slides, as a bush of :func:`.two_bushes`, a plain one.
 
-    Raises :class:`.DeclarationError` for a joint of another mechanism or one that takes no such
-    part, for what is none, and for numbers that are not positive.
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Has the joint, and is changed.
+    joint : Joint
+        A revolute or cylindrical joint.
+    *parts : Pin, Plain or Rolling
+        One part of each kind at most.
+
+    Raises
+    ------
+    DeclarationError
+        If the joint is one of another mechanism or takes no such part, if a part is of another
+        type, or if a number is not positive.
     """
     if isinstance(mechanism, type) or not hasattr(mechanism, "own"):
         raise DeclarationError(f"fit: expected a Mechanism first, got {shown(mechanism)}")
-    mechanism.own.joint(joint)
+    mechanism.ownership.joint(joint)
     what = f"joint '{joint.name}'"
-    mechanism.own.refuse_frozen(f"fit {what}")
+    mechanism.ownership.refuse_frozen(f"fit {what}")
     turning = mechanism.turning.get(joint.name)
     if turning == "":
         raise DeclarationError(
@@ -143,7 +154,7 @@ def _checked(mechanism: Mechanism, what: str, name: str, value: float | None) ->
         return value
     if value is None and name in ("pressure", "speed", "heating", "static"):
         return None
-    number = mechanism.own.expression(f"{what}: {name}", value, _UNITS.get(name, "1"))
+    number = mechanism.ownership.expression(f"{what}: {name}", value, _UNITS.get(name, "1"))
     if isinstance(number, float) and not positive(name, number):
         raise DeclarationError(f"{what}: {name} must be positive, got {number:g}")
     return number

@@ -21,6 +21,7 @@ from ..base.symbolic import Graphs, symbolic
 from ..base.units import Number
 from ..beams.beam import Beam
 from ..errors import DeclarationError
+from ..renamed import renamed
 from .density import Density
 from .expressions import bound, check_line, check_name, unit_vector, value_of
 from .fitted import Fitted
@@ -55,6 +56,7 @@ from .validity import demands
 
 
 @public
+@renamed
 @symbolic
 @dataclass(eq=False)
 class Mechanism(Graphs):
@@ -132,8 +134,8 @@ class Mechanism(Graphs):
         return False
 
     @property
-    def own(self) -> Ownership:
-        """Parts and names of the mechanism."""
+    def ownership(self) -> Ownership:
+        """Names, points and expressions of the mechanism, as its declarations check them."""
         return Ownership(self)
 
     @property
@@ -155,10 +157,33 @@ class Mechanism(Graphs):
         low: Number = -math.inf,
         high: Number = math.inf,
     ) -> Expression:
-        """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to
-        build lengths and places from.
+        """Declare a parameter: a number that may change without a new derivation.
+
+        Parameters
+        ----------
+        name : str
+            A letter, then letters, digits or underscores.
+        default : float or str
+            Its value, in ``unit``; a length, mass, time or angle may be a text such as ``"45
+            deg"``.
+        unit : str
+            Its unit, by default none.
+        low, high : float or str
+            Its range, ends included.
+
+        Returns
+        -------
+        casadi.SX
+            Its symbol, for lengths, masses, places, loads and motions.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken.
+        ParameterError
+            If the default is out of the range.
         """
-        self.own.free("parameter", name, self.parameters)
+        self.ownership.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
         default, low, high = (bound(f"parameter '{name}'", x, unit) for x in (default, low, high))
         parameter = Parameter(name, default, unit, low, high, ca.SX.sym(name))
@@ -176,14 +201,38 @@ class Mechanism(Graphs):
         inertia: Expression = None,
         beam: Beam | None = None,
     ) -> Link:
-        """Declare a link of a length [m].
+        """Declare a link: a body with a straight axis from its base to its tip.
 
-        Its mass is one of: ``mass`` [kg] alone, a uniform rod; a ``density`` of :mod:`.density`;
-        that of a ``beam`` of :mod:`.beams` alone; or ``mass``, ``centre`` (in the link's axes [m])
-        and ``inertia`` about the centre [kg m^2], for a body whose sections are not wanted.
+        Parameters
+        ----------
+        name : str
+            Name of the link.
+        length : float, str or casadi.SX
+            Distance of the tip from the base [m].
+        mass : float, str or casadi.SX, optional
+            Mass [kg]. Alone, it is that of a uniform rod.
+        density : Density, optional
+            Mass per length, of :mod:`.density`, in place of ``mass``.
+        centre : tuple, optional
+            Centre of mass (x, y) on the link's axes [m]; with ``mass`` and ``inertia`` the link is
+            a rigid body without sections.
+        inertia : float or casadi.SX, optional
+            Moment of inertia about the centre [kg m^2].
+        beam : Beam, optional
+            Cross-section and material; the mass follows from them unless it is given too.
+
+        Returns
+        -------
+        Link
+            The link. It stands for its base; ``tip`` is its other end, ``at(x, y)`` another point.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken, or the arguments do not determine the mass.
         """
-        self.own.free("link", name, self.bodies)
-        what, checked = f"link '{name}'", self.own.expression
+        self.ownership.free("link", name, self.bodies)
+        what, checked = f"link '{name}'", self.ownership.expression
         beam = beam_of(what, beam, checked)
         mass_properties = mass_properties_of(
             what, mass, density, centre, inertia, checked, beam=beam
@@ -196,16 +245,17 @@ class Mechanism(Graphs):
         )
 
     def point_mass(self, name: str, mass: Expression) -> PointMass:
-        """Declare a mass [kg] without extent, at a point; welded to a link
-        it moves with the link.
+        """Declare a body without extent, with a mass [kg]. It has no direction; welded to a link it
+        moves with the link.
         """
-        self.own.free("point mass", name, self.bodies)
-        body = PointMass(name, self.own.expression(f"point mass '{name}': mass", mass, "kg"))
+        self.ownership.free("point mass", name, self.bodies)
+        body = PointMass(name, self.ownership.expression(f"point mass '{name}': mass", mass, "kg"))
         return cast(PointMass, self.bodies.setdefault(name, body))
 
     def revolute(self, name: str, parent: Body | Point, child: Body | Point) -> Joint:
-        """Pin a point of ``child`` to a point of ``parent``; a link stands for its base, the ground
-        for its origin.
+        """Declare a pin: a point of ``child`` coincides with a point of ``parent``. A link stands
+        for its base, the ground for its origin. The coordinate is the child's angle relative to
+        the parent [rad].
         """
         return self._joint(name, "revolute", parent, child)
 
@@ -218,12 +268,26 @@ class Mechanism(Graphs):
         axis: tuple[Expression, Expression],
         angle: Expression | None = None,
     ) -> Joint:
-        """Let a point of ``child`` slide along ``axis`` (in the parent's axes) through a point of
-        ``parent``.
+        """Declare a guide: a point of ``child`` slides on a line of ``parent``, and the child keeps
+        its angle.
 
-        ``angle`` [rad] is the child's direction against the parent's, 0 if it is not given: a note
-        says so where a link lies across ``axis``. The parent carries the line, loaded where the
-        point is at the moment. The coordinate is the place on it [m].
+        Parameters
+        ----------
+        name : str
+            Name of the joint.
+        parent, child : Link, PointMass, Ground or Point
+            The body with the line, through this point of it, and the body with the sliding point.
+        axis : tuple
+            Direction of the line (x, y), on the parent's axes.
+        angle : float or str, optional
+            Direction of the child relative to the parent [rad], by default 0. If it is not given
+            and a link lies across the line, a note says so.
+
+        Returns
+        -------
+        Joint
+            The joint. Its coordinate is the position along the line [m]; its force acts on the
+            parent at that position.
         """
         return self._joint(name, "prismatic", parent, child, axis, angle)
 
@@ -235,45 +299,69 @@ class Mechanism(Graphs):
         *,
         axis: tuple[Expression, Expression] = (1.0, 0.0),
     ) -> Joint:
-        """Let a pin at a point of ``child`` slide in a slot of ``parent`` along ``axis``, in the
-        parent's axes.
+        """Declare a pin in a slot: a point of ``child`` slides on a line of ``parent`` along
+        ``axis``, on the parent's axes, and the child turns freely.
         """
         return self._joint(name, "slot", parent, child, axis)
 
     def weld(
         self, name: str, parent: Body | Point, child: Body | Point, *, angle: Expression = 0.0
     ) -> Joint:
-        """Fix a point of ``child`` to a point of ``parent``, its direction at ``angle`` [rad, or as
-        text ``"90 deg"``].
+        """Fix a point of ``child`` to a point of ``parent``, with the child's direction at
+        ``angle`` to the parent's [rad, or a text such as ``"90 deg"``].
         """
         return self._joint(name, "weld", parent, child, angle=angle)
 
     def gear(
         self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0
     ) -> Constraint:
-        """Tie two joints: coordinate of ``second`` = ratio (that of ``first``) + offset (or ``"15
-        deg"``); a mesh has -z1/z2.
+        """Couple two joints: the coordinate of ``second`` is ratio times that of ``first`` plus
+        offset [rad or m, or a text such as ``"15 deg"``]. For two gears the ratio is -z1/z2.
         """
         numbers = (
             ("ratio", ratio, "1"),
-            ("offset", offset, "m" if self.own.moving_joint(second)[1].kind == "slide" else "rad"),
+            (
+                "offset",
+                offset,
+                "m" if self.ownership.moving_joint(second)[1].kind == "slide" else "rad",
+            ),
         )
         ratio, offset = (
-            self.own.expression(f"gear '{name}': {word}", value, of) for word, value, of in numbers
+            self.ownership.expression(f"gear '{name}': {word}", value, of)
+            for word, value, of in numbers
         )
         return self.constraint(
             name, self.coordinate(second) - ratio * self.coordinate(first) - offset
         )
 
     def constraint(self, name: str, phi: Expression) -> Constraint:
-        """Declare Phi = 0, an expression of coordinates, places, directions, time and parameters
-        (paper eq. 5); no slope may jump.
+        """Declare a constraint Phi = 0 (paper, eq. 5).
 
-        The force of its multiplier lambda is + lambda dPhi/dq (paper eq. 2). It acts on what Phi is
-        written in: on a joint's coordinate between the joint's bodies, on a place from the ground.
+        Parameters
+        ----------
+        name : str
+            Name of the constraint; its multiplier lambda is the output ``multiplier:NAME``.
+        phi : casadi.SX
+            An expression of coordinates, places, directions, time and parameters, with a continuous
+            slope.
+
+        Returns
+        -------
+        Constraint
+            The constraint.
+
+        Raises
+        ------
+        DeclarationError
+            If it depends on no coordinate, or on rates.
+
+        Notes
+        -----
+        The force is + lambda dPhi/dq (paper, eq. 2). Along a joint's coordinate it acts between the
+        bodies of the joint, along a place or a direction from the ground.
         """
-        self.own.free("constraint", name, self.constraints)
-        phi = self.own.expression(f"constraint '{name}'", phi, moving=True)
+        self.ownership.free("constraint", name, self.constraints)
+        phi = self.ownership.expression(f"constraint '{name}'", phi, moving=True)
         if not isinstance(phi, ca.SX) or not ca.depends_on(phi, self.measures.places):
             raise DeclarationError(
                 f"constraint '{name}' depends on no coordinate; expected an expression of"
@@ -286,16 +374,31 @@ class Mechanism(Graphs):
         return self.constraints.setdefault(name, Constraint(name, phi))
 
     def nonholonomic(self, name: str, expression: Expression, *, replaces: Joint) -> Row:
-        """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq. 3).
+        """Declare a non-holonomic constraint A(q) q' + b = 0 (paper, eq. 3).
 
-        It is an expression that is linear in rates and velocities.
+        Parameters
+        ----------
+        name : str
+            Name of the constraint; its multiplier is the output ``multiplier:NAME``.
+        expression : casadi.SX
+            The left side, linear in rates and velocities.
+        replaces : Joint
+            A driven joint. Its motion is prescribed and must satisfy the constraint; the multiplier
+            of the constraint takes the place of its effort.
 
-        ``replaces`` is a driven joint. Its motion is prescribed and must satisfy the constraint;
-        the constraint's multiplier then takes the place of the joint's effort.
+        Returns
+        -------
+        Row
+            The constraint.
+
+        Raises
+        ------
+        DeclarationError
+            If it is not linear in rates, or another one replaces the same drive.
         """
-        self.own.free("non-holonomic constraint", name, self.rows)
+        self.ownership.free("non-holonomic constraint", name, self.rows)
         what, rates = f"non-holonomic constraint '{name}'", self.measures.rates
-        expression = self.own.expression(what, expression, moving=True)
+        expression = self.ownership.expression(what, expression, moving=True)
         if not isinstance(expression, ca.SX) or not ca.depends_on(expression, rates):
             raise DeclarationError(
                 f"{what} depends on no rate; expected an expression of rate(JOINT) or"
@@ -303,7 +406,7 @@ class Mechanism(Graphs):
             )
         if ca.depends_on(ca.jacobian(expression, rates), rates):
             raise DeclarationError(f"{what} must be linear in the rates")
-        found = Row(name, expression, self.own.joint(replaces).name)
+        found = Row(name, expression, self.ownership.joint(replaces).name)
         for other in self.rows.values():
             if other.replaces == found.replaces:
                 raise DeclarationError(
@@ -320,7 +423,9 @@ class Mechanism(Graphs):
         y: Expression = 0.0,
         turning: bool = False,
     ) -> Force:
-        """Apply a force [N] at a point, in ground axes, or in the body's own where ``turning``."""
+        """Apply a force with the components ``x`` and ``y`` [N] at a point, on ground axes; if
+        ``turning``, on the axes of the body.
+        """
         place = self._load_point(name, point)
         if turning and not place.body.oriented:
             raise DeclarationError(
@@ -343,10 +448,8 @@ class Mechanism(Graphs):
         *,
         against: Body | Point | None = None,
     ) -> Torque:
-        """Apply a torque [N m], counter-clockwise, to a body at a point, and its opposite to
-        another one (default: the ground).
-
-        Where on a link it acts matters to the link's sections only; a link stands for its base.
+        """Apply a torque [N m], counter-clockwise, to a body at a point, and the opposite torque to
+        ``against`` (default: the ground). The point matters only to the sections of a link.
         """
         ends = (
             self._load_point(name, point),
@@ -372,15 +475,17 @@ class Mechanism(Graphs):
         between: Between = None,
         turning: bool = False,
     ) -> LineLoad:
-        """Apply a load [N/m] along a link: a value, a pair for its two ends, or a polynomial as a
-        function of the distance xi [m].
+        """Apply a load [N/m] along a link, on ground axes; if ``turning``, on the link's axes.
 
-        It acts ``between`` two distances from the base, else along the whole link:
-        :class:`.LineLoad`.
+        Each component is one value, a pair of values at both ends of the load, or a function of the
+        distance xi from the base [m] that is a polynomial. The load acts ``between`` two distances
+        from the base, by default along the whole link: see :class:`.LineLoad`.
         """
         return cast(
             LineLoad,
-            self.loads.setdefault(name, line_load(self.own, name, link, (x, y), between, turning)),
+            self.loads.setdefault(
+                name, line_load(self.ownership, name, link, (x, y), between, turning)
+            ),
         )
 
     def spring(
@@ -393,8 +498,8 @@ class Mechanism(Graphs):
         length: Expression,
         damping: Expression = 0.0,
     ) -> Spring:
-        """Stretch a spring [N/m] of a free length [m], with a damper [N s/m] beside it, between two
-        points: :class:`.Spring`.
+        """Put a spring between two points, with stiffness [N/m], free length [m] and damping [N
+        s/m]. Its force acts along the line through both points: see :class:`.Spring`.
         """
         ends = self._load_point(name, first), self._load_point(name, second)
         numbers = [
@@ -407,7 +512,7 @@ class Mechanism(Graphs):
     def damper(
         self, name: str, first: Body | Point, second: Body | Point, *, damping: Expression
     ) -> Spring:
-        """Put a damper [N s/m] between two points."""
+        """Put a damper between two points, with damping [N s/m] along the line through both."""
         return self.spring(name, first, second, stiffness=0.0, length=0.0, damping=damping)
 
     def torsion_spring(
@@ -419,10 +524,10 @@ class Mechanism(Graphs):
         angle: Expression = 0.0,
         damping: Expression = 0.0,
     ) -> Torque:
-        """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint,
-        whose angle counts turns.
+        """Put a torsion spring on a revolute joint, with stiffness [N m/rad], the angle without
+        torque [rad] and damping [N m s/rad]. The joint's angle counts revolutions.
         """
-        if self.own.joint(joint).coordinate != "angle":
+        if self.ownership.joint(joint).coordinate != "angle":
             raise DeclarationError(
                 f"load '{name}': joint '{joint.name}' has no angle for a torsion spring"
             )
@@ -452,34 +557,68 @@ class Mechanism(Graphs):
         smooth: Expression | None = None,
         along: str = "",
     ) -> Friction:
-        """Let a joint rub, a pin or a guide, by what it bears; ``along`` one of two coordinates of
-        it: see :class:`.Friction`.
+        """Declare friction in a joint, which depends on the joint's reaction.
+
+        Parameters
+        ----------
+        name : str
+            Name of the friction, as in ``friction:NAME:along``.
+        joint : Joint
+            A pin, a guide or a slot; in space also a screw, a spherical or a cylindrical joint.
+        mu : float or casadi.SX, optional
+            Friction coefficient.
+        radius : float or casadi.SX, optional
+            Radius of the pin or ball, or mean radius of the thread [m].
+        length : float or casadi.SX, optional
+            Length of the guide, in space the distance of two bearings [m].
+        viscous : float or casadi.SX, optional
+            Viscous coefficient [N m s/rad or N s/m].
+        static, stribeck : float or casadi.SX, optional
+            Coefficient at the start of sliding, and the sliding speed [m/s] within which it falls
+            to ``mu``.
+        smooth : float or casadi.SX, optional
+            Rate [rad/s or m/s] within which the sign of the rate is replaced by a tanh.
+        along : str
+            The coordinate, for a joint of two: ``"slide"`` or ``"turn"``.
+
+        Returns
+        -------
+        Friction
+            The friction, for :attr:`results`.
+
+        Raises
+        ------
+        DeclarationError
+            If the joint has no such friction, or a number that it needs is missing.
         """
         numbers = {"mu": mu, "radius": radius, "length": length, "viscous": viscous}
         numbers |= {"static": static, "stribeck": stribeck, "smooth": smooth}
         return cast(
-            Friction, self.loads.setdefault(name, friction(self.own, name, joint, along, numbers))
+            Friction,
+            self.loads.setdefault(name, friction(self.ownership, name, joint, along, numbers)),
         )
 
     def output(self, name: str, expression: Expression, *, unit: str = "1") -> UserOutput:
-        """Declare an output of one's own, ``output:NAME``, with its unit: an expression of what
-        loads see and of `results`.
+        """Declare an additional output ``output:NAME`` with a unit.
+
+        The expression may use everything that loads may use, and :attr:`results`: accelerations,
+        efforts, reactions, loads, friction, multipliers and section forces.
         """
-        self.own.free("output", name, self.outputs)
+        self.ownership.free("output", name, self.outputs)
         check_line(f"output '{name}': its unit", unit)
         expression = ca.SX(
-            self.own.expression(f"output '{name}'", expression, moving=True, found=True)
+            self.ownership.expression(f"output '{name}'", expression, moving=True, found=True)
         )
         made_of = tuple(asked for asked in self.asked if ca.depends_on(expression, asked.symbol))
         self.outputs[name] = UserOutput(name, expression, unit, made_of)
         return self.outputs[name]
 
     def path(self, name: str, point: Body | Point) -> Path:
-        """Declare a point whose motion a scene may give; outputs NAME_x, NAME_vx, NAME_ax, and of
-        y, are its motion in SI units.
+        """Declare a point whose motion is an output, and may be prescribed by a scene. Its outputs
+        in SI units are NAME_x, NAME_vx, NAME_ax, and the same for y.
         """
-        self.own.free("path", name, self.paths)
-        path = Path(name, self.own.point(f"path '{name}'", point))
+        self.ownership.free("path", name, self.paths)
+        path = Path(name, self.ownership.point(f"path '{name}'", point))
         if path.point.body is self.ground:
             raise DeclarationError(
                 f"path '{name}': a point of the ground does not move; expected a point of a link"
@@ -496,48 +635,52 @@ class Mechanism(Graphs):
         return path
 
     def coordinate(self, joint: Joint, axis: str = "") -> Expression:
-        """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from
-        the start of the scene on.
+        """Return the symbol of a joint's coordinate, for loads and constraints.
 
-        Where a joint has several, ``axis`` names one of them, as ``turn_1``.
+        An angle counts revolutions from the start of the scene. If a joint has several coordinates,
+        ``axis`` names one, as ``turn_1``.
         """
-        return self.measures.joint(*self.own.moving_joint(joint, axis)).places[0]
+        return self.measures.joint(*self.ownership.moving_joint(joint, axis)).places[0]
 
     def rate(self, joint: Joint, axis: str = "") -> Expression:
-        """The symbol of a joint's rate, for loads and non-holonomic rows."""
-        return self.measures.joint(*self.own.moving_joint(joint, axis)).rates[0]
+        """Return the symbol of a joint's rate, for loads and non-holonomic constraints."""
+        return self.measures.joint(*self.ownership.moving_joint(joint, axis)).rates[0]
 
     def place(self, point: Body | Point) -> tuple[Expression, ...]:
-        """The symbols of a point's x and y, and in space z, in ground axes [m], for loads and
-        constraints.
+        """Return the symbols of a point's x and y, in space also z, on ground axes [m], for loads
+        and constraints.
         """
-        return self.measures.point(self.own.point("place", point)).places
+        return self.measures.point(self.ownership.point("place", point)).places
 
     def velocity(self, point: Body | Point) -> tuple[Expression, ...]:
-        """The symbols of a point's velocity in ground axes [m/s], for
-        loads and non-holonomic rows.
+        """Return the symbols of a point's velocity on ground axes [m/s], for loads and
+        non-holonomic constraints.
         """
-        return self.measures.point(self.own.point("velocity", point)).rates
+        return self.measures.point(self.ownership.point("velocity", point)).rates
 
     def direction(self, link: Link) -> Expression:
-        """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts
-        turns as a coordinate does.
+        """Return the symbol of the angle of a link's axis from the ground's x axis [rad]. It counts
+        revolutions as a coordinate does.
         """
-        if not isinstance(body := self.own.point("direction", link).body, Link):
+        if not isinstance(body := self.ownership.point("direction", link).body, Link):
             raise DeclarationError(f"direction: expected a link, got '{body.name}'")
         return self.measures.link(body).places[0]
 
     def set_gravity(self, x: Expression, y: Expression) -> None:
-        """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in
+        """Set the acceleration of gravity [m/s^2] on ground axes, as numbers or expressions of
         parameters.
         """
-        self.own.refuse_frozen("set gravity")
-        self.gravity = (self.own.expression("gravity", x), self.own.expression("gravity", y), 0.0)
+        self.ownership.refuse_frozen("set gravity")
+        self.gravity = (
+            self.ownership.expression("gravity", x),
+            self.ownership.expression("gravity", y),
+            0.0,
+        )
 
     def freeze(self) -> None:
-        """Check the whole and end the declaration.
+        """Check the whole mechanism and end the declaration.
 
-        Raises :class:`DeclarationError` for a part that hangs on nothing.
+        Raises :class:`DeclarationError` for a part that is not connected to the ground.
         """
         if not self.moving:
             raise DeclarationError(f"mechanism '{self.name}' has no link and no point mass")
@@ -545,20 +688,19 @@ class Mechanism(Graphs):
         self.frozen = True
 
     def values(self, overrides: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Every parameter's value, the defaults overridden, checked against the ranges and against
-        what the parts allow.
+        """Return the values of all parameters: the defaults, with ``overrides`` by name.
 
-        Raises :class:`UnknownNameError` for names that are no parameters', :class:`ParameterError`
-        for values that are not finite or out of range, all of them at once, a length that is not
-        positive, a mass or density that is negative, a station outside its link, or a mechanism
-        without any mass.
+        Raises :class:`UnknownNameError` for a name that is not a parameter, and
+        :class:`ParameterError` for values that are not finite, out of their range, or make a part
+        impossible: a length that is not positive, a negative mass or density, a load point outside
+        its link, or a mechanism without mass.
         """
         values = parameter_values(self.parameters, overrides)
         demands(self).check(list(values.values()), lambda e: self.number(e, values))
         return values
 
     def number(self, expression: Expression, values: Mapping[str, float]) -> float:
-        """The value of an expression in the parameters."""
+        """Return the value of an expression of parameters."""
         return value_of(
             expression, {name: one.symbol for name, one in self.parameters.items()}, values
         )
@@ -572,7 +714,7 @@ class Mechanism(Graphs):
         axis: tuple[Expression, Expression] | None = None,
         angle: Expression | None = None,
     ) -> Joint:
-        own, what = self.own, f"joint '{name}'"
+        own, what = self.ownership, f"joint '{name}'"
         own.free("joint", name, self.joints)
         start, end = own.point(what, parent), own.point(what, child)
         if start.body is end.body:
@@ -593,8 +735,8 @@ class Mechanism(Graphs):
         return self.joints.setdefault(name, joint)
 
     def _load_point(self, name: str, place: Body | Point) -> Point:
-        self.own.free("load", name, self.loads)
-        return self.own.point(f"load '{name}'", place)
+        self.ownership.free("load", name, self.loads)
+        return self.ownership.point(f"load '{name}'", place)
 
     def _load(self, name: str, value: Expression, unit: str = "1") -> Expression:
-        return self.own.expression(f"load '{name}'", value, unit, moving=True)
+        return self.ownership.expression(f"load '{name}'", value, unit, moving=True)

@@ -128,20 +128,22 @@ class Results:
         """The symbol of the acceleration of a joint's coordinate; or those of a point's, in ground
         axes [m/s^2].
         """
-        measures, ownership = self.mechanism.measures, self.mechanism.own
+        measures, ownership = self.mechanism.measures, self.mechanism.ownership
         if isinstance(of, Joint):
             return measures.joint(*ownership.moving_joint(of)).accelerations[0]
         return measures.point(ownership.point("acceleration", of)).accelerations
 
     def effort(self, joint: Joint) -> ca.SX:
         """The symbol of the effort of the drive at a joint, along its coordinate."""
-        return self._ask(Output("effort", self.mechanism.own.moving_joint(joint)[1].coordinate))
+        return self._ask(
+            Output("effort", self.mechanism.ownership.moving_joint(joint)[1].coordinate)
+        )
 
     def reaction(self, joint: Joint) -> Force | SpatialForce:
         """The symbols of a joint's reaction: what its parent does to its child, without the drive's
         effort.
         """
-        joint = self.mechanism.own.joint(joint)
+        joint = self.mechanism.ownership.joint(joint)
         return self._force("reaction", joint.name, moment=joint.bears_moment)
 
     def load(self, load: Load) -> Force | SpatialForce:
@@ -174,13 +176,13 @@ class Results:
         The ratio is a number, or an expression of parameters.
         """
         mechanism = self.mechanism
-        body = mechanism.own.point("section", link).body
+        body = mechanism.ownership.point("section", link).body
         if not isinstance(body, Link) or not isinstance(body.mass, Density):
             raise DeclarationError(
                 "section:"
                 f" {no_sections(body.name, link=isinstance(body, Link), links=mechanism.links)}"
             )
-        ratio = mechanism.own.expression(f"section of '{body.name}': ratio", ratio)
+        ratio = mechanism.ownership.expression(f"section of '{body.name}': ratio", ratio)
         if not isinstance(ratio, ca.SX) and not 0.0 <= ratio <= 1.0:
             raise DeclarationError(
                 f"section of '{body.name}': expected a ratio xi/l from 0 to 1, got {ratio:g}"

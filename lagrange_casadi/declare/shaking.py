@@ -74,9 +74,9 @@ def shaking(
         raise DeclarationError(
             f"shaking: expected a place ({', '.join(axes)}) for about, got {about!r}"
         )
-    centre = [mechanism.own.expression("shaking: about", x, "m") for x in about] or [0.0] * len(
-        axes
-    )
+    centre = [mechanism.ownership.expression("shaking: about", x, "m") for x in about] or [
+        0.0
+    ] * len(axes)
     force, moment = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
     for body in mechanism.moving:
         points, moments = _mass_properties(mechanism, body)
@@ -137,7 +137,7 @@ def _mass_properties(
     their axes.
     """
     if not isinstance(body, Link):
-        return [(body.mass, mechanism.own.point("shaking", body))], []
+        return [(body.mass, mechanism.ownership.point("shaking", body))], []
     if isinstance(body.mass, Density):
         base, tip, inertia = body.mass.ends(body.length)
         axis = body.base, body.tip

@@ -92,21 +92,52 @@ class SpatialMechanism(Mechanism):
         inertia: Expression = None,
         beam: Beam | None = None,
     ) -> Link:
-        """Declare a link of a ``length`` [m], or one that lies ``between`` two places of the
-        reference posture.
+        """Declare a link: a body with a straight x axis from its base to its tip.
 
-        Its mass is one of: ``mass`` [kg] alone, a uniform slender rod; a ``density`` of
-        :mod:`.density`, along a slender axis; that of a ``beam`` of :mod:`.beams` alone; or
-        ``mass``, ``centre`` [m] and ``inertia`` about the centre [kg m^2], three moments or a
-        matrix of three rows, for a body whose sections are not wanted. These are on the link's
-        axes; of a link ``between`` places they are on the ground's, in the reference posture. Its y
-        axis is then the part across the link of the direction ``beside``, by default of the
-        ground's axis that is most across it. The link carries it from there; but a bar, slender and
-        between two spherical joints, spins freely about its line: its y axis is the part across it
-        of ``beside``, fixed in the ground, at every instant, and without ``beside`` no stress is
-        evaluated for one that is not round.
+        Parameters
+        ----------
+        name : str
+            Name of the link.
+        length : float, str or casadi.SX, optional
+            Distance of the tip from the base [m], if its position follows from its joint.
+        between : tuple, optional
+            Base and tip in the reference posture, two places (x, y, z) on ground axes [m].
+        beside : tuple, optional
+            For a link ``between`` places: a direction on ground axes whose component across the
+            link is its y axis; by default the ground's axis that is most nearly at right angles to
+            the link.
+        mass : float, str or casadi.SX, optional
+            Mass [kg]. Alone, it is that of a uniform slender rod.
+        density : Density, optional
+            Mass per length, of :mod:`.density`, in place of ``mass``.
+        centre : tuple, optional
+            Centre of mass (x, y, z) [m]; with ``mass`` and ``inertia`` the link is a rigid body
+            without sections.
+        inertia : tuple or matrix, optional
+            Three moments of inertia about the centre, or a matrix of three rows [kg m^2].
+        beam : Beam, optional
+            Cross-section and material; the mass follows from them unless it is given too.
+
+        Returns
+        -------
+        Link
+            The link. It stands for its base; ``tip`` is its other end, ``at(x, y, z)`` another
+            point.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken, or the arguments do not determine the length or the mass.
+
+        Notes
+        -----
+        ``centre`` and ``inertia`` are on the link's axes, for a link ``between`` places on ground
+        axes, in the reference posture. The y axis is fixed in the link, with one exception: a
+        two-force link, slender and between two spherical joints, spins freely. At every instant its
+        y axis is the component of ``beside``, fixed in the ground, across the link. Without
+        ``beside`` its stresses are evaluated only if its cross-section is round.
         """
-        self.own.free("link", name, self.bodies)
+        self.ownership.free("link", name, self.bodies)
         what = f"link '{name}'"
         if (length is None) == (between is None):
             raise DeclarationError(f"{what}: expected its length, or between=, its two ends")
@@ -117,14 +148,14 @@ class SpatialMechanism(Mechanism):
             )
         reference, aside = None, None
         if between is not None:
-            reference, length, aside = lying(what, between, beside, self.own.expression)
+            reference, length, aside = lying(what, between, beside, self.ownership.expression)
 
         def rigid(
             centre: Expression, inertia: Expression
         ) -> tuple[Vector, tuple[Vector, Vector, Vector]]:
             place, moments = (
                 self._vector(f"{what}: centre", centre, "m"),
-                tensor(what, inertia, self.own.expression),
+                tensor(what, inertia, self.ownership.expression),
             )
             return (
                 (place, moments)
@@ -132,13 +163,13 @@ class SpatialMechanism(Mechanism):
                 else (reference.local(place), rotated(moments, reference))
             )
 
-        beam = beam_of(what, beam, self.own.expression)
+        beam = beam_of(what, beam, self.ownership.expression)
         mass_properties = mass_properties_of(
-            what, mass, density, centre, inertia, self.own.expression, rigid, beam
+            what, mass, density, centre, inertia, self.ownership.expression, rigid, beam
         )
         link = Link(
             name,
-            self.own.expression(f"{what}: length", length, "m"),
+            self.ownership.expression(f"{what}: length", length, "m"),
             mass_properties,
             beam,
             beside=aside,
@@ -149,7 +180,7 @@ class SpatialMechanism(Mechanism):
         return link
 
     def at(self, body: Body, x: Expression, y: Expression, z: Expression) -> Point:
-        """The point of a body that is at a place (x, y, z) [m] of the reference posture."""
+        """Return the point of a body at the place (x, y, z) [m] of the reference posture."""
         check_kind("place", body, "a body", Ground, Link, PointMass)
         what = f"place on '{body.name}'"
         return self._reference(what, body).point(body, self._vector(what, (x, y, z), "m"))
@@ -164,7 +195,7 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` turn about ``axis`` through a point of ``parent``; a link stands for its
+        """Let ``child`` turn about ``axis`` through a point of ``parent``. A link stands for its
         base, the ground for its origin.
         """
         return self._spatial(name, "revolute", (parent, child), (axis, None), at, turned)
@@ -180,7 +211,7 @@ class SpatialMechanism(Mechanism):
         turned: Turns = (),
     ) -> Joint:
         """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without
-        turning; as in a plane ``axis`` does not turn the child, ``turned`` does.
+        rotation. ``axis`` does not turn the child, ``turned`` does.
         """
         return self._spatial(name, "prismatic", (parent, child), (axis, None), at, turned)
 
@@ -194,8 +225,8 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` slide along ``axis`` and turn about it:
-        coordinates ``slide`` and ``turn``.
+        """Let ``child`` slide along ``axis`` and turn about it, with the coordinates ``slide`` and
+        ``turn``.
         """
         return self._spatial(name, "cylindrical", (parent, child), (axis, None), at, turned)
 
@@ -211,8 +242,8 @@ class SpatialMechanism(Mechanism):
         turned: Turns = (),
     ) -> Joint:
         """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which
-        it carries itself, at right angles to the first: coordinates ``turn_1`` and ``turn_2``. Both
-        directions are given where the coordinates are zero.
+        the child carries, at right angles to the first. The coordinates are ``turn_1`` and
+        ``turn_2``; both directions are those at zero coordinates.
         """
         return self._spatial(name, "universal", (parent, child), (axis, second), at, turned)
 
@@ -227,12 +258,12 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Hold a point of ``child`` to a point of ``parent``: coordinates ``turn_1``, ``turn_2``,
+        """Hold a point of ``child`` at a point of ``parent``; the coordinates are ``turn_1`` to
         ``turn_3``.
 
-        They are turns about ``axis``, about ``second``, and about the direction at right angles to
-        both, as those before carry it: by default x, y and z. Where the joint closes a loop it has
-        no coordinates.
+        They are rotations about ``axis``, ``second`` and the direction at right angles to both,
+        each turned by those before; by default x, y and z. A joint that closes a loop has no
+        coordinates.
         """
         return self._spatial(name, "spherical", (parent, child), (axis, second), at, turned)
 
@@ -247,10 +278,10 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] a turn: its
-        coordinate is the angle.
+        """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] for each revolution.
+        The coordinate is the angle.
         """
-        pitch = self.own.expression(f"joint '{name}': lead", lead, "m") / math.tau
+        pitch = self.ownership.expression(f"joint '{name}': lead", lead, "m") / math.tau
         return self._spatial(name, "screw", (parent, child), (axis, None), at, turned, pitch)
 
     def planar(
@@ -264,9 +295,9 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` move in the plane through a point of ``parent`` that is normal to ``axis``:
-        coordinates ``slide_1`` along ``second``, ``slide_2`` at right angles to both, and ``turn``
-        about ``axis``.
+        """Let ``child`` move in the plane normal to ``axis`` through a point of ``parent``. The
+        coordinates are ``slide_1`` along ``second``, ``slide_2`` at right angles to both, and
+        ``turn`` about ``axis``.
         """
         return self._spatial(name, "planar", (parent, child), (axis, second), at, turned)
 
@@ -280,9 +311,9 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, and
-        ``child`` turn freely: coordinates ``slide``, and as of a spherical joint. Where the joint
-        closes a loop it has the slide alone.
+        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, while
+        ``child`` turns freely. The coordinates are ``slide`` and those of a spherical joint; a
+        joint that closes a loop has the slide only.
         """
         return self._spatial(name, "slot", (parent, child), (axis, None), at, turned)
 
@@ -309,11 +340,12 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Hold nothing: so the motion of a body's pose is given, or a body flies.
+        """Connect two bodies without any force, to prescribe the pose of ``child``, or to let it
+        fly.
 
-        Coordinates ``slide_1`` to ``slide_3`` are the place of the child's point along ``axis``,
-        ``second`` and the direction at right angles to both, by default the parent's x, y and z;
-        ``turn_1`` to ``turn_3`` are turns as of a spherical joint.
+        The coordinates ``slide_1`` to ``slide_3`` are the position of the child's point along
+        ``axis``, ``second`` and the direction at right angles to both, by default the parent's x, y
+        and z; ``turn_1`` to ``turn_3`` are those of a spherical joint.
         """
         return self._spatial(name, "free", (parent, child), (axis, second), at, turned)
 
@@ -327,7 +359,9 @@ class SpatialMechanism(Mechanism):
         z: Expression = 0.0,
         turning: bool = False,
     ) -> Force:
-        """Apply a force [N] at a point, in ground axes, or in the body's own where ``turning``."""
+        """Apply a force with the components ``x``, ``y`` and ``z`` [N] at a point, on ground axes;
+        if ``turning``, on the axes of the body.
+        """
         load = super().force(name, point, x=x, y=y, turning=turning)
         found = Force(name, load.point, load.x, load.y, turning, self._load(name, z))
         self.loads[name] = found
@@ -344,8 +378,8 @@ class SpatialMechanism(Mechanism):
         against: Body | Point | None = None,
         turning: bool = False,
     ) -> Torque:
-        """Apply a torque [N m] to a body at a point, in ground axes, or in the body's own where
-        ``turning``; and its opposite to another body (default: the ground).
+        """Apply a torque [N m] to a body at a point, on ground axes, or if ``turning`` on the axes
+        of the body, and the opposite torque to ``against`` (default: the ground).
         """
         load = super().torque(name, point, z, against=against)
         across = (self._load(name, x), self._load(name, y))
@@ -357,7 +391,7 @@ class SpatialMechanism(Mechanism):
         """Declare a non-holonomic constraint, as in a plane; ``replaces`` is a driven joint of one
         coordinate.
         """
-        if self.own.joint(replaces).coordinate is None:
+        if self.ownership.joint(replaces).coordinate is None:
             found = ", ".join(axis.coordinate for axis in replaces.axes) or "none"
             raise DeclarationError(
                 f"non-holonomic constraint '{name}': expected a joint of one coordinate, those of"
@@ -382,21 +416,21 @@ class SpatialMechanism(Mechanism):
         between: Between = None,
         turning: bool = False,
     ) -> LineLoad:
-        """Apply a load [N/m] along a link, as in a plane, in ground axes, or in the link's own
-        where ``turning``.
+        """Apply a load [N/m] along a link, as in a plane, on ground axes; if ``turning``, on the
+        link's axes.
         """
-        self.loads[name] = load = line_load(self.own, name, link, (x, y, z), between, turning)
+        self.loads[name] = load = line_load(self.ownership, name, link, (x, y, z), between, turning)
         return load
 
     def set_gravity(self, x: Expression, y: Expression, z: Expression = 0.0) -> None:
-        """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in
+        """Set the acceleration of gravity [m/s^2] on ground axes, as numbers or expressions of
         parameters.
         """
-        self.own.refuse_frozen("set gravity")
+        self.ownership.refuse_frozen("set gravity")
         self.gravity = self._vector("gravity", (x, y, z))
 
     def direction(self, link: Link) -> Expression:
-        """Not in space, where a link has no single angle."""
+        """Refuse: a link in space has no single angle."""
         raise DeclarationError(
             "direction: a link in space has no single angle; use place() of its points, or"
             " coordinate()"
@@ -412,13 +446,13 @@ class SpatialMechanism(Mechanism):
         turned: Turns,
         pitch: Expression = 0.0,
     ) -> Joint:
-        self.own.free("joint", name, self.joints)
+        self.ownership.free("joint", name, self.joints)
         what, (parent, child) = f"joint '{name}'", bodies
-        directions: Triad = triad_of(what, *axes, self.own)
+        directions: Triad = triad_of(what, *axes, self.ownership)
         placed = at is not None
         if at is None:
-            start, end = self.own.point(what, parent), self.own.point(what, child)
-            zero = turned_by(what, turned, self.own)
+            start, end = self.ownership.point(what, parent), self.ownership.point(what, child)
+            zero = turned_by(what, turned, self.ownership)
             near, far = (self.references.get(point.body.name) for point in (start, end))
             if not turned and near and far and start.body.oriented and end.body.oriented:
                 zero, placed = near.directions_of(far), True
@@ -484,7 +518,7 @@ class SpatialMechanism(Mechanism):
                 self.references[body.name] = Reference(place)
         first, second = self._reference(what, parent), self._reference(what, child)
         start, end = (
-            self.own.point(what, one.point(body, place))
+            self.ownership.point(what, one.point(body, place))
             for one, body in ((first, parent), (second, child))
         )
         return start, end, first.directions(directions), first.directions_of(second)
@@ -498,7 +532,7 @@ class SpatialMechanism(Mechanism):
         return self.references[body.name]
 
     def _vector(self, what: str, value: object, unit: str = "1") -> Vector:
-        return vector(what, value, self.own.expression, unit)
+        return vector(what, value, self.ownership.expression, unit)
 
 
 def reference_posture(mechanism: Mechanism) -> dict[str, float]:

@@ -58,24 +58,60 @@ def law_of(given: Law | float | None, what: str) -> Law:
 
 @public
 def torque(value: Symbolic) -> Law:
-    """A constant torque [N m], or force [N] of a drive that slides."""
+    """Return the law of a drive with constant torque or force.
+
+    Parameters
+    ----------
+    value : float or casadi.SX
+        Torque [N m], or force [N] of a drive that slides.
+
+    Returns
+    -------
+    Law
+        The torque or force.
+    """
     constant = _number("torque", value, "N*m")
     return Law(lambda t, angle, speed: constant)
 
 
 @public
 def power(value: Symbolic) -> Law:
-    """A constant power [W]: the torque is power over speed, without bound at rest."""
+    """Return the law of a drive with constant power.
+
+    Parameters
+    ----------
+    value : float or casadi.SX
+        Power [W].
+
+    Returns
+    -------
+    Law
+        The torque power/speed, which is without bound at rest.
+    """
     constant = _number("power", value, "W")
     return Law(lambda t, angle, speed: constant / speed)
 
 
 @public
 def torque_curve(speeds: Sequence[float], torques: Sequence[float]) -> Law:
-    """Torques [N m] at increasing speeds [rad/s], (n,) each, and straight lines between them and
-    beyond.
+    """Return the law of a drive from a table of torques over speeds.
 
-    Raises :class:`.DeclarationError` for speeds that do not increase.
+    Parameters
+    ----------
+    speeds : sequence of float
+        Increasing speeds (n,) [rad/s].
+    torques : sequence of float
+        Torques there (n,) [N m].
+
+    Returns
+    -------
+    Law
+        A torque that is linear between the points and beyond them.
+
+    Raises
+    ------
+    DeclarationError
+        If the speeds do not increase.
     """
     curves.rows("torque_curve", speeds, torques, 2)
     return Law(lambda t, angle, speed: curves.table(speed, speeds, torques))
@@ -83,11 +119,28 @@ def torque_curve(speeds: Sequence[float], torques: Sequence[float]) -> Law:
 
 @public
 def dc_motor(stall_torque: Symbolic, no_load_speed: Symbolic) -> Law:
-    """A DC motor at constant voltage: its torque falls on a line from ``stall_torque`` [N m] at
-    rest to nothing at ``no_load_speed`` [rad/s].
+    """Return the law of a DC motor at constant voltage.
+
+    Parameters
+    ----------
+    stall_torque : float or casadi.SX
+        Torque at rest [N m].
+    no_load_speed : float or casadi.SX
+        Speed without torque [rad/s]. Both are negative for a motor that turns backwards.
+
+    Returns
+    -------
+    Law
+        A torque that falls linearly from rest to the no-load speed.
+
+    Raises
+    ------
+    DeclarationError
+        For numbers of different signs, and for zero.
     """
     stall = _number("dc_motor: stall_torque", stall_torque, "N*m")
     free = _number("dc_motor: no_load_speed", no_load_speed, "rad/s")
+    _check_direction("dc_motor", stall, free)
     return Law(lambda t, angle, speed: stall * (1.0 - speed / free))
 
 
@@ -105,16 +158,24 @@ def induction_motor(
     breakdown_slip
         Slip s_b at which it is reached.
     synchronous_speed
-        Speed of the field [rad/s].
+        Speed of the field [rad/s]; negative as the torque is for a motor that turns backwards.
 
     Returns
     -------
     Law
         The torque over speed; above the synchronous speed the motor brakes.
+
+    Raises
+    ------
+    DeclarationError
+        For torque and speed of different signs, for a slip that is not positive, and for zero.
     """
     most = _number("induction_motor: breakdown_torque", breakdown_torque, "N*m")
     at = _number("induction_motor: breakdown_slip", breakdown_slip, "1")
     field = _number("induction_motor: synchronous_speed", synchronous_speed, "rad/s")
+    _check_direction("induction_motor", most, field)
+    if not isinstance(at, ca.SX) and not at > 0.0:
+        raise DeclarationError(f"induction_motor: breakdown_slip must be positive, got {at:g}")
 
     def graph(_t: Expression, _angle: Expression, speed: Expression) -> Expression:
         slip = 1.0 - speed / field
@@ -125,10 +186,23 @@ def induction_motor(
 
 @public
 def expression(law: Callable[[Expression, Expression, Expression], Expression]) -> Law:
-    """Any law: a function of the symbols t [s], angle [rad or m] and speed [rad/s or m/s] that
-    returns a ``casadi.SX`` expression of them and of parameters [N m or N].
+    """Return a law of a drive from a function.
 
-    Raises :class:`.DeclarationError` for what is no function.
+    Parameters
+    ----------
+    law : callable
+        A function of the symbols t [s], angle [rad or m] and speed [rad/s or m/s] that returns a
+        ``casadi.SX`` expression of them and of parameters [N m or N].
+
+    Returns
+    -------
+    Law
+        The torque or force.
+
+    Raises
+    ------
+    DeclarationError
+        If it is not a function.
     """
     if not callable(law):
         raise DeclarationError(
@@ -139,3 +213,15 @@ def expression(law: Callable[[Expression, Expression, Expression], Expression]) 
 
 def _number(what: str, value: object, unit: str) -> Expression:
     return scalar(what, value, symbols_of(value), "parameter", unit)
+
+
+def _check_direction(motor: str, torque: Expression, speed: Expression) -> None:
+    """Raise :class:`.DeclarationError` if a torque and a speed have different signs, or are zero;
+    expressions of parameters are not known.
+    """
+    known = not isinstance(torque, ca.SX) and not isinstance(speed, ca.SX)
+    if known and not torque * speed > 0.0:
+        raise DeclarationError(
+            f"{motor}: torque and speed must have one sign, because a motor drives in the direction"
+            f" in which it turns; got {torque:g} N m and {speed:g} rad/s"
+        )

@@ -97,7 +97,7 @@ def belt(
         For bodies that do not turn about parallel axes through these points, radii for which the
         pulleys touch, a negative preload, and an efficiency outside 0 to 1.
     """
-    what, ownership = f"belt '{name}'", mechanism.own
+    what, ownership = f"belt '{name}'", mechanism.ownership
     ownership.free("constraint", name, mechanism.constraints)
     ends = ownership.point(what, first), ownership.point(what, second)
     one, two = courses_on(

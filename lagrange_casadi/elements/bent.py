@@ -91,11 +91,11 @@ def bent_bar(
     ]
     if (mass is None) == (per_length is None):
         raise DeclarationError(f"{what}: expected mass= or per_length=")
-    mass = None if mass is None else mechanism.own.expression(f"{what}: mass", mass, "kg")
+    mass = None if mass is None else mechanism.ownership.expression(f"{what}: mass", mass, "kg")
     per_length = (
         None
         if per_length is None
-        else mechanism.own.expression(f"{what}: per_length", per_length, "kg/m")
+        else mechanism.ownership.expression(f"{what}: per_length", per_length, "kg/m")
     )
     directions = [
         [b - a for a, b in zip(*pair, strict=True)] for pair in itertools.pairwise(places)
@@ -124,7 +124,7 @@ def bent_bar(
 def _place(mechanism: Mechanism, what: str, corner: object, size: int) -> list[Expression]:
     if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != size:
         raise DeclarationError(f"{what}: expected {size} numbers, got {corner!r}")
-    return [mechanism.own.expression(what, number, "m") for number in corner]
+    return [mechanism.ownership.expression(what, number, "m") for number in corner]
 
 
 def _length(step: Sequence[Expression]) -> Expression:

@@ -22,11 +22,11 @@ from ..base.arrays import Operand
 from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Constraint, Expression, Ground, Link, Point
+from ..declare.parts import Constraint, Expression, Link, Point
 from ..errors import DeclarationError
 from ..geometry.rotation import direction
 from .cam_profile import CamProfile, profile_of
-from .follower import STEEL, largest_pressure, rise_of, stiffness_of
+from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +148,7 @@ def disc_cam(
         For joints of other kinds, a lift that is no function, and a profile that is undercut with
         the default parameters.
     """
-    what, ownership = f"cam '{name}'", mechanism.own
+    what, ownership = f"cam '{name}'", mechanism.ownership
     ownership.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
@@ -221,33 +221,15 @@ def layout_of(
 
     Raises :class:`.DeclarationError` as that does.
     """
-    ownership = mechanism.own
-    for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
-        if (
-            ownership.joint(joint).kind not in kinds
-            or mechanism.space
-            or not isinstance(joint.parent.body, Ground)
-        ):
-            valid = " or ".join(kinds)
-            raise DeclarationError(
-                f"{what}: expected a {valid} joint whose parent is the ground, in a plane, got"
-                f" '{joint.name}'"
-            )
+    held = held_by(what, mechanism, cam, follower, point, space=False)
     if flat and (roller is not None or point is not None):
         raise DeclarationError(f"{what}: a flat face has neither a roller nor a point")
     if side not in (1, -1):
         raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
-    held = follower.child if point is None else ownership.point(what, point)
-    if held.body is not follower.child.body:
-        raise DeclarationError(
-            f"{what}: its point must be on '{follower.child.body.name}', which joint"
-            f" '{follower.name}' guides"
-        )
-    radius = (
-        0.0
-        if roller is None
-        else _positive(f"{what}: roller", ownership.expression(f"{what}: roller", roller, "m"))
-    )
+    radius: Expression = 0.0
+    if roller is not None:
+        wide = mechanism.ownership.expression(f"{what}: roller", roller, "m")
+        radius = _positive(f"{what}: roller", wide)
     return Layout(cam, follower, held, radius, side)
 
 
@@ -377,7 +359,7 @@ def _contact(
     if here.turned is not None:
         lean = mechanism.direction(cast(Link, touched.body))
         gap = gap + here.moment * _cross(here.turned, (ca.cos(lean), ca.sin(lean)))
-    phi = mechanism.own.expression(f"cam '{name}'", gap, moving=True)
+    phi = mechanism.ownership.expression(f"cam '{name}'", gap, moving=True)
     return mechanism.constraints.setdefault(
         name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
     )

@@ -75,7 +75,7 @@ def cylinder(
     DeclarationError
         For impossible sizes, in space, and as for links and joints.
     """
-    what, ownership = f"cylinder '{name}'", mechanism.own
+    what, ownership = f"cylinder '{name}'", mechanism.ownership
     if mechanism.space:
         raise DeclarationError(
             f"{what}: only a mechanism in a plane has cylinders; in space declare two links and a"

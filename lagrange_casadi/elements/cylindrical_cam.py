@@ -28,12 +28,12 @@ from ..arguments import Count, Elastic, Symbolic, public
 from ..base.arrays import Array
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Constraint, Expression, Ground, Link, Point
+from ..declare.parts import Constraint, Expression, Link, Point
 from ..errors import DeclarationError
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import ZERO, Vector, cross, dot, minus, plus, times
 from .cam_profile import turn_in
-from .follower import STEEL, largest_pressure, rise_of, stiffness_of
+from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
 
 _SAME = 1e-9
 """A cosine, or a share of a size, that is smaller is zero."""
@@ -147,25 +147,10 @@ def cylindrical_cam(
         For joints of other kinds, a roller on the drum's axis or too large for the groove's bends,
         and a lift that is not periodic by a turn.
     """
-    what, ownership = f"cam '{name}'", mechanism.own
+    what, ownership = f"cam '{name}'", mechanism.ownership
     ownership.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
-    for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
-        if (
-            ownership.joint(joint).kind not in kinds
-            or not mechanism.space
-            or not isinstance(joint.parent.body, Ground)
-        ):
-            raise DeclarationError(
-                f"{what}: expected a {' or '.join(kinds)} joint whose parent is the ground, in"
-                f" space, got '{joint.name}'"
-            )
-    held = follower.child if point is None else ownership.point(what, point)
-    if held.body is not follower.child.body:
-        raise DeclarationError(
-            f"{what}: its point must be on '{follower.child.body.name}', which joint"
-            f" '{follower.name}' guides"
-        )
+    held = held_by(what, mechanism, cam, follower, point, space=True)
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
     design = _groove(
@@ -327,7 +312,7 @@ def _contact(
         position = mechanism.place(point)
         off = minus((position[0], position[1], position[2]), there)
         gap = gap + dot(arm, off)
-    phi = mechanism.own.expression(
+    phi = mechanism.ownership.expression(
         f"cam '{name}'", ca.substitute(gap, design.angle, turn), moving=True
     )
     return mechanism.constraints.setdefault(

@@ -13,8 +13,9 @@ import casadi as ca
 import numpy as np
 
 from ..declare.expressions import expressed, sound
+from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Expression
+from ..declare.parts import Expression, Ground, Point
 from ..errors import DeclarationError
 
 _SAMPLED = 37
@@ -43,6 +44,39 @@ def rise_of(
             " of CasADi's expressions, with casadi.sin in place of math.sin"
         )
     return rise
+
+
+def held_by(
+    what: str,
+    mechanism: Mechanism,
+    cam: Joint,
+    follower: Joint,
+    point: Point | None,
+    *,
+    space: bool,
+) -> Point:
+    """The point that a cam moves on its follower, by default where the follower's joint guides it.
+
+    Raises :class:`.DeclarationError` for joints of no cam and follower on the ground, in a plane or
+    in ``space``, and for a point of another body.
+    """
+    for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
+        kind, on_ground = (
+            mechanism.ownership.joint(joint).kind,
+            isinstance(joint.parent.body, Ground),
+        )
+        if kind not in kinds or mechanism.space is not space or not on_ground:
+            raise DeclarationError(
+                f"{what}: expected a {' or '.join(kinds)} joint whose parent is the ground, in"
+                f" {'space' if space else 'a plane'}, got '{joint.name}'"
+            )
+    held = follower.child if point is None else mechanism.ownership.point(what, point)
+    if held.body is not follower.child.body:
+        raise DeclarationError(
+            f"{what}: its point must be on '{follower.child.body.name}', which joint"
+            f" '{follower.name}' guides"
+        )
+    return held
 
 
 STEEL = (210e9, 0.3)
@@ -75,7 +109,7 @@ def largest_pressure(
 
     Raises :class:`.DeclarationError` for a width that is not positive.
     """
-    wide = mechanism.own.expression(f"{what}: width", width, "m")
+    wide = mechanism.ownership.expression(f"{what}: width", width, "m")
     if isinstance(wide, ca.SX):
         wide = wide * sound(wide > 0.0)
     elif wide <= 0.0:

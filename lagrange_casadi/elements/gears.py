@@ -122,7 +122,7 @@ def gears(
         radii, numbers of teeth that are not whole, and angles out of range. Values of parameters
         that violate these are refused as well.
     """
-    what, ownership = f"gears '{name}'", mechanism.own
+    what, ownership = f"gears '{name}'", mechanism.ownership
     ownership.free("constraint", name, mechanism.constraints)
     if hand not in ("right", "left"):
         raise DeclarationError(f"{what}: hand must be 'right' or 'left', got {hand!r}")
@@ -190,7 +190,7 @@ def _teeth(
     right: bool,
 ) -> tuple[Teeth, list[Fit]]:
     """Radii, ratio and angles, and what they must be for other parameters."""
-    ownership, count = mechanism.own, 1 if pair[1].slides else 2
+    ownership, count = mechanism.ownership, 1 if pair[1].slides else 2
     fits: list[Fit] = []
 
     def each(word: str, values: Expression, unit: str = "1") -> list[Expression]:
@@ -281,7 +281,7 @@ def loss_of(
     mu: Expression | None,
 ) -> tuple[Loss, list[Fit]]:
     """The law of a loss. Raises :class:`.DeclarationError` for numbers that cannot be."""
-    ownership = mechanism.own
+    ownership = mechanism.ownership
     if (mu is None) == (pitch.kind == "crossed") or (mu is not None and efficiency is not None):
         raise DeclarationError(f"{what}: expected mu= for crossed axes, efficiency= for others")
     if mu is not None:

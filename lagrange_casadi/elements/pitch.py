@@ -146,15 +146,11 @@ def _bevel(what: str, numbers: Numbers, first: Course, second: Course, teeth: Te
     heights = (r2 + r1 * cosine) / sine, (r1 + r2 * cosine) / sine
     fits = []
     for number, (far, height) in enumerate(zip((one * far1, two * far2), heights, strict=True), 1):
-        got, meant = numbers.of(far), numbers.of(height)
         words = (
             f"the centre of its gear {number} is {{got}} m from where the axes meet; expected"
             " {meant} m by the radii"
         )
-        fit = Fit(words, far, height, r1 + r2)
-        if abs(got - meant) > FITTING * numbers.of(r1 + r2):
-            raise DeclarationError(f"{what}: {fit.refusal(got, meant)}")
-        fits.append(fit)
+        fits.append(_held(what, numbers, Fit(words, far, height, r1 + r2)))
     fits.append(
         Fit(
             "the axes of its gears are {got} m apart; expected {meant} m",
@@ -200,13 +196,9 @@ def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: 
             f"the centre of its gear {number} is {{got}} m beside the line at right angles to both"
             " axes; expected {meant} m"
         )
-        fits.append(Fit(words, dot(away, axis), 0.0, r1 + r2))
+        fits.append(_held(what, numbers, Fit(words, dot(away, axis), 0.0, r1 + r2)))
     words = "its centres are {got} m apart; expected {meant} m as the sum of their radii"
-    fits.append(Fit(words, distance, r1 + r2, r1 + r2))
-    for fit in fits:
-        got, meant = numbers.of(fit.got), numbers.of(fit.meant)
-        if abs(got - meant) > FITTING * numbers.of(r1 + r2):
-            raise DeclarationError(f"{what}: {fit.refusal(got, meant)}")
+    fits.append(_held(what, numbers, Fit(words, distance, r1 + r2, r1 + r2)))
     e = along(away, distance)
     t = cross(u, e)
     cosine, sine = dot(u, v), dot(u, cross(v, e))
@@ -242,9 +234,7 @@ def _rack(what: str, numbers: Numbers, first: Course, second: Course, teeth: Tee
         "the pitch line of its rack is {got} m from the axis of its gear; expected its radius,"
         " {meant} m"
     )
-    fit = Fit(words, distance, radius, radius)
-    if abs(numbers.of(distance) - numbers.of(radius)) > FITTING * numbers.of(radius):
-        raise DeclarationError(f"{what}: {fit.refusal(numbers.of(distance), numbers.of(radius))}")
+    fit = _held(what, numbers, Fit(words, distance, radius, radius))
     _refuse_beside(what, numbers, beside, radius)
     fits = (
         fit,
@@ -266,6 +256,14 @@ def _rack(what: str, numbers: Numbers, first: Course, second: Course, teeth: Tee
         u,
         fits,
     )
+
+
+def _held(what: str, numbers: Numbers, fit: Fit) -> Fit:
+    """A fit that holds. Raises :class:`.DeclarationError` for one that does not."""
+    got, meant = numbers.of(fit.got), numbers.of(fit.meant)
+    if abs(got - meant) > FITTING * numbers.of(fit.size):
+        raise DeclarationError(f"{what}: {fit.refusal(got, meant)}")
+    return fit
 
 
 def _refuse_beside(what: str, numbers: Numbers, beside: Expression, size: Expression) -> None:

@@ -85,7 +85,7 @@ def planetary(
     DeclarationError
         For numbers of teeth that do not fit, and as :func:`.gears`.
     """
-    what, ownership = f"planetary set '{name}'", mechanism.own
+    what, ownership = f"planetary set '{name}'", mechanism.ownership
     if mechanism.space:
         raise DeclarationError(
             f"{what}: only a mechanism in a plane has it; in space declare planets, pins and gears"

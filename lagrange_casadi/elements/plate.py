@@ -85,7 +85,10 @@ def plate(
         if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != 2:
             raise DeclarationError(f"{what}: corner {k}: expected (x, y), got {corner!r}")
         places.append(
-            tuple(mechanism.own.expression(f"{what}: corner {k}", number, "m") for number in corner)
+            tuple(
+                mechanism.ownership.expression(f"{what}: corner {k}", number, "m")
+                for number in corner
+            )
         )
     if (mass is None) == (per_area is None):
         raise DeclarationError(f"{what}: expected mass= or per_area=")
@@ -94,9 +97,9 @@ def plate(
     if isinstance(area, float) and area == 0.0:
         raise DeclarationError(f"{what}: its corners lie on a line")
     plate_mass: Any = (
-        mechanism.own.expression(what, mass, "kg")
+        mechanism.ownership.expression(what, mass, "kg")
         if per_area is None
-        else mechanism.own.expression(what, per_area)
+        else mechanism.ownership.expression(what, per_area)
     )
     whole = plate_mass if per_area is None else ca.fabs(ca.SX(area)) * plate_mass
     farthest = ca.SX(0)

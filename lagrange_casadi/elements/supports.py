@@ -94,7 +94,7 @@ def two_bearings(
     DeclarationError
         If both places are one, ``apart`` is not positive, and as declaring joints does.
     """
-    what, ownership = f"bearings '{name}'", mechanism.own
+    what, ownership = f"bearings '{name}'", mechanism.ownership
     near, *ends = (ownership.point(what, place) for place in (housing, fixed, floating))
     if apart is None and ends[0].body is not ends[1].body:
         raise DeclarationError(
@@ -171,7 +171,7 @@ def two_bushes(
     DeclarationError
         If the bushes are on two bodies or at one place, and as declaring joints does.
     """
-    what, ownership = f"bushes '{name}'", mechanism.own
+    what, ownership = f"bushes '{name}'", mechanism.ownership
     start, near, far = (ownership.point(what, place) for place in (rod, first, second))
     if near.body is not far.body:
         raise DeclarationError(
@@ -212,16 +212,16 @@ def two_bushes(
 def _triad(mechanism: Mechanism, what: str, axis: Vector | None) -> Triad:
     """Directions along an axis, by default x, and across it."""
     if mechanism.space:
-        return triad_of(what, (1.0, 0.0, 0.0) if axis is None else axis, None, mechanism.own)
+        return triad_of(what, (1.0, 0.0, 0.0) if axis is None else axis, None, mechanism.ownership)
     x, y = unit_vector(
         what,
         (1.0, 0.0) if axis is None else axis,
-        lambda component: mechanism.own.expression(f"{what}: axis", component),
+        lambda component: mechanism.ownership.expression(f"{what}: axis", component),
     )
     return (x, y, 0.0), (-y, x, 0.0), (0.0, 0.0, 1.0)
 
 
 def _angle(mechanism: Mechanism, direction: Vector) -> float:
     """Angle of a direction in a plane [rad], with the defaults of parameters."""
-    x, y = (mechanism.own.at_defaults(component) for component in direction[:2])
+    x, y = (mechanism.ownership.at_defaults(component) for component in direction[:2])
     return math.atan2(y, x)

@@ -59,7 +59,7 @@ def wheel(
     DeclarationError
         For impossible sizes.
     """
-    what, ownership = f"wheel '{name}'", mechanism.own
+    what, ownership = f"wheel '{name}'", mechanism.ownership
     if (mass is None) == (width is None):
         raise DeclarationError(f"{what}: expected mass=, or width= and density=")
     outer, inner = (

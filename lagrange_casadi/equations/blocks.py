@@ -159,7 +159,7 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
     for row, k, values in zip(*slopes.sparsity().get_triplet(), np.abs(entries), strict=True):
         sizes[row][unknown[k]] = float(np.where(np.isnan(values), np.inf, values).max())
     found, mechanism = [], multibody.mechanism
-    whole = mechanism.own.at_defaults(extent(mechanism)) if mechanism.space else 1.0
+    whole = mechanism.ownership.at_defaults(extent(mechanism)) if mechanism.space else 1.0
     for k, (loop, row) in enumerate(
         (group, row) for group in loops for row in range(group.residual.numel())
     ):

@@ -30,8 +30,22 @@ _ROUNDS, _TINY = 8, 1e-12
 
 @public
 def critical_stress(slenderness: Numeric, elasticity: Positive, strength: Positive) -> Expression:
-    """The stress at which a column of a slenderness, effective length over radius of gyration,
-    fails: Euler's or Johnson's [Pa].
+    """Return the stress at which a column fails, by Euler's or Johnson's formula.
+
+    Parameters
+    ----------
+    slenderness : float, array or casadi.SX
+        Effective length over radius of gyration.
+    elasticity : float
+        Young's modulus [Pa].
+    strength : float
+        Yield strength [Pa].
+
+    Returns
+    -------
+    float, array or casadi.SX
+        The critical stress [Pa]: pi^2 E/slenderness^2 (Euler), or Johnson's parabola above half the
+        yield strength.
     """
     with np.errstate(divide="ignore"):
         return _critical(np.pi**2 * elasticity / np.asarray(slenderness, float) ** 2, strength)

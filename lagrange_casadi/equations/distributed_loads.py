@@ -14,7 +14,6 @@ Each is a product, so nothing cancels: not where the load ends, and not of a sho
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -23,7 +22,7 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.tables import Terms, table_of
-from ..declare.density import Density
+from ..declare.density import Density, shifted
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Vector
 from .checks import Column
@@ -93,11 +92,7 @@ def rotary(
 
 def _from(cell: Sequence[Expression], end: float, width: float) -> list[Expression]:
     """A polynomial of u = end - width s as one of s."""
-    return [
-        (-width) ** j
-        * sum(c * math.comb(n, j) * end ** (n - j) for n, c in enumerate(cell) if n >= j)
-        for j in range(len(cell))
-    ]
+    return [(-width) ** j * c for j, c in enumerate(shifted(cell, end))]
 
 
 def _unnamed(mechanism: Mechanism, word: str) -> Iterator[str]:

@@ -181,9 +181,9 @@ class Program(Graphs):
     @symbolic_property
     def section(self) -> Mapping[str, ca.Function]:
         """By the name of each of :attr:`links`, ``section(law, acting, p, xi) -> forces``: the
-        forces of :attr:`.Table.forces` [N, N m] at the ratio ``xi``, on the tip's side.
+        forces of the table [N, N m] at the ratio ``xi``, on the tip's side.
 
-        ``law`` and ``acting`` are the outputs of :class:`.SectionInputs`, in their order.
+        ``law`` and ``acting`` are those of the link, in the order of the outputs.
         """
         found, p = {}, self.data.symbols
         for link in self.links:

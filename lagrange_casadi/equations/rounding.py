@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -105,32 +105,28 @@ def _closed(scene: Scene, mechanism: Mechanism, size: float) -> Mechanism | None
     return _shared(mechanism, found, size)
 
 
+def _gaps(
+    declared: Mechanism, values: Mapping[str, float], pairs: Iterable[tuple[Vector, Vector]]
+) -> list[float]:
+    """Distances between vectors, for values of the parameters."""
+    residuals = [ca.norm_2(ca.vertcat(*minus(one, other))) for one, other in pairs]
+    gaps = ca.Function("gaps", [declared.symbols], [ca.vertcat(*residuals)])
+    found: list[float] = np.ravel(gaps([*values.values()]).full()).tolist()
+    return found
+
+
 def _moves(
     declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float]
 ) -> dict[str, tuple[float, float]]:
     """Displacements of axes [rad] and places [m] of joints, on one body or the other, by joint."""
-    changed = {
-        name: joint
-        for name, joint in mechanism.joints.items()
-        if joint is not declared.joints[name]
-    }
     found = {}
-    for name, joint in changed.items():
-        residuals = [
-            ca.norm_2(ca.vertcat(*minus(one, other)))
-            for one, other in zip(_where(joint), _where(declared.joints[name]), strict=True)
-        ]
-        *angles, near, far = np.ravel(
-            ca.Function("gaps", [declared.symbols], [ca.vertcat(*residuals)])(
-                [*values.values()]
-            ).full()
-        )
-        found[name] = max(angles), max(near, far)
-    return {
-        name: (float(angle), float(distance))
-        for name, (angle, distance) in found.items()
-        if angle or distance
-    }
+    for name, joint in mechanism.joints.items():
+        before = declared.joints[name]
+        if joint is not before:
+            pairs = zip(_where(joint), _where(before), strict=True)
+            *angles, near, far = _gaps(declared, values, pairs)
+            found[name] = max(angles), max(near, far)
+    return {name: by for name, by in found.items() if any(by)}
 
 
 def _moved_loads(
@@ -139,18 +135,12 @@ def _moved_loads(
     """Displacements of points of loads, as for joints."""
     found = {}
     for name, load in mechanism.loads.items():
-        if load is not declared.loads[name] and not isinstance(load, Friction):
-            pairs = zip(load.points, declared.loads[name].points, strict=True)
-            residuals = [
-                ca.norm_2(ca.vertcat(*minus(one.place, other.place))) for one, other in pairs
-            ]
-            far = np.ravel(
-                ca.Function("gaps", [declared.symbols], [ca.vertcat(*residuals)])(
-                    [*values.values()]
-                ).full()
-            )
-            found[name] = 0.0, float(far.max())
-    return {name: by for name, by in found.items() if by[1]}
+        before = declared.loads[name]
+        if load is not before and not isinstance(load, Friction):
+            points = zip(load.points, before.points, strict=True)
+            pairs = [(one.place, other.place) for one, other in points]
+            found[name] = 0.0, max(_gaps(declared, values, pairs))
+    return {name: by for name, by in found.items() if any(by)}
 
 
 def _where(joint: Joint) -> list[Vector]:
@@ -193,9 +183,7 @@ def _barred(mechanism: Mechanism, limit: float) -> Mechanism:
 
 def _loaded(load: Load, put: Callable[[Point], Point]) -> Load:
     moved: dict[str, Any] = {
-        joints_of_link.name: put(getattr(load, joints_of_link.name))
-        for joints_of_link in fields(load)
-        if joints_of_link.type == "Point"
+        one.name: put(getattr(load, one.name)) for one in fields(load) if one.type == "Point"
     }
     return replace(load, **moved) if moved else load
 

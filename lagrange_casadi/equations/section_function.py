@@ -23,7 +23,7 @@ import casadi as ca
 
 from ..arithmetic.scalars import column
 from ..base.arrays import Expression, Operand
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, Terms, table_of
 from ..beams.properties import larger, smaller
@@ -164,9 +164,7 @@ class SectionInputs:
     @classmethod
     def of(cls, outputs: Iterable[Output], link: str) -> SectionInputs:
         """Make it for a link, among others; for a distributed load with its directions."""
-        of_link = dict.fromkeys(
-            output for output in outputs if output.along and output.part == link
-        )
+        of_link = parts_along(dict.fromkeys(outputs), link)
         table = table_of(Output("law", link, "mx0") in of_link)
         acting = [
             Output("station", link, member, name)

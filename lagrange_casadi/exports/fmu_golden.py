@@ -12,7 +12,7 @@ from ..portable.text import template
 from .fmu_description import Description
 
 FILE = "resources/golden.csv"
-"""Where they are in the unit."""
+"""Path of the golden vectors in the unit."""
 
 
 def golden_vectors(description: Description) -> str:

@@ -51,7 +51,18 @@ _FILE = re.compile(r"[A-Za-z0-9_-]+")
 
 @public
 def default_figures(solution: Solution) -> tuple[Spec, ...]:
-    """The usual drawings of whatever a solution holds, but for the welds inside bent bars."""
+    """Return the specifications of the usual figures of a solution.
+
+    Parameters
+    ----------
+    solution : Solution
+        Result of :func:`.evaluate`.
+
+    Returns
+    -------
+    tuple of Spec
+        Specifications for all that the solution has, without the welds inside bent bars.
+    """
     specs: list[Spec] = []
     internal = bends_of(solution.description)
     groups: dict[tuple[str, str], list[str]] = {}
@@ -122,12 +133,32 @@ def draw(
     si: bool = False,
     svg: bool = False,
 ) -> Iterator[tuple[Spec, Path | None]]:
-    """Draw specs, or the usual ones where there are none, into an existing folder, one by one, as
-    PNG or as SVG.
+    """Draw figures of a solution into a folder, one by one.
 
-    Axes have the units that people read, as kN and mm where numbers call for them; with ``si``
-    those of SI, without prefixes. The path is None where the solution lacks what a spec draws.
-    Raises :class:`DeclarationError` for what is no spec.
+    Parameters
+    ----------
+    solution : Solution
+        Result of :func:`.evaluate`.
+    specs : sequence of Spec
+        Specifications of the figures; the usual ones if there are none.
+    folder : path
+        An existing folder.
+    si : bool
+        Show SI units without prefixes, in place of readable ones such as kN and mm.
+    svg : bool
+        Write SVG in place of PNG.
+
+    Yields
+    ------
+    tuple of Spec and Path
+        Each specification with its file, or None if the solution lacks what it shows.
+
+    Raises
+    ------
+    DeclarationError
+        For what is not a specification.
+    PathError
+        If the folder does not exist.
     """
     chosen, folder = specs or default_figures(solution), Path(folder)
     ending = ending_of(svg)

@@ -16,7 +16,7 @@ from typing import Any
 from ..arguments import public
 from ..base.publish import check_writable, writing
 from ..declare.scene import Scene
-from ..errors import ModelFileError, PathError
+from ..errors import LagrangeCasadiError, ModelFileError, PathError
 from . import asmt, json_model, mjcf, sdf, urdf
 from .as_case import case_text
 from .checks import checked
@@ -60,7 +60,10 @@ def read(path: str | os.PathLike[str]) -> Scene:
     """
     name: dict[str, Any] = {"__name__": "lagrange_casadi_case"}
     exec(compile(case_of(path), f"<{Path(path).name}>", "exec"), name)  # our own text, see as_case
-    scene: Scene = name["scene"]()
+    try:
+        scene: Scene = name["scene"]()
+    except LagrangeCasadiError as error:
+        raise ModelFileError(f"{Path(path).name}: {error}") from None
     return scene
 
 

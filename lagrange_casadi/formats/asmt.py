@@ -71,7 +71,7 @@ _MOTIONS = {
     "RotationalMotion": ("RotationZ", "turn", "revolute"),
     "TranslationalMotion": ("TranslationZ", "slide", "prismatic"),
 }
-"""Where the law of a motion is, its coordinate, and the kind of joint that has it alone."""
+"""Property with the law of a motion, its coordinate, and the kind of joint that has it alone."""
 
 _HEADS = ("freeCAD: 3D CAD with Motion Simulation  by  askoh.com", "OndselSolver")
 _DEEPEST = 40

@@ -15,7 +15,18 @@ import numpy as np
 from ..base.arrays import Array
 from ..errors import MissingPackageError, shown
 from .elements import Element, parsed
-from .record import GROUND, Body, Coupling, Frame, Joint, Model, about_axis, rotation, turned
+from .record import (
+    GROUND,
+    LARGEST,
+    Body,
+    Coupling,
+    Frame,
+    Joint,
+    Model,
+    about_axis,
+    rotation,
+    turned,
+)
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -48,8 +59,12 @@ def read(path: Path, text: str) -> Model:
 
 
 def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -> None:
-    """Raise :class:`.ModelFileError` for a file outside of the folder; included ones are read."""
+    """Raise :class:`.ModelFileError` for a file outside of the folder, and for a number that no
+    machine has; included files are read.
+    """
     for key, data in line.given.items():
+        if any(map(_gigantic, data.split())):
+            raise line.refuse(f"{key}: expected numbers of at most {LARGEST:g}, got {shown(data)}")
         if key not in (*_FOLDERS, *_FILES):
             continue
         there = (base / data).resolve()
@@ -62,6 +77,13 @@ def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -
             _inside(model, folder, parsed(model, included, ""), there.parent, depth + 1)
     for one in line.inside:
         _inside(model, folder, one, base, depth)
+
+
+def _gigantic(word: str) -> bool:
+    try:
+        return abs(float(word)) > LARGEST and not word.strip("+-").isalpha()
+    except ValueError:
+        return False
 
 
 class _Reader:

@@ -227,10 +227,12 @@ class Model:
 
     def add(self, part: type[Part], stated: str, where: str, *given: Any) -> str:
         """Add a body, joint, coupling or tie under its name of the file; return its name here."""
+        parts: dict[type[Part], dict[str, Any]] = {Body: self.bodies, Coupling: self.couplings}
+        parts |= {Joint: self.joints, Tie: self.ties}
         kind = "joint" if part is Tie else part.__name__.lower()
-        taken = {**self.joints, **self.ties} if kind == "joint" else self._parts[part]
+        taken = {**self.joints, **self.ties} if kind == "joint" else parts[part]
         name = self.name_of(kind, stated, where, taken)
-        self._parts[part][name] = replace(part(name, *given), where=where)
+        parts[part][name] = replace(part(name, *given), where=where)
         return name
 
     def find(self, kind: str, stated: str, where: str) -> str:
@@ -239,10 +241,6 @@ class Model:
             return self.named[kind, stated]
         valid = ", ".join(name for of, name in self.named if of == kind)
         raise self.refuse(where, f"unknown {kind} {shown(stated)}; valid: {valid}")
-
-    @property
-    def _parts(self) -> dict[type, dict[str, Any]]:
-        return {Body: self.bodies, Joint: self.joints, Coupling: self.couplings, Tie: self.ties}
 
     def frame_of(self, body: str) -> Frame:
         """Return where a body is in the reference posture."""

@@ -29,7 +29,10 @@ from .machine import ROW, Machine
 ACCURACY = 1e-12
 """Relative error of a step of integration."""
 
-_MOST_EVALUATIONS = 4_000_000
+_MOST_EVALUATIONS, _LOOKED = 4_000_000, 200_000
+"""Evaluations that a whole run may take; and after how many it is compared with its share of them.
+"""
+
 _LEAST = 1e-9
 """Share of the whole time by which a run must go on after a stop."""
 
@@ -332,7 +335,8 @@ def _integrated(
         if way == 0.0:
             events.append(Event("held", t, float(state[0]), 0.0))
             break
-        rates = _Rates(machine, way, (t, float(state[0]), float(state[1])))
+        ends, last = (float(times[0]), end), (t, float(state[0]), float(state[1]))
+        rates = _Rates(machine, way, ends, last)
         run = solve_ivp(
             *(rates, (t, end), state),
             method="DOP853",
@@ -367,21 +371,25 @@ def _integrated(
 class _Rates:
     """The rates of the states of a machine that moves one ``way``: what depends on that, as a
     friction, stays as it is up to where the machine is at rest and beyond, so that
-    nothing jumps before rest is found. ``last`` is the last time, coordinate and rate at which it
-    was finite.
+    nothing jumps before rest is found. ``ends`` are the first and the last time of the run, and
+    ``last`` the last time, coordinate and rate at which it was finite.
     """
 
     machine: Machine
     way: float
+    ends: tuple[float, float]
     last: tuple[float, float, float]
 
     def __call__(self, t: float, y: Array) -> list[float]:
         machine, angle, speed = self.machine, float(y[0]), float(y[1])
-        if machine.evaluations > _MOST_EVALUATIONS:
-            raise LagrangeCasadiError(
-                f"free machine '{machine.name}': after {_MOST_EVALUATIONS} evaluations the run has"
-                f" only reached t = {t:.6g} s; expected a shorter time or a coarser accuracy"
-            )
+        if machine.evaluations > _LOOKED:
+            share = (t - self.ends[0]) / (self.ends[1] - self.ends[0])
+            if machine.evaluations > 2.0 * share * _MOST_EVALUATIONS:
+                raise LagrangeCasadiError(
+                    f"free machine '{machine.name}': after {machine.evaluations} evaluations the"
+                    f" run has only reached t = {t:.6g} s, rate {speed:.6g}; a law is stiff or"
+                    " jumps back and forth there, or the time is too long for the accuracy"
+                )
         slow = self.way * speed < _SLOW
         a, drive, load, taken = machine.at(t, angle, self.way * _SLOW if slow else speed)[_RATES]
         if math.isfinite(a):

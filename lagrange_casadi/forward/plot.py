@@ -18,12 +18,26 @@ from .motion import FreeMotion
 @public
 @one_at_a_time()
 def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
-    """Draw the torque that a machine needs on its drive over the coordinate, what the drive gives,
-    and the speed, into a file.
+    """Draw torques and speed of a free machine over its coordinate, into a file.
 
-    The torque needed is the one that would turn the machine evenly at the speed that it has. Areas
-    above its mean are energy that the speed pays, those below are energy that it gets back. Raises
-    as :func:`check_picture` does.
+    Parameters
+    ----------
+    motion : FreeMotion
+        Result of :func:`.free`.
+    path : path
+        File of the picture; its ending says whether it is PNG, SVG or PDF.
+
+    Raises
+    ------
+    PathError
+        If the file cannot be written.
+    DeclarationError
+        For another ending.
+
+    Notes
+    -----
+    The required torque is the one that would keep the present speed constant. The areas between it
+    and the torque of the drive are the energy that changes the speed.
     """
     check_picture(path)
     from matplotlib.figure import Figure

@@ -49,7 +49,7 @@ class Basis:
 
     @cached_property
     def functions(self) -> tuple[Functions, Functions]:
-        """Both."""
+        """Functions of a force, and of a bending moment."""
         # Width and end are those of the first instant; of n laws, which have (n, t), ratios give
         # (n, u).
         spans = [

@@ -87,8 +87,8 @@ class Functions:
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """What changes over time in a grid: ``columns`` that go with functions along a link, and
-    ``loads``.
+    """Factors of a grid that change over time: ``columns``, which go with functions along the link,
+    and ``loads``.
 
     With two ``planes`` there are as many columns and loads for each, one plane's after the other's,
     and the grid is the size of both sums.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from ..base.arrays import Array
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..base.tables import PLANE, Table
 from ..declare.density import NumericDensity
 from ..declare.limits import END
@@ -65,9 +65,8 @@ def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLA
     members = {of.acting for of in terms} | {
         table.sections[of.shear].acting for of in terms if of.arm
     }
-    of_link = (output for output in outputs if output.along and output.part == link)
     return [
         output
-        for output in of_link
+        for output in parts_along(dict.fromkeys(outputs), link)
         if output.member in (members if output.load_point else coefficients)
     ]

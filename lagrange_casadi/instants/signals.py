@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array, Operand
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..base.status import Status
 from ..base.tables import table_of
 from ..codegen.search import Search
@@ -70,7 +70,7 @@ def section_forces(
     """
     body = description["bodies"][link]
     length, density = body["length"], density_of(body)
-    of_link = {output: k for output, k in rows.items() if output.along and output.part == link}
+    of_link = parts_along(rows, link)
     return {
         force: SectionForce(force, link, of_link, length, density)
         for force in table_of(in_space(description)).forces

@@ -20,6 +20,8 @@ def largest(values: Array, axis: int | None = None) -> Array:
     only where nothing else is.
     """
     sizes = np.abs(values)
+    if axis is None and not np.isnan(sizes.flat[place := np.argmax(sizes)]):  # else a NaN is there
+        return np.asarray(place)
     return np.asarray(np.argmax(np.where(np.isnan(sizes), -1.0, sizes), axis=axis))
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
@@ -365,7 +364,7 @@ class Solution:
     def unit(self, name: str | Output) -> str:
         """The unit of a quantity by its full name, as text: ``N m``."""
         output = self._output(name)
-        if output.group not in ("certificate", "holding") and not self._over_time(output):
+        if output.group not in ("certificate", "holding") and not self._series(output):
             self._of_section(output)
         return output.unit(self._kinds)
 
@@ -375,8 +374,7 @@ class Solution:
         ``reaction:JOINT:resultant`` is the size of the force.
         """
         output = self._output(name)
-        if self._over_time(output):
-            values = [self.outputs[component] for component in self.made_of(output)]
+        if values := self._series(output):
             return values[0] if len(values) == 1 else size_of(values)
         return self._of_section(output).array(output.member)
 
@@ -385,7 +383,7 @@ class Solution:
         link, and its ratio xi/l.
         """
         output = self._output(name)
-        if self._over_time(output):
+        if output.group != "section":
             return self.array(output), None
         places, values = self._of_section(output).law.extreme(output.member)
         return values, places
@@ -480,15 +478,17 @@ class Solution:
         return {link: Section(law, self.xi) for link, law in laws.items()}
 
     def _output(self, name: str | Output) -> Output:
-        with suppress(KeyError):
+        try:
             output = Output.of(name)
-            if output.meant(self.table):
-                return output
-        raise UnknownNameError("quantity", str(name), self.names())
+            output.meant(self.table)
+        except KeyError:
+            raise UnknownNameError("quantity", str(name), self.names()) from None
+        return output
 
-    def _over_time(self, output: Output) -> bool:
-        """Return whether a quantity is a series of the solution, or the size of series."""
-        return any(component in self.outputs for component in output.components(self.table))
+    def _series(self, output: Output) -> list[Array]:
+        """The series whose size a quantity is, or itself; none of a section force."""
+        components = output.components(self.table)
+        return [self.outputs[component] for component in components if component in self.outputs]
 
     def _of_section(self, output: Output) -> Section:
         """The section that a section force is of."""

@@ -46,7 +46,10 @@ class Statistics:
     def over(cls, name: str, unit: str, t: Array, values: Array) -> Statistics:
         """Make them from values (t,) at increasing times."""
         counts = counted(values)
-        weights, there = shares(t, counts), np.where(counts, values, 0.0)
+        weights, there = (
+            shares(t, counts),
+            values if counts.all() else np.where(counts, values, 0.0),
+        )
         chosen = (*_ends(values, values), largest(values))
         ends = (Extreme(float(values[i]), float(t[i])) for i in map(int, chosen))
         return cls(name, unit, float(there @ weights), float(np.sqrt(there**2 @ weights)), *ends)
@@ -68,6 +71,9 @@ class Statistics:
 
 def _ends(low: Array, high: Array) -> tuple[Operand, Operand]:
     """Places of the smallest and largest values; NaN is neither."""
+    ends = np.argmin(low), np.argmax(high)
+    if not (np.isnan(low[ends[0]]) or np.isnan(high[ends[1]])):  # either is the place of a NaN
+        return ends
     return np.argmin(np.where(np.isnan(low), np.inf, low)), np.argmax(
         np.where(np.isnan(high), -np.inf, high)
     )
@@ -99,7 +105,9 @@ def shares(t: Array, counts: npt.NDArray[np.bool_] | None = None) -> Array:
     Where there is no such step, the instants that count have equal parts; NaN where none does.
     """
     weights, counts = np.zeros(t.size), np.ones(t.size, bool) if counts is None else counts
-    steps = np.where(counts[:-1] & counts[1:], np.diff(t), 0.0)
+    steps = t[1:] - t[:-1]
+    if not counts.all():
+        steps = np.where(counts[:-1] & counts[1:], steps, 0.0)
     weights[:-1] += steps
     weights[1:] += steps
     if weights.any():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arrays import spread
 from ..instants.ordering import ordered
 from ..instants.solution import Solution
 
@@ -25,8 +26,7 @@ def shown_instants(solution: Solution) -> npt.NDArray[np.intp]:
     most = max(LEAST, MOST // max(varying + largest, 1))
     if total <= most:
         return np.arange(total)
-    distributed = np.unique(np.linspace(0, total - 1, most).astype(np.intp))
-    return np.unique(np.concatenate([distributed, np.array(_peaks(solution), np.intp)]))
+    return np.unique(np.concatenate([spread(total, most), np.array(_peaks(solution), np.intp)]))
 
 
 def _peaks(solution: Solution) -> list[int]:

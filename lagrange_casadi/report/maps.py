@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Array, Json
+from ..base.arrays import Array, Json, spread
 from ..instants.solution import Solution
 from ..instants.statistics import counted
 from ..strength.parts import bending_of, strong_of
@@ -105,7 +105,7 @@ def _ratios() -> Array:
 
 def _instants(solution: Solution, t: float) -> Array:
     total = solution.t.size
-    distributed = np.linspace(0, total - 1, min(total, INSTANTS)).astype(np.intp)
+    distributed = spread(total, INSTANTS)
     return np.unique(np.append(distributed, int(np.argmax(solution.t == t))))
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import enum
 import itertools
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -130,17 +131,17 @@ class MovingPeaks:
         """The parameters."""
         return self.ends.p
 
-    @property
+    @cached_property
     def span(self) -> float:
         """The time from the first to the last instant [s]."""
         return float(self.instants[-1] - self.instants[0])
 
-    @property
+    @cached_property
     def step(self) -> float:
         """The time between two instants [s]."""
         return self.span / max(self.instants.size - 1, 1)
 
-    @property
+    @cached_property
     def near(self) -> float:
         """Distance from a kink, a jump or an end within which a peak is at it [s]."""
         return SIDE * self.step + 2 * SPACING * max(abs(float(self.instants[k])) for k in (0, -1))
@@ -196,24 +197,28 @@ class MovingPeaks:
         along the link is found by differences.
         """
         value, t, xi = peaks
-        q, moving = t.size, (~stay).nonzero()[0]
-        inner = (~stay & (xi > _NUDGE) & (xi < 1.0 - _NUDGE)).nonzero()[0]
-        nudge = _NUDGE * self.step
-        later = np.where(t + nudge <= self.instants[-1], nudge, -nudge)[moving]
-        times = np.concatenate([t, t[moving] + later])
-        z = self.slopes.iterated(self.instants, self.p, times)
-        where = np.concatenate([np.arange(q), q + np.arange(moving.size), inner, inner])
+        free = ~stay
+        q, moving = t.size, free.nonzero()[0]
+        inner = (free & (np.abs(xi - 0.5) < 0.5 - _NUDGE)).nonzero()[0]
+        ends = list(itertools.accumulate([q, moving.size, inner.size, inner.size]))
         of = np.concatenate([np.arange(q), moving, inner, inner])
-        places = np.concatenate([xi, xi[moving], xi[inner] + _NUDGE, xi[inner] - _NUDGE])
-        found = self.slopes.at(times[where], z[where], self.p, chosen[of], places, value[of])
-        ends = np.cumsum([0, q, moving.size, inner.size, inner.size]).tolist()
-        here, after, further, nearer = (found.gradient[a:b] for a, b in itertools.pairwise(ends))
+        times, places = t[of], xi[of]
+        nudge = _NUDGE * self.step
+        later = np.where(t[moving] + nudge <= self.instants[-1], nudge, -nudge)
+        times[q : ends[1]] += later
+        places[ends[1] : ends[2]] += _NUDGE
+        places[ends[2] :] -= _NUDGE
+        z = self.slopes.iterated(self.instants, self.p, times)
+        found = self.slopes.at(times, z, self.p, chosen[of], places, value[of])
+        here, after, further, nearer = (
+            found.gradient[a:b] for a, b in itertools.pairwise([0, *ends])
+        )
         changes, free_xi = np.zeros((q, 2, here.shape[1])), np.zeros(q, bool)
         changes[moving, 0] = (after - here[moving]) / later[:, None]
         changes[inner, 1] = (further - nearer) / (2.0 * _NUDGE)
         # A place that moves with a station has no slope along the link.
         free_xi[inner] = here[inner, 1] != 0.0
-        _, away, _ = self._turned(Bends(here, changes), ~stay, free_xi, value, _NEARER_XI)
+        _, away, _ = self._turned(Bends(here, changes), free, free_xi, value, _NEARER_XI)
         lacking = -(away[0][:, None] * changes[:, 0, 2:] + away[1][:, None] * changes[:, 1, 2:])
         lacking[~np.isfinite(lacking).all(axis=1)] = 0.0
         return here, lacking, z[:q], np.abs(found.value[:q] - value)

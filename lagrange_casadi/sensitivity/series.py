@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..base.space import require
 from ..base.symbolic import symbolic
 from ..equations.program import Program
@@ -97,7 +97,7 @@ def _along(
 ) -> Iterator[tuple[Output, Array]]:
     """Derivatives of the section forces of a link that are determined, each (t, xi, parameters)."""
     table, indeterminate = solution.table, solution.indeterminate
-    columns = [output for output in solution.outputs if output.along and output.part == link]
+    columns = [*parts_along(solution.outputs, link)]
     function = section_slopes(program.data, link, columns, by)
     batch, xi, forces = Batch.of(function, method), solution.xi, table.forces
     grids = np.empty((solution.t.size, xi.size, len(forces), len(by)))

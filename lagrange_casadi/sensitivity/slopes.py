@@ -39,6 +39,11 @@ class Batch:
     function: Any
     library: codegen.BatchLibrary | None = None
 
+    @cached_property
+    def _size(self) -> int:
+        """Numbers of a result."""
+        return int(self.function.numel_out(0))
+
     @classmethod
     def of(cls, function: ca.Function, method: EvaluationMethod) -> Batch:
         """Compile it by the compiler of a method; always in doubles."""
@@ -50,7 +55,7 @@ class Batch:
         """Result at n points, (n, result): of each argument its rows, and the number of points that
         one is for, 0 for all. Of what is ``chosen`` the numbers are given.
         """
-        into = np.full((n, self.function.numel_out(0)), np.nan)
+        into = np.full((n, self._size), np.nan)
         if not n:
             return into
         if self.library is not None:
@@ -173,7 +178,10 @@ class Slopes:
         found = self.first.at(t.size, given)
         # A sum over all quantities, of which one has a weight, is no number where any of them is
         # none: as where friction rests that the chosen one has nothing to do with.
-        broken = ~np.isfinite(found).all(axis=1) & (chosen < len(self.points.quantities))
+        finite = np.isfinite(found)
+        if finite.all():
+            return AtPoints(found[:, 0], found[:, 1:])
+        broken = ~finite.all(axis=1) & (chosen < len(self.points.quantities))
         for k in np.unique(chosen[broken]):
             here = np.flatnonzero(broken & (chosen == k))
             local = {

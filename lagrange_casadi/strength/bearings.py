@@ -29,7 +29,24 @@ from .safety import Safety, Verdict
 
 @public
 def bending_of_pin(force: Numeric, eye: Numeric, cheek: Numeric, gap: Numeric = 0.0) -> Numeric:
-    """The bending moment in the middle of a pin [N m]: F (eye + 2 cheek + 4 gap)/8."""
+    """Return the bending moment in the middle of a pin, F (eye + 2 cheek + 4 gap)/8.
+
+    Parameters
+    ----------
+    force : float or array
+        Force F between eye and fork [N].
+    eye, cheek, gap : float or array
+        Widths of the eye and of each cheek of the fork, and of the gap on each side [m].
+
+    Returns
+    -------
+    float or array
+        The bending moment [N m].
+
+    Notes
+    -----
+    The pin fits loosely: Roloff/Matek, *Maschinenelemente*, chapter 9.
+    """
     return force * (eye + 2.0 * cheek + 4.0 * gap) / 8.0
 
 
@@ -37,8 +54,26 @@ def bending_of_pin(force: Numeric, eye: Numeric, cheek: Numeric, gap: Numeric = 
 def equivalent_load(
     load: Array | Sequence[float], turned: Array | Sequence[float], exponent: Positive = 3.0
 ) -> float:
-    """The even load that wears a rolling bearing as loads (n,) do that last for turns, or anything
-    else, ``turned`` (n,).
+    """Return the constant load with the same life as a sequence of loads (ISO 281).
+
+    Parameters
+    ----------
+    load : array of float
+        The loads (n,) [N].
+    turned : array of float
+        How long each acts (n,): angles, revolutions or times, in any unit.
+    exponent : float
+        Exponent p of the life: 3 for balls, 10/3 for rollers.
+
+    Returns
+    -------
+    float
+        (sum of load^p turned / sum of turned)^(1/p) [N].
+
+    Raises
+    ------
+    DeclarationError
+        If the rows differ in length, or have numbers that are negative or not finite.
     """
     loads, shares = np.asarray(load, float), np.asarray(turned, float)
     if (
@@ -61,7 +96,24 @@ def equivalent_load(
 def rated_hours(
     dynamic: Positive, load: NotNegative, rpm: NotNegative, exponent: Positive = 3.0
 ) -> float:
-    """The hours that nine of ten bearings run: (C/P)^p million turns."""
+    """Return the life that nine of ten bearings reach, (C/P)^p million revolutions (ISO 281).
+
+    Parameters
+    ----------
+    dynamic : float
+        Dynamic load rating C [N].
+    load : float
+        Equivalent load P [N].
+    rpm : float
+        Speed [1/min].
+    exponent : float
+        Exponent p of the life: 3 for balls, 10/3 for rollers.
+
+    Returns
+    -------
+    float
+        The life [h], infinite without load or rotation.
+    """
     if load == 0.0 or rpm == 0.0:
         return math.inf
     try:
@@ -72,13 +124,28 @@ def rated_hours(
 
 @public
 def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None = None) -> Safety:
-    """The factors of safety of what is fitted to a joint, or of other ``parts`` in its place, over
-    all instants: by how much its reaction may grow.
+    """Return the factors of safety of the pin and bearings of a joint, over all instants.
 
-    Of speed and heating it is by how much these may. ``not_evaluated`` names what is missing, and
-    why. Raises :class:`.DeclarationError` where there is no such joint, nothing is fitted, its
-    reaction was not evaluated or is indeterminate, or a number that depends on parameters is not
-    positive.
+    Parameters
+    ----------
+    solution : Solution
+        Has the reaction of the joint, and for bearings its motion.
+    joint : str
+        Name of the joint.
+    parts : sequence of Pin, Plain or Rolling, optional
+        Parts in place of those that :func:`.fit` gave the joint.
+
+    Returns
+    -------
+    Safety
+        Factors by which the reaction may grow; against speed and heating, by which these may grow.
+        ``not_evaluated`` has what is missing, and why.
+
+    Raises
+    ------
+    DeclarationError
+        If there is no such joint or nothing is fitted to it, if its reaction was not evaluated or
+        is indeterminate, or if a number that depends on parameters is not positive.
     """
     joints = solution.description["joints"]
     fitted = joints.get(joint, {}).get("fitted", {})

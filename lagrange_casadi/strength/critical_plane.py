@@ -58,10 +58,29 @@ class Plane:
 
 @public
 def critical_plane(values: Array, share: NotNegative = DUCTILE) -> Plane:
-    """The critical plane of a history of stresses (3, t) in a beam: normal, and shear along y and
-    along z [Pa].
+    """Return the critical plane of a history of stresses in a beam, by Findley's criterion.
 
-    ``share`` is Findley's k.
+    Parameters
+    ----------
+    values : array
+        Stresses (3, t) [Pa]: normal, and shear along y and along z.
+    share : float
+        Findley's k, the weight of the normal stress.
+
+    Returns
+    -------
+    Plane
+        The plane with the largest sum of shear amplitude and k times the largest normal stress.
+
+    Raises
+    ------
+    DeclarationError
+        For other shapes, and for stresses that are not finite.
+
+    Notes
+    -----
+    W. N. Findley, "A theory for the effect of mean stress on fatigue of metals under combined
+    torsion and axial load or bending", J. Eng. Ind. 81 (1959), 301-305.
     """
     if values.ndim != 2 or len(values) != 3 or not values.size or not np.isfinite(values).all():
         raise DeclarationError(
@@ -79,9 +98,26 @@ def critical_plane(values: Array, share: NotNegative = DUCTILE) -> Plane:
 
 @public
 def plane_factor(plane: Plane, material: Material, share: NotNegative = DUCTILE) -> float:
-    """Factor by which all loads may grow until a part no longer lasts for ever.
+    """Return the factor by which all loads may grow until the critical plane fails by fatigue.
 
-    Raises :class:`.DeclarationError` where the material has no endurance limit.
+    Parameters
+    ----------
+    plane : Plane
+        Result of :func:`critical_plane`.
+    material : Material
+        Has the endurance limit in alternating bending.
+    share : float
+        Findley's k, as given to :func:`critical_plane`.
+
+    Returns
+    -------
+    float
+        The factor of safety.
+
+    Raises
+    ------
+    DeclarationError
+        If the material has no endurance limit.
     """
     (endurance,) = material.needs(f"fatigue by {FINDLEY}", "endurance")
     value = plane.value(share)

@@ -82,11 +82,33 @@ def _needed(material: Material, criterion: str) -> tuple[str, str]:
 def factor(
     amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
 ) -> Numeric:
-    """Factor by which amplitude and mean may grow together until the part no longer lasts for ever;
-    of numbers or arrays.
+    """Return the factor by which amplitude and mean may grow together without failure by fatigue.
 
+    Parameters
+    ----------
+    amplitude, mean : float or array
+        Amplitude and mean of the stress [Pa]. A negative mean counts as zero.
+    material : Material
+        Has the endurance limit S_e, and the strength S that the criterion needs.
+    criterion : str
+        One of :data:`.CRITERIA`: ``"goodman"``, ``"gerber"``, ``"soderberg"`` or ``"morrow"``.
+
+    Returns
+    -------
+    float or array
+        The factor of safety n.
+
+    Raises
+    ------
+    UnknownNameError
+        For another criterion.
+    DeclarationError
+        If the material lacks a number that is needed.
+
+    Notes
+    -----
     Goodman, Soderberg and Morrow: a/S_e + m/S = 1/n; Gerber: n a/S_e + (n m/S)^2 = 1 (Shigley, eq.
-    6-45 to 6-48; Dowling for Morrow). A mean in compression counts as none.
+    6-45 to 6-48; Dowling for Morrow).
     """
     with np.errstate(divide="ignore"):
         return 1.0 / used(np.asarray(amplitude), np.asarray(mean), material, criterion)
@@ -116,8 +138,28 @@ def lacking(material: Material, criterion: str = "goodman") -> str:
 def reversed_amplitude(
     amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
 ) -> Numeric:
-    """The amplitude without a mean that does the same damage; infinite where the mean alone is too
-    much.
+    """Return the fully reversed amplitude with the same damage as an amplitude with a mean.
+
+    Parameters
+    ----------
+    amplitude, mean : float or array
+        Amplitude and mean of the stress [Pa]. A negative mean counts as zero.
+    material : Material
+        Has the strength that the criterion needs.
+    criterion : str
+        One of :data:`.CRITERIA`.
+
+    Returns
+    -------
+    float or array
+        The amplitude [Pa], infinite if the mean alone causes failure.
+
+    Raises
+    ------
+    UnknownNameError
+        For another criterion.
+    DeclarationError
+        If the material lacks a number that is needed.
     """
     _, strength = strengths(material, criterion)
     m = np.maximum(mean, 0.0) / strength
@@ -144,11 +186,25 @@ def line(material: Material) -> tuple[float, float, float]:
 
 @public
 def cycles(amplitude: Numeric, material: Material) -> Numeric:
-    """Number of cycles of a fully reversed amplitude: by the material's S-N line, and infinite
-    below its endurance limit.
+    """Return the number of cycles to failure at a fully reversed amplitude.
 
-    Above the line's beginning, at a thousand cycles, it goes straight on, and is a guess; of
-    infinite amplitudes it is none.
+    Parameters
+    ----------
+    amplitude : float or array
+        Amplitude of stress [Pa].
+    material : Material
+        Has the S-N line: ultimate strength, endurance limit and its number of cycles.
+
+    Returns
+    -------
+    float or array
+        Cycles by the S-N line, infinite below the endurance limit of an ``endless`` material. The
+        line begins at 1000 cycles; a smaller number is an estimate, from the same line continued.
+
+    Raises
+    ------
+    DeclarationError
+        If the material has no endurance limit.
     """
     endurance, start, slope = line(material)
     size = np.abs(amplitude)

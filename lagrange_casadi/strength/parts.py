@@ -18,8 +18,17 @@ NEEDED = ("yield_strength", "elasticity")
 
 @public
 def safeties(solution: Solution) -> Iterator[Safety]:
-    """The factors of safety of links that have a beam, and of joints that have pins or bearings;
-    not of those that are open.
+    """Yield the factors of safety of all links with a beam and of all joints with pins or bearings.
+
+    Parameters
+    ----------
+    solution : Solution
+        Has section forces and reactions.
+
+    Yields
+    ------
+    Safety
+        Of each part. Parts whose forces are indeterminate are left out.
     """
     return (found for found in looked(solution) if found.verdicts)
 

@@ -38,11 +38,25 @@ def reversals(history: Array) -> Array:
 
 @public
 def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> list[StressCycle]:
-    """Count the cycles of a history (section 5.4.4), or of one that repeats for ever (5.4.5), in
-    which every cycle counts 1.
+    """Count the cycles of a history by rainflow counting (ASTM E1049-85).
 
-    One that repeats begins at its largest value. Raises :class:`.DeclarationError` for what are no
-    finite numbers.
+    Parameters
+    ----------
+    history : array of float
+        Values (n,) in the order of time.
+    repeating : bool
+        False: count once (section 5.4.4), with half cycles. True: the history is repeated (section
+        5.4.5), it begins at its largest value, and every cycle counts 1.
+
+    Returns
+    -------
+    list of StressCycle
+        The cycles: their ranges, means, counts and places.
+
+    Raises
+    ------
+    DeclarationError
+        If the values are not a row of finite numbers.
     """
     values = np.asarray(history, float)
     if values.ndim != 1 or not values.size or not np.isfinite(values).all():

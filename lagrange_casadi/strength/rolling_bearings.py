@@ -84,7 +84,7 @@ class RollingBearing:
 
 @public
 def dynamic_rating(element: Positive, pitch: Positive, count: int) -> float:
-    """Compute C_r of ISO 281 for a deep groove ball bearing [N].
+    """Compute C_r of ISO 281 for a deep groove ball bearing.
 
     Parameters
     ----------
@@ -92,6 +92,11 @@ def dynamic_rating(element: Positive, pitch: Positive, count: int) -> float:
         Diameters of the balls and of their circle [m].
     count : int
         Number of balls.
+
+    Returns
+    -------
+    float
+        The dynamic radial load rating [N].
     """
     count = whole("dynamic_rating: count", count)
     share, size = element / pitch, 1e3 * element
@@ -104,8 +109,19 @@ def dynamic_rating(element: Positive, pitch: Positive, count: int) -> float:
 
 @public
 def static_rating(element: Positive, pitch: Positive, count: int) -> float:
-    """Compute C_0r of ISO 76 for a deep groove ball bearing [N], with arguments as of
-    :func:`dynamic_rating`.
+    """Compute C_0r of ISO 76 for a deep groove ball bearing.
+
+    Parameters
+    ----------
+    element, pitch : float
+        Diameters of the balls and of their circle [m].
+    count : int
+        Number of balls.
+
+    Returns
+    -------
+    float
+        The static radial load rating [N].
     """
     count = whole("static_rating: count", count)
     factor = np.interp(element / pitch, np.arange(len(_F0)) / 100.0, _F0)
@@ -114,9 +130,22 @@ def static_rating(element: Positive, pitch: Positive, count: int) -> float:
 
 @public
 def deep_groove(series: str | None = None) -> tuple[RollingBearing, ...]:
-    """Deep groove ball bearings of the dimension series 60, 62 and 63, or of one, by rising bore.
+    """Return deep groove ball bearings of the dimension series 60, 62 and 63.
 
-    Their ratings are computed by a rule, as ``source`` says.
+    Parameters
+    ----------
+    series : str, optional
+        One of the series, as ``"62"``; by default all.
+
+    Returns
+    -------
+    tuple of RollingBearing
+        The bearings by increasing bore. Their ratings are computed by a rule, as ``source`` says.
+
+    Raises
+    ------
+    DeclarationError
+        For another series.
     """
     if series is not None and series not in _OUTER:
         raise DeclarationError(f"deep_groove: expected one of {', '.join(_OUTER)}, got {series!r}")
@@ -138,13 +167,26 @@ def _computed(series: str, k: int, bore: float, outer: float, width: float) -> R
 
 @public
 def read_bearings(path: str | os.PathLike[str]) -> tuple[RollingBearing, ...]:
-    """Bearings of a CSV file: columns name, bore, outer, width [mm], dynamic and static [kN], and
-    ``source`` if it is given.
+    """Read bearings from a CSV file.
 
-    Cells are parted as :func:`.read_rows` says; lines that begin with ``#`` are passed over.
+    Parameters
+    ----------
+    path : path
+        A file with the columns name, bore, outer, width [mm], dynamic and static [kN], and
+        optionally ``source``. Cells are separated as :func:`.read_rows` describes; lines that begin
+        with ``#`` are ignored.
 
-    Raises :class:`.PathError` for a file that cannot be read, and :class:`.DeclarationError` that
-    names the line which is wrong.
+    Returns
+    -------
+    tuple of RollingBearing
+        The bearings, in the order of the file.
+
+    Raises
+    ------
+    PathError
+        If the file cannot be read.
+    DeclarationError
+        For a column that is missing or a cell that is not valid, with the number of its line.
     """
     needed = ("name", "bore [mm]", "outer [mm]", "width [mm]", "dynamic [kN]", "static [kN]")
     rows = read_rows(path, f"the columns {', '.join(needed)}")

@@ -90,9 +90,24 @@ class Life:
 
 @public
 def stress(solution: Solution, link: str) -> Stress:
-    """The stresses in a link.
+    """Return the stresses in a link.
 
-    Raises :class:`.DeclarationError` where it has no beam, or no sections.
+    Parameters
+    ----------
+    solution : Solution
+        Has the section forces of the link.
+    link : str
+        Name of a link with a beam.
+
+    Returns
+    -------
+    Stress
+        Normal, shear, von Mises and Tresca stresses at every instant, ratio xi/l and fibre.
+
+    Raises
+    ------
+    DeclarationError
+        If the link has no beam or no sections, or its forces are indeterminate.
     """
     return Stress(Member.of(solution, link))
 
@@ -102,15 +117,34 @@ def stress(solution: Solution, link: str) -> Stress:
 def safety(
     solution: Solution, link: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"
 ) -> Safety:
-    """The factors of safety of a link against yielding, buckling and fatigue, over all instants.
+    """Return the factors of safety of a link against yielding, buckling and fatigue.
 
-    Yielding is by nominal stresses, for ductile parts; fatigue has the factors of notches, and
-    counts swings by a ``criterion`` of :data:`.CRITERIA`, or looks for the critical plane by
-    ``findley``. It is open where the material has no endurance limit, or lacks the strength that
-    the criterion needs.
+    Parameters
+    ----------
+    solution : Solution
+        Has the section forces of the link.
+    link : str
+        Name of a link with a beam.
+    criterion : str
+        Fatigue: treatment of mean stresses, one of :data:`.CRITERIA`, or ``"findley"`` for the
+        critical plane.
+    yield_criterion : str
+        ``"von_mises"`` or ``"tresca"``.
 
-    Raises :class:`.DeclarationError` where the material lacks any other number that is needed, and
-    :class:`.UnknownNameError` for a ``criterion`` or a kind of stress that is none.
+    Returns
+    -------
+    Safety
+        The factors over all instants. Yielding uses nominal stresses, as for ductile parts; fatigue
+        includes the factors of notches. Fatigue is not evaluated if the material has no endurance
+        limit or lacks the strength that the criterion needs.
+
+    Raises
+    ------
+    DeclarationError
+        If the material lacks another number that is needed, the link has no beam, or its forces are
+        indeterminate.
+    UnknownNameError
+        For another criterion or kind of stress.
     """
     member = Member.of(solution, link)
     return rated(
@@ -216,11 +250,33 @@ def buckling(member: Member, of: Column) -> Verdict:
 
 @public
 def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
-    """Fatigue life of a link, its span of time repeated for ever: rainflow counting, the mean by a
-    criterion, Miner's sum.
+    """Return the fatigue life of a link whose span of time is repeated.
 
-    Raises what :func:`safety` does, and :class:`.DeclarationError` where the material has no
-    endurance limit.
+    Parameters
+    ----------
+    solution : Solution
+        Has the section forces of the link.
+    link : str
+        Name of a link with a beam.
+    criterion : str
+        Treatment of mean stresses, one of :data:`.CRITERIA`.
+
+    Returns
+    -------
+    Life
+        Cycles (one is the span) and hours, and the place that fails first.
+
+    Raises
+    ------
+    DeclarationError
+        If the material has no endurance limit or lacks another number, or if the link has no beam
+        or its forces are indeterminate.
+    UnknownNameError
+        For another criterion.
+
+    Notes
+    -----
+    Rainflow counting (ASTM E1049), the mean by the criterion, Miner's sum with the S-N line.
     """
     member = Member.of(solution, link).counted
     material = member.beam.material

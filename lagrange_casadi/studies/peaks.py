@@ -18,7 +18,7 @@ import numpy as np
 
 from ..arguments import Count, public
 from ..base.arrays import Array
-from ..base.quantities import Output, compared
+from ..base.quantities import Output, compared, parts_along
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
 from ..codegen.stages import stages_for
@@ -116,15 +116,34 @@ def shortfall(
     t: Times | None = None,
     over: Over | None = None,
 ) -> list[Shortfall]:
-    """Shortfall of peaks if a span of time is divided into a number of instants, a row for each of
-    ``counts``.
+    """Return by how much peaks at instants are below the true peaks, by the number of instants.
 
-    The span is the scene's own, or that of ``t`` or ``over``, as in :func:`.evaluate`. ``names``
-    are full names of quantities; by default all efforts, reactions and section forces that are
-    wanted and determined. Quantities that are zero within rounding, grow without bound or have no
-    reported peak are left out. The true peaks are the largest refined ones, of all counts and of
-    twice as many instants. Raises :class:`DeclarationError` for no counts or where no quantity is
-    left, and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
+    Parameters
+    ----------
+    scene : Scene
+        A mechanism and its motion.
+    counts : sequence of int
+        Numbers of instants into which the span is divided.
+    names : iterable of str, optional
+        Full names of quantities; by default all efforts, reactions and section forces that are
+        wanted and determinate.
+    parameters : mapping, optional
+        Values of parameters, by name.
+    t, over : tuple, optional
+        The span, as of :func:`.evaluate`; by default that of the scene.
+
+    Returns
+    -------
+    list of Shortfall
+        A row for each of ``counts``. The true peaks are the largest refined ones, of all counts and
+        of twice as many instants. Quantities that are zero within rounding, grow without bound or
+        have no reported peak are left out.
+
+    Raises
+    ------
+    DeclarationError
+        Without counts, if no quantity is left, and as :func:`.evaluate` does, as for so few
+        instants that loops cannot be followed.
     """
     timing = scene.timing(t, over)
     start, stop = span_of(scene.prescribed, timing, scene.values(parameters))
@@ -172,8 +191,18 @@ def resultants(solution: Solution) -> list[str]:
 
 @public
 def forces(solution: Solution) -> list[str]:
-    """The full names of a solution's efforts, reactions, section forces, what is largest along
-    links, and own outputs: those that equilibrium determines.
+    """Return the names of the quantities whose peaks :func:`refine` finds by default.
+
+    Parameters
+    ----------
+    solution : Solution
+        Result of :func:`.evaluate`.
+
+    Returns
+    -------
+    list of str
+        Full names of efforts, reactions, section forces, stresses, deflections and user-defined
+        outputs, without those that are indeterminate.
     """
     wanted = (
         output
@@ -389,10 +418,8 @@ class ContinuousSolution:
         if output.group != "section":
             return tuple(self.rows[component] for component in self.solution.made_of(output))
         link, law = output.part, self.solution.section(output.part).law
-        of_link = {
-            column: k for column, k in self.rows.items() if column.along and column.part == link
-        }
-        return SectionForce(output.member, link, of_link, law.length, law.density)
+        rows = parts_along(self.rows, link)
+        return SectionForce(output.member, link, rows, law.length, law.density)
 
     def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
         """The units of quantities, by number, and the largest size of anything that has each."""
@@ -488,11 +515,7 @@ class ContinuousSolution:
         """A link's law with columns of the graph, or of their rates, for its coefficients, loads
         and stations.
         """
-        of_link = {
-            output: columns[k]
-            for output, k in self.rows.items()
-            if output.along and output.part == link
-        }
+        of_link = {output: columns[k] for output, k in parts_along(self.rows, link).items()}
         return self.solution.section(link).law.of(link, of_link)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.quantities import Output
+from ..base.quantities import Output, parts_along
 from ..declare.even_points import are_even
 from ..declare.scene import Scene
 from ..equations.buckling import Column
@@ -33,15 +33,34 @@ from .peaks import ContinuousSolution
 def refine_stress(
     scene: Scene, solution: Solution, link: str, kind: str = "von_mises", *, notches: bool = False
 ) -> StressPeak:
-    """The peak of a stress in a link of a solution, as :meth:`.Stress.peak`, but over all times of
-    its span.
+    """Return the peak of a stress in a link over all times, between instants too.
 
-    It is exact to rounding, and not below that of the instants. Where the search would take too
-    long its value is NaN, and ``least`` the largest size that was found. What elasticity determines
-    has the peak of the instants.
+    Parameters
+    ----------
+    scene : Scene
+        The scene of the solution.
+    solution : Solution
+        Has the section forces of the link.
+    link : str
+        Name of a link with a beam.
+    kind : str
+        ``"normal"``, ``"shear"``, ``"von_mises"`` or ``"tresca"``.
+    notches : bool
+        Include the factors of notches.
 
-    Raises what :func:`.strength.stress` does, :class:`.UnknownNameError` for a kind that is none,
-    and :class:`.DeclarationError` where the solution is not of this scene.
+    Returns
+    -------
+    StressPeak
+        The peak, exact to rounding, and not below that of the instants. If the search does not end,
+        its value is NaN, and ``least`` is the largest stress that was found. If elasticity
+        determines the forces, it is the peak of the instants.
+
+    Raises
+    ------
+    DeclarationError
+        If the solution is not of this scene, and as :func:`.strength.stress` does.
+    UnknownNameError
+        For another kind of stress.
     """
     stress = solution.stress(link)
     peak = stress.peak(kind, notches=notches)
@@ -59,11 +78,31 @@ def refine_safety(
     criterion: str = "goodman",
     yield_criterion: str = "von_mises",
 ) -> Safety:
-    """The factors of safety of a link, as :func:`.strength.safety`, against yielding and buckling
-    over all times of its span.
+    """Return the factors of safety of a link, with yielding and buckling over all times.
 
-    Against fatigue it is that of the instants. What could not be searched is open. Raises what
-    :func:`refine_stress` does.
+    Parameters
+    ----------
+    scene : Scene
+        The scene of the solution.
+    solution : Solution
+        Has the section forces of the link.
+    link : str
+        Name of a link with a beam.
+    criterion, yield_criterion : str
+        As of :func:`.strength.safety`.
+
+    Returns
+    -------
+    Safety
+        Factors over all times of the span, between instants too; against fatigue those of the
+        instants. ``not_evaluated`` has those whose search did not end.
+
+    Raises
+    ------
+    DeclarationError
+        If the solution is not of this scene, and as :func:`.strength.safety` does.
+    UnknownNameError
+        For another criterion or kind of stress.
     """
     unrefined = safety(solution, link, criterion=criterion, yield_criterion=yield_criterion)
     found = _Searched.of(scene, solution, link)
@@ -184,10 +223,4 @@ class _Searched:
         return replace(along.at(signals.columns(times, z)), t=times)
 
     def _along(self, size: Callable[[Member], Array]) -> _Along:
-        link = self.member.link
-        of_link = {
-            output: k
-            for output, k in self.over_time.rows.items()
-            if output.along and output.part == link
-        }
-        return _Along(self.member, of_link, size)
+        return _Along(self.member, parts_along(self.over_time.rows, self.member.link), size)

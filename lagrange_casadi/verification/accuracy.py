@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.compensated import DTYPES, ROUNDING
-from ..base.arrays import Array
+from ..base.arrays import Array, spread
 from ..base.quantities import Output
 from ..equations.checks import Kind
 from ..equations.program import Program
@@ -179,7 +179,7 @@ def _chosen(program: Program, evaluated: Evaluated) -> Array:
     and where outputs peak.
     """
     n = evaluated.status.size
-    distributed = np.linspace(0, n - 1, min(n, INSTANTS)).astype(int)
+    distributed = spread(n, INSTANTS)
     closures = [k for kind in _DEAD for k in program.checks(kind).values()]
     peaks = [
         int(np.argmin(row) if k in closures else largest(row))
@@ -197,9 +197,7 @@ def _open(instants: Instants) -> Array:
     the worst.
     """
     n = instants.t.size
-    looked_at = np.unique(
-        [*range(min(n, _FIRST)), *np.linspace(0, n - 1, min(n, _MANY)).astype(int)]
-    )
+    looked_at = np.unique([*range(min(n, _FIRST)), *spread(n, _MANY)])
     residual = openness(instants.at(looked_at))
     return (
         looked_at[np.argsort(residual)[-_WORST:]]

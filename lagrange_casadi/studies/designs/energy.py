@@ -27,7 +27,7 @@ from ...base.symbolic import symbolic
 from ...errors import DeclarationError
 from ...sensitivity.ends import Ends
 from .engine import DesignEngine
-from .outcome import KEPT
+from .outcome import KEPT, Results
 
 _CLOSE = {"double": 1e-13, "single": 1e-5}
 """Error of a panel, over the work of all, at which it is not halved, by precision."""
@@ -36,8 +36,7 @@ _STILL = 1e-9
 """Share of its way within which a coordinate ends where it began."""
 
 _ROUNDS, _MORE = 30, 64
-"""Number of halvings at most; and how many times as many nodes as instants there may be.
-"""
+"""Most halvings of panels; and most nodes for each instant."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +127,7 @@ class DriveEnergy:
         path, back = np.unique(np.concatenate([first, t]), return_inverse=True)
         columns = np.empty((1, len(program.columns), path.size))
         status = np.zeros(1, np.int8)
-        found = {"status": status, "history": columns} | dict.fromkeys(KEPT)
+        found: Results = {"status": status, "history": columns} | dict.fromkeys(KEPT)
         engine.library.designs(path[None], np.zeros((1, 0), bool), p[None], found, 1)
         if status[0] != Status.OK:
             return None

@@ -149,11 +149,12 @@ class DesignEngine:
         return self.kept.units
 
     @cached_property
-    def _unit_numbers(self) -> npt.NDArray[np.intp]:
-        """The number of the unit of each of the quantities."""
-        return np.array(compared(self.units), np.intp)
+    def _units(self) -> npt.NDArray[np.bool_]:
+        """True for two quantities (q, q) of one unit."""
+        numbers = np.array(compared(self.units), np.intp)
+        return np.asarray(numbers[:, None] == numbers)
 
-    @property
+    @cached_property
     def efforts(self) -> tuple[str, ...]:
         """The names of the efforts that have means."""
         return tuple(map(str, self.kept.efforts))
@@ -426,9 +427,8 @@ class DesignEngine:
 
     def _faint(self, value: Array) -> npt.NDArray[np.bool_]:
         """Return which peaks are zero within rounding, relative to the largest of their unit."""
-        largest = np.zeros(value.size)
-        np.maximum.at(largest, self._unit_numbers, np.where(np.isfinite(value), np.abs(value), 0.0))
-        return faint(value, largest[self._unit_numbers])
+        sizes = np.where(np.isfinite(value), np.abs(value), 0.0)
+        return faint(value, np.where(self._units, sizes, 0.0).max(axis=1, initial=0.0))
 
     def mean_slopes(self, p: Array) -> MeanSlopes:
         """Derivatives by all parameters of the means of :attr:`efforts` over time, and of their

@@ -34,7 +34,7 @@ class DesignTimes:
         joint = self.timing.joint
         return MotionInverse.of(self.laws, joint) if joint else None
 
-    @property
+    @symbolic_property
     def common(self) -> bool:
         """True if all designs have the same instants."""
         if self.law is None or not self.timing.fixed:

@@ -138,7 +138,7 @@ class _EnergySlopes(ca.Callback):
         return 2
 
     def get_sparsity_in(self, number: int) -> ca.Sparsity:
-        return ca.Sparsity.dense(self.size) if number == 0 else ca.Sparsity(1, 1)
+        return ca.Sparsity.dense(self.size if number == 0 else 1)
 
     def get_sparsity_out(self, _: int) -> ca.Sparsity:
         return ca.Sparsity.dense(1, self.size)

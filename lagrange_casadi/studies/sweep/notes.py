@@ -9,6 +9,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from ...base.arrays import spread
 from ...base.status import Status
 from ...beams.beam import beam_of
 from ...declare.description import kinds_of_described
@@ -64,7 +65,7 @@ def resting_note(
     right = np.concatenate(
         [numbers[values["status"] == Status.OK] for numbers, values in found.blocks(["status"])]
     )
-    some = right[np.unique(np.linspace(0, right.size - 1, min(right.size, _RESTS_OF)).astype(int))]
+    some = right[spread(right.size, _RESTS_OF)]
     lines = []
     for number in some.tolist():
         design = {**fixed, **found.design(number)}
@@ -99,9 +100,7 @@ def turning_note(
     a ``grid``.
     """
     designs, values = designs_of(grid), scene.values(fixed)
-    numbers = np.unique(
-        np.linspace(0, designs.size - 1, min(designs.size, _TURNS_OF)).astype(np.int64)
-    )
+    numbers = spread(designs.size, _TURNS_OF)
     p = np.tile(np.array(list(values.values())), (numbers.size, 1))
     columns = [list(values).index(name) for name in designs.names]
     for row, number in zip(p, numbers.tolist(), strict=True):

@@ -15,7 +15,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from ...base.arrays import Array, Json
+from ...base.arrays import Array, Json, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import Keep, PeakSearch, Precision
 from ...declare.description import Description, beams_of, fitted_of, shape_of
@@ -37,14 +37,15 @@ from .blocks import Slab, chunk_of, slabs
 from .column import Column
 from .columns import Harvest, check_keep
 from .instant_axis import InstantAxis
+from .meanings import FLUCTUATION
 
 SCHEMA = "lagrange-casadi-sweep"
-SCHEMA_VERSION = 6
+SCHEMA_VERSION = 7
 """Files of version 1 had no seal. Those of version 2 have one axis of time for all designs, those
-of 3 are of planar mechanisms alone, those of 4 have no sensitivities, and those of 5 no sampled
-peaks; all four are still written."""
+of 3 are of planar mechanisms alone, those of 4 have no sensitivities, those of 5 no sampled peaks,
+and those of 6 no fluctuations of energy; all five are still written."""
 
-_WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES, _WITH_EXACT_PEAKS = 2, 3, 4, 5
+_WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES, _WITH_EXACT_PEAKS, _WITHOUT_ENERGY = 2, 3, 4, 5, 6
 READ = range(_WITH_COMMON_TIMES, SCHEMA_VERSION + 1)
 
 _BOUND = (float, str)
@@ -290,8 +291,10 @@ class Plan:
     @property
     def _version(self) -> int:
         """The first version of the schema that has all of it."""
-        if self.task.peaks == "sampled":
+        if self.task.fluctuation:
             return SCHEMA_VERSION
+        if self.task.peaks == "sampled":
+            return _WITHOUT_ENERGY
         if self.harvest.by:
             return _WITH_EXACT_PEAKS
         if self.program.data.space:
@@ -325,9 +328,7 @@ def _assembly(
     try:
         compile_scene(scene, wanted)
     except (AssemblyError, MobilityError):
-        for number in np.unique(
-            np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)
-        ):
+        for number in spread(designs.size, _TRIED):
             row = dict(
                 zip(
                     designs.names,
@@ -371,11 +372,12 @@ def signature(program: Program, task: Task, provenance: Provenance) -> dict[str,
         "compiler": provenance.compiler,
         "flags": provenance.flags,
         "rung": provenance.method + (", sampled peaks" if task.peaks == "sampled" else ""),
-        "wanted": dataclasses.asdict(program.wanted) | ({SENSITIVITY: task.by} if task.by else {}),
+        "wanted": dataclasses.asdict(program.wanted)
+        | ({SENSITIVITY: task.by} if task.by else {})
+        | ({FLUCTUATION: True} if task.fluctuation else {}),
         "t": task.timing.words(program.data.symbols),
         "xi": task.xi,
         "keep": task.keep,
-        **({"fluctuation": True} if task.fluctuation else {}),
         "scene": program.identity or "cannot be identified",
     }
     content: dict[str, Json] = json.loads(json.dumps(words))
