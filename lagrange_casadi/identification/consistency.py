@@ -21,7 +21,7 @@ from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.symbolic import Graphs, symbolic
 from ..equations.program import Program
-from ..errors import AccuracyError
+from ..errors import DeclarationError
 
 _PULL, _OPEN = 0.2, 1e-9
 """What the measurements leave open stays near its first value, as if that were known with an error
@@ -121,7 +121,7 @@ class Consistency(Graphs):
     def step(self, triangle: Array, right: Array, theta: Array) -> Array:
         """Return the consistent change of ``theta`` that makes |triangle change - right| least.
 
-        Raises :class:`.AccuracyError` where there is none, or none is found.
+        Raises :class:`.DeclarationError` for first values that no body can have.
         """
         columns = triangle * self.scales
         size = np.linalg.norm(columns, axis=0).max(initial=0.0) or 1.0
@@ -141,7 +141,7 @@ class Consistency(Graphs):
             x = np.clip(start, low + _NEAR, np.maximum(high - _NEAR, low + _NEAR))
             if not (wrong := self.impossible(self.first + self.scales * x)):
                 return x
-        raise AccuracyError(
+        raise DeclarationError(
             f"no body has the initial mass and inertia of '{wrong[0]}'; give initial values that"
             " a body can have"
         )
