@@ -297,7 +297,7 @@ MISUSE = {
         ("\t0.2\n", "\t1e99\n"),
         "Mass: expected a finite number of at most 1e+12, got '1e99'",
     ),
-    "tabs": (("\tParts", "\t\t\t\t\t\t\tParts"), "has too many tabs for what is above it"),
+    "tabs": (("\tParts", "\t\t\t\t\t\t\tParts"), "has more tabs than the lines above it allow"),
 }
 
 

@@ -365,6 +365,6 @@ def test_info_tells_what_a_motion_is_from(here, capsys):
     (here / "arm.py").write_text(CASE)
     assert main(["info", "arm.py"]) == 0
     assert (
-        "  drive J: 8 samples of axis.csv from 0 to 0.7 s, at most 0 deg off; from 0 rad"
+        "  drive J: 8 samples of axis.csv from 0 to 0.7 s, at most 0 deg from them; from 0 rad"
         in capsys.readouterr().out
     )

@@ -299,7 +299,7 @@ REFUSED = {
     ),
     "friction": (
         rubbing,
-        r"quadratic in the rate of joint 'pin', but its sign decides friction 'rub'$",
+        r"quadratic in the rate of joint 'pin', but friction depends on its sign: 'rub'$",
     ),
     "quick_return": (
         lambda: case("quick_return"),

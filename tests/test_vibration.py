@@ -173,5 +173,5 @@ def test_a_link_without_mass_has_no_frequency_and_swings_nowhere(kind):
         0.0,
         True,
     )
-    assert found.words == "no bending frequency of its own, for it has no mass"
+    assert found.words == "no bending frequency of its own, because it has no mass"
     assert solution.notes == ()

@@ -1,5 +1,5 @@
 """Bricard's loop: six links of one length on six revolute joints at right angles move, though a
-count of freedoms gives none.
+count of degrees of freedom gives none.
 """
 
 from math import acos, cos

@@ -1,6 +1,6 @@
 """A wheel suspension of five bars: the hub goes up and down, and a load acts where the tyre stands.
 
-All is told by hard points: places in ground axes, in one posture of reference.
+All is declared by hard points: places in ground axes, in one posture of reference.
 """
 
 from lagrange_casadi import Scene, SpatialMechanism

@@ -1,5 +1,5 @@
-"""A screw lift: a spindle that a motor turns raises and lowers a table by a nut, whose thread rubs
-and locks itself.
+"""A screw lift: a spindle that a motor turns raises and lowers a table by a nut, whose thread has
+friction and locks itself.
 """
 
 from math import pi

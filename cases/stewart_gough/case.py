@@ -18,7 +18,7 @@ def scene() -> Scene:
         "platform", length=0.3, mass=payload, centre=centre, inertia=(0.11, 0.12, 0.2)
     )
     # Heave, sway and surge, then yaw, pitch and roll. The third direction is at right angles to
-    # both told ones: -x.
+    # both given ones: -x.
     m.free("pose", m.ground, platform, axis=(0.0, 0.0, 1.0), second=(0.0, 1.0, 0.0))
     posture: dict[str, float] = {}
     for k, (low, high) in enumerate(zip(BASE, TOP, strict=True)):

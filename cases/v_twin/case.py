@@ -1,5 +1,5 @@
 """A compressor of two cylinders at a right angle on one pin of the crank, all of whose bearings and
-rings rub.
+rings have friction.
 """
 
 from math import pi, sqrt

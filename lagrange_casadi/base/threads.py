@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from queue import Empty, SimpleQueue
 
-_WAITS = 0.1
+_WAITS = 1.0
 """Seconds for which a thread waits for other work before it ends."""
 
 

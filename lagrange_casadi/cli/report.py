@@ -130,7 +130,7 @@ class Rows:
             )
         if any(row.peak and row.peak.least is not None for row in self.rows):
             yield (
-                "note: >= marks a peak that was not found between the instants, for too many"
+                "note: >= marks a peak that was not found between the instants, because too many"
                 " local peaks may be there: use more instants"
             )
 

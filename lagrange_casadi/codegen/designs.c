@@ -99,7 +99,10 @@ static void designs_sample(designs_now* now) {
     row += DESIGNS_CHECKED*stride;
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) scene_store(row, y[designs_checked[k]]);
     for (k = 0; peaks && k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[SCENE_OUTPUTS + k]);
-    if (!instants->out) continue;
+    if (!instants->out) {
+      scene_check(instants, i, y);
+      continue;
+    }
     y += SCENE_COLUMNS;
     if ((i + LANES)%SCENE_BLOCK != 0 && i + LANES < now->n) continue;
     y = block;

@@ -146,18 +146,21 @@ LANES_INLINE void scene_taken(const lagrange_casadi_instants* call, const lanes_
   }
 }
 
-/* The columns y of the pack of instants that begins at i, where iterated coordinates are z. Where a value is not finite, and nothing
-   else was to be said, status[i] says so. */
+/* The columns y of the pack of instants that begins at i, where iterated coordinates are z. */
 LANES_INLINE void scene_pack(const scene_design* now, casadi_int i, casadi_real* y) {
-  const lagrange_casadi_instants* call = now->call;
-  const casadi_int many = call->n - i < LANES ? call->n - i : LANES;
-  lanes_real lanes[LANES];
-  casadi_real at[SCENE_PLACE + SCENE_NZ], sum;
-  casadi_int j;
-  scene_taken(call, call->t, SCENE_NT, i, at);
-  scene_taken(call, call->z, SCENE_NZ, i, at + SCENE_PLACE);
+  casadi_real at[SCENE_PLACE + SCENE_NZ];
+  scene_taken(now->call, now->call->t, SCENE_NT, i, at);
+  scene_taken(now->call, now->call->z, SCENE_NZ, i, at + SCENE_PLACE);
   scene_columns(now, at, y);
-  sum = scene_sum(y, SCENE_OUTPUTS);
+}
+
+/* Check the columns y of a pack that begins at i: where a value is not finite, and nothing else was to be said, status[i] becomes
+   SCENE_NOT_FINITE. */
+LANES_INLINE void scene_check(const lagrange_casadi_instants* call, casadi_int i, const casadi_real* y) {
+  const casadi_int many = call->n - i < LANES ? call->n - i : LANES;
+  casadi_real sum = scene_sum(y, SCENE_OUTPUTS);
+  lanes_real lanes[LANES];
+  casadi_int j;
   sum = sum - sum;
   if (!lanes_any_nan(sum)) return;
   scene_store(lanes, sum);
@@ -171,24 +174,33 @@ static int scene_streams(const lagrange_casadi_instants* call, casadi_int many) 
   return SCENE_OUTPUTS*size*(size_t) many >= SCENE_STREAMED && ((size_t) call->out | (size_t) call->apart*size) % SCENE_LINE == 0;
 }
 
-/* Write the columns y of packs, one pack after another: out[k*apart + i] and on become column k at so many instants from i on. Where
-   asked to, lines are streamed past the caches. */
+/* Write the columns y of packs, one pack after another, and check them: out[k*apart + i] and on become column k at so many instants
+   from i on. If streams is set, lines are streamed past the caches. Packs are summed as they are written, while stores wait for memory;
+   numbers are not, for compilers make packs of those that lie side by side. */
 LANES_INLINE void scene_write(const lagrange_casadi_instants* call, casadi_int i, casadi_int many, const casadi_real* y,
                               const int streams) {
+  const casadi_real* from = y;
   lanes_real* to = call->out + i;
+  casadi_real sum[SCENE_PACKS], all;
   casadi_int j, k;
-  for (k = 0; k < SCENE_OUTPUTS; ++k, ++y, to += call->apart) {
+  all = 0;
+  for (j = 0; j < SCENE_PACKS; ++j) sum[j] = all;
+  for (k = 0; k < SCENE_OUTPUTS; ++k, ++from, to += call->apart) {
     if (many < SCENE_BLOCK) {
       for (j = 0; j < many; j += LANES) {
-        memcpy(to + j, y + j/LANES*SCENE_COLUMNS, (size_t) (many - j < LANES ? many - j : LANES)*sizeof *to);
+        memcpy(to + j, from + j/LANES*SCENE_COLUMNS, (size_t) (many - j < LANES ? many - j : LANES)*sizeof *to);
       }
     } else {
       for (j = 0; j < SCENE_PACKS; ++j) {
-        if (streams) lanes_stream(to + j*LANES, y[j*SCENE_COLUMNS]);
-        else scene_store(to + j*LANES, y[j*SCENE_COLUMNS]);
+        if (LANES > 1) sum[j] = sum[j] + from[j*SCENE_COLUMNS];
+        if (streams) lanes_stream(to + j*LANES, from[j*SCENE_COLUMNS]);
+        else scene_store(to + j*LANES, from[j*SCENE_COLUMNS]);
       }
     }
   }
+  for (j = 0; j < SCENE_PACKS; ++j) all = all + sum[j];
+  if (LANES > 1 && many >= SCENE_BLOCK && !lanes_any_nan(all - all)) return;
+  for (j = 0; j < many && j < SCENE_BLOCK; j += LANES) scene_check(call, i + j, y + j/LANES*SCENE_COLUMNS);
 }
 
 #ifndef SCENE_REDUCED

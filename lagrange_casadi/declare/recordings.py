@@ -507,7 +507,7 @@ def _law(
     )
     return Motion(
         graph,
-        description=f"{described}{smoothed}{every}, at most {off:.3g} {recording.unit} off",
+        description=f"{described}{smoothed}{every}, at most {off:.3g} {recording.unit} from them",
         unit=unit_in,
     )
 

@@ -502,7 +502,7 @@ class Scene(Graphs):
     def __reduce__(self) -> NoReturn:
         """Raise :class:`PickleError`."""
         raise PickleError(
-            "a Scene cannot be pickled, for its expressions belong to this process; send a Case"
+            "a Scene cannot be pickled, because its expressions belong to this process; send a Case"
             " from load_case, or make the scene in the other process"
         )
 

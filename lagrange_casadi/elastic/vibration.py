@@ -73,7 +73,7 @@ class Vibration:
     def words(self) -> str:
         """Result in a sentence."""
         if math.isinf(self.frequency):
-            return "no bending frequency of its own, for it has no mass"
+            return "no bending frequency of its own, because it has no mass"
         text = f"first bending frequency {self.frequency:.5g} Hz, {' and '.join(self.ends)}"
         if self.cycle is None or self.harmonic is None or self.excess is None:
             return f"{text}; {self.reason}"

@@ -128,7 +128,7 @@ def _tree(model: Model, text: str) -> _Line:
         if not data.strip():
             continue
         if depth > len(above) - 1 or depth > _DEEPEST:
-            raise model.refuse(f"line {at}", "has too many tabs for what is above it")
+            raise model.refuse(f"line {at}", "has more tabs than the lines above it allow")
         del above[depth + 1 :]
         above[-1].inside.append(one := _Line(model, data.strip(), at))
         above.append(one)

@@ -2,9 +2,9 @@
 
 A body's inertia J about its centre is realizable if tr(J)/2 - J is positive definite (Wensing, Kim,
 Slotine, *Linear matrix inequalities for physically consistent inertial parameter identification*,
-IEEE RA-L 3, 2018). Masses are exponentials, and these matrices products L L^T with exponentials on
-the diagonal of L (Rucker, Wensing, *Smooth parameterization of rigid-body inertia*, RA-L 7, 2022),
-so each step stays consistent.
+IEEE RA-L 3, 2018). The logarithms of masses and of the determinants of these matrices are concave
+in masses, first moments and inertias about a point, so Newton's method with them as a barrier finds
+the least squares among parameters that a body can have.
 """
 
 from __future__ import annotations
@@ -16,29 +16,28 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
 from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.symbolic import Graphs, symbolic
 from ..equations.program import Program
-from ..errors import AccuracyError
+from ..errors import DeclarationError
 
-_PULL, _OPEN = 0.1, 1e-9
-"""Weight by which what the measurements leave open stays near its first value, relative to the
-largest measured column; singular values below that share of the largest are left open.
+_PULL, _OPEN = 0.2, 1e-9
+"""What the measurements leave open stays near its first value, as if that were known with an error
+of five usual sizes; singular values below this share of the largest are left open.
 """
 
-_LOW, _HIGH = 7.0, 10.0
-"""Farthest a logarithm goes from where a step begins: masses and axes to a thousandth."""
+_WEIGHTS = tuple(10.0**-k for k in range(-2, 10))
+"""Weights of the barrier one after another, in squares of residuals over their noise."""
 
-_LEAST = 1e-6
-"""Least mass, and least part of an inertia, over its first value or the largest one."""
+_NEAR, _STEPS, _SETTLED = 1e-3, 60, 1e-6
+"""Distance from its bounds at which a parameter begins, over its usual size; steps at most for a
+weight; and the decrement, over the weight, that ends them.
+"""
 
-_OPTIONS = {
-    "print_time": False,
-    "ipopt": {"print_level": 0, "sb": "yes", "tol": 1e-9, "max_iter": 500},
-}
+_KEPT, _SHORTEST = 0.1, 1e-6
+"""Share of the way to a bound that no step goes, and the least share of a step."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +46,12 @@ class Consistency(Graphs):
 
     ``positive(theta)`` has the masses of bodies and the principal minors' matrices, entry by entry;
     ``masses`` is how many masses come first, ``orders`` the orders of the matrices behind them.
-    ``bodies`` are the names of those of each mass, and of each matrix.
+    ``barrier(theta)`` has the sum of their logarithms times -1, its gradient and its second
+    derivatives. ``bodies`` are the names of those of each mass, and of each matrix.
     """
 
     positive: ca.Function
+    barrier: ca.Function
     masses: int
     orders: tuple[int, ...]
     first: Array
@@ -81,9 +82,14 @@ class Consistency(Graphs):
                 matrices[name] = matrix
         rows = [*masses.values(), *(x for matrix in matrices.values() for x in _lower(matrix))]
         function = ca.Function("positive", [theta], [ca.densify(column(rows))])
+        logs = sum((ca.log(mass) for mass in masses.values()), ca.SX(0))
+        logs += sum((ca.log(ca.det(matrix)) for matrix in matrices.values()), ca.SX(0))
+        curvature, slope = ca.hessian(-logs, theta)
+        barrier = ca.Function("barrier", [theta], [-logs, slope, ca.densify(curvature)])
         parameters = [list(program.data.parameters.values())[k] for k in numbers]
         return cls(
             function,
+            barrier,
             len(masses),
             tuple(matrix.size1() for matrix in matrices.values()),
             defaults[list(numbers)],
@@ -115,78 +121,80 @@ class Consistency(Graphs):
     def step(self, triangle: Array, right: Array, theta: Array) -> Array:
         """Return the consistent change of ``theta`` that makes |triangle change - right| least.
 
-        Raises :class:`.AccuracyError` where there is none, or none is found.
+        Raises :class:`.DeclarationError` for first values that no body can have.
         """
-        unknown, free = ca.SX.sym("x", theta.size), ca.SX.sym("l", self._free)
-        change = ca.DM(self.scales) * unknown - ca.DM(theta - self.first)
-        size = np.linalg.norm(triangle * self.scales, axis=0).max(initial=0.0) or 1.0
-        gap = ca.DM(triangle / size) @ change - ca.DM(right / size)
-        roots, axes = np.linalg.svd(triangle * self.scales, full_matrices=True)[1:]
-        left = ca.DM(axes[int((roots > _OPEN * size).sum()) :]) @ unknown
-        cost = ca.dot(gap, gap) + _PULL**2 * ca.dot(left, left)
-        values = self.positive(ca.DM(self.first) + ca.DM(self.scales) * unknown)
-        begin, sizes, logarithms = self._begin(theta)
-        bound = (values - self._positive(free)) / ca.DM(sizes)
-        solver = ca.nlpsol(
-            "consistent",
-            "ipopt",
-            {"x": ca.vertcat(unknown, free), "f": cost, "g": bound},
-            _OPTIONS,
+        columns = triangle * self.scales
+        size = np.linalg.norm(columns, axis=0).max(initial=0.0) or 1.0
+        roots, axes = np.linalg.svd(columns, full_matrices=True)[1:]
+        left = _PULL * axes[int((roots > _OPEN * size).sum()) :]
+        rows = np.vstack([columns, left])
+        aim = np.concatenate([right + triangle @ (theta - self.first), np.zeros(len(left))])
+        x = self._begin(theta)
+        for weight in _WEIGHTS:
+            x = self._descended(rows, aim, x, weight)
+        return self.first + self.scales * x - theta
+
+    def _begin(self, theta: Array) -> Array:
+        """Return scaled values inside all conditions: those of ``theta``, or the first ones."""
+        low, high = self._bounds
+        for start in ((theta - self.first) / self.scales, np.zeros(theta.size)):
+            x = np.clip(start, low + _NEAR, np.maximum(high - _NEAR, low + _NEAR))
+            if not (wrong := self.impossible(self.first + self.scales * x)):
+                return x
+        raise DeclarationError(
+            f"no body has the initial mass and inertia of '{wrong[0]}'; give initial values that"
+            " a body can have"
         )
-        below, above = (np.where(logarithms, reach, math.inf) for reach in (_LOW, _HIGH))
-        low, high = (self.low - self.first) / self.scales, (self.high - self.first) / self.scales
-        found = solver(
-            x0=np.concatenate([np.clip((theta - self.first) / self.scales, low, high), begin]),
-            lbx=np.concatenate([low, begin - below]),
-            ubx=np.concatenate([high, begin + above]),
-            lbg=0.0,
-            ubg=0.0,
-        )
-        if not solver.stats()["success"]:
-            raise AccuracyError(
-                "no parameters with positive masses and realizable inertias are found near the"
-                " measurements; give other initial values, or bounds"
-            )
-        return np.asarray(found["x"]).ravel()[: theta.size] * self.scales + self.first - theta
 
     @property
-    def _free(self) -> int:
-        return self.masses + sum(order * (order + 1) // 2 for order in self.orders)
+    def _bounds(self) -> tuple[Array, Array]:
+        return (self.low - self.first) / self.scales, (self.high - self.first) / self.scales
 
-    def _positive(self, free: ca.SX) -> Expression:
-        """Return masses and matrices, as :attr:`positive` has them, of free numbers."""
-        rows, start = [ca.exp(free[k]) for k in range(self.masses)], self.masses
-        for order in self.orders:
-            lower = ca.SX(order, order)
-            for i in range(order):
-                for j in range(i + 1):
-                    lower[i, j] = ca.exp(free[start]) if i == j else free[start]
-                    start += 1
-            rows += _lower(lower @ lower.T)
-        return column(rows)
+    def _inside(self, x: Array) -> bool:
+        low, high = self._bounds
+        theta = self.first + self.scales * x
+        return bool(((low < x) & (x < high)).all()) and not self.impossible(theta)
 
-    def _begin(self, theta: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
-        """Return free numbers near values of the parameters, the sizes of the conditions, and which
-        of the numbers are logarithms.
-        """
-        values = np.asarray(self.positive(theta)).ravel()
-        free, sizes = np.zeros(self._free), np.ones(values.size)
-        logarithms = np.arange(self._free) < self.masses
-        largest = np.abs(values[: self.masses]).max(initial=0.0) or 1.0
-        sizes[: self.masses] = largest
-        free[: self.masses] = np.log(np.maximum(values[: self.masses], _LEAST * largest))
-        start = self.masses
-        for order, (roots, axes) in zip(self.orders, self._matrices(values), strict=True):
-            places = np.tril_indices(order)
-            stop = start + places[0].size
-            largest = np.abs(roots).max() or 1.0
-            near = (axes * np.maximum(roots, _LEAST * largest)) @ axes.T
-            lower = np.linalg.cholesky(near)
-            lower[np.diag_indices(order)] = np.log(np.diag(lower))
-            free[start:stop], sizes[start:stop] = lower[places], largest
-            logarithms[start:stop] = places[0] == places[1]
-            start = stop
-        return free, sizes, logarithms
+    def _descended(self, rows: Array, aim: Array, x: Array, weight: float) -> Array:
+        """Return the least of |rows x - aim|^2 / 2 and the barrier times its weight, near x."""
+        value, slope, curvature = self._judged(rows, aim, x, weight)
+        for _ in range(_STEPS):
+            scale = 1.0 / np.sqrt(np.diag(curvature))
+            step = -scale * np.linalg.solve(curvature * np.outer(scale, scale), scale * slope)
+            fall = float(-slope @ step)
+            if not fall > _SETTLED * weight:
+                return x
+            share = 1.0
+            while share > _SHORTEST:
+                found = self._judged(rows, aim, x + share * step, weight)
+                kept = self._inside(x + share / (1.0 - _KEPT) * step)
+                if kept and found[0] <= value - 1e-4 * share * fall:
+                    break
+                share /= 2.0
+            else:
+                return x  # rounding leaves no better place
+            x, (value, slope, curvature) = x + share * step, found
+        return x
+
+    def _judged(
+        self, rows: Array, aim: Array, x: Array, weight: float
+    ) -> tuple[float, Array, Array]:
+        """Return what is made least, its gradient and second derivatives; infinite outside."""
+        if not self._inside(x):
+            return math.inf, x, rows
+        (low, high), theta = self._bounds, self.first + self.scales * x
+        value, slope, curvature = (np.asarray(part) for part in self.barrier(theta))
+        below, above = 1.0 / (x - low), 1.0 / (high - x)
+        logs = np.log(np.concatenate([below[below > 0.0], above[above > 0.0]])).sum()
+        slope = self.scales * slope.ravel() - below + above
+        bends, axes = np.linalg.eigh(curvature * np.outer(self.scales, self.scales))
+        curvature = (axes * np.maximum(bends, 0.0)) @ axes.T + np.diag(below**2 + above**2)
+        left = rows @ x - aim
+        return (
+            float(left @ left / 2.0 + weight * (value.item() + logs)),
+            rows.T @ left + weight * slope,
+            rows.T @ rows + weight * curvature,
+        )
 
 
 def _depends(expression: Expression, theta: ca.SX) -> bool:

@@ -233,7 +233,8 @@ def identify(
         For parameters or columns that there are not.
     DeclarationError
         If nothing that is measured depends on the unknown parameters, for a column in a unit of
-        another quantity, and if there are not more measured values than combinations to determine.
+        another quantity, if there are not more measured values than combinations to determine, and
+        with ``consistent`` for initial values that no body can have.
     AssemblyError
         If the mechanism cannot follow the measured motion.
     AccuracyError

@@ -301,8 +301,8 @@ def cycle_of(program: Program, p: Array, rates: tuple[float, float]) -> Cycle:
     drive = Drive.of(program, p)
     if sliding := program.checks("rest"):
         raise DeclarationError(
-            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but its sign"
-            " decides friction " + ", ".join(f"'{name}'" for name in sliding)
+            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but friction"
+            " depends on its sign: " + ", ".join(f"'{name}'" for name in sliding)
         )
     for revolutions in range(1, TURNS + 1):
         course, values = drive.follow(2 * revolutions)
