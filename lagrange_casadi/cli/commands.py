@@ -180,7 +180,7 @@ def export(**given: Any) -> None:
 def plot(**given: Any) -> None:
     """Draw the figures of the run or sweep FILE.h5.
 
-    Of a run they are those that its case wants, of a sweep peaks over parameters.
+    A run has the figures of its case, a sweep has its peaks over parameters.
     """
     from .plot import plot
 
@@ -253,8 +253,8 @@ def report(
 def animate(**given: Any) -> None:
     """Write an animation of FILE.h5 or CASE.
 
-    It is one cycle, which repeats. A GIF goes everywhere, an SVG is sharp at every size, an MP4 is
-    small and needs ffmpeg. A GLB (glTF) has the solid bodies, for presentations and Blender.
+    It shows one cycle, again and again. A GIF works everywhere, an SVG is sharp at every size, an
+    MP4 is small and needs ffmpeg. A GLB (glTF) has the solid bodies, for presentations and Blender.
     """
     from .animate import animate
 
@@ -267,8 +267,8 @@ def animate(**given: Any) -> None:
 def info(**given: Any) -> None:
     """Describe a case, or the file of a run or a sweep.
 
-    Of a case it lists parts, drives, loads, posture, wanted outputs and the number of instructions.
-    A sweep need not be finished.
+    For a case it lists parts, drives, loads, posture, wanted outputs and the number of
+    instructions. A sweep need not be finished.
     """
     from .info import info
 

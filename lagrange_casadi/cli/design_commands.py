@@ -80,14 +80,14 @@ from .options import (
     "--keep",
     KEEPS,
     "peaks",
-    "Store of each design its peaks only, its section laws as well, or all outputs over time as"
+    "Store for each design its peaks only, its section laws as well, or all outputs over time as"
     " well.",
 )
 @choice(
     "--peaks",
     PEAK_SEARCHES,
     "exact",
-    "Seek peaks between the instants, or take those of the instants, each with an error.",
+    "Search for peaks between the instants, or take those of the instants, each with an error.",
 )
 @flag(
     "--fluctuation",
@@ -269,11 +269,11 @@ def size(**given: Any) -> None:
     "--geared",
     float,
     "NUMBER",
-    "Let the motor turn so many times as fast as the drive.",
+    "Set the gear ratio, turns of the motor per turn of the drive.",
     default=1.0,
 )
 @click.option(
-    "--load", type=float, default=0.0, metavar="NUMBER", help="Let this torque resist [N m]."
+    "--load", type=float, default=0.0, metavar="NUMBER", help="Apply this resisting torque [N m]."
 )
 @click.option(
     "--inertia",
@@ -286,17 +286,17 @@ def size(**given: Any) -> None:
     "--start",
     str,
     "COORDINATE,RATE",
-    "Start there [rad, rad/s or m, m/s]; default: where the motion of the case starts.",
+    "Set the initial coordinate and rate [rad, rad/s or m, m/s]; default: those of the case.",
 )
-@flag("--steady", "Find the steady cycle, and go round once.")
+@flag("--steady", "Find the steady cycle, and compute one period of it.")
 @value(
     "--fluctuation",
     float,
     "NUMBER",
     "Find the flywheel with which the steady cycle has this coefficient of fluctuation.",
 )
-@value("--cycle", float, "TURNS", "Say after how many turns the machine repeats.", default=1.0)
-@value("--count", int, "NUMBER", "Take so many instants of a steady cycle.", default=721)
+@value("--cycle", float, "TURNS", "Set the turns after which the machine repeats.", default=1.0)
+@value("--count", int, "NUMBER", "Set the number of instants of a steady cycle.", default=721)
 @settings_by()
 @instants()
 @wanted()
@@ -307,10 +307,10 @@ def size(**given: Any) -> None:
     metavar="FILE.png",
 )
 def free(**given: Any) -> None:
-    """Let the machine CASE go: its motion under a motor, a load and its own weight.
+    """Compute the motion of CASE under the torques of a motor, its loads and its weight.
 
-    Each force is that of the true motion. CASE has one degree of freedom; its own motion says
-    where it starts, and no more.
+    All forces are those of this motion. CASE has one degree of freedom; the motion that it
+    declares is used for the start only.
 
     \b
     lagrange-casadi free punch_press --drive induction=200,0.2,157 --geared 15 --fluctuation 0.05
@@ -446,11 +446,11 @@ def trade(**given: Any) -> None:
 @several(
     "--prior",
     "NAME=NUMBER",
-    "State how sure the first value of a parameter is, as a standard deviation; repeatable.",
+    "Set the standard deviation of the first value of a parameter; repeatable.",
     kind=place,
 )
 @value("--counts-per-turn", float, "NUMBER", "Set the number of counts of an encoder in one turn.")
-@flag("--robust", "Let outliers count less, by Huber's loss.")
+@flag("--robust", "Reduce the weight of outliers, by Huber's loss.")
 @flag(
     "--consistent",
     "Find positive masses, inertias that a body can have, and parameters in their bounds.",
