@@ -82,7 +82,6 @@ from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.laws import Laws
 from lagrange_casadi.declare.limits import END
 from lagrange_casadi.declare.lowest import lowest
-from lagrange_casadi.declare.meshes import Mesh, Transmission, Wrench
 from lagrange_casadi.declare.motion_inverse import Missed, MotionInverse
 from lagrange_casadi.declare.parts import (
     Force,
@@ -250,7 +249,6 @@ from lagrange_casadi.strength.fatigue import (
     Histories,
     _farthest,
     cycles,
-    damage_score,
     factor,
     lacking,
     loaded,

@@ -142,8 +142,9 @@ def test_a_flywheel_holds_a_fluctuation_by_elliptic_integrals(fluctuation, speed
 
 def test_a_punch_slows_a_motor_as_a_textbook_prints():
     """Budynas and Nisbett's solutions to Shigley's Mechanical Engineering Design, chapter 16, page
-    417: a motor of T = 2690.4 - 21.41 w turns 110.72 lbf in s^2; of each 10 s a punch takes 1560
-    lbf in for 0.5 s, which slows it from 124.41 to 117.81 rad/s, a fluctuation of 0.0545.
+    417: a motor of T = 2690.4 - 21.41 w turns 110.72 lbf in s^2; a punch takes 1560 lbf in, which
+    slows it from 124.41 to 117.81 rad/s, a fluctuation of 0.0545. That the punch lasts 0.5 s of
+    each 10 s was inferred from these numbers.
     """
     motor = forward.expression(lambda t, angle, speed: 2690.4 - 21.41 * speed)
     punch = forward.expression(lambda t, angle, speed: 1560.0 * (t < 0.5))

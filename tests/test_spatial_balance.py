@@ -23,8 +23,6 @@ from spatial_wheels import wheel
 
 pytestmark = pytest.mark.quick
 
-G = 9.81
-
 
 def close(found, told, size=1.0):
     assert np.allclose(np.asarray(found, dtype=float), told, rtol=0, atol=1e-13 * size), (

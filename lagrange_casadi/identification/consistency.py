@@ -24,9 +24,9 @@ from ..equations.program import Program
 from ..errors import DeclarationError
 
 _PULL, _OPEN = 0.2, 1e-9
-"""Parameters that the measurements do not determine stay near its first value, as if that were
-known with an error of five usual sizes; singular values below this share of the largest are left
-open.
+"""Weight of first values of combinations that the measurements leave open, as if those were known
+with an error of five usual sizes; and the share of the largest singular value below which they are
+left open.
 """
 
 _WEIGHTS = tuple(10.0**-k for k in range(-2, 10))
