@@ -12,8 +12,11 @@ from internals import deflection
 
 import lagrange_casadi
 from lagrange_casadi import (
+    Prepared,
+    Scene,
     Sensitivities,
     Solution,
+    Sweep,
     actuators,
     animation,
     beams,
@@ -112,7 +115,7 @@ def test_a_public_function_says_what_it_takes_and_gives(function):
     assert described(function) == {*inspect.signature(function).parameters}
 
 
-CLASSES = (Solution, Sensitivities)
+CLASSES = (Solution, Sensitivities, strength.Stress, Sweep, Prepared, Scene)
 
 
 def methods(*classes: type) -> Iterator[Callable[..., object]]:
