@@ -16,6 +16,7 @@ from lagrange_casadi import (
     Scene,
     Sensitivities,
     Solution,
+    SpatialMechanism,
     Sweep,
     actuators,
     animation,
@@ -115,7 +116,7 @@ def test_a_public_function_says_what_it_takes_and_gives(function):
     assert described(function) == {*inspect.signature(function).parameters}
 
 
-CLASSES = (Solution, Sensitivities, strength.Stress, Sweep, Prepared, Scene)
+CLASSES = (Solution, Sensitivities, strength.Stress, Sweep, Prepared, Scene, SpatialMechanism)
 
 
 def methods(*classes: type) -> Iterator[Callable[..., object]]:
