@@ -245,7 +245,7 @@ class Sweep:
         Parameters
         ----------
         axis : str
-            Axis of the designs, of :attr:`dimensions`.
+            Axis of the designs, of ``dimensions``.
         stride : int
             The n, at least 1.
 
@@ -268,7 +268,7 @@ class Sweep:
         Parameters
         ----------
         axis : str
-            Axis of the designs, of :attr:`dimensions`.
+            Axis of the designs, of ``dimensions``.
         number : int
             Place among those selected, from 0.
 
