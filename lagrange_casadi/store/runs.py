@@ -156,7 +156,7 @@ def check_target(target: Path, schema: str = SCHEMA) -> None:
         name = target.with_suffix(".h5").name
         raise PathError(
             f"cannot write {target}: results are kept as HDF5, under a name such as {name}; for a"
-            " table of a solution use run --csv, or solution.to_pandas().to_csv(...)"
+            " table of a solution use solution.to_pandas().to_csv(...)"
         )
     check_writable(target, hdf5=True)
     place = settled(target)
