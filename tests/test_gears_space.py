@@ -289,9 +289,9 @@ def test_bad_gears_in_space_are_refused_by_name():
         radii=(0.04, 0.06),
     )
     one_line("0.1 m along the axis", first.at(0.1), third, radii=(0.04, 0.06))
-    one_line("crossed axes need both numbers of teeth and radii", first, worm, radii=(0.04, 0.06))
+    one_line("crossed axes need teeth= and radii= of both", first, worm, radii=(0.04, 0.06))
     one_line(
-        "0.02 m beside the line at right angles",
+        "0.02 m along its axis from the common perpendicular",
         first,
         worm.at(0.02),
         radii=(0.04, 0.06),

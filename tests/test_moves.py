@@ -233,7 +233,7 @@ def test_moves_that_cannot_be_are_refused_everywhere():
     for values, says in (
         (
             {"T": 2.0},
-            r"moves: the other parts take .* s, which is not less than the period of 1\.5 s",
+            r"no time is left for the part without one: the others take .* s of the period of 1\.5",
         ),
         ({"T": -0.1}, r"move 'out': its time must be positive, got -0\.1 s"),
         (
@@ -380,7 +380,7 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
         ),
         (
             lambda: moves([move(1.0, time=4.0), dwell()], period=3.0),
-            "take 4 s, which is not less than the period of 3 s",
+            "the others take 4 s of the period of 3 s",
         ),
         (
             lambda: moves([move(1.0, time=1.0)], cyclic=True),

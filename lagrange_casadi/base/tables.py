@@ -204,7 +204,7 @@ _OTHERS = (
         "energy",
         ("t",),
         "1",
-        "balance of energy of a free machine since the first instant, over the largest energy",
+        "error of the energy balance of a free machine, relative to its largest energy",
     ),
     Quantity(
         "certificate",

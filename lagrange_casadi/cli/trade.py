@@ -71,7 +71,7 @@ def trade(
         for place, among in (("", found), (" in exported C", found.exported)):
             if among.measurements:
                 best = among.fastest(accuracy)
-                cost = f"{1e9 * best.seconds:.3g} ns an instant, error {best.largest:.1e}"
+                cost = f"{1e9 * best.seconds:.3g} ns an instant, relative error {best.largest:.1e}"
                 echo(f"fastest within {accuracy:g}{place}: {best.method.options} ({cost})")
 
 

@@ -101,7 +101,7 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
         If the joint is one of another mechanism or takes no such part, if a part is of another
         type, or if a number is not positive.
     """
-    if isinstance(mechanism, type) or not hasattr(mechanism, "own"):
+    if isinstance(mechanism, type) or not hasattr(mechanism, "ownership"):
         raise DeclarationError(f"fit: expected a Mechanism first, got {shown(mechanism)}")
     mechanism.ownership.joint(joint)
     what = f"joint '{joint.name}'"
@@ -109,8 +109,8 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
     turning = mechanism.turning.get(joint.name)
     if turning == "":
         raise DeclarationError(
-            f"{what}: a shaft seen from the side does not turn; use a SpatialMechanism for its"
-            " bearings"
+            f"{what}: its shaft lies in the plane, so it does not turn here; use a"
+            " SpatialMechanism for its bearings"
         )
     pinned = joint.kind in ("revolute", "cylindrical")
     slides = joint.kind in ("prismatic", "slot")

@@ -472,8 +472,8 @@ def _filled(
             remaining,
             True,
             lambda n: (
-                f"moves: the other parts take {readable(n(total))} s, which is not less than the"
-                f" period of {readable(n(whole))} s"
+                f"moves: no time is left for the part without one: the others take"
+                f" {readable(n(total))} s of the period of {readable(n(whole))} s"
             ),
         )
     )

@@ -151,7 +151,9 @@ def gears(
     meshes = []
     for pair, pitch, point in zip(found, pitches, many, strict=True):
         if pitch.kind == "crossed" and (teeth is None or radii is None):
-            raise DeclarationError(f"{what}: crossed axes need both numbers of teeth and radii")
+            raise DeclarationError(
+                f"{what}: gears with crossed axes need teeth= and radii= of both gears"
+            )
         mesh = _mesh(mechanism, centre, point, *pair, pitch)
         meshes.append(replace(mesh, braking=braking_of(pitch)) if lossy else mesh)
         fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]

@@ -193,8 +193,8 @@ def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: 
     fits = []
     for number, axis in ((1, u), (2, v)):
         words = (
-            f"the centre of its gear {number} is {{got}} m beside the line at right angles to both"
-            " axes; expected {meant} m"
+            f"the centre of its gear {number} is {{got}} m along its axis from the common"
+            " perpendicular of both axes; expected {meant} m"
         )
         fits.append(_held(what, numbers, Fit(words, dot(away, axis), 0.0, r1 + r2)))
     words = "its centres are {got} m apart; expected {meant} m as the sum of their radii"

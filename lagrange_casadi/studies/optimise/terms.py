@@ -22,7 +22,7 @@ from .fatigue import tired_link
 Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "fluctuation", "mass", "parameter"]
 
 KINDS: Mapping[Kind, str] = {
-    "peak": "the largest size of a quantity over the motion",
+    "peak": "the largest magnitude of a quantity over the motion",
     "max": "its largest value",
     "min": "its smallest value",
     "mean": "the mean of an effort or an output",
