@@ -80,7 +80,7 @@ def test_texts_give_the_same_forces_to_the_bit():
         samples([0, 1, 2, 3], ["0 deg", "1 deg", "3 deg", "2 deg"]),
     ):
         assert law.unit == "rad"
-    with pytest.raises(DeclarationError, match="it is in m, but its coordinate is in rad"):
+    with pytest.raises(DeclarationError, match="the law is in m, but the coordinate is in rad"):
         swing(polynomial("10 mm"))
     with pytest.raises(DeclarationError, match="name them: length=, mass="):
         Mechanism("m").link("a", 0.1, 1.0)

@@ -110,7 +110,7 @@ def test_weights_may_be_parameters():
         for joint in "OCA":
             assert np.allclose(found.effort(joint), same.effort(joint), rtol=1e-12, atol=1e-12)
     assert np.abs(told[2.0].effort("C")).max() > np.abs(told[5.0].effort("C")).max()
-    assert "3 drives (O, C, A) make 2 motions" in told[2.0].notes[0]
+    assert "3 drives (O, C, A) for 2 degrees of freedom" in told[2.0].notes[0]
     assert not evaluate(five_bar(["A", "D"])).notes
 
 

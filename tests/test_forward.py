@@ -483,13 +483,13 @@ def arm():
         (lambda: free(rotor(), start=(0.0,)), r"start: expected \(coordinate, rate\)"),
         (
             lambda: free(rotor(), drive=forward.power(9.0), start=(0.0, 0.0)),
-            "its drive is without bound at the start",
+            "the law of its drive is not finite at the start",
         ),
         (
             lambda: free(
                 rotor(), drive=forward.expression(lambda t, a, w: -50.0 * ca.sign(w - 9.0))
             ),
-            "reached t = 0.01.* s, rate 9; a law is stiff or jumps back and forth",
+            "reached t = 0.01.* s, rate 9; the law of the drive or of a load is stiff",
         ),
         (lambda: forward.dc_motor(5.0, -30.0), "torque and speed must have one sign"),
         (lambda: forward.induction_motor(5.0, 0.0, 30.0), "breakdown_slip must be positive"),

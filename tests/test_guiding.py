@@ -115,7 +115,7 @@ def test_the_point_is_where_its_laws_say():
 def test_more_drives_than_freedoms_serve_too():
     found = evaluate(guided({"O": 1.0, "C": 1.0, "A": 2.0}))
     assert found.certified
-    assert "3 drives (O, C, A) make 2 motions" in found.notes[0]
+    assert "3 drives (O, C, A) for 2 degrees of freedom" in found.notes[0]
     assert not evaluate(guided()).notes
 
 

@@ -83,17 +83,17 @@ def test_scotch_yoke_and_trammel():
         (
             lambda m, a: m.link("b", length=1),
             DeclarationError,
-            "link 'b': expected its mass or its density",
+            "link 'b': expected either mass= or density=",
         ),
         (
             lambda m, a: m.link("b", length=1, mass=1, density=density.uniform(1)),
             DeclarationError,
-            "expected its mass or its density",
+            "expected either mass= or density=",
         ),
         (
             lambda m, a: m.link("b", length=1, mass=1, centre=(0, 0)),
             DeclarationError,
-            "expected mass, centre and inertia together",
+            "expected mass=, centre= and inertia= together",
         ),
         (
             lambda m, a: m.link("b", length=1, density=3.0),

@@ -215,19 +215,19 @@ HOLLOW = (0.05 + 0.008 * np.cos(12 * TURN))[:, None] * np.column_stack([np.cos(T
             HOLLOW,
             (
                 r"profile: the follower cannot touch it near its point \d+, counted"
-                r" counter-clockwise: it is hollow"
+                r" counter-clockwise: the profile is hollow"
             ),
         ),
         ("flat", HOLLOW, r"profile: the follower cannot touch it near its point \d+"),
         (
             "swinging roller",
             circle(0.3, 0.0, 40),
-            "profile: the follower is too short to reach the whole profile, or too close",
+            "profile: the follower does not reach the whole profile: its end can be from",
         ),
         (
             "swinging flat",
             circle(0.2, 0.0, 40),
-            "profile: the follower's pin is too close: the profile passes it",
+            "profile: the follower's pivot is .* m from .* shaft, but the profile reaches 0.2 m",
         ),
         ("roller", circle(0.001, 0.0, 40) * 1e-3, "profile: "),
     ],

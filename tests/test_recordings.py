@@ -318,7 +318,9 @@ def test_a_length_does_not_turn_a_joint(here):
     file = write(here / "arm.csv", ["t", "A [mm]"], np.column_stack([TIMES, SLIDE]))
     m = Mechanism("arm")
     m.revolute("A", m.ground, m.link("upper", length=0.4, mass=1.0))
-    with pytest.raises(DeclarationError, match="motion of 'A': it is in m, but its coordinate is"):
+    with pytest.raises(
+        DeclarationError, match="motion of 'A': the law is in m, but the coordinate is"
+    ):
         evaluate(Scene(m, read_motion(file), t=(0, 1.2, 61)))
 
 
@@ -331,7 +333,7 @@ def test_a_length_does_not_turn_a_joint(here):
         (["t", "a [counts]"], {}, r"two.csv: column a is in counts; expected counts_per_turn="),
         (["t", "a"], {"unit": {"b": "deg"}}, "two.csv: unknown coordinate of unit= 'b'; valid: a"),
         (["t", "a"], {"columns": []}, "two.csv: columns= expected at least one coordinate"),
-        ([], {}, "two.csv: it has no heads; expected columns="),
+        ([], {}, "two.csv: the file has no column heads; name the columns with columns="),
         (["t", "a"], {"smoothing": {"a": -1.0}}, "two.csv, column a: smoothing expected the noise"),
     ],
 )

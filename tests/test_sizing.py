@@ -160,7 +160,7 @@ def test_every_link_is_stiff_and_none_alone_can_be_lighter(scene, sized):
         ({"profiles": [Profile("x", {"diameter": 0.5})]}, DeclarationError,
             r"'x': parameter 'd1' = 0\.5 m is out of its range"),
         ({"profiles": [Profile("x", {"height": 0.5})], "links": ["plate"]}, DeclarationError,
-            "its height is not a parameter"),
+            "its height must be a parameter"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_sized(scene, arguments, error, says):

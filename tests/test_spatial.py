@@ -82,7 +82,7 @@ def arm(**kwargs):
         ),
         (
             lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0)),
-            "link 'b': expected mass, centre and inertia together",
+            "link 'b': expected mass=, centre= and inertia= together",
         ),
         (
             lambda m, a: m.link(

@@ -151,7 +151,7 @@ def test_long_lists_are_told_apart_by_their_digest():
         ((0.0, 0.4, 5, True), "a log range must begin above 0"),
         ((None, 0.4, 5), "expected numbers for START and STOP"),
         ([], "expected at least one value"),
-        ([0.1, np.nan], "values must be finite, got nan"),
+        ([0.1, np.nan], "grid of l: expected finite values, got nan"),
         ([0.1, 0.2, 0.1], "the value 0.1 is listed twice"),
         ("abc", "grid of l: expected (start, stop, count) or numbers, got 'abc'"),
         ("1_0", "expected (start, stop, count) or numbers, got '1_0'"),

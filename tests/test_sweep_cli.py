@@ -77,7 +77,7 @@ MISTAKES = [
         "l: COUNT must be at least 1, got 0.1:0.4:0: the range is empty",
     ),
     (["--grid", "l=nan:0.4:3"], 2, "l: START and STOP must be finite, got nan:0.4:3"),
-    (["--grid", "l=0.1,nan"], 2, "l: values must be finite, got nan"),
+    (["--grid", "l=0.1,nan"], 2, "l: expected finite values, got nan"),
     (["--grid", "l=0:0.4:3:log"], 2, "l: a log range must begin above 0, got 0.0:0.4:3:log"),
     (
         ["--grid", "l=0.1:0.4:3:lin"],

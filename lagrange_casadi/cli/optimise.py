@@ -45,7 +45,7 @@ def optimise(
     """See :func:`.commands.optimise`."""
     over = dict(bounds)
     if len(over) < len(bounds):
-        raise DeclarationError("over: a parameter has bounds twice")
+        raise DeclarationError("over: a parameter is listed twice")
     loaded = load_case(case)
     out, figure = (
         out or Path(f"{loaded.name}_optimum.h5"),

@@ -37,7 +37,7 @@ def tolerances(
     """See :func:`.commands.tolerances`."""
     widths = dict(within)
     if len(widths) < len(within):
-        raise DeclarationError("tolerance: a parameter has one twice")
+        raise DeclarationError("tolerance: a parameter is listed twice")
     if csv:
         csv.check()
     loaded = load_case(case)

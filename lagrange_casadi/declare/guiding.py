@@ -86,7 +86,7 @@ def laws_of(
         unit = ANGLE if rotates else LENGTH
         if law.unit not in ("", unit):
             raise DeclarationError(
-                f"motion of '{name}': it is in {law.unit}, but its coordinate is in {unit}"
+                f"motion of '{name}': the law is in {law.unit}, but the coordinate is in {unit}"
             )
     return found
 

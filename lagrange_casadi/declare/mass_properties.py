@@ -33,14 +33,14 @@ def mass_properties_of(
     if beam is not None and centre is None and mass is None and density is None:
         return Density(beam.course.breaks, tuple(map(tuple, beam.masses())), per_length=True)
     if (mass is None) == (density is None):
-        raise DeclarationError(f"{what}: expected its mass or its density")
+        raise DeclarationError(f"{what}: expected either mass= or density=")
     if beam is not None and centre is not None:
         raise DeclarationError(
             f"{what}: beam= excludes centre= and inertia=, because a link with these has no"
             " sections"
         )
     if (centre is None) != (inertia is None) or (centre is not None and mass is None):
-        raise DeclarationError(f"{what}: expected mass, centre and inertia together")
+        raise DeclarationError(f"{what}: expected mass=, centre= and inertia= together")
     if density is not None:
         if not isinstance(density, Density):
             raise DeclarationError(

@@ -34,8 +34,8 @@ def notes(
     moved = len(motions_of(description)) - len(description["rows"])
     if len(drives) > moved and Output("effort", drives[0]) in outputs:
         text = (
-            f"{len(drives)} drives ({', '.join(drives)}) make {moved}"
-            f" motion{'s' if moved > 1 else ''}"
+            f"{len(drives)} drives ({', '.join(drives)}) for {moved}"
+            f" degree{'s' if moved > 1 else ''} of freedom"
         )
         yield f"{text}; their efforts are those with the least weighted sum of squares"
     yield from _across(description)

@@ -208,7 +208,9 @@ def read_motion(
     if columns is None:
         columns = [name for k, name in enumerate(table.heads) if k != at]
         if not columns:
-            raise DeclarationError(f"{path.name}: it has no heads; expected columns=")
+            raise DeclarationError(
+                f"{path.name}: the file has no column heads; name the columns with columns="
+            )
     named = dict(columns) if isinstance(columns, Mapping) else {name: name for name in columns}
     if not named:
         raise DeclarationError(f"{path.name}: columns= expected at least one coordinate")

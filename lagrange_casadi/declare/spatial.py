@@ -730,7 +730,7 @@ class SpatialMechanism(Mechanism):
         if body.name not in self.references:
             raise DeclarationError(
                 f"{what}: '{body.name}' has no position in the reference posture; declare it with"
-                " between=, or give the joint points of its bodies"
+                " between=, the places of its two ends, or use a point of each body in place of at="
             )
         return self.references[body.name]
 

@@ -302,7 +302,7 @@ def _check(
         place = "along the drum's axis" if slides else "at right angles to the drum's axis"
         raise DeclarationError(f"{what}: joint '{follower.name}' must be {place}")
     if not np.isfinite(direction).all() or not reach.min() > _SAME * reach.max():
-        raise DeclarationError(f"{what}: its roller comes to the drum's axis")
+        raise DeclarationError(f"{what}: the roller reaches the drum's axis; move it away")
     if abs(last[0] - first[0]) > _SAME * (np.ptp(direction) or 1.0):
         raise DeclarationError(
             f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi"

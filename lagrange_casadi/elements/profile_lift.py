@@ -225,7 +225,8 @@ def _sliding(
     reach = np.hypot(*pitch.T)
     if reach.min() < abs(offset):
         raise DeclarationError(
-            f"profile: the follower's line misses it, at {abs(offset):.6g} m from the cam's shaft"
+            f"profile: the follower's line is {abs(offset):.6g} m from the cam's shaft, too far to"
+            f" touch the whole profile; expected less than {reach.min():.6g} m"
         )
     height = np.sqrt(reach**2 - offset**2)
     place = offset * np.array([up[1], -up[0]]) + height[:, None] * up
@@ -244,15 +245,19 @@ def _swinging(
         sine = np.sum(at * normal, axis=1) / reach
         if np.abs(sine).max() >= 1.0:
             raise DeclarationError(
-                "profile: the follower's pin is too close: the profile passes it"
+                f"profile: the follower's pivot is {reach:.6g} m from the cam's shaft, but the"
+                f" profile reaches {reach * np.abs(sine).max():.6g} m; move the pivot farther away"
             )
         angle = np.arcsin(sine)
         return line + side * (angle + math.pi / 2) - _direction(normal), angle
     pitch = at + radius * normal
-    cosine = (arm**2 + reach**2 - np.sum(pitch**2, axis=1)) / (2.0 * arm * reach)
+    far = np.hypot(*pitch.T)
+    cosine = (arm**2 + reach**2 - far**2) / (2.0 * arm * reach)
     if np.abs(cosine).max() >= 1.0:
         raise DeclarationError(
-            "profile: the follower is too short to reach the whole profile, or too close"
+            "profile: the follower does not reach the whole profile: its end can be from"
+            f" {abs(arm - reach):.6g} to {arm + reach:.6g} m from the cam's shaft, and must be from"
+            f" {far.min():.6g} to {far.max():.6g} m; expected another length or pivot"
         )
     angle = np.arccos(cosine)
     turned = line + side * angle
@@ -270,7 +275,7 @@ def _law(what: str, angle: Array, height: Array, smoothing: float) -> Curve:
         bad = int(np.argmin(steps)) + 1
         raise DeclarationError(
             f"{what}: the follower cannot touch it near its point {bad}, counted counter-clockwise:"
-            " it is hollow there, or its points are too rough"
+            " the profile is hollow there, or its points are too rough"
         )
     order = slice(None, None, -1)
     x, y = turned[order], np.concatenate([height, height[:1]])[order]

@@ -115,7 +115,10 @@ def sought(machine: Machine, begin: Start, goal: Goal, accuracy: float) -> Found
             )
         step *= min(1.0, abs(speed / (2.0 * step[0])) if step[0] else 1.0)
         turn, speed = _moved(machine, begin.angle, speed, step, goal, accuracy)
-    why = {-1.0: "it slows down each turn, and stalls", 1.0: "it gains speed each turn"}
+    why = {
+        -1.0: "the machine slows down each turn, and stalls",
+        1.0: "the machine gains speed each turn",
+    }
     raise LagrangeCasadiError(
         f"machine '{name}': no steady cycle was found near {begin.speed:.6g} rad/s; "
         + (why[signs.pop()] if len(signs) == 1 else f"after {_STEPS} steps")

@@ -190,7 +190,8 @@ def follow(
         raise DeclarationError("t: a free machine needs two instants or more")
     if not machine.begin(float(times[0]), start.angle):
         raise DeclarationError(
-            f"start: the loops of '{machine.name}' do not close at {start.angle:.6g}"
+            f"start: the loops of '{machine.name}' do not close at {start.angle:.6g};"
+            " expected another coordinate"
         )
     y, events = _integrated(machine, start, times, accuracy)
     times = times[: y.shape[1]]
@@ -321,8 +322,8 @@ def _integrated(
     for name in ("drive", "load"):
         if not math.isfinite(first[ROW[name]]):
             raise LagrangeCasadiError(
-                f"free machine '{machine.name}': its {name} is without bound at the start, at the"
-                f" rate {start.speed:g}"
+                f"free machine '{machine.name}': the law of its {name} is not finite at the start,"
+                f" at the rate {start.speed:g}; expected another start"
             )
     first = machine.at(t, start.angle, start.speed or _SLOW).copy()
     energy = abs(first[ROW["kinetic"]]) + machine.added[1] * start.speed**2 / 2.0
@@ -387,8 +388,9 @@ class _Rates:
             if machine.evaluations > 2.0 * share * _MOST_EVALUATIONS:
                 raise LagrangeCasadiError(
                     f"free machine '{machine.name}': after {machine.evaluations} evaluations the"
-                    f" run has only reached t = {t:.6g} s, rate {speed:.6g}; a law is stiff or"
-                    " jumps back and forth there, or the time is too long for the accuracy"
+                    f" run has only reached t = {t:.6g} s, rate {speed:.6g}; the law of the drive"
+                    " or of a load is stiff, or switches back and forth, there, or the time is too"
+                    " long for the accuracy"
                 )
         slow = self.way * speed < _SLOW
         a, drive, load, taken = machine.at(t, angle, self.way * _SLOW if slow else speed)[_RATES]
@@ -435,6 +437,7 @@ def _why_lost(machine: Machine, t: float, angle: float, speed: float) -> Event:
     raise LagrangeCasadiError(
         f"free machine '{machine.name}': its motion cannot be followed beyond t = {t:.6g} s,"
         f" coordinate {angle:.6g}, rate {speed:.6g}: acceleration"
-        f" {rows[ROW['acceleration']]:.3g}, drive {rows[ROW['drive']]:.3g}; a law is without bound"
-        " or jumps back and forth there"
+        f" {rows[ROW['acceleration']]:.3g}, drive torque or force {rows[ROW['drive']]:.3g} (SI"
+        " units); there the law of the drive or of a load grows without bound, or switches back and"
+        " forth"
     )

@@ -228,7 +228,9 @@ class Sensitivities:
         unit = self.solution.unit(name)  # it refuses what is none
         output = Output.of(name)
         if not self.solution.determined(output):
-            raise DeclarationError(f"'{name}' [{unit}]: equilibrium does not determine it")
+            raise DeclarationError(
+                f"'{name}' [{unit}] has no sensitivities: equilibrium does not determine it"
+            )
         return output
 
     def _over_time(self, name: str) -> tuple[Array, Array]:

@@ -208,6 +208,11 @@ class _Search:
             raise DeclarationError("size: expected at least one profile")
         described = template(scene)
         content, having = described.content, beams_of(described.content)
+        if not having:
+            raise DeclarationError(
+                "size: no link has a cross-section, so there is nothing to size; declare one with"
+                " beam="
+            )
         if unknown := [name for name in links or () if name not in having]:
             raise UnknownNameError("link with a beam", unknown, having)
         slots: dict[str, _Slot] = {}
@@ -227,7 +232,7 @@ class _Search:
                 remaining[name] = str(error)
         if not slots:
             why = "; ".join(f"{name}: {reason}" for name, reason in remaining.items())
-            raise DeclarationError(f"size: the profiles fit no link; {why or 'no link has a beam'}")
+            raise DeclarationError(f"size: the profiles fit no link; {why}")
         taken: dict[str, str] = {}
         for name, slot in slots.items():
             for parameter in dict.fromkeys(slot.parameters.values()):
@@ -398,7 +403,7 @@ def _slot(
         symbols = [shape.dimensions[name] for shape in shapes]
         found = {str(s) for s in symbols if isinstance(s, ca.SX) and s.is_symbolic()}
         if len(found) != 1:
-            raise _UnfitError(f"its {name} is not a parameter, so a profile cannot set it")
+            raise _UnfitError(f"its {name} must be a parameter, which profiles can set")
         owners[name] = found.pop()
     table = next((profile.table for profile in profiles if profile.table), "")
     for shape in shapes:

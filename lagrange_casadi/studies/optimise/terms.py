@@ -152,7 +152,7 @@ class Constraint:
             advice = (
                 f"use min:{term.name}"
                 if term.kind == "max"
-                else "it can be limited from above only"
+                else f"{term.name} can be limited from above only"
             )
             raise DeclarationError(f"'{text}': {advice}")
         if not least and term.kind == "min":

@@ -145,7 +145,7 @@ class Values:
             raise DeclarationError("expected at least one value, got none")
         for value in numbers:
             if not math.isfinite(value):
-                raise DeclarationError(f"values must be finite, got {value}")
+                raise DeclarationError(f"expected finite values, got {value}")
         if len(set(numbers)) < len(numbers):
             twice = next(value for value in numbers if numbers.count(value) > 1)
             raise DeclarationError(f"the value {twice:g} is listed twice")

@@ -101,8 +101,8 @@ class Harvest:
         check_keep(self.keep)
         if self.fluctuation and not self.engine.drives:
             raise DeclarationError(
-                "fluctuation: it is that of the energy of efforts of joints whose motion is given,"
-                " and none is in wanted=; want effort"
+                "fluctuation: only efforts of joints whose motion is given have a fluctuation of"
+                " energy, and none is in wanted=; add effort"
             )
         if self.xi.size and not self._links:
             raise DeclarationError("xi: ratios apply to section forces, and none is in wanted=")
