@@ -115,6 +115,7 @@ from lagrange_casadi.declare.wanted_names import by_parameters, others
 from lagrange_casadi.elastic.bending_modes import closed as bending_modes_closed
 from lagrange_casadi.elastic.bending_modes import first_mode
 from lagrange_casadi.elastic.compliance import Compliance, nodes
+from lagrange_casadi.elastic.deflection import deflection
 from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
 from lagrange_casadi.elements.plate import area_of

@@ -201,7 +201,7 @@ def test_the_longest_arrow_and_the_widest_ribbon_tell_the_peaks():
     effort = abs(solution.peak("effort:O").value)
     assert (
         texts[-1]
-        == f"arrows: up to {force:.3g} N · drives' moments: up to {effort:.3g} N m · bending: up to"
+        == f"arrows: up to {force:.3g} N · drive torques: up to {effort:.3g} N m · bending: up to"
         f" {bending:.3g} N m"
     )
 

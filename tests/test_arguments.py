@@ -101,7 +101,7 @@ def test_what_a_solution_gives(tmp_path):
     assert not hasattr(reaction, "fz")
     for shown in (reaction, solution.motion("O"), solution.pose("arm"), solution.over):
         assert len(repr(shown)) < 400
-    with pytest.raises(PathError, match="a run is kept as HDF5"):
+    with pytest.raises(PathError, match="results are kept as HDF5"):
         save(solution, tmp_path / "x.csv")
     assert "<img" in solution.animate(tmp_path / "a.svg")._repr_html_()
 

@@ -77,7 +77,7 @@ def test_a_worker_that_would_give_other_numbers_is_refused(slider_crank):
     other = told | {"versions": told["versions"] | {"casadi": "3.7.0"}}
     with pytest.raises(
         ClusterError,
-        match=r"give other numbers: versions casadi was 3\.7\.0 and is .* there",
+        match=r"than this machine: versions casadi was 3\.7\.0 and is .* on the worker",
     ):
         cluster._evaluate(sent, plan.task, other, p, 3)
 

@@ -8,9 +8,11 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from internals import deflection
 
 import lagrange_casadi
 from lagrange_casadi import (
+    Mechanism,
     actuators,
     animation,
     beams,
@@ -82,22 +84,61 @@ def functions(*doors: ModuleType) -> Iterator[Callable[..., object]]:
                 yield thing
 
 
-MODULES = (actuators, animation, beams, bearings, density, elements, figures, forward, motion)
-MODULES += (peaks, strength)
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize(
-    "function", [*functions(*MODULES)], ids=lambda one: f"{one.__module__}.{one.__name__}"
-)
-def test_a_public_function_says_what_it_takes_and_gives(function):
-    """Its docstring has numpydoc's sections, and describes each of its arguments."""
-    signature, text = inspect.signature(function), inspect.getdoc(function)
+def described(function: Callable[..., object]) -> set[str]:
+    """Arguments that a docstring describes; it has sections of numpydoc, one of them for what the
+    function gives.
+    """
+    text = inspect.getdoc(function)
     sections = re.split(r"^(\w+)\n-+$", text, flags=re.MULTILINE)
     found = dict(zip(sections[1::2], sections[2::2], strict=True))
     assert found.keys() <= {"Parameters", "Returns", "Yields", "Raises", "Notes"}
-    assert ({"Returns", "Yields"} & found.keys()) or signature.return_annotation == "None"
-    described = re.findall(r"^(\S.*)$", found["Parameters"], flags=re.MULTILINE)
-    named = [line.partition(" : ")[0] for line in described]
-    given = {one.lstrip("*") for line in named for one in line.split(", ")}
-    assert given == {*signature.parameters}
+    given = inspect.signature(function).return_annotation
+    assert ({"Returns", "Yields"} & found.keys()) or given == "None"
+    entries = re.findall(r"^(\S.*)$", found["Parameters"], flags=re.MULTILINE)
+    named = [line.partition(" : ")[0] for line in entries]
+    return {one.lstrip("*") for line in named for one in line.split(", ")}
+
+
+MODULES = (actuators, animation, beams, bearings, density, elements, figures, forward, motion)
+MODULES += (peaks, strength)
+FUNCTIONS = (*functions(*MODULES), deflection)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda one: f"{one.__module__}.{one.__name__}")
+def test_a_public_function_says_what_it_takes_and_gives(function):
+    """Its docstring has numpydoc's sections, and describes each of its arguments."""
+    assert described(function) == {*inspect.signature(function).parameters}
+
+
+def classes(door: ModuleType) -> Iterator[type]:
+    """Public classes of a module that users import from."""
+    yield from filter(inspect.isclass, (getattr(door, name) for name in door.__all__))
+
+
+CLASSES = {thing: None for door in (lagrange_casadi, *MODULES) for thing in classes(door)}
+CLASSES.pop(Mechanism)  # its module has no lines left for sections of all its methods
+
+
+def methods(*classes: type) -> Iterator[Callable[..., object]]:
+    """Public methods that classes themselves define and that take arguments."""
+    for one in classes:
+        for name, thing in vars(one).items():
+            function = getattr(thing, "__func__", thing)
+            public = name[0] != "_" and inspect.isfunction(function)
+            if public and len(inspect.signature(function).parameters) > 1:
+                yield function
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("method", methods(*CLASSES), ids=lambda one: one.__qualname__)
+def test_a_public_method_says_what_it_takes_and_gives(method):
+    """Its docstring has numpydoc's sections, or names the function of the same arguments that has
+    them.
+    """
+    signature, text = inspect.signature(method), inspect.getdoc(method)
+    if named := re.search(r"see\s:func:`\.(?:\w+\.)*(\w+)`\.?$", text.partition("\n\n")[0]):
+        (function,) = (one for one in FUNCTIONS if one.__name__ == named[1])
+        assert described(function) >= {*signature.parameters} - {"self"}
+    else:
+        assert described(method) == {*signature.parameters} - {"self", "cls"}

@@ -202,7 +202,7 @@ def declared(make, space=False):
         ),
         (
             declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0), space=True),
-            "plates lie in a plane",
+            "only a mechanism in a plane has plates",
         ),
         (
             declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0).corner(3)),

@@ -29,14 +29,14 @@ def slotted(x=0.05):
 def test_it_is_said_which_joint_leaves_when_and_how_far():
     (note,) = evaluate(bracket()).notes
     assert note.startswith(
-        "joint 'S' leaves link 'arm' at t = 0.05 s (xi/l from -1.3 to 2.3): there its force acts"
-        " on the end"
+        "joint 'S' leaves link 'arm' at t = 0.05 s (xi/l from -1.3 to 2.3); beyond the end of the"
+        " link the joint's force acts on that end"
     )
     # The pivot is 0.3041 m from the crank's.
     (note,) = evaluate(slotted()).notes
     assert note.startswith(
-        "joint 'S' leaves link 'b' at t = 0 s (xi/l from 0.6379 to 1.263): there its force acts on"
-        " the end"
+        "joint 'S' leaves link 'b' at t = 0 s (xi/l from 0.6379 to 1.263); beyond the end of the"
+        " link the joint's force acts on that end"
     )
     assert evaluate(bracket(reach=0.2)).notes == ()
 

@@ -163,7 +163,7 @@ def test_what_does_not_fit_is_refused_by_name():
     refused("7 planets of 18 teeth do not fit", planets=7)
     refused("module must be positive, got -0.002 m", module=-0.002)
     m = SpatialMechanism("space")
-    with pytest.raises(DeclarationError, match="it lies in a plane"):
+    with pytest.raises(DeclarationError, match="only a mechanism in a plane has it"):
         planetary(
             m, "set", m.ground, m.ground, m.ground, teeth=(24, 18, 60), module=0.002, mass=0.1
         )

@@ -113,7 +113,7 @@ def test_check_passes_a_whole_file(file):
         ),
         (
             lambda h: h["effort/O"].__setitem__(5, np.nan),
-            "effort/O: holds values that are not finite",
+            "effort/O: values that are not finite",
         ),
         (
             lambda h: h["effort/O"].attrs.__setitem__("units", "lbf ft"),

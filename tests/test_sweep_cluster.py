@@ -410,7 +410,7 @@ OTHERS = {
     "silent": (b"", "nothing came from there within 1 s"),
     "http": (
         b"HTTP/1.0 400 Bad request\r\n" + 1000 * b"x",
-        r"(nothing came from there within 1 s|what is there says nothing that)",
+        r"(nothing came from there within 1 s|what answers there is no scheduler)",
     ),
     "ssh": (b"SSH-2.0-OpenSSH_9.2p1\r\n", "what answers there is no scheduler"),
     "zeros": (bytes(1000), ""),

@@ -299,11 +299,11 @@ def test_xarray_has_the_drives_coordinate_beside_time(kept):
     [
         (
             lambda file: file["over"].write_direct(np.asarray(file["over"]) ** 2),
-            "over: is not in equal steps",
+            "over: not in equal steps",
         ),
         (
             lambda file: file["over"].write_direct(np.asarray(file["over"]) + 1e-9),
-            "over: is not the coordinate of joint 'O'",
+            "over: not the coordinate of joint 'O'",
         ),
     ],
 )

@@ -39,12 +39,34 @@ class Motor:
     linear: bool = False
 
     def continuous_torque(self, speed: Numeric) -> Array:
-        """Continuous torque at a speed [N m], zero where there is none."""
+        """Return the continuous torque at a speed.
+
+        Parameters
+        ----------
+        speed : float or array
+            Speed [rad/s or m/s]; its sign does not matter.
+
+        Returns
+        -------
+        array
+            Torque [N m], or force [N] of a linear motor; zero at speeds without any.
+        """
         fall = (self.stall_torque - self.rated_torque) / self.rated_speed
         return np.asarray(np.maximum(self.stall_torque - fall * np.abs(speed), 0.0))
 
     def short_time_torque(self, speed: Numeric) -> Array:
-        """Largest torque for a short time at a speed [N m], at speeds that it reaches."""
+        """Return the largest torque for a short time at a speed that the motor reaches.
+
+        Parameters
+        ----------
+        speed : float or array
+            Speed [rad/s or m/s]; its sign does not matter.
+
+        Returns
+        -------
+        array
+            Torque [N m], or force [N] of a linear motor.
+        """
         if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
             return np.full(np.shape(speed), self.peak_torque)
         return np.asarray(

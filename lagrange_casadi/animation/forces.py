@@ -137,7 +137,7 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
                 )
             else:
                 arcs.append(Arc(one.place, one.vector[:, 2] / (largest or 1.0), one.colour))
-        words += [f"drives' moments: up to {_said(largest, 'N m')}"] if moments else []
+        words += [f"drive torques: up to {_said(largest, 'N m')}"] if moments else []
     ribbons: list[Ribbon] = []
     if section:
         motion = _moving(motion)

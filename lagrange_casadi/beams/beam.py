@@ -91,7 +91,18 @@ class Beam:
         return all(shape.round for shape in self.course.shapes())
 
     def mapped(self, change: Callable[[str, Operand], Operand]) -> Beam:
-        """Beam with other dimensions."""
+        """Return the beam with other dimensions.
+
+        Parameters
+        ----------
+        change : callable
+            Gives a new size [m] from a dimension's name and size.
+
+        Returns
+        -------
+        Beam
+            The beam, of the same material.
+        """
         return replace(self, shape=self.course.mapped(change))
 
     def masses(self) -> list[list[Operand]]:

@@ -81,9 +81,24 @@ class Material:
             object.__setattr__(self, "shear_modulus", self.elasticity / 2.6)
 
     def needs(self, what: str, *names: str) -> tuple[float, ...]:
-        """The numbers of some names.
+        """Return numbers of the material, none of which may be missing.
 
-        Raises :class:`.DeclarationError` that names those which ``what`` lacks.
+        Parameters
+        ----------
+        what : str
+            Subject of the message.
+        *names : str
+            Names of the numbers, as ``"elasticity"``.
+
+        Returns
+        -------
+        tuple of float
+            The numbers in this order, in SI units.
+
+        Raises
+        ------
+        DeclarationError
+            If some are missing; the message names them.
         """
         missing = [name for name in names if getattr(self, name) is None]
         if missing:
@@ -93,8 +108,24 @@ class Material:
         return tuple(getattr(self, name) for name in names)
 
     def but(self, **numbers: Any) -> Material:
-        """Material with other numbers; an endurance limit that is a share of the ultimate strength
-        is not changed with it.
+        """Return the material with other numbers.
+
+        An endurance limit that is a share of the ultimate strength is not changed with it.
+
+        Parameters
+        ----------
+        **numbers : float
+            Numbers by name, in SI units.
+
+        Returns
+        -------
+        Material
+            The other material.
+
+        Raises
+        ------
+        DeclarationError
+            If they do not fit each other.
         """
         return replace(self, **numbers)
 

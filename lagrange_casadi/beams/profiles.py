@@ -31,9 +31,22 @@ class Profile:
     table: str = field(default="", repr=False, compare=False)
 
     def shape(self, kind: str) -> Shape:
-        """The cross-section of a kind that has these dimensions.
+        """Return the cross-section of a kind that has these dimensions.
 
-        Raises :class:`.DeclarationError` where it has others.
+        Parameters
+        ----------
+        kind : str
+            Kind of shape, as ``"i_section"``.
+
+        Returns
+        -------
+        Shape
+            The cross-section.
+
+        Raises
+        ------
+        DeclarationError
+            If the kind has other dimensions.
         """
         names = dimensions_of(kind)
         if names is None or set(names) != set(self.dimensions):

@@ -54,10 +54,20 @@ class Properties:
     centre_z: Any = 0.0
 
     def rows(self, fibre: Fibre) -> tuple[tuple[Operand, ...], ...]:
-        """Normal stress, and shear stresses along y and z, at a fibre by unit axial force, two
-        shears, torsion and two bendings.
+        """Return the stresses at a fibre by unit section forces.
 
         Section forces act at the centroid, torsion counts from the shear centre.
+
+        Parameters
+        ----------
+        fibre : Fibre
+            The fibre.
+
+        Returns
+        -------
+        tuple (3, 6)
+            Normal stress, and shear stress along y and along z [Pa], each by axial force, two
+            shears, torsion and two bendings [N, N m].
         """
         whole = self.iz * self.iy - self.iyz**2
         about_y = (self.iz * fibre.z - self.iyz * fibre.y) / whole

@@ -42,8 +42,17 @@ class Shape:
             object.__setattr__(self, "dimensions", read)
 
     def properties(self, *, space: bool = True) -> Properties:
-        """Properties of the shape; round ones have fewer fibres if bending is in one plane
-        alone.
+        """Return the properties of the shape.
+
+        Parameters
+        ----------
+        space : bool
+            False if bending is in one plane alone: round shapes then have fewer fibres.
+
+        Returns
+        -------
+        Properties
+            Area, second moments and fibres, about the centroid.
         """
         return _FORMS[self.kind](dict(self.dimensions), space)
 
@@ -62,7 +71,18 @@ class Shape:
         return _demands(self.kind, dict(self.dimensions))
 
     def mapped(self, change: Callable[[str, Operand], Operand]) -> Shape:
-        """Shape with other dimensions, by name and value."""
+        """Return the shape with other dimensions.
+
+        Parameters
+        ----------
+        change : callable
+            Gives a new size [m] from a dimension's name and size.
+
+        Returns
+        -------
+        Shape
+            A shape of the same kind.
+        """
         return Shape(
             self.kind, {name: change(name, value) for name, value in self.dimensions.items()}
         )
@@ -78,7 +98,18 @@ class Course:
     cells: tuple[tuple[Shape, Shape], ...]
 
     def mapped(self, change: Callable[[str, Operand], Operand]) -> Course:
-        """Course with other dimensions."""
+        """Return the course with other dimensions.
+
+        Parameters
+        ----------
+        change : callable
+            Gives a new size [m] from a dimension's name and size.
+
+        Returns
+        -------
+        Course
+            The course, with the same breaks.
+        """
         made = {id(shape): shape.mapped(change) for cell in self.cells for shape in cell}
         return Course(
             self.breaks, tuple((made[id(first)], made[id(last)]) for first, last in self.cells)

@@ -209,7 +209,7 @@ def hollow_section(
     space: bool,
 ) -> Properties:
     """A rectangular hollow section; in space fibres are every 22.5 degrees around its corners, in
-    the plane at the ends of the sides.
+    the plane at the ends of the sides. Names have the angle of the outward normal from the y axis.
     """
     h, b, t, middle = height, width, wall, (outer_radius + inner_radius) / 2
     outlines = [(h, b, outer_radius, 1), (h - 2 * t, b - 2 * t, inner_radius, -1)]

@@ -114,9 +114,8 @@ def _lines(found: FreeMotion) -> Iterator[str]:
     unit, speed = (solution.unit(f"motion:{found.joint}{of}") for of in ("", "_rate"))
     yield (
         f"{solution.case}: {found.t.size} instants from {found.t[0]:.6g} to {found.t[-1]:.6g} s,"
-        f" {found.joint} from {found.angle[0]:.6g} to {found.angle[-1]:.6g}"
-        f" {unit}, speed from {found.speed.min():.6g} to"
-        f" {found.speed.max():.6g} {speed}"
+        f" {found.joint} at first {found.angle[0]:.6g}, at last {found.angle[-1]:.6g} {unit}, speed"
+        f" between {found.speed.min():.6g} and {found.speed.max():.6g} {speed}"
     )
     if cycle is not None:
         yield (

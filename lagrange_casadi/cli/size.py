@@ -50,11 +50,11 @@ def size_command(
         deflection=deflection,
     )
     stiff = (
-        "" if deflection is None else f", and a deflection of {deflection:g} of its length, or less"
+        "" if deflection is None else f", and a deflection of at most {deflection:g} of its length"
     )
     echo(
-        f"{loaded.name}: of {len(table)} profiles the lightest with a factor of safety of"
-        f" {safety:g}, or more{stiff}:"
+        f"{loaded.name}: the lightest of {len(table)} profiles with a factor of safety of at least"
+        f" {safety:g}{stiff}:"
     )
     for sized in found.links:
         for line in _lines(sized):

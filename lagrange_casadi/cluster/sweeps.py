@@ -339,6 +339,15 @@ class Asked:
         return self.function, self.arguments
 
 
+def check_same(asked: Mapping[str, Json], here: Mapping[str, Json]) -> None:
+    """Raise :class:`ClusterError` if a worker's inputs ``here`` differ from those asked for."""
+    if found := difference(asked, here):
+        raise ClusterError(
+            f"a Dask worker would give other numbers than this machine: {found} on the worker;"
+            " install the same there"
+        )
+
+
 def _evaluate(
     sent: bytes, task: Task, identity: Mapping[str, Json], p: Array, capacity: int
 ) -> list[bytes]:
@@ -346,9 +355,7 @@ def _evaluate(
     try:
         with _building:
             program, harvest = _built(sent, task)
-        found = difference(identity, signature(program, task, harvest.engine.provenance))
-        if found:
-            raise ClusterError(f"a worker would give other numbers: {found} there")
+        check_same(identity, signature(program, task, harvest.engine.provenance))
         return harvest.chunks(p, capacity)
     except ClusterError:
         raise

@@ -49,11 +49,20 @@ class Density:
         return _jumps(self.breaks, self.cells)
 
     def ends(self, length: Expression) -> tuple[Expression, Expression, Expression]:
-        """Masses at the base and at the tip, and a moment of inertia, that together move just as
-        the link does.
+        """Return two masses and a moment of inertia that together move just as the link does.
 
         They have its mass, first and second moment: with p = dm/du int p (1 - u) du, int p u du,
         and l^2 int p u (u - 1) du.
+
+        Parameters
+        ----------
+        length : float or casadi.SX
+            Length of the link [m].
+
+        Returns
+        -------
+        tuple
+            Mass at the base and at the tip [kg], and moment of inertia [kg m^2], not positive.
         """
         found: list[Any] = [0.0, 0.0, 0.0]
         for (a, b), cell in zip(
@@ -72,7 +81,20 @@ class Density:
         return found[0] * scale, found[1] * scale, found[2] * scale * length * length
 
     def tails(self, u: Expression, length: Expression) -> tuple[Expression, Expression, Expression]:
-        """T0, T1 and T2 at a ratio ``u`` from 0 to 1, a number or an expression in parameters."""
+        """Return T0, T1 and T2 of the mass from a ratio to the tip.
+
+        Parameters
+        ----------
+        u : float or casadi.SX
+            The ratio, from 0 to 1.
+        length : float or casadi.SX
+            Length of the link [m].
+
+        Returns
+        -------
+        tuple
+            The integrals of p (v - u)^k dv from u to 1, for k of 0, 1 and 2 [kg].
+        """
 
         def larger(x: Expression) -> Expression:
             return ca.fmax(x, 0.0) if isinstance(u, ca.SX) else max(x, 0.0)
@@ -90,11 +112,35 @@ class Density:
         return found[0] * scale, found[1] * scale, found[2] * scale
 
     def cell_at(self, u: float) -> tuple[Expression, ...]:
-        """The coefficients that hold at a ratio between two breaks."""
+        """Return the coefficients that hold at a ratio between two breaks.
+
+        Parameters
+        ----------
+        u : float
+            The ratio, from 0 to 1.
+
+        Returns
+        -------
+        tuple
+            Coefficients of powers of the ratio, the constant first.
+        """
         return self.cells[int(np.searchsorted(self.breaks, u, side="right")) - 1]
 
     def at(self, number: Callable[[Expression], float], length: float) -> NumericDensity:
-        """The density at given parameters, per unit of the ratio."""
+        """Return the density at given parameters.
+
+        Parameters
+        ----------
+        number : callable
+            Gives the value of an expression.
+        length : float
+            Length of the link [m].
+
+        Returns
+        -------
+        NumericDensity
+            Mass per unit of the ratio [kg].
+        """
         scale = length if self.per_length else 1.0
         return NumericDensity(
             self.breaks, tuple(tuple(number(c) * scale for c in cell) for cell in self.cells)
@@ -125,7 +171,18 @@ class Slices:
         return tuple(sorted({place for moment in self.each for place in moment.breaks}))
 
     def whole(self, length: Expression) -> tuple[Expression, Expression, Expression]:
-        """Moments of the whole link [kg m^2]."""
+        """Return the moments of the whole link.
+
+        Parameters
+        ----------
+        length : float or casadi.SX
+            Length of the link [m].
+
+        Returns
+        -------
+        tuple
+            The sums of y y, z z and y z [kg m^2].
+        """
         yy, zz, yz = (sum(moment.ends(length)[:2]) for moment in self.each)
         return yy, zz, yz
 

@@ -390,13 +390,26 @@ class Scene(Graphs):
         wanted: Outputs | None = None,
         live: bool = False,
     ) -> None:
-        """Evaluate the scene, and write a page that shows it in a browser; with ``live`` one that
-        evaluates other parameters.
+        """Evaluate the scene, and write a page that shows it in a browser.
 
-        ``parameters`` and ``wanted`` are those of :func:`.evaluate`; motion is always wanted.
-        Raises what that raises, and :meth:`.Solution.report`; with ``live``
-        :class:`.LagrangeCasadiError` where ziglang is missing, :class:`.DeclarationError` where
-        there is no parameter to change.
+        Parameters
+        ----------
+        path : path
+            The file, which ends in .html.
+        parameters : mapping, optional
+            Values by name; by default the parameters' defaults.
+        wanted : sequence of str, optional
+            Outputs, as of :func:`.evaluate`; motion is always wanted.
+        live : bool
+            True if the page shall evaluate other parameters.
+
+        Raises
+        ------
+        DeclarationError
+            For another ending; with ``live`` if there is no parameter to change.
+        LagrangeCasadiError
+            What :func:`.evaluate` and :meth:`.Solution.report` raise; with ``live`` if ziglang is
+            missing.
         """
         method("Scene.report")(self, path, parameters, wanted, live)
 
@@ -417,30 +430,92 @@ class Scene(Graphs):
 
     @fitting
     def wants(self, names: Sequence[str] | None = None) -> Wanted:
-        """Read names of outputs, its own wanted ones or others.
+        """Read names of outputs.
 
-        Raises what :meth:`.Wanted.of` does.
+        Parameters
+        ----------
+        names : sequence of str, optional
+            The names; by default those that the scene wants.
+
+        Returns
+        -------
+        Wanted
+            What they mean for this mechanism.
+
+        Raises
+        ------
+        DeclarationError
+            For what is no output, or lacks a beam or a number of its material.
         """
         return Wanted.of(self.mechanism, self.wanted if names is None else names)
 
     @public
     def values(self, parameters: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Return the values of all parameters, the defaults but for those given: see
-        :meth:`.Mechanism.values`.
+        """Return the values of all parameters: see :meth:`.Mechanism.values`.
+
+        Parameters
+        ----------
+        parameters : mapping, optional
+            Values by name; by default the parameters' defaults.
+
+        Returns
+        -------
+        dict
+            A value for every parameter.
+
+        Raises
+        ------
+        UnknownNameError
+            For a name that is not a parameter.
+        ParameterError
+            For values that are out of their range, or make a part impossible.
         """
         return self.mechanism.values(parameters)
 
     @fitting
     def with_elastic(self, elastic: Elastic | None) -> Scene:
-        """Return the scene with what is said of elasticity; None is what it says itself."""
+        """Return the scene with another choice of elastic links.
+
+        Parameters
+        ----------
+        elastic : bool, sequence of str or None
+            As of the scene; None keeps its own.
+
+        Returns
+        -------
+        Scene
+            The scene, or itself if nothing changes.
+
+        Raises
+        ------
+        UnknownNameError
+            For what is no link.
+        DeclarationError
+            For a link without a beam, or with a material without elasticity.
+        """
         gives = self.elastic if elastic is None else compliant_links(self.mechanism, elastic)
         return self if gives == self.elastic else _compliant(self, gives)
 
     @fitting
     def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
-        """Definition of the instants: the scene's own, or ``t`` or ``over``.
+        """Define the instants.
 
-        Raises :class:`.DeclarationError` where both are given, and for what cannot be.
+        Parameters
+        ----------
+        t : (start, stop, count), optional
+            Grid of time [s], in place of the scene's.
+        over : (joint, start, stop, count), optional
+            Steps of a driven coordinate [rad or m], in place of the scene's.
+
+        Returns
+        -------
+        Timing
+            The scene's own without either.
+
+        Raises
+        ------
+        DeclarationError
+            If both are given, and for what cannot be.
         """
         if t is not None and over is not None:
             raise DeclarationError(
@@ -460,8 +535,17 @@ class Scene(Graphs):
         return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
 
     def parameter_constraints(self, precision: Precision = "double") -> ParameterConstraints:
-        """Conditions on the parameters, of the mechanism's parts and of the moves of its motion,
-        with the tolerance of a precision.
+        """Return the conditions on the parameters, of parts and of moves of the motion.
+
+        Parameters
+        ----------
+        precision : str
+            Precision that determines their tolerance.
+
+        Returns
+        -------
+        ParameterConstraints
+            The conditions.
         """
         parts, moved = (
             demands(self.mechanism, precision),
@@ -471,8 +555,17 @@ class Scene(Graphs):
 
     @public
     def checked(self, values: Mapping[str, float]) -> None:
-        """Raise :class:`.ParameterError` for values of all parameters with which a part or a move
-        of the motion cannot be.
+        """Raise if a part or a move of the motion is impossible.
+
+        Parameters
+        ----------
+        values : mapping
+            Values of all parameters by name.
+
+        Raises
+        ------
+        ParameterError
+            Names the part, and the condition that does not hold.
         """
         if any(law.parameter_constraints for law in self.laws.values()):
             self.parameter_constraints().check(
@@ -480,11 +573,26 @@ class Scene(Graphs):
             )
 
     def timetable(self, name: str, parameters: Mapping[str, float] | None = None) -> Timetable:
-        """The moves and dwells of a joint's motion in numbers, with their largest speeds and what
-        jumps: :class:`.Timetable`.
+        """Return the moves and dwells of a joint's motion in numbers.
 
-        Raises :class:`.UnknownNameError` for a joint without a motion, :class:`.DeclarationError`
-        for one that is not of moves.
+        Parameters
+        ----------
+        name : str
+            Name of the driven joint.
+        parameters : mapping, optional
+            Values by name; by default the parameters' defaults.
+
+        Returns
+        -------
+        Timetable
+            Its stretches with their largest speed, acceleration and jerk, and its jumps.
+
+        Raises
+        ------
+        UnknownNameError
+            If the joint has no motion.
+        DeclarationError
+            If its motion is not made of moves.
         """
         if name not in self.laws:
             raise UnknownNameError("driven joint", name, self.laws)

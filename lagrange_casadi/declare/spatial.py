@@ -57,9 +57,7 @@ class SpatialMechanism(Mechanism):
     Where things are is said in one of two ways, joint by joint:
 
     - *relative*: a joint is between a point of its parent and a point of its child, its ``axis`` in
-      the parent's axes, and ``turned`` says how the child is turned against the parent where the
-      joint's coordinates are zero, by default as both lie in the reference posture, or not at all
-      if one has no place there;
+      the parent's axes, and ``turned`` turns the child against the parent;
     - *hard points*: all is said in ground axes, in one reference posture. A link lies ``between``
       two places, a joint is ``at`` a place, its ``axis`` in ground axes; coordinates are zero in
       the reference posture, from where loops are assembled.
@@ -180,7 +178,25 @@ class SpatialMechanism(Mechanism):
         return link
 
     def at(self, body: Body, x: Expression, y: Expression, z: Expression) -> Point:
-        """Return the point of a body at the place (x, y, z) [m] of the reference posture."""
+        """Return the point of a body at a place of the reference posture.
+
+        Parameters
+        ----------
+        body : Link, PointMass or Ground
+            The body.
+        x, y, z : float or casadi.SX
+            The place on ground axes [m].
+
+        Returns
+        -------
+        Point
+            The point, which moves with the body.
+
+        Raises
+        ------
+        DeclarationError
+            If the body has no position in the reference posture.
+        """
         check_kind("place", body, "a body", Ground, Link, PointMass)
         what = f"place on '{body.name}'"
         return self._reference(what, body).point(body, self._vector(what, (x, y, z), "m"))
@@ -195,8 +211,33 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` turn about ``axis`` through a point of ``parent``. A link stands for its
-        base, the ground for its origin.
+        """Let ``child`` turn about ``axis`` through a point of ``parent``.
+
+        Parameters
+        ----------
+        name : str
+            Name of the joint.
+        parent, child : Link, PointMass, Ground or Point
+            The points that coincide. A link stands for its base, the ground for its origin.
+        axis : tuple
+            Direction (x, y, z) on the parent's axes; with ``at`` on ground axes.
+        at : tuple, optional
+            Place (x, y, z) [m] in the reference posture, in place of points of the bodies.
+        turned : tuple, optional
+            Turns of the child against the parent at zero coordinates, as ``[("x", "90 deg")]``, or
+            the directions of its x and y axes; not with ``at``. By default as in the reference
+            posture, else none.
+
+        Returns
+        -------
+        Joint
+            The joint. Its coordinate is the child's angle about the axis [rad], right-handed.
+
+        Raises
+        ------
+        DeclarationError
+            If it joins a body to itself, a direction has no length, or a body has no position in
+            the reference posture for ``at``.
         """
         return self._spatial(name, "revolute", (parent, child), (axis, None), at, turned)
 
@@ -210,8 +251,19 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without
-        rotation. ``axis`` does not turn the child, ``turned`` does.
+        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``.
+
+        The child does not turn: ``axis`` does not turn it, ``turned`` does.
+
+        Parameters
+        ----------
+        name, parent, child, axis, at, turned
+            As of :meth:`revolute`.
+
+        Returns
+        -------
+        Joint
+            The joint. Its coordinate is the position along the axis [m].
         """
         return self._spatial(name, "prismatic", (parent, child), (axis, None), at, turned)
 
@@ -225,8 +277,17 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` slide along ``axis`` and turn about it, with the coordinates ``slide`` and
-        ``turn``.
+        """Let ``child`` slide along ``axis`` and turn about it.
+
+        Parameters
+        ----------
+        name, parent, child, axis, at, turned
+            As of :meth:`revolute`.
+
+        Returns
+        -------
+        Joint
+            The joint, with the coordinates ``slide`` [m] and ``turn`` [rad].
         """
         return self._spatial(name, "cylindrical", (parent, child), (axis, None), at, turned)
 
@@ -241,9 +302,20 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which
-        the child carries, at right angles to the first. The coordinates are ``turn_1`` and
-        ``turn_2``; both directions are those at zero coordinates.
+        """Let ``child`` turn about two axes at right angles.
+
+        Parameters
+        ----------
+        axis, second : tuple
+            Directions at zero coordinates: the first is carried by the parent, the second by the
+            child.
+        name, parent, child, at, turned
+            As of :meth:`revolute`.
+
+        Returns
+        -------
+        Joint
+            The joint, with the coordinates ``turn_1`` and ``turn_2`` [rad] about them.
         """
         return self._spatial(name, "universal", (parent, child), (axis, second), at, turned)
 
@@ -258,12 +330,21 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Hold a point of ``child`` at a point of ``parent``; the coordinates are ``turn_1`` to
-        ``turn_3``.
+        """Hold a point of ``child`` at a point of ``parent``.
 
-        They are rotations about ``axis``, ``second`` and the direction at right angles to both,
-        each turned by those before; by default x, y and z. A joint that closes a loop has no
-        coordinates.
+        Parameters
+        ----------
+        axis, second : tuple, optional
+            Directions of the first two rotations, by default x and y; the third is at right angles
+            to both. Each is turned by those before.
+        name, parent, child, at, turned
+            As of :meth:`revolute`.
+
+        Returns
+        -------
+        Joint
+            The joint, with the coordinates ``turn_1`` to ``turn_3`` [rad]; none if it closes a
+            loop.
         """
         return self._spatial(name, "spherical", (parent, child), (axis, second), at, turned)
 
@@ -278,8 +359,19 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] for each revolution.
-        The coordinate is the angle.
+        """Let ``child`` turn about ``axis`` and slide along it.
+
+        Parameters
+        ----------
+        name, parent, child, axis, at, turned
+            As of :meth:`revolute`.
+        lead : float, str or casadi.SX
+            Slide along the axis for each revolution [m].
+
+        Returns
+        -------
+        Joint
+            The joint. Its coordinate is the angle [rad].
         """
         pitch = self.ownership.expression(f"joint '{name}': lead", lead, "m") / math.tau
         return self._spatial(name, "screw", (parent, child), (axis, None), at, turned, pitch)
@@ -295,9 +387,20 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` move in the plane normal to ``axis`` through a point of ``parent``. The
-        coordinates are ``slide_1`` along ``second``, ``slide_2`` at right angles to both, and
-        ``turn`` about ``axis``.
+        """Let ``child`` move in the plane normal to ``axis`` through a point of ``parent``.
+
+        Parameters
+        ----------
+        axis, second : tuple
+            Normal of the plane, and a direction in it, by default any.
+        name, parent, child, at, turned
+            As of :meth:`revolute`.
+
+        Returns
+        -------
+        Joint
+            The joint, with the coordinates ``slide_1`` [m] along ``second``, ``slide_2`` at right
+            angles to both, and ``turn`` [rad] about ``axis``.
         """
         return self._spatial(name, "planar", (parent, child), (axis, second), at, turned)
 
@@ -311,9 +414,18 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, while
-        ``child`` turns freely. The coordinates are ``slide`` and those of a spherical joint; a
-        joint that closes a loop has the slide only.
+        """Let ``child`` turn freely about its point, which slides along a line of ``parent``.
+
+        Parameters
+        ----------
+        name, parent, child, axis, at, turned
+            As of :meth:`revolute`.
+
+        Returns
+        -------
+        Joint
+            The joint, with the coordinate ``slide`` [m] and those of a spherical joint; with the
+            slide only if it closes a loop.
         """
         return self._spatial(name, "slot", (parent, child), (axis, None), at, turned)
 
@@ -326,7 +438,18 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Fix ``child`` to ``parent``."""
+        """Fix ``child`` to ``parent``.
+
+        Parameters
+        ----------
+        name, parent, child, at, turned
+            As of :meth:`revolute`.
+
+        Returns
+        -------
+        Joint
+            The joint, without coordinates.
+        """
         return self._spatial(name, "weld", (parent, child), (None, None), at, turned)
 
     def free(
@@ -340,12 +463,21 @@ class SpatialMechanism(Mechanism):
         at: Expression = None,
         turned: Turns = (),
     ) -> Joint:
-        """Connect two bodies without any force, to prescribe the pose of ``child``, or to let it
-        fly.
+        """Connect two bodies without any force, to prescribe a pose, or to let ``child`` fly.
 
-        The coordinates ``slide_1`` to ``slide_3`` are the position of the child's point along
-        ``axis``, ``second`` and the direction at right angles to both, by default the parent's x, y
-        and z; ``turn_1`` to ``turn_3`` are those of a spherical joint.
+        Parameters
+        ----------
+        axis, second : tuple, optional
+            Directions of the first two coordinates, by default the parent's x and y; the third is
+            at right angles to both.
+        name, parent, child, at, turned
+            As of :meth:`revolute`.
+
+        Returns
+        -------
+        Joint
+            The joint, with the coordinates ``slide_1`` to ``slide_3`` [m] of the child's point
+            along them, and ``turn_1`` to ``turn_3`` [rad] of a spherical joint.
         """
         return self._spatial(name, "free", (parent, child), (axis, second), at, turned)
 
@@ -359,8 +491,22 @@ class SpatialMechanism(Mechanism):
         z: Expression = 0.0,
         turning: bool = False,
     ) -> Force:
-        """Apply a force with the components ``x``, ``y`` and ``z`` [N] at a point, on ground axes;
-        if ``turning``, on the axes of the body.
+        """Apply a force at a point.
+
+        Parameters
+        ----------
+        name : str
+            Name of the load.
+        point : Link, PointMass or Point
+            The point, not of the ground; a link stands for its base.
+        x, y, z : float or casadi.SX
+            Components [N], on ground axes.
+        turning : bool
+            True for components on the axes of the body.
+
+        Returns
+        -------
+        Force
         """
         load = super().force(name, point, x=x, y=y, turning=turning)
         found = Force(name, load.point, load.x, load.y, turning, self._load(name, z))
@@ -378,8 +524,24 @@ class SpatialMechanism(Mechanism):
         against: Body | Point | None = None,
         turning: bool = False,
     ) -> Torque:
-        """Apply a torque [N m] to a body at a point, on ground axes, or if ``turning`` on the axes
-        of the body, and the opposite torque to ``against`` (default: the ground).
+        """Apply a torque to a body at a point, and the opposite torque to another.
+
+        Parameters
+        ----------
+        name : str
+            Name of the load.
+        point : Link or Point
+            The point, which matters only to the sections of a link.
+        x, y, z : float or casadi.SX
+            Components [N m], on ground axes.
+        against : Link, Ground or Point, optional
+            Body with the opposite torque, by default the ground.
+        turning : bool
+            True for components on the axes of the body.
+
+        Returns
+        -------
+        Torque
         """
         load = super().torque(name, point, z, against=against)
         across = (self._load(name, x), self._load(name, y))
@@ -388,8 +550,18 @@ class SpatialMechanism(Mechanism):
         return found
 
     def nonholonomic(self, name: str, expression: Expression, *, replaces: Joint) -> Row:
-        """Declare a non-holonomic constraint, as in a plane; ``replaces`` is a driven joint of one
-        coordinate.
+        """Declare a non-holonomic constraint, as in a plane.
+
+        Parameters
+        ----------
+        name, expression
+            As of :meth:`.Mechanism.nonholonomic`.
+        replaces : Joint
+            A driven joint of one coordinate.
+
+        Returns
+        -------
+        Row
         """
         if self.ownership.joint(replaces).coordinate is None:
             found = ", ".join(axis.coordinate for axis in replaces.axes) or "none"
@@ -416,21 +588,52 @@ class SpatialMechanism(Mechanism):
         between: Between = None,
         turning: bool = False,
     ) -> LineLoad:
-        """Apply a load [N/m] along a link, as in a plane, on ground axes; if ``turning``, on the
-        link's axes.
+        """Apply a load along a link, as in a plane.
+
+        Parameters
+        ----------
+        name, link, between
+            As of :meth:`.Mechanism.line_load`.
+        x, y, z : float, pair, casadi.SX or callable
+            Components [N/m], on ground axes.
+        turning : bool
+            True for components on the link's axes.
+
+        Returns
+        -------
+        LineLoad
         """
         self.loads[name] = load = line_load(self.ownership, name, link, (x, y, z), between, turning)
         return load
 
     def set_gravity(self, x: Expression, y: Expression, z: Expression = 0.0) -> None:
-        """Set the acceleration of gravity [m/s^2] on ground axes, as numbers or expressions of
-        parameters.
+        """Set the acceleration of gravity.
+
+        Parameters
+        ----------
+        x, y, z : float or casadi.SX
+            Components [m/s^2] on ground axes, numbers or expressions of parameters.
         """
         self.ownership.refuse_frozen("set gravity")
         self.gravity = self._vector("gravity", (x, y, z))
 
     def direction(self, link: Link) -> Expression:
-        """Refuse: a link in space has no single angle."""
+        """Refuse: a link in space has no single angle.
+
+        Parameters
+        ----------
+        link : Link
+            Any link.
+
+        Returns
+        -------
+        Never
+
+        Raises
+        ------
+        DeclarationError
+            Always; it names what to use in its place.
+        """
         raise DeclarationError(
             "direction: a link in space has no single angle; use place() of its points, or"
             " coordinate()"

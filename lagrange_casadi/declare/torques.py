@@ -26,8 +26,17 @@ class Law:
 
     @public
     def geared(self, ratio: Symbolic) -> Law:
-        """Return the law of a motor that turns ``ratio`` times as fast as the drive, without
-        losses.
+        """Return the law of a motor that is geared to the drive, without losses.
+
+        Parameters
+        ----------
+        ratio : float or casadi.SX
+            Speed of the motor over that of the drive.
+
+        Returns
+        -------
+        Law
+            Its torque [N m] or force [N] at the drive.
         """
         times = _number("geared: ratio", ratio, "1")
         return Law(lambda t, angle, speed: times * self.graph(t, times * angle, times * speed))

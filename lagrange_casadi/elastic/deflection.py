@@ -255,9 +255,25 @@ def deflection(solution: Solution, link: str, against: Against | None = None) ->
     By default deflections count from the line between the ends where joints hold both
     (:func:`..declare.held.ends_of`), else from the link's axes at its base.
 
-    Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its
-    forces are open, its material has no elasticity, or there is no formula for the torsion of its
-    cross-section.
+    Parameters
+    ----------
+    solution : Solution
+        Has the section forces of the link.
+    link : str
+        Name of a link with a beam.
+    against : {"ends", "base"}, optional
+        Count from the line between the ends, or from the axes at the base.
+
+    Returns
+    -------
+    Deflection
+        Displacements [m] and rotations [rad] along the link.
+
+    Raises
+    ------
+    DeclarationError
+        If the link has no beam, its sections were not evaluated, its forces are indeterminate, its
+        material has no elasticity, or there is no formula for the torsion of its cross-section.
     """
     if against not in (None, "ends", "base"):
         raise DeclarationError(

@@ -40,7 +40,23 @@ class Bent:
         return self.corners[-1]
 
     def corner(self, number: int) -> Point:
-        """A corner: 0 is the base. Raises :class:`.DeclarationError` for a number of none."""
+        """Return a corner; that of number 0 is the base.
+
+        Parameters
+        ----------
+        number : int
+            Number of the corner, from 0.
+
+        Returns
+        -------
+        Point
+            The corner.
+
+        Raises
+        ------
+        DeclarationError
+            If there is no such corner.
+        """
         if type(number) is not int or not 0 <= number < len(self.corners):
             raise DeclarationError(
                 f"'{self.pieces[0].name}': there is no corner {number!r}, expected 0 to"

@@ -69,8 +69,28 @@ class Cam:
     def profile(
         self, parameters: dict[str, float] | None = None, *, count: Count = 720
     ) -> CamProfile:
-        """The cam's profile at ``count`` angles of one turn, for parameters' values, in its own
-        axes.
+        """Return the cam's profile at angles of one turn.
+
+        Parameters
+        ----------
+        parameters : dict, optional
+            Values by name; by default the parameters' defaults.
+        count : int
+            Number of angles, 16 to a million.
+
+        Returns
+        -------
+        CamProfile
+            The profile, in the cam's own axes.
+
+        Raises
+        ------
+        UnknownNameError
+            For a name that is not a parameter.
+        ParameterError
+            For values that are out of range, or make a part impossible.
+        DeclarationError
+            For another count, and if the follower cannot touch the cam.
         """
         design, x, values = self.design, self.design.angle, self.mechanism.values(parameters)
         cosine = _dot(design.normal, design.travel)

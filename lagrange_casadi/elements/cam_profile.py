@@ -67,12 +67,24 @@ class CamProfile:
         )
 
     def save_csv(self, path: str | Path, decimal_comma: bool = False) -> None:
-        """Write a row for every angle: cam angle [deg], x [m], y [m], pressure angle [deg], radius
-        of curvature [m].
+        """Write the profile as a table, a row for every angle.
 
-        With ``decimal_comma`` numbers have one, and semicolons are between cells; a path that ends
-        in .xlsx becomes a workbook. Raises :class:`.LagrangeCasadiError` for an undercut profile
-        and where openpyxl is missing, and :class:`.PathError` where nothing can be written.
+        Its columns are cam angle [deg], x [m], y [m], pressure angle [deg] and radius of curvature
+        [m].
+
+        Parameters
+        ----------
+        path : path
+            The file; one that ends in .xlsx becomes a workbook.
+        decimal_comma : bool
+            True for numbers with a comma, and semicolons between cells.
+
+        Raises
+        ------
+        LagrangeCasadiError
+            If the profile is undercut, or openpyxl is missing.
+        PathError
+            If the file cannot be written.
         """
         self._refuse_undercut()
         rows = np.column_stack(
@@ -82,10 +94,19 @@ class CamProfile:
         TableFile(Path(path), decimal_comma).write(heads, rows.tolist())
 
     def save_dxf(self, path: str | Path) -> None:
-        """Write the profile as a closed polyline of DXF R12, in mm, for a workshop; the package
-        ``ezdxf`` is needed.
+        """Write the profile as a closed polyline of DXF R12, in mm.
 
-        Raises :class:`.LagrangeCasadiError` without it, and as :meth:`save_csv` does.
+        Parameters
+        ----------
+        path : path
+            The file.
+
+        Raises
+        ------
+        LagrangeCasadiError
+            If the profile is undercut, or ezdxf is missing.
+        PathError
+            If the file cannot be written.
         """
         self._refuse_undercut()
         try:

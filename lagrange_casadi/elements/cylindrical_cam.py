@@ -79,10 +79,28 @@ class CylindricalCam:
     cam: Joint
 
     def groove(self, parameters: dict[str, float] | None = None, *, count: Count = 720) -> Array:
-        """The path of the roller's centre on the drum at ``count`` angles of one turn, in the
-        drum's own axes, (count, 3) [m].
+        """Return the path of the roller's centre on the drum at angles of one turn.
 
-        Raises :class:`.DeclarationError` for a count below 16, and above a million.
+        Parameters
+        ----------
+        parameters : dict, optional
+            Values by name; by default the parameters' defaults.
+        count : int
+            Number of angles, 16 to a million.
+
+        Returns
+        -------
+        array (count, 3)
+            Places in the drum's own axes [m].
+
+        Raises
+        ------
+        UnknownNameError
+            For a name that is not a parameter.
+        ParameterError
+            For values that are out of range, or make a part impossible.
+        DeclarationError
+            For another count.
         """
         angles = turn_in(self.name, count)[:-1]
         x, values = self.design.angle, self.mechanism.values(parameters)

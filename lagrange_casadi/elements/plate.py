@@ -27,7 +27,23 @@ class Plate:
     corners: tuple[Point, ...]
 
     def corner(self, number: int) -> Point:
-        """A corner, the first is 0. Raises :class:`.DeclarationError` for a number of none."""
+        """Return a corner.
+
+        Parameters
+        ----------
+        number : int
+            Number of the corner, from 0.
+
+        Returns
+        -------
+        Point
+            The corner.
+
+        Raises
+        ------
+        DeclarationError
+            If there is no such corner.
+        """
         if type(number) is not int or not 0 <= number < len(self.corners):
             raise DeclarationError(
                 f"'{self.link.name}': there is no corner {number!r}, expected 0 to"
@@ -36,7 +52,18 @@ class Plate:
         return self.corners[number]
 
     def at(self, x: Expression, y: Expression) -> Point:
-        """The place (x, y) in the axes of the corners [m]."""
+        """Return a point of the plate.
+
+        Parameters
+        ----------
+        x, y : float or casadi.SX
+            Its place on the axes of the corners [m].
+
+        Returns
+        -------
+        Point
+            The point.
+        """
         return self.link.at(x, y)
 
 

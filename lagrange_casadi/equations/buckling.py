@@ -67,9 +67,26 @@ class Column:
 
     @classmethod
     def of(cls, cross: CrossSections, length: Operand, effective: tuple[float, float]) -> Column:
-        """A link of a length as a column.
+        """Return a link as a column.
 
-        Raises :class:`.DeclarationError` where its material lacks elasticity or yield strength.
+        Parameters
+        ----------
+        cross : CrossSections
+            Its cross-sections.
+        length : float or casadi.SX
+            Its length [m].
+        effective : tuple of float
+            Effective lengths over its own, for bending along y and along z.
+
+        Returns
+        -------
+        Column
+            The column.
+
+        Raises
+        ------
+        DeclarationError
+            If its material lacks elasticity or yield strength.
         """
         elasticity, strength = cross.beam.material.needs("buckling", "elasticity", "yield_strength")
         thinnest = cross.thinnest

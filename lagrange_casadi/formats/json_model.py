@@ -81,7 +81,7 @@ class _Object(Element):
             where = one.at("axes")
             axes = np.array([numbers(one.model, where, row, "axes", 3) for row in one.list("axes")])
             if axes.shape != (3, 3):
-                raise one.model.refuse(where, "expected the directions of x, y and z")
+                raise one.model.refuse(where, "expected three unit vectors, those of x, y and z")
             return Frame(place, rotation(one.model, where, axes.T))
         return Frame(place, about_axis(one.direction("z"))) if "z" in one.given else Frame(place)
 

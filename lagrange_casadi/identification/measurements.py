@@ -110,7 +110,18 @@ class Measurements:
         object.__setattr__(self, "columns", columns)
 
     def quantities(self, drives: Sequence[str]) -> tuple[str, ...]:
-        """Return the names of the forces: the columns that are no motion of the drives."""
+        """Return the names of the forces: the columns that are no motion of the drives.
+
+        Parameters
+        ----------
+        drives : sequence of str
+            Names of the drives.
+
+        Returns
+        -------
+        tuple of str
+            Names of the other columns.
+        """
         moving = {f"{drive}{end}" for drive in drives for end in MOTION}
         return tuple(name for name in self.columns if name not in moving)
 
@@ -118,10 +129,26 @@ class Measurements:
         """Return coordinates, rates and accelerations of drives.
 
         What is not measured comes from the smoothing spline of the coordinate, at the distance of
-        its noise from the points. NaN stands for ``trim`` [s] at both ends.
+        its noise from the points.
 
-        Raises :class:`.UnknownNameError` for a drive without a column, :class:`.DeclarationError`
-        for too few values of one, and if nothing is left.
+        Parameters
+        ----------
+        drives : sequence of str
+            Names of the drives.
+        trim : float
+            Time at both ends that does not count [s]: NaN stands there.
+
+        Returns
+        -------
+        DrivenMotion
+            A column for each drive [rad or m, per second, per second squared].
+
+        Raises
+        ------
+        UnknownNameError
+            If a drive has no column.
+        DeclarationError
+            If a drive has too few values, or nothing is left.
         """
         parts = []
         for drive in drives:
@@ -152,11 +179,20 @@ class Measurements:
         return DrivenMotion(self.t, d, rate, acceleration)
 
     def cutoff(self, drive: str) -> float:
-        """Return the frequency [Hz] at which smoothing a drive's coordinate halves the power;
-        infinity without smoothing.
+        """Return the frequency at which smoothing a drive's coordinate halves the power.
 
         The spline solves f + w f'''' = y with the weight w by which the jumps of its third
         derivative are its distances from the points.
+
+        Parameters
+        ----------
+        drive : str
+            Name of the drive.
+
+        Returns
+        -------
+        float
+            Frequency [Hz]; infinity without smoothing.
         """
         if not self.noise.get(drive, 0.0) > 0.0:
             return math.inf

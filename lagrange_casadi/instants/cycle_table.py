@@ -374,6 +374,6 @@ def _compiled(dtype: str) -> CFuncPtr | None:
             source(), compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}")
         ).lagrange_casadi_interpolate
     except CompilerError as error:
-        warn(f"{error}; NumPy reads the tables")
+        warn(f"{error}; NumPy evaluates the tables of the cycle, more slowly: same values")
         return None
     return INTERPOLATE.declare(entry)

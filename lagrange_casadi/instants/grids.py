@@ -291,7 +291,7 @@ def _compiled() -> ctypes.CDLL | None:
             return None
         library = loaded(source, compiler, _OPTIONS)
     except CompilerError as error:
-        warn(f"{error}; NumPy fills the grids")
+        warn(f"{error}; NumPy computes the section forces along links, more slowly: same values")
         return None
     some = (ctypes.c_longlong,) * 3
     GRID.declare(library.lagrange_casadi_grids, *some)

@@ -98,7 +98,7 @@ class Solution:
     ``holding`` are ranges of efforts that hold joints at rest.
 
     Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not
-    have, and list those it has.
+    have, and list those it has; :class:`.DeclarationError` for a section that was not evaluated.
     """
 
     case: str
@@ -168,11 +168,33 @@ class Solution:
         )
 
     def effort(self, joint: str) -> Array:
-        """Effort of the drive at a joint (t,) [N m or N], positive along the joint's coordinate."""
+        """Return the effort of the drive at a joint.
+
+        Parameters
+        ----------
+        joint : str
+            Name of the driven joint.
+
+        Returns
+        -------
+        array (t,)
+            Effort [N m or N], positive along the joint's coordinate.
+        """
         return self._find("drive", Output("effort", joint))
 
     def reaction(self, joint: str) -> Reaction:
-        """Reaction of a joint: what its parent does to its child, without the drive's effort."""
+        """Return the reaction of a joint, without the drive's effort.
+
+        Parameters
+        ----------
+        joint : str
+            Name of the joint.
+
+        Returns
+        -------
+        Reaction
+            Force [N] and moments [N m] of the parent on the child, in ground axes.
+        """
         fx, fy = (
             self._find("joint with a reaction", Output("reaction", joint, member))
             for member in ("fx", "fy")
@@ -184,7 +206,18 @@ class Solution:
         return Reaction(fx, fy, mz, None if fz is None else (fz, mx, my))
 
     def motion(self, joint: str) -> JointMotion:
-        """Motion of a joint's coordinate: its value, rate and acceleration."""
+        """Return the motion of a joint's coordinate.
+
+        Parameters
+        ----------
+        joint : str
+            Name of the joint, or of one coordinate, as ``JOINT:slide_1``.
+
+        Returns
+        -------
+        JointMotion
+            Value [rad or m], rate and acceleration, each (t,).
+        """
         members = ("", "rate", "acceleration")
         return JointMotion(
             *(
@@ -194,11 +227,33 @@ class Solution:
         )
 
     def output(self, name: str) -> Array:
-        """An user-defined output of the mechanism (t,), in the unit that it was declared with."""
+        """Return a user-defined output of the mechanism.
+
+        Parameters
+        ----------
+        name : str
+            Its name, without ``output:``.
+
+        Returns
+        -------
+        array (t,)
+            Its values, in the unit that it was declared with.
+        """
         return self._find("user-defined output of the mechanism", Output("output", name))
 
     def pose(self, body: str) -> Pose:
-        """Place and direction of a link or point mass, in ground axes."""
+        """Return place and direction of a link or point mass, in ground axes.
+
+        Parameters
+        ----------
+        body : str
+            Name of the body.
+
+        Returns
+        -------
+        Pose
+            Place of its base [m] and direction of its axis [rad], each (t,).
+        """
         x, y = (
             self._find("body with a pose", Output("pose", body, member)) for member in ("x", "y")
         )
@@ -213,10 +268,23 @@ class Solution:
         return None if np.isnan(found[:, 0]).all() else found
 
     def section(self, link: str) -> Section:
-        """Forces inside a link.
+        """Return the forces inside a link.
 
-        Raises :class:`.DeclarationError` where they were not wanted, or where only the link's mass,
-        centre and inertia are known.
+        Parameters
+        ----------
+        link : str
+            Name of the link.
+
+        Returns
+        -------
+        Section
+            Axial force, shear force [N] and bending moment [N m], each (t, xi); in space torsion
+            too.
+
+        Raises
+        ------
+        DeclarationError
+            If its sections were not evaluated, or only its mass, centre and inertia are known.
         """
         if link in self._sections:
             return self._sections[link]
@@ -231,15 +299,15 @@ class Solution:
         raise DeclarationError(no_sections(link, link=link in links, links=links))
 
     def stress(self, link: str) -> Stress:
-        """The stresses in a link that has a beam. Raises what :func:`.strength.stress` does."""
+        """Return the stresses [Pa] in a link that has a beam: see :func:`.strength.stress`."""
         found: Stress = method("Solution.stress")(self, link)
         return found
 
     def safety(
         self, link: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"
     ) -> Safety:
-        """The factors of safety of a link that has a beam, or of what is fitted to a joint: see
-        :func:`.strength.safety`.
+        """Return the factors of safety of a link that has a beam, or of what is fitted to a joint:
+        see :func:`.strength.safety`.
         """
         found: Safety = method("Solution.safety")(
             self, link, criterion=criterion, yield_criterion=yield_criterion
@@ -247,12 +315,12 @@ class Solution:
         return found
 
     def life(self, link: str, *, criterion: str = "goodman") -> Life:
-        """Fatigue life of a link that has a beam: see :func:`.strength.life`."""
+        """Return the fatigue life of a link that has a beam: see :func:`.strength.life`."""
         found: Life = method("Solution.life")(self, link, criterion=criterion)
         return found
 
     def deflection(self, link: str, against: Literal["ends", "base"] | None = None) -> Deflection:
-        """Deflection of a link that has a beam: see :func:`.elastic.deflection.deflection`."""
+        """Return the deflection of a link: see :func:`.elastic.deflection.deflection`."""
         found: Deflection = method("Solution.deflection")(self, link, against)
         return found
 
@@ -294,7 +362,23 @@ class Solution:
         return found
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
-        """Solution at some of the instants."""
+        """Return the solution at some of the instants.
+
+        Parameters
+        ----------
+        instants : slice or array of bool (t,)
+            The instants that stay.
+
+        Returns
+        -------
+        Solution
+            All arrays over time, cut to these.
+
+        Raises
+        ------
+        DeclarationError
+            If it is neither a slice nor a mask of the instants.
+        """
         marked = (
             isinstance(instants, np.ndarray)
             and instants.dtype == bool
@@ -333,7 +417,18 @@ class Solution:
         )
 
     def determined(self, name: str | Output) -> bool:
-        """Return whether equilibrium determines a quantity, at all instants."""
+        """Return whether equilibrium determines a quantity, at all instants.
+
+        Parameters
+        ----------
+        name : str
+            Full name, as ``effort:O`` or ``section:LINK:FORCE``.
+
+        Returns
+        -------
+        bool
+            True if it is not indeterminate.
+        """
         output = self._output(name)
         if output.group == "section":
             return not made_of(self.indeterminate, output.part, output.member, self.table)
@@ -342,8 +437,17 @@ class Solution:
         )
 
     def made_of(self, output: Output) -> tuple[Output, ...]:
-        """The series whose size a resultant is, of those that there are; any other output is made
-        of itself.
+        """Return the components of a resultant, as far as the solution has them.
+
+        Parameters
+        ----------
+        output : Output
+            The output.
+
+        Returns
+        -------
+        tuple of Output
+            The components; any other output is made of itself.
         """
         components = output.components(self.table)
         return tuple(o for o in components if o in self.outputs) or components
@@ -362,16 +466,37 @@ class Solution:
         return map(str, self.quantities())
 
     def unit(self, name: str | Output) -> str:
-        """The unit of a quantity by its full name, as text: ``N m``."""
+        """Return the unit of a quantity, as ``N m``.
+
+        Parameters
+        ----------
+        name : str
+            Full name, as ``effort:O`` or ``section:LINK:FORCE``.
+
+        Returns
+        -------
+        str
+            Its unit.
+        """
         output = self._output(name)
         if output.group not in ("certificate", "holding") and not self._series(output):
             self._of_section(output)
         return output.unit(self._kinds)
 
     def array(self, name: str | Output) -> Array:
-        """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``.
+        """Return a quantity.
 
         ``reaction:JOINT:resultant`` is the size of the force.
+
+        Parameters
+        ----------
+        name : str
+            Full name, as ``effort:O`` or ``section:LINK:FORCE``.
+
+        Returns
+        -------
+        array (t,) or (t, xi)
+            Its values; over xi too for a section force.
         """
         output = self._output(name)
         if values := self._series(output):
@@ -379,8 +504,18 @@ class Solution:
         return self._of_section(output).array(output.member)
 
     def extremes(self, name: str | Output) -> tuple[Array, Array | None]:
-        """A quantity at every instant, (t,); of a section force the value largest in size along the
-        link, and its ratio xi/l.
+        """Return a quantity at every instant, reduced along the link if it is a section force.
+
+        Parameters
+        ----------
+        name : str
+            Full name, as ``effort:O`` or ``section:LINK:FORCE``.
+
+        Returns
+        -------
+        tuple of arrays (t,)
+            Values, and their ratios xi/l: of a section force those largest in size along the link,
+            with their sign. The ratios of any other quantity are None.
         """
         output = self._output(name)
         if output.group != "section":
@@ -389,10 +524,20 @@ class Solution:
         return values, places
 
     def peak(self, name: str | Output) -> Peak:
-        """The value of a quantity that is largest in size, over the instants; along a link exactly,
-        whatever the grid of xi.
+        """Return the value of a quantity that is largest in size over the instants.
 
-        Between the instants it may be larger: :func:`.refine` gives the largest over all times.
+        Along a link it is exact, whatever the grid of xi. Between the instants the quantity may be
+        larger: :func:`.refine` gives the largest over all times.
+
+        Parameters
+        ----------
+        name : str
+            Full name, as ``effort:O`` or ``section:LINK:FORCE``.
+
+        Returns
+        -------
+        Peak
+            The value with its sign, its time and its ratio xi/l.
         """
         values, places = self.extremes(name)
         i = int(largest(values))
@@ -401,8 +546,17 @@ class Solution:
         return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), xi, over=over)
 
     def statistics(self, name: str | Output) -> Statistics:
-        """Mean, root of the mean square, smallest and largest value, and the peak, of a quantity
-        over the instants.
+        """Return the statistics of a quantity over the instants.
+
+        Parameters
+        ----------
+        name : str
+            Full name, as ``effort:O`` or ``section:LINK:FORCE``.
+
+        Returns
+        -------
+        Statistics
+            Mean, root mean square, smallest and largest value, and the peak.
         """
         output = self._output(name)
         if output.group == "section":
@@ -415,13 +569,21 @@ class Solution:
         return Statistics.over(str(output), self.unit(output), self.t, self.array(output))
 
     def report(self, path: str | os.PathLike[str], beside: Solution | None = None) -> None:
-        """Write a page that shows the mechanism moving, its forces on it, charts and tables: one
-        HTML file for any browser.
+        """Write a page for browsers: the mechanism in motion, its forces, charts and tables.
 
-        With another solution ``beside`` it the page shows both side by side, and how they differ.
+        Parameters
+        ----------
+        path : path
+            The file, which ends in .html.
+        beside : Solution, optional
+            Another solution; the page shows both side by side, and how they differ.
 
-        Raises :class:`.DeclarationError` where ``motion`` was not wanted, or the path does not end
-        in .html; :class:`.PathError` and :class:`.StoreError` where the file cannot be written.
+        Raises
+        ------
+        DeclarationError
+            If motion was not evaluated, or the path ends otherwise.
+        PathError, StoreError
+            If the file cannot be written.
         """
         if beside is None:
             method("Solution.report")(self, path)
@@ -436,10 +598,22 @@ class Solution:
         return found
 
     def view(self, height: int = 760) -> View:
-        """Report page for a notebook, in a frame of a height [points] if it is the last value of a
-        cell.
+        """Return the report's page for a notebook, which shows it in a frame.
 
-        Raises :class:`.DeclarationError` where ``motion`` was not wanted.
+        Parameters
+        ----------
+        height : int
+            Height of the frame [points].
+
+        Returns
+        -------
+        View
+            The page, for the last line of a cell.
+
+        Raises
+        ------
+        DeclarationError
+            If motion was not evaluated.
         """
         found: View = method("Solution.view")(self, height)
         return found
@@ -450,16 +624,32 @@ class Solution:
         return found
 
     def to_xarray(self) -> xarray.Dataset:
-        """All quantities as an ``xarray.Dataset`` over t and xi, with units; an error of ours
-        without xarray.
+        """Return all quantities as an ``xarray.Dataset`` over t and xi, with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            The quantities by full name.
+
+        Raises
+        ------
+        LagrangeCasadiError
+            If xarray is not installed.
         """
         return dataset(self)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """All quantities as a ``pandas.DataFrame``, a row an instant, with units in the heads; a
-        section force once for each xi.
+        """Return all quantities as a ``pandas.DataFrame``, with units in the heads.
 
-        Raises :class:`.LagrangeCasadiError` where pandas is not installed.
+        Returns
+        -------
+        pandas.DataFrame
+            A row per instant; a section force has a column for each xi.
+
+        Raises
+        ------
+        LagrangeCasadiError
+            If pandas is not installed.
         """
         return frame(self)
 
@@ -497,10 +687,19 @@ class Solution:
         return self.section(output.part)
 
     def multiplier(self, name: str) -> Array:
-        """Multiplier of a constraint or a non-holonomic constraint, (t,).
+        """Return the multiplier of a constraint or a non-holonomic constraint.
 
-        Its force is + lambda dPhi/dq along what Phi is written in (paper eq. 2); its unit is that
-        of power over Phi'.
+        Its force is + lambda dPhi/dq along the coordinates of Phi (paper, eq. 2).
+
+        Parameters
+        ----------
+        name : str
+            Name of the constraint.
+
+        Returns
+        -------
+        array (t,)
+            The multiplier, in the unit of power over Phi'.
         """
         return self._find("constraint or row with a multiplier", Output("multiplier", name))
 

@@ -111,8 +111,8 @@ def _declared(solution: Solution, link: str, scene: Scene | Case | None) -> Decl
         if (stated.bodies, stated.joints) == (declared.bodies, declared.joints):
             return stated
     raise DeclarationError(
-        f"load cases of link '{link}': scene= has other parameters, bodies or joints than the"
-        " solution"
+        f"load cases of link '{link}': expected scene=, the scene of the solution; the one given"
+        " has other parameters, bodies or joints"
     )
 
 

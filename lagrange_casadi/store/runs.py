@@ -155,8 +155,8 @@ def check_target(target: Path, schema: str = SCHEMA) -> None:
     if target.suffix.lower() in _TABLES:
         name = target.with_suffix(".h5").name
         raise PathError(
-            f"cannot write {target}: a run is kept as HDF5, under a name such as {name}; a table is"
-            " what solution.to_pandas().to_csv(...) writes"
+            f"cannot write {target}: results are kept as HDF5, under a name such as {name}; for a"
+            " table of a solution use solution.to_pandas().to_csv(...)"
         )
     check_writable(target, hdf5=True)
     place = settled(target)
@@ -316,7 +316,7 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
     gap, finite = _read_through(dataset, solution, name)
     if solution.determined(name):
         if not finite:
-            yield f"{place}: holds values that are not finite"
+            yield f"{place}: values that are not finite"
         if quantity.axes == ("t", "xi") and gap > _GRID_TOLERANCE * abs(solution.peak(name).value):
             yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
     yield from unlike(dataset, solution.unit(name), quantity.attributes)
@@ -333,7 +333,7 @@ def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
     """
     for axis, values in (("t", solution.t), ("xi", solution.xi)):
         if not np.isfinite(values).all():
-            yield f"{axis}: holds values that are not finite"
+            yield f"{axis}: values that are not finite"
         yield from unlike(file[axis], *_AXES[axis])
     parameter_values = values_of(solution.description)
     if (
@@ -351,7 +351,7 @@ def _check_drive_axis(solution: Solution) -> Iterator[str]:
         return
     values = solution.over.values
     if not np.isfinite(values).all() or not are_even(values):
-        yield f"{_OVER}: is not in equal steps"
+        yield f"{_OVER}: not in equal steps"
     joint = solution.over.joint
     motion, rate = (
         solution.outputs.get(Output("motion", joint, member)) for member in ("", "rate")
@@ -361,7 +361,7 @@ def _check_drive_axis(solution: Solution) -> Iterator[str]:
         # Times are doubles, and a fast drive far from zero moves on between two of them.
         allowed += 4.0 * float(np.max(np.abs(rate)) * np.spacing(np.abs(solution.t).max()))
     if motion is not None and not np.abs(motion - values).max() <= allowed:
-        yield f"{_OVER}: is not the coordinate of joint '{joint}'"
+        yield f"{_OVER}: not the coordinate of joint '{joint}'"
 
 
 def _read_through(dataset: h5py.Dataset, solution: Solution, output: Output) -> tuple[float, bool]:

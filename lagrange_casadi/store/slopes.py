@@ -74,7 +74,7 @@ def check_slopes(file: h5py.File, solution: Solution) -> Iterator[str]:
             solution.resting.reshape(-1, *[1] * (found.values.ndim - 1)),
         )
         if not (np.isfinite(found.values) | (rests & np.isnan(found.values))).all():
-            yield f"{place}: holds values that are not finite"
+            yield f"{place}: values that are not finite"
         for key, value in ({"units": found.unit} | found.attributes).items():
             if file[place].attrs.get(key) != value:
                 yield f"{place}: {key} differs from the schema"

@@ -52,7 +52,18 @@ class Plane:
     angle: float
 
     def value(self, share: NotNegative = DUCTILE) -> float:
-        """Shear amplitude and ``share`` of the normal stress."""
+        """Return the shear amplitude and a share of the normal stress.
+
+        Parameters
+        ----------
+        share : float
+            Findley's k.
+
+        Returns
+        -------
+        float
+            The sum [Pa].
+        """
         return self.amplitude + share * self.normal
 
 

@@ -75,9 +75,19 @@ class RollingBearing:
     source: str = ""
 
     def rolling(self, hours: Positive, axial: NotNegative = _AXIAL) -> Rolling:
-        """Return what :func:`.fit` takes, to run for some hours.
+        """Return the demand on this bearing, for :func:`.fit`.
 
-        The factor on axial forces is by default the largest that ISO 281 has.
+        Parameters
+        ----------
+        hours : float
+            Life that is wanted [h].
+        axial : float
+            Factor on axial forces, by default the largest of ISO 281.
+
+        Returns
+        -------
+        Rolling
+            The demand.
         """
         return Rolling(self.dynamic, hours, self.static, axial=axial)
 

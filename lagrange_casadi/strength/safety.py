@@ -63,8 +63,17 @@ class Safety:
         return 1.0 / self.factor if self.factor > 0.0 else math.inf
 
     def against(self, what: str) -> float:
-        """The factor of safety against ``yield``, ``buckling`` or ``fatigue``; NaN where it is
-        open.
+        """Return a factor of safety.
+
+        Parameters
+        ----------
+        what : {"yield", "buckling", "fatigue"}
+            The failure.
+
+        Returns
+        -------
+        float
+            The factor; NaN if it was not evaluated.
         """
         return next(
             (verdict.factor for verdict in self.verdicts if verdict.against == what), math.nan

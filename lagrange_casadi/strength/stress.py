@@ -88,8 +88,24 @@ class Stress:
         )
 
     def grid(self, kind: str, xi: Array | None = None) -> Array:
-        """A stress (t, xi) over ratios, by default those of the solution: the largest in size of
-        all fibres, on the tip's side.
+        """Return a stress over ratios: the largest in size of all fibres, on the tip's side.
+
+        Parameters
+        ----------
+        kind : {"normal", "shear", "von_mises", "tresca"}
+            The stress.
+        xi : array (n,), optional
+            Ratios xi/l from 0 to 1; by default those of the solution.
+
+        Returns
+        -------
+        array (t, n)
+            The stress [Pa].
+
+        Raises
+        ------
+        DeclarationError
+            If a ratio is out of 0 to 1.
         """
         weights = _weights(kind)
         u = self.member.xi if xi is None else np.atleast_1d(xi)
@@ -118,8 +134,21 @@ class Stress:
         return found
 
     def at(self, xi: Share, side: Side = "tip", notch: Notch | None = None) -> Array:
-        """The stresses at a ratio: (3, fibres, t), normal, and shear along y and z, with the
-        factors of a notch where given.
+        """Return the stresses of all fibres at a ratio.
+
+        Parameters
+        ----------
+        xi : float
+            Ratio xi/l, from 0 to 1.
+        side : {"base", "tip"}
+            Side of a step of the cross-section or of a station, if the ratio is one.
+        notch : Notch, optional
+            A notch whose factors are included.
+
+        Returns
+        -------
+        array (3, fibres, t)
+            Normal stress, and shear stress along y and z [Pa].
         """
         cell = self.member.cell_at(xi, side)
         forces = self.member.at(np.full((self.member.t.size, 1), xi), side, self._scale(notch))
@@ -128,12 +157,35 @@ class Stress:
         )
 
     def fibres(self, xi: Share, side: Side = "tip") -> tuple[str, ...]:
-        """The names of the fibres at a ratio."""
+        """Return the names of the fibres at a ratio.
+
+        Parameters
+        ----------
+        xi : float
+            Ratio xi/l, from 0 to 1.
+        side : {"base", "tip"}
+            Side of a step of the cross-section or of a station, if the ratio is one.
+
+        Returns
+        -------
+        tuple of str
+            Their names, in the order of :meth:`at`.
+        """
         return self.member.cell_at(xi, side).names
 
     def largest(self, kind: str) -> Largest:
-        """A stress largest in size at every instant, exactly along the link, whatever the grid; NaN
-        where none counts.
+        """Return a stress that is largest in size along the link, at every instant.
+
+        Parameters
+        ----------
+        kind : {"normal", "shear", "von_mises", "tresca"}
+            The stress.
+
+        Returns
+        -------
+        Largest
+            Value [Pa], ratio and fibre, exact whatever the grid of xi; NaN at instants that do not
+            count.
         """
         moving = self.member.counted
         values, places, fibres = zip(
@@ -152,8 +204,24 @@ class Stress:
         return Largest(found[0], found[1], tuple(place_names))
 
     def peak(self, kind: str, *, notches: bool = False) -> StressPeak:
-        """The largest over all instants that count; where ``notches`` are asked for, their stresses
-        and theirs alone.
+        """Return the largest stress over all instants that count.
+
+        Parameters
+        ----------
+        kind : {"normal", "shear", "von_mises", "tresca"}
+            The stress.
+        notches : bool
+            True for the stresses at notches alone, their factors included.
+
+        Returns
+        -------
+        StressPeak
+            The value [Pa] with its sign, its time, ratio and fibre.
+
+        Raises
+        ------
+        DeclarationError
+            If notches are wanted, and the beam has none.
         """
         moving = Stress(self.member.counted)
         if notches:
@@ -172,7 +240,23 @@ class Stress:
         return best
 
     def largest_at_notches(self, kind: str) -> Array:
-        """The size of a stress at notches, their factors included, at every instant (t,)."""
+        """Return the size of a stress at notches, their factors included.
+
+        Parameters
+        ----------
+        kind : {"normal", "shear", "von_mises", "tresca"}
+            The stress.
+
+        Returns
+        -------
+        array (t,)
+            The largest of all notches [Pa].
+
+        Raises
+        ------
+        DeclarationError
+            If the beam has no notches.
+        """
         weights = _weights(kind)
         self._require_notches()
         each = [

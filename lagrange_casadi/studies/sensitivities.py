@@ -66,20 +66,43 @@ class Sensitivities:
         return tuple(self.slopes.program.data.parameters)
 
     def array(self, name: str, parameter: str) -> Array:
-        """The derivative of a quantity by a parameter over the instants, (t,), of a section force
-        (t, xi).
+        """Return the derivative of a quantity by a parameter.
 
-        Its unit is the quantity's over the parameter's. At a station, a section force is that on
-        its tip's side.
+        At a station, a section force is that on its tip's side.
+
+        Parameters
+        ----------
+        name : str
+            Full name of a quantity, as ``effort:O``.
+        parameter : str
+            Name of the parameter.
+
+        Returns
+        -------
+        array (t,), or (t, xi) of a section force
+            The derivative, in the quantity's unit over the parameter's.
         """
         return self._all(name)[1][..., self._number(parameter)]
 
     def curvature(self, name: str, parameter: str, other: str) -> Array:
-        """The second derivative of a quantity by two parameters over the instants, (t,), of a
-        section force (t, xi).
+        """Return the second derivative of a quantity by two parameters.
 
-        Its unit is the quantity's over both parameters'. Raises :class:`.DeclarationError` also for
-        a motion by samples whose knots are not known.
+        Parameters
+        ----------
+        name : str
+            Full name of a quantity, as ``effort:O``.
+        parameter, other : str
+            Names of the parameters, which may be the same.
+
+        Returns
+        -------
+        array (t,), or (t, xi) of a section force
+            The derivative, in the quantity's unit over both parameters'.
+
+        Raises
+        ------
+        DeclarationError
+            If a motion is by samples whose knots are not known.
         """
         row, direction = self._number(parameter), np.zeros((1, 2 + self.p.size))
         direction[0, 2 + self._number(other)] = 1.0
@@ -92,27 +115,78 @@ class Sensitivities:
         return self._made(name, second, ())
 
     def mean(self, name: str) -> Changes:
-        """Derivatives of the mean of a quantity over the instants; it is no section force."""
+        """Return the derivatives of the mean of a quantity over the instants.
+
+        Parameters
+        ----------
+        name : str
+            Full name of a quantity, as ``effort:O``.
+
+        Returns
+        -------
+        Changes
+            The mean, and its derivatives by parameter.
+
+        Raises
+        ------
+        DeclarationError
+            If it is a section force, which has one at every ratio.
+        """
         values, changes = self._over_time(name)
         slopes = mean_slopes(self.solution.t, values, changes).mean
         return Changes(float(values @ shares(self.solution.t)), self._named(slopes))
 
     def rms(self, name: str) -> Changes:
-        """Derivatives of the root mean square; NaN if that is zero."""
+        """Return the derivatives of the root mean square of a quantity.
+
+        Parameters
+        ----------
+        name : str
+            Full name of a quantity, as ``effort:O``.
+
+        Returns
+        -------
+        Changes
+            The root mean square and its derivatives by parameter, NaN if it is zero.
+
+        Raises
+        ------
+        DeclarationError
+            If it is a section force, which has one at every ratio.
+        """
         values, changes = self._over_time(name)
         slopes = mean_slopes(self.solution.t, values, changes).rms
         return Changes(float(np.sqrt(values**2 @ shares(self.solution.t))), self._named(slopes))
 
     def peak(self, name: str) -> Changes:
-        """Derivatives of the peak of a quantity over all times of the solution's span, between the
-        instants too: see :func:`.refine`.
+        """Return the derivatives of the peak of a quantity, between the instants too.
 
-        Its slopes are NaN where it has no derivative.
+        Parameters
+        ----------
+        name : str
+            Full name of a quantity, as ``effort:O``.
+
+        Returns
+        -------
+        Changes
+            The peak as of :func:`.refine`, with its sign; its slopes are NaN if it has no
+            derivative.
         """
         return self.peaks([name])[0]
 
     def peaks(self, names: Sequence[str]) -> list[Changes]:
-        """Derivatives of the peaks of several quantities."""
+        """Return the derivatives of the peaks of several quantities: see :meth:`peak`.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Their full names.
+
+        Returns
+        -------
+        list of Changes
+            One for each name, in order.
+        """
         outputs = [self._known(name) for name in names]
         sampled = [self.solution.peak(name) for name in names]
         found, others = self.continuous.refined(sampled, Listed(1.0 - AS_LARGE["double"]))

@@ -270,21 +270,61 @@ class Prepared:
         return answers.rows
 
     def peaks(self, /, *values: _Values, **named: Number) -> Peaks:
-        """Peaks and means for values of parameters; this thread's next evaluation overwrites the
-        arrays.
+        """Return the peaks and means for values of the parameters.
 
-        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be located.
-        Where a joint that rubs is at rest, instants do not count for what depends on its friction;
-        what is open at all of them is NaN.
+        This thread's next evaluation overwrites the arrays. Instants at which a joint with friction
+        is at rest do not count for what depends on this friction; what has no other instants is
+        NaN.
+
+        Parameters
+        ----------
+        *values : mapping, optional
+            Values of parameters by name.
+        **named : float or str
+            The same by keyword; other parameters have their defaults.
+
+        Returns
+        -------
+        Peaks
+            Peaks of the quantities, and means of the efforts.
+
+        Raises
+        ------
+        UnknownNameError
+            For what is no parameter.
+        ParameterError
+            If a value is out of its range.
+        AssemblyError
+            If there is no result, or a peak cannot be located.
         """
         return self._peaks(self._set(values, named))
 
     def gradient(self, /, *values: _Values, **named: Number) -> Gradient:
-        """Peaks and their derivatives by all parameters, for values of these.
+        """Return the peaks and their derivatives by all parameters.
 
         They are exact, by automatic differentiation. The first call derives and compiles them, in
-        doubles; a later one takes a few times as long as :meth:`peaks` at most. Raises what that
-        does.
+        doubles; a later one takes a few times as long as :meth:`peaks` at most.
+
+        Parameters
+        ----------
+        *values : mapping, optional
+            Values of parameters by name.
+        **named : float or str
+            The same by keyword; other parameters have their defaults.
+
+        Returns
+        -------
+        Gradient
+            Peaks, and their derivatives in the quantity's unit over the parameter's.
+
+        Raises
+        ------
+        UnknownNameError
+            For what is no parameter.
+        ParameterError
+            If a value is out of its range.
+        AssemblyError
+            If :meth:`peaks` has no result.
         """
         p, value, t, xi = self._kept_peaks(values, named)
         found = self._engine.gradient(p, value, t, xi)
@@ -306,12 +346,33 @@ class Prepared:
         )
 
     def curvature(self, /, *values: _Values, **named: Number) -> Curvature:
-        """The second derivatives of peaks by all parameters, for values of these: how their
-        gradient changes.
+        """Return the second derivatives of peaks by all parameters: how their gradient changes.
 
         They are exact, by automatic differentiation, as peaks move in time and along links. The
-        first call derives and compiles them, in doubles. Raises what :meth:`gradient` does, and
-        :class:`DeclarationError` for a motion by samples whose knots are not known.
+        first call derives and compiles them, in doubles.
+
+        Parameters
+        ----------
+        *values : mapping, optional
+            Values of parameters by name.
+        **named : float or str
+            The same by keyword; other parameters have their defaults.
+
+        Returns
+        -------
+        Curvature
+            Derivatives in the quantity's unit over both parameters'.
+
+        Raises
+        ------
+        UnknownNameError
+            For what is no parameter.
+        ParameterError
+            If a value is out of its range.
+        AssemblyError
+            If :meth:`peaks` has no result.
+        DeclarationError
+            For a motion by samples whose knots are not known.
         """
         p, value, t, xi = self._kept_peaks(values, named)
         gradient = self._engine.gradient(p, value, t, xi)
@@ -323,11 +384,23 @@ class Prepared:
     def designs(
         self, p: Numeric, *, threads: ThreadCount | None = None, histories: bool = False
     ) -> Outcome:
-        """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`;
-        ``threads`` share them.
+        """Evaluate many designs at once.
 
-        Values are not checked against the parameters' ranges. A design without a result has its
-        status, and NaN.
+        Values are not checked against the parameters' ranges.
+
+        Parameters
+        ----------
+        p : array (n, parameters)
+            A design in each row, in the order of :attr:`parameters`.
+        threads : int, optional
+            Threads that share the designs.
+        histories : bool
+            True if the series over time shall be kept too.
+
+        Returns
+        -------
+        Outcome
+            Status, peaks and means of each; a design without a result is NaN.
         """
         return self._engine.evaluate(p, threads=threads, histories=histories)
 

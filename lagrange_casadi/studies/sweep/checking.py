@@ -80,7 +80,7 @@ def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
             try:
                 check_chunks(item)
                 if not np.isfinite(item[()]).all():
-                    found.append(f"{place}: holds values that are not finite")
+                    found.append(f"{place}: values that are not finite")
                 found.extend(unlike(item, *sweep.meanings.of_axis(place.rpartition("/")[2])))
             except Exception as error:
                 found.append(f"{place}: damaged: {one_line(error)}")

@@ -77,8 +77,22 @@ class Sweep:
     def open(cls, path: str | Path) -> Sweep:
         """Open a file.
 
-        Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a
-        sweep.
+        Parameters
+        ----------
+        path : path
+            File of a finished sweep.
+
+        Returns
+        -------
+        Sweep
+            The sweep; its arrays are read when they are asked for.
+
+        Raises
+        ------
+        PathError
+            If there is no file, or the sweep is not finished.
+        StoreError
+            If it is not the whole file of a sweep.
         """
         _refuse_unfinished(path)
         return opened_sweep(path)
@@ -97,12 +111,21 @@ class Sweep:
         return found
 
     def report(self, path: str | os.PathLike[str], scene: Scene | None = None) -> None:
-        """Write a page for browsers: maps, fronts, a table, and with the ``scene`` that was swept
-        the mechanism in motion.
+        """Write a page for browsers: maps, fronts and a table of the designs.
 
-        Raises :class:`DeclarationError` for another scene, for a path that does not end in .html,
-        and where no column has one value for each design; :class:`LagrangeCasadiError` where
-        ``scene`` lacks ziglang.
+        Parameters
+        ----------
+        path : path
+            The file, which ends in .html.
+        scene : Scene, optional
+            The scene that was swept; the page then shows the mechanism in motion too.
+
+        Raises
+        ------
+        DeclarationError
+            For another scene, for another ending, and if no column has one value for each design.
+        LagrangeCasadiError
+            If ``scene`` lacks ziglang.
         """
         method("Sweep.report")(self, path, scene)
 
@@ -161,18 +184,49 @@ class Sweep:
         yield from (*self.parameters, *self._over, *self.columns)
 
     def column(self, name: str) -> KeptColumn:
-        """Description of a column. Raises :class:`UnknownNameError`."""
+        """Return the description of a column.
+
+        Parameters
+        ----------
+        name : str
+            Name of a column.
+
+        Returns
+        -------
+        KeptColumn
+            Its unit, its meaning and its axes.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such column.
+        """
         if name not in self.columns:
             raise self._unknown([name])
         return self.columns[name]
 
     def select(self, **values: Selected) -> Sweep:
-        """The designs with given values of parameters: a number that is on the grid, a list of such
-        numbers, or a tuple (low, high), both included. Angles may be texts, as ``"30 deg"``.
+        """Return the designs with given values of parameters.
 
-        An axis stays where one number is selected, of length one. Raises :class:`UnknownNameError`
-        for what was not swept, :class:`DeclarationError` for what is none of these, and where no
-        design has such a value, with the nearest one that has.
+        An axis stays if one number is selected, of length one.
+
+        Parameters
+        ----------
+        **values : float, str, list or tuple
+            By parameter: a number of the grid, a list of such numbers, or a tuple (low, high), both
+            included. Angles may be texts, as ``"30 deg"``.
+
+        Returns
+        -------
+        Sweep
+            The selected part; nothing is copied.
+
+        Raises
+        ------
+        UnknownNameError
+            For what was not swept.
+        DeclarationError
+            For anything else as value, and if no design has it; the message names the nearest.
         """
         chosen = dict(self.chosen)
         if unknown := [name for name in values if name not in self.parameters]:
@@ -186,12 +240,48 @@ class Sweep:
         return replace(self, chosen=chosen)
 
     def thinned(self, axis: str, stride: Count) -> Sweep:
-        """Every so many-th along an axis."""
+        """Return every n-th of the selected designs along an axis.
+
+        Parameters
+        ----------
+        axis : str
+            Axis of the designs, of :attr:`dimensions`.
+        stride : int
+            The n, at least 1.
+
+        Returns
+        -------
+        Sweep
+            The thinned part.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such axis.
+        """
         numbers = self._along(axis)
         return replace(self, chosen={**self.chosen, axis: numbers[::stride]})
 
     def at_number(self, axis: str, number: Index) -> Sweep:
-        """One place along an axis, by its number among those selected."""
+        """Return the designs at one place along an axis.
+
+        Parameters
+        ----------
+        axis : str
+            Axis of the designs, of :attr:`dimensions`.
+        number : int
+            Place among those selected, from 0.
+
+        Returns
+        -------
+        Sweep
+            The part with an axis of length one.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such axis.
+        """
         numbers = self._along(axis)
         return replace(self, chosen={**self.chosen, axis: numbers[number : number + 1]})
 
@@ -205,11 +295,24 @@ class Sweep:
         return self.chosen.get(axis, np.arange(self.dimensions[axis]))
 
     def axes_of(self, names: Outputs) -> tuple[str, ...]:
-        """The axes beyond those of the designs that columns share; those without any go with all,
-        and so do axes by name.
+        """Return the axes that columns share beyond those of the designs.
 
-        Raises :class:`UnknownNameError` for names that are none, :class:`DeclarationError` where
-        two columns have different axes.
+        Parameters
+        ----------
+        names : str or sequence of str
+            Names of columns, parameters or axes; those without axes of their own fit all.
+
+        Returns
+        -------
+        tuple of str
+            Such as ``("t", "xi")``.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such column.
+        DeclarationError
+            If two columns have different axes.
         """
         names = names_in(names)
         if unknown := [
@@ -227,29 +330,72 @@ class Sweep:
         return axes
 
     def unit(self, name: str) -> str:
-        """The unit of a parameter, of an axis such as ``t`` or ``xi``, or of a column."""
+        """Return the unit of a parameter, an axis or a column.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Returns
+        -------
+        str
+            Its unit.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such column.
+        """
         return self.parameters.get(name) or self._units.get(name) or self.column(name).unit
 
     def blocks(
         self, names: Sequence[str], along: Sequence[str] = ()
     ) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
-        """The selected designs in turn, in blocks of rows: their numbers, and values of parameters
-        and columns by name.
+        """Return the selected designs in turn, in blocks of rows.
 
-        A row is a design; or with ``along``, as in ``("t", "xi")``, a design at one place of these
-        axes: they are names too, and a design's number and what has no axes come again in each of
-        its rows.
+        Parameters
+        ----------
+        names : str or sequence of str
+            Names of columns.
+        along : sequence of str
+            Axes, as ``("t", "xi")``: a row is then a design at one place of these, and repeats what
+            has no axes. By default a row is a design.
 
-        Raises :class:`DeclarationError` for a column with other axes.
+        Returns
+        -------
+        iterator of (numbers, values)
+            Numbers of the designs (rows,), and by name the values (rows,) of columns, parameters
+            and axes.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such column.
+        DeclarationError
+            For a column with other axes.
         """
         names, along = names_in(names), names_in(along)
         self.check_columns(names, along)
         return self._blocks(names, along)
 
     def design(self, number: int) -> dict[str, float]:
-        """The values of the swept parameters of a design, by its number.
+        """Return the values of the swept parameters of a design.
 
-        Raises :class:`DeclarationError` where there is none.
+        Parameters
+        ----------
+        number : int
+            Number of the design, from 0.
+
+        Returns
+        -------
+        dict
+            Values by parameter.
+
+        Raises
+        ------
+        DeclarationError
+            If there is no such design.
         """
         places = dict(zip(self.dimensions, self._place(number), strict=True))
         with self.opened() as file:
@@ -259,9 +405,26 @@ class Sweep:
             }
 
     def values(self, number: int, names: str | Sequence[str]) -> dict[str, float]:
-        """Columns of a design, by its number.
+        """Return columns of a design.
 
-        Raises :class:`DeclarationError` for a column with axes of its own.
+        Parameters
+        ----------
+        number : int
+            Number of the design, from 0.
+        names : str or sequence of str
+            Names of columns.
+
+        Returns
+        -------
+        dict
+            One value by column.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such column.
+        DeclarationError
+            For a column with axes of its own, and if there is no such design.
         """
         names, place = names_in(names), self._place(number)
         self.check_columns(names)
@@ -285,10 +448,24 @@ class Sweep:
         return found
 
     def to_xarray(self, names: Sequence[str] | None = None) -> xarray.Dataset:
-        """Columns, or all, as an ``xarray.Dataset`` over the parameters, with units.
+        """Return columns as an ``xarray.Dataset`` over the parameters, with units.
 
-        Raises :class:`UnknownNameError`, and :class:`LagrangeCasadiError` where xarray is not
-        installed.
+        Parameters
+        ----------
+        names : sequence of str, optional
+            The columns; by default all.
+
+        Returns
+        -------
+        xarray.Dataset
+            The columns by name.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such column.
+        LagrangeCasadiError
+            If xarray is not installed.
         """
         try:
             import xarray
@@ -326,8 +503,21 @@ class Sweep:
         return dict(self.identity["mechanism"])
 
     def check_columns(self, names: Sequence[str], along: Sequence[str] = ()) -> None:
-        """Raise for columns that are none or have other axes than these, and for axes that are none
-        or bear a parameter's name.
+        """Raise for columns that are none or have other axes than these.
+
+        Parameters
+        ----------
+        names : str or sequence of str
+            Names of columns.
+        along : sequence of str
+            The axes that columns may have.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such column or axis.
+        DeclarationError
+            For other axes, and for an axis with the name of a parameter.
         """
         for axis in along:
             if axis not in self._over:
