@@ -729,8 +729,9 @@ class SpatialMechanism(Mechanism):
     def _reference(self, what: str, body: Body) -> Reference:
         if body.name not in self.references:
             raise DeclarationError(
-                f"{what}: '{body.name}' has no position in the reference posture; declare it with"
-                " between=, the places of its two ends, or use a point of each body in place of at="
+                f"{what}: '{body.name}' has no position in the reference posture; declare"
+                f" '{body.name}' with between=, the places of its two ends, or give the joint a point"
+                " of each body in place of at="
             )
         return self.references[body.name]
 
