@@ -33,7 +33,7 @@ def report(case: str) -> str:
     library = codegen.load(codegen.emit(program), compiler)
     with tempfile.TemporaryDirectory() as folder:
         batch = _batch(scene, compiler, Path(folder), t)
-        both: list[Callable[[], Any]] = [lambda: library.evaluate(t, p, z, z, out, status), batch]
+        both: list[Callable[[], Any]] = [library.evaluation(t, p, z, z, out, status), batch]
         best = [np.inf, np.inf]
         for _ in range(_ROUNDS):
             for k, call in enumerate(both):

@@ -45,7 +45,7 @@ def filled(library, program, t, threads=1, precision="double", out=None):
         p, whole = np.array([dtype.type(p), p - dtype.type(p)], dtype), t
         t = np.empty((2, out.strides[0] // out.itemsize), dtype)[:, : t.size]
         t[:] = dtype.type(whole), whole - dtype.type(whole)
-    library.evaluate(t, p, guess, z, out, status, threads)
+    library.evaluation(t, p, guess, z, out, status, threads)()
     assert np.all(status == 0)
     assert np.isfinite(out).all()
     return out

@@ -8,7 +8,7 @@ typedef struct {
   scene_design scene;
   casadi_int n, stride;
   const double* t;
-  lanes_real *rows, most[DESIGNS_CURVES], p[SCENE_SOME(SCENE_NT*SCENE_NP)];
+  lanes_real most[DESIGNS_CURVES];
   double half;
   int rests;
   const signed char* bent;
@@ -22,7 +22,8 @@ static lanes_real designs_lane(const casadi_real* pack, int lane) {
   return x;
 }
 
-static lanes_real* designs_row(const designs_now* now, int k) { return now->rows + k*now->stride + LANES; }
+/* A row that is kept of a design; those of its times stand before, room for two. */
+static lanes_real* designs_row(const designs_now* now, int k) { return now->instants.t + (2 + k)*now->stride + LANES; }
 
 static void designs_split(double t, lanes_real* moment) {
   moment[0] = (lanes_real) t;
@@ -87,7 +88,7 @@ static void designs_sample(designs_now* now) {
   for (k = 0; k < DESIGNS_CURVES; ++k) most[k] = 0;
   for (i = 0; i < now->n; i += LANES) {
     scene_pack(&now->scene, i, y);
-    row = now->rows + LANES + i;
+    row = designs_row(now, 0) + i;
     if (peaks) {
       designs_curves(y, now->matter, ~0ull, value, place);
       for (k = 0; k < DESIGNS_CURVES; ++k) {
@@ -291,7 +292,7 @@ static int designs_peaks(designs_now* now, double* value, double* t, double* xi)
   search.n = now->n;
   search.stride = now->stride;
   search.t = now->t;
-  search.rows = now->rows + LANES;
+  search.rows = designs_row(now, 0);
   search.watched = search.rows + (DESIGNS_CHECKED + DESIGNS_CHECKS)*now->stride;
   search.most = now->most;
   search.open = open;
@@ -322,7 +323,7 @@ static int designs_begin(designs_now* now, const double* p) {
   for (k = 0; k < SCENE_NP; ++k) {
     if (!(p[k] - p[k] == 0)) return SCENE_INVALID;
     designs_split(p[k], pair);
-    for (j = 0; j < SCENE_NT; ++j) now->p[j*SCENE_NP + k] = pair[j];
+    for (j = 0; j < SCENE_NT; ++j) now->instants.p[j*SCENE_NP + k] = pair[j];
   }
   scene_begin(&now->scene, &now->instants);
   given[0] = now->scene.parameters;
@@ -361,40 +362,29 @@ static void designs_timed(designs_now* now, const double* t) {
   now->half = n > 1 ? (t[n - 1] - t[0])/(double) (2*(n - 1)) : 1;
   for (i = 0; i < n; ++i) {
     designs_split(t[i], moment);
-    for (k = 0; k < SCENE_NT; ++k) now->call->room[k*now->stride + i] = moment[k];
+    for (k = 0; k < SCENE_NT; ++k) now->instants.t[k*now->stride + i] = moment[k];
   }
 }
 
-/* So many designs, rows of parameters p, over n instants t, those of a design t_apart values beyond those of the one before, or the
-   same; iterated loops begin from the guess. value, peak_t and xi become rows of quantities, mean and rms of efforts, all of them or
-   none where value is NULL; these ask for instants in equal steps. tops, unless it is NULL, becomes the local peaks of quantities that
-   way and share ask of the search. Where error is not NULL, peaks are
-   those at the instants, and error becomes how much larger each may be between them. history, unless it is NULL, becomes outputs by instants, iterated likewise iterated coordinates; a
-   design without a result leaves its status, and NaN. bent says after which instants the motion bends more than they show, its rows
-   are bent_apart values apart. The room is rows of stride values, of times, iterated coordinates, curves, their places, what is
-   checked and what is watched, all zero; of the status stride integers that are zero, and of hiding twice as many. find searches for
-   peaks, by a search of which tables and room are set. */
+/* So many designs, rows of parameters p, over instants t, those of a design t_apart values beyond those of the one before, or the
+   same. instants are room for those of one design at a time, its times and parameters too, all zero but the guess, from which
+   iterated loops begin; two rows of times are followed by those for curves, their places, what is checked and what is watched. value,
+   peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask for instants in
+   equal steps. tops, unless it is NULL, becomes the local peaks of quantities that way and share ask of the search. Where error is not
+   NULL, peaks are those at the instants, and error becomes how much larger each may be between them. history, unless it is NULL,
+   becomes outputs by instants, iterated likewise iterated coordinates; a design without a result leaves its status, and NaN. hiding
+   begins with two rows of zeros, which are room; what follows says after which instants the motion bends more than they show, that of
+   a design bent_apart values beyond that of the one before. find searches for peaks, by a search of which tables and room are set. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_designs_call* call) {
-  const casadi_int n = call->n, stride = call->stride;
-  lagrange_casadi_instants* instants;
-  lanes_real guess[SCENE_SOME(SCENE_NZ)];
+  const casadi_int n = call->instants->n, stride = call->instants->stride;
   designs_now now;
   casadi_int i, d;
   int k, why;
-  for (k = 0; k < SCENE_NZ; ++k) guess[k] = (lanes_real) call->guess[k];
   now.call = call;
   now.n = n;
   now.stride = stride;
-  now.rows = call->room + (SCENE_NT + SCENE_NZ)*stride;
-  instants = &now.instants;
-  instants->n = n;
-  instants->stride = stride;
-  instants->t = call->room;
-  instants->p = now.p;
-  instants->guess = guess;
-  instants->z = call->room + SCENE_NT*stride;
-  instants->apart = n;
-  instants->status = call->statuses;
+  now.instants = *call->instants;
+  now.instants.apart = n;
   for (d = 0; d < call->designs; ++d) {
     double* values = call->value ? call->value + d*DESIGNS_QUANTITIES : 0;
     double *times = values ? call->peak_t + d*DESIGNS_QUANTITIES : 0, *places = values ? call->xi + d*DESIGNS_QUANTITIES : 0;
@@ -402,19 +392,19 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     lanes_real *whole = call->history ? call->history + d*SCENE_OUTPUTS*n : 0;
     lanes_real *closed = call->iterated ? call->iterated + d*SCENE_NZ*n : 0;
     if (d == 0 || call->t_apart) designs_timed(&now, call->t + d*call->t_apart);
-    now.bent = call->bent + d*call->bent_apart;
+    now.bent = call->hiding + 2*stride + d*call->bent_apart;
     now.tops = call->tops ? call->tops + d*4*DESIGNS_TOPS*DESIGNS_QUANTITIES : 0;
     now.error = call->error ? call->error + d*DESIGNS_QUANTITIES : 0;
     for (k = 0; now.tops && k < 4*DESIGNS_TOPS*DESIGNS_QUANTITIES; ++k) now.tops[k] = NAN;
-    instants->out = whole;
+    now.instants.out = whole;
     why = designs_begin(&now, call->p + d*SCENE_NP);
     if (why == SCENE_OK) {
-      scene_follow(instants, 0, n);
+      scene_follow(&now.instants, 0, n);
       designs_sample(&now);
       why = designs_finish(&now, values, times, places, means, squares);
     }
     call->status[d] = (signed char) why;
-    for (i = 0; closed && i < SCENE_NZ*n; ++i) closed[i] = why == SCENE_OK ? instants->z[i/n*stride + i%n] : (lanes_real) NAN;
+    for (i = 0; closed && i < SCENE_NZ*n; ++i) closed[i] = why == SCENE_OK ? now.instants.z[i/n*stride + i%n] : (lanes_real) NAN;
     if (why == SCENE_OK) continue;
     for (k = 0; values && k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
     for (k = 0; now.error && k < DESIGNS_QUANTITIES; ++k) now.error[k] = NAN;

@@ -44,8 +44,8 @@ INSTANTS = Call(
     {
         "n": "long long",
         "stride": "long long",
-        "t": "const real*",
-        "p": "const real*",
+        "t": "real*",
+        "p": "real*",
         "guess": "const real*",
         "z": "real*",
         "out": "real*",

@@ -57,7 +57,7 @@ class Designs:
     """
 
     reduction: Reduction
-    guess: npt.NDArray[np.float64]
+    guess: Array
     search: Search
     tables: Tables
 
@@ -72,7 +72,8 @@ class Designs:
     ) -> Designs:
         """Load the search for peaks that a reduction needs."""
         search = load_search(compiler, extra, precision)
-        return cls(reduction, np.array(guess, float), search, reduction.tables(precision))
+        begin = np.array(guess, DTYPES[precision])
+        return cls(reduction, begin, search, reduction.tables(precision))
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,25 +101,6 @@ class Library:
         """
         self._follow(_instants(t, p, guess, z, None, status), guess, status)
 
-    def evaluate(
-        self,
-        t: Array,
-        p: Array,
-        guess: Array,
-        z: Array,
-        out: Array,
-        status: Status,
-        threads: int = 1,
-    ) -> None:
-        """Fill ``out`` (columns, n) for the instants ``t``, and the iterated coordinates ``z`` as
-        :meth:`follow` does.
-
-        ``t`` is (n,), in single precision (2, n): rounded, and the rest; ``p`` likewise. All rows
-        are equally far apart. ``status`` (n) says where loops do not close, and what is not
-        finite. The bytes do not depend on ``threads``.
-        """
-        self.evaluation(t, p, guess, z, out, status, threads)()
-
     def evaluation(
         self,
         t: Array,
@@ -129,8 +111,13 @@ class Library:
         status: Status,
         threads: int = 1,
     ) -> Callable[[], None]:
-        """Return a function that does what :meth:`evaluate` does, from the contents of the arrays
-        when it is called.
+        """Return a function that fills ``out`` (columns, n) for the instants ``t``, and the
+        iterated coordinates ``z`` as :meth:`follow` does, from the contents of the arrays when it
+        is called.
+
+        ``t`` is (n,), in single precision (2, n): rounded, and the rest; ``p`` likewise. All rows
+        are equally far apart. ``status`` (n) says where loops do not close, and what is not
+        finite. The bytes do not depend on ``threads``.
         """
         assert t.ndim == 1 or t.strides == out.strides or not t.size
         assert not z.size or z.strides == out.strides
@@ -212,21 +199,17 @@ class Library:
         assert self.many is not None
         many, n = self.many, t.shape[1]
         stride = (-(-n // _LINE) | 1) * _LINE + 2 * _LINE
-        hidden = np.zeros((len(bent), stride), np.int8)
-        hidden[:, : bent.shape[1]] = bent
+        hiding = np.zeros((2 + len(bent), stride), np.int8)
+        hiding[2:, : bent.shape[1]] = bent
         dtype = DTYPES[many.search.precision]
-        room = np.zeros((many.reduction.rows + many.guess.size + 2) * stride + _LINE, dtype)
-        room = room[-room.ctypes.data // room.itemsize % _LINE :]
-        status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
-        arrays: dict[str, npt.NDArray[Any] | None] = {
-            "t": t,
-            "bent": hidden,
-            "p": p,
-            "guess": many.guess,
-            "room": room,
-        }
-        arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None}
-        arrays |= {"error": None, **results}
+        iterated = 2 + many.reduction.rows
+        room = np.zeros((iterated + many.guess.size) * stride + _LINE, dtype)
+        begin = -room.ctypes.data // room.itemsize % _LINE
+        room = room[begin : begin - _LINE].reshape(-1, stride)
+        own, status = np.zeros((2, p.shape[1]), dtype), np.zeros(stride, np.int32)
+        instants = _instants(room[:2, :n], own, many.guess, room[iterated:], None, status)
+        arrays: dict[str, Array | None] = {"t": t, "p": p, "hiding": hiding}
+        arrays |= {"iterated": None, "tops": None, "error": None, **results}
         single = {
             name: np.empty(array.shape, dtype)
             for name in ("history", "iterated")
@@ -243,8 +226,7 @@ class Library:
             search=ctypes.addressof(search),
             find=many.search.address,
             designs=p.shape[0],
-            n=n,
-            stride=stride,
+            instants=ctypes.addressof(instants),
             t_apart=n if len(t) > 1 else 0,
             bent_apart=stride if len(bent) > 1 else 0,
             way=listed.sign if listed else 0,
@@ -253,7 +235,7 @@ class Library:
                 name: None if array is None else array.ctypes.data for name, array in arrays.items()
             },
         )
-        kept = (arrays, search, within)
+        kept = (self, arrays, room, own, status, instants, search, within)
         return functools.partial(_enter, self.entries[DESIGNS], call, rounded, kept)
 
 

@@ -98,7 +98,7 @@ def run(
     if method.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
     z, out, status = evaluated.iterated, evaluated.out, evaluated.status
-    library.evaluate(t, p, guess, z, out, status, threads or cores())
+    library.evaluation(t, p, guess, z, out, status, threads or cores())()
     return evaluated, made
 
 
@@ -258,7 +258,7 @@ class Interpreter:
     stages: Stages
     newton: int | None = None
 
-    def evaluate(
+    def evaluation(
         self,
         t: Array,
         p: Array,
@@ -267,15 +267,19 @@ class Interpreter:
         out: Array,
         status: npt.NDArray[np.int32],
         threads: int = 1,
-    ) -> None:
-        """Fill columns and iterated coordinates as :meth:`.Library.evaluate` does, by one
-        thread.
+    ) -> Callable[[], None]:
+        """Return a function that fills columns and iterated coordinates, by one thread, as
+        :meth:`.Library.evaluation` does.
         """
-        self.follow(t, p, guess, z, status)
-        for block in _blocks(t.size):
-            out[:, block] = self.columns(t[block], p, z[:, block])
-        unclean = ~np.isfinite(out).all(axis=0) & (status == Status.OK)
-        status[unclean] = Status.NOT_FINITE
+
+        def evaluate() -> None:
+            self.follow(t, p, guess, z, status)
+            for block in _blocks(t.size):
+                out[:, block] = self.columns(t[block], p, z[:, block])
+            unclean = ~np.isfinite(out).all(axis=0) & (status == Status.OK)
+            status[unclean] = Status.NOT_FINITE
+
+        return evaluate
 
     def columns(self, t: Array, p: Array, z: Array) -> Array:
         """Columns (columns, t) at times, where iterated coordinates are ``z``."""
