@@ -730,8 +730,8 @@ class SpatialMechanism(Mechanism):
         if body.name not in self.references:
             raise DeclarationError(
                 f"{what}: '{body.name}' has no position in the reference posture; declare"
-                f" '{body.name}' with between=, the places of its two ends, or give the joint a point"
-                " of each body in place of at="
+                f" '{body.name}' with between=, the places of its two ends, or give the joint a"
+                " point of each body in place of at="
             )
         return self.references[body.name]
 
