@@ -275,7 +275,7 @@ def test_misuse_is_named(slider_crank):
         refine(Scene(more, {"O": motion.polynomial(0, 1.0)}), solution)
     with pytest.raises(DeclarationError, match="at least one number of instants"):
         shortfall(scene, [])
-    with pytest.raises(DeclarationError, match="every quantity is indeterminate or zero"):
+    with pytest.raises(DeclarationError, match="all peaks are zero or indeterminate"):
         shortfall(scene, [9], ["reaction:guide:fx"])
     with pytest.raises(AssemblyError):
         shortfall(scene, [9], parameters={"r": 0.3})
