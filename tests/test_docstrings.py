@@ -12,7 +12,6 @@ from internals import deflection
 
 import lagrange_casadi
 from lagrange_casadi import (
-    Mechanism,
     actuators,
     animation,
     beams,
@@ -117,7 +116,6 @@ def classes(door: ModuleType) -> Iterator[type]:
 
 
 CLASSES = {thing: None for door in (lagrange_casadi, *MODULES) for thing in classes(door)}
-CLASSES.pop(Mechanism)  # its module has no lines left for sections of all its methods
 
 
 def methods(*classes: type) -> Iterator[Callable[..., object]]:

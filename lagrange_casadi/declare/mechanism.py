@@ -245,17 +245,51 @@ class Mechanism(Graphs):
         )
 
     def point_mass(self, name: str, mass: Expression) -> PointMass:
-        """Declare a body without extent, with a mass [kg]. It has no direction; welded to a link it
-        moves with the link.
+        """Declare a body without extent.
+
+        It has no direction; welded to a link it moves with the link.
+
+        Parameters
+        ----------
+        name : str
+            Name of the body.
+        mass : float, str or casadi.SX
+            Mass [kg].
+
+        Returns
+        -------
+        PointMass
+            The body, which stands for its point.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken.
         """
         self.ownership.free("point mass", name, self.bodies)
         body = PointMass(name, self.ownership.expression(f"point mass '{name}': mass", mass, "kg"))
         return cast(PointMass, self.bodies.setdefault(name, body))
 
     def revolute(self, name: str, parent: Body | Point, child: Body | Point) -> Joint:
-        """Declare a pin: a point of ``child`` coincides with a point of ``parent``. A link stands
-        for its base, the ground for its origin. The coordinate is the child's angle relative to
-        the parent [rad].
+        """Declare a pin: a point of ``child`` coincides with a point of ``parent``.
+
+        Parameters
+        ----------
+        name : str
+            Name of the joint.
+        parent, child : Link, PointMass, Ground or Point
+            The points that coincide. A link stands for its base, the ground for its origin.
+
+        Returns
+        -------
+        Joint
+            The joint. Its coordinate is the child's angle relative to the parent [rad],
+            counter-clockwise.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken, or the joint joins a body to itself.
         """
         return self._joint(name, "revolute", parent, child)
 
@@ -279,7 +313,7 @@ class Mechanism(Graphs):
             The body with the line, through this point of it, and the body with the sliding point.
         axis : tuple
             Direction of the line (x, y), on the parent's axes.
-        angle : float or str, optional
+        angle : float, str or casadi.SX, optional
             Direction of the child relative to the parent [rad], by default 0. If it is not given
             and a link lies across the line, a note says so.
 
@@ -288,6 +322,11 @@ class Mechanism(Graphs):
         Joint
             The joint. Its coordinate is the position along the line [m]; its force acts on the
             parent at that position.
+
+        Raises
+        ------
+        DeclarationError
+            If the axis has no length, the parent is a point mass, or both are one body.
         """
         return self._joint(name, "prismatic", parent, child, axis, angle)
 
@@ -299,24 +338,81 @@ class Mechanism(Graphs):
         *,
         axis: tuple[Expression, Expression] = (1.0, 0.0),
     ) -> Joint:
-        """Declare a pin in a slot: a point of ``child`` slides on a line of ``parent`` along
-        ``axis``, on the parent's axes, and the child turns freely.
+        """Declare a pin in a slot: a point of ``child`` slides on a line of ``parent``, and the
+        child turns freely.
+
+        Parameters
+        ----------
+        name, parent, child
+            As of :meth:`prismatic`.
+        axis : tuple
+            Direction of the line (x, y), on the parent's axes, by default their x axis.
+
+        Returns
+        -------
+        Joint
+            The joint. Its coordinate is the position along the line [m]; its force acts on the
+            parent at that position.
+
+        Raises
+        ------
+        DeclarationError
+            As of :meth:`prismatic`.
         """
         return self._joint(name, "slot", parent, child, axis)
 
     def weld(
         self, name: str, parent: Body | Point, child: Body | Point, *, angle: Expression = 0.0
     ) -> Joint:
-        """Fix a point of ``child`` to a point of ``parent``, with the child's direction at
-        ``angle`` to the parent's [rad, or a text such as ``"90 deg"``].
+        """Fix a point of ``child`` to a point of ``parent``.
+
+        Parameters
+        ----------
+        name, parent, child
+            As of :meth:`revolute`.
+        angle : float, str or casadi.SX
+            Direction of the child relative to the parent [rad, or a text such as ``"90 deg"``],
+            counter-clockwise.
+
+        Returns
+        -------
+        Joint
+            The joint, without coordinates.
+
+        Raises
+        ------
+        DeclarationError
+            If the parent is a point mass, or both are one body.
         """
         return self._joint(name, "weld", parent, child, angle=angle)
 
     def gear(
         self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0
     ) -> Constraint:
-        """Couple two joints: the coordinate of ``second`` is ratio times that of ``first`` plus
-        offset [rad or m, or a text such as ``"15 deg"``]. For two gears the ratio is -z1/z2.
+        """Couple two joints: the coordinate of ``second`` is ``ratio`` times that of ``first`` plus
+        ``offset``.
+
+        Parameters
+        ----------
+        name : str
+            Name of the constraint.
+        first, second : Joint
+            Joints of one coordinate each.
+        ratio : float or casadi.SX
+            Ratio of the coordinates; for two gears -z1/z2.
+        offset : float, str or casadi.SX
+            Coordinate of ``second`` at zero of ``first`` [rad or m, or a text such as ``"15
+            deg"``].
+
+        Returns
+        -------
+        Constraint
+            The constraint, as of :meth:`constraint`.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken, or a joint has no coordinate or several.
         """
         numbers = (
             ("ratio", ratio, "1"),
@@ -423,8 +519,28 @@ class Mechanism(Graphs):
         y: Expression = 0.0,
         turning: bool = False,
     ) -> Force:
-        """Apply a force with the components ``x`` and ``y`` [N] at a point, on ground axes; if
-        ``turning``, on the axes of the body.
+        """Apply a force at a point.
+
+        Parameters
+        ----------
+        name : str
+            Name of the load.
+        point : Link, PointMass or Point
+            The point, not of the ground; a link stands for its base.
+        x, y : float or casadi.SX
+            Components [N], on ground axes.
+        turning : bool
+            True for components on the axes of the body.
+
+        Returns
+        -------
+        Force
+            The load.
+
+        Raises
+        ------
+        DeclarationError
+            If the point is of the ground, or ``turning`` is asked of a point mass.
         """
         place = self._load_point(name, point)
         if turning and not place.body.oriented:
@@ -448,8 +564,28 @@ class Mechanism(Graphs):
         *,
         against: Body | Point | None = None,
     ) -> Torque:
-        """Apply a torque [N m], counter-clockwise, to a body at a point, and the opposite torque to
-        ``against`` (default: the ground). The point matters only to the sections of a link.
+        """Apply a torque to a body at a point, and the opposite torque to another.
+
+        Parameters
+        ----------
+        name : str
+            Name of the load.
+        point : Link, Ground or Point
+            The point, which matters only to the sections of a link.
+        value : float or casadi.SX
+            Torque [N m], counter-clockwise.
+        against : Link, Ground or Point, optional
+            Body with the opposite torque, by default the ground.
+
+        Returns
+        -------
+        Torque
+            The load.
+
+        Raises
+        ------
+        DeclarationError
+            If one of the bodies is a point mass.
         """
         ends = (
             self._load_point(name, point),
@@ -475,11 +611,32 @@ class Mechanism(Graphs):
         between: Between = None,
         turning: bool = False,
     ) -> LineLoad:
-        """Apply a load [N/m] along a link, on ground axes; if ``turning``, on the link's axes.
+        """Apply a load along a link.
 
-        Each component is one value, a pair of values at both ends of the load, or a function of the
-        distance xi from the base [m] that is a polynomial. The load acts ``between`` two distances
-        from the base, by default along the whole link: see :class:`.LineLoad`.
+        Parameters
+        ----------
+        name : str
+            Name of the load.
+        link : Link
+            The link.
+        x, y : float, pair, casadi.SX or callable
+            Components [N/m], on ground axes: each one value, a pair of values at both ends of the
+            load, or a function of the distance xi from the base [m] that is a polynomial.
+        between : tuple, optional
+            Two distances from the base [m], start and end of the load; by default the whole link.
+        turning : bool
+            True for components on the link's axes.
+
+        Returns
+        -------
+        LineLoad
+            The load: see :class:`.LineLoad`.
+
+        Raises
+        ------
+        DeclarationError
+            If the body is not a link, the distances do not increase, or a function is not a
+            polynomial of degree 7 at most.
         """
         return cast(
             LineLoad,
@@ -498,8 +655,31 @@ class Mechanism(Graphs):
         length: Expression,
         damping: Expression = 0.0,
     ) -> Spring:
-        """Put a spring between two points, with stiffness [N/m], free length [m] and damping [N
-        s/m]. Its force acts along the line through both points: see :class:`.Spring`.
+        """Put a spring between two points. Its force acts along the line through both points: see
+        :class:`.Spring`.
+
+        Parameters
+        ----------
+        name : str
+            Name of the load.
+        first, second : Link, PointMass, Ground or Point
+            Its ends.
+        stiffness : float or casadi.SX
+            Stiffness [N/m].
+        length : float, str or casadi.SX
+            Free length [m]; a longer spring pulls its ends together.
+        damping : float or casadi.SX
+            Damping [N s/m].
+
+        Returns
+        -------
+        Spring
+            The load.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken.
         """
         ends = self._load_point(name, first), self._load_point(name, second)
         numbers = [
@@ -512,7 +692,23 @@ class Mechanism(Graphs):
     def damper(
         self, name: str, first: Body | Point, second: Body | Point, *, damping: Expression
     ) -> Spring:
-        """Put a damper between two points, with damping [N s/m] along the line through both."""
+        """Put a damper between two points. Its force acts along the line through both.
+
+        Parameters
+        ----------
+        name, first, second, damping
+            As of :meth:`spring`.
+
+        Returns
+        -------
+        Spring
+            The load, a spring without stiffness.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken.
+        """
         return self.spring(name, first, second, stiffness=0.0, length=0.0, damping=damping)
 
     def torsion_spring(
@@ -524,8 +720,31 @@ class Mechanism(Graphs):
         angle: Expression = 0.0,
         damping: Expression = 0.0,
     ) -> Torque:
-        """Put a torsion spring on a revolute joint, with stiffness [N m/rad], the angle without
-        torque [rad] and damping [N m s/rad]. The joint's angle counts revolutions.
+        """Put a torsion spring on a revolute joint. The joint's angle counts revolutions.
+
+        Parameters
+        ----------
+        name : str
+            Name of the load.
+        joint : Joint
+            The joint.
+        stiffness : float or casadi.SX
+            Stiffness [N m/rad].
+        angle : float, str or casadi.SX
+            Angle of the joint without torque [rad].
+        damping : float or casadi.SX
+            Damping [N m s/rad].
+
+        Returns
+        -------
+        Torque
+            The load: on the child -stiffness (angle of the joint - ``angle``) - damping times its
+            rate, on the parent the opposite.
+
+        Raises
+        ------
+        DeclarationError
+            If the coordinate of the joint is not an angle.
         """
         if self.ownership.joint(joint).coordinate != "angle":
             raise DeclarationError(
@@ -601,8 +820,25 @@ class Mechanism(Graphs):
     def output(self, name: str, expression: Expression, *, unit: str = "1") -> UserOutput:
         """Declare an additional output ``output:NAME`` with a unit.
 
-        The expression may use everything that loads may use, and :attr:`results`: accelerations,
-        efforts, reactions, loads, friction, multipliers and section forces.
+        Parameters
+        ----------
+        name : str
+            Name of the output.
+        expression : float or casadi.SX
+            It may use everything that loads may use, and :attr:`results`: accelerations, efforts,
+            reactions, loads, friction, multipliers and section forces.
+        unit : str
+            Its unit, by default none.
+
+        Returns
+        -------
+        UserOutput
+            The output.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken, or the expression has other symbols.
         """
         self.ownership.free("output", name, self.outputs)
         check_line(f"output '{name}': its unit", unit)
@@ -614,8 +850,25 @@ class Mechanism(Graphs):
         return self.outputs[name]
 
     def path(self, name: str, point: Body | Point) -> Path:
-        """Declare a point whose motion is an output, and may be prescribed by a scene. Its outputs
-        in SI units are NAME_x, NAME_vx, NAME_ax, and the same for y.
+        """Declare a point whose motion is an output, and may be prescribed by a scene.
+
+        Parameters
+        ----------
+        name : str
+            Name of the path. Its outputs in SI units are NAME_x, NAME_vx, NAME_ax, and the same for
+            y.
+        point : Link, PointMass or Point
+            The point, not of the ground; a link stands for its base.
+
+        Returns
+        -------
+        Path
+            The path.
+
+        Raises
+        ------
+        DeclarationError
+            If the name is taken, or the point is of the ground.
         """
         self.ownership.free("path", name, self.paths)
         path = Path(name, self.ownership.point(f"path '{name}'", point))
@@ -637,38 +890,120 @@ class Mechanism(Graphs):
     def coordinate(self, joint: Joint, axis: str = "") -> Expression:
         """Return the symbol of a joint's coordinate, for loads and constraints.
 
-        An angle counts revolutions from the start of the scene. If a joint has several coordinates,
-        ``axis`` names one, as ``turn_1``.
+        Parameters
+        ----------
+        joint : Joint
+            The joint.
+        axis : str
+            Name of the coordinate, as ``turn_1``, if the joint has several.
+
+        Returns
+        -------
+        casadi.SX
+            The symbol [rad or m]. An angle counts revolutions from the start of the scene.
+
+        Raises
+        ------
+        DeclarationError
+            If the joint has no such coordinate.
         """
         return self.measures.joint(*self.ownership.moving_joint(joint, axis)).places[0]
 
     def rate(self, joint: Joint, axis: str = "") -> Expression:
-        """Return the symbol of a joint's rate, for loads and non-holonomic constraints."""
+        """Return the symbol of a joint's rate, for loads and non-holonomic constraints.
+
+        Parameters
+        ----------
+        joint, axis
+            As of :meth:`coordinate`.
+
+        Returns
+        -------
+        casadi.SX
+            The symbol [rad/s or m/s].
+
+        Raises
+        ------
+        DeclarationError
+            If the joint has no such coordinate.
+        """
         return self.measures.joint(*self.ownership.moving_joint(joint, axis)).rates[0]
 
     def place(self, point: Body | Point) -> tuple[Expression, ...]:
-        """Return the symbols of a point's x and y, in space also z, on ground axes [m], for loads
-        and constraints.
+        """Return the symbols of a point's place, for loads and constraints.
+
+        Parameters
+        ----------
+        point : Link, PointMass, Ground or Point
+            The point; a link stands for its base.
+
+        Returns
+        -------
+        tuple of casadi.SX
+            x and y, in space also z, on ground axes [m].
+
+        Raises
+        ------
+        DeclarationError
+            If the point is of another mechanism.
         """
         return self.measures.point(self.ownership.point("place", point)).places
 
     def velocity(self, point: Body | Point) -> tuple[Expression, ...]:
-        """Return the symbols of a point's velocity on ground axes [m/s], for loads and
-        non-holonomic constraints.
+        """Return the symbols of a point's velocity, for loads and non-holonomic constraints.
+
+        Parameters
+        ----------
+        point
+            As of :meth:`place`.
+
+        Returns
+        -------
+        tuple of casadi.SX
+            Components on ground axes [m/s].
+
+        Raises
+        ------
+        DeclarationError
+            If the point is of another mechanism.
         """
         return self.measures.point(self.ownership.point("velocity", point)).rates
 
     def direction(self, link: Link) -> Expression:
-        """Return the symbol of the angle of a link's axis from the ground's x axis [rad]. It counts
-        revolutions as a coordinate does.
+        """Return the symbol of the direction of a link.
+
+        Parameters
+        ----------
+        link : Link
+            The link.
+
+        Returns
+        -------
+        casadi.SX
+            Angle of its axis from the ground's x axis [rad], counter-clockwise. It counts
+            revolutions as a coordinate does.
+
+        Raises
+        ------
+        DeclarationError
+            If the body is not a link.
         """
         if not isinstance(body := self.ownership.point("direction", link).body, Link):
             raise DeclarationError(f"direction: expected a link, got '{body.name}'")
         return self.measures.link(body).places[0]
 
     def set_gravity(self, x: Expression, y: Expression) -> None:
-        """Set the acceleration of gravity [m/s^2] on ground axes, as numbers or expressions of
-        parameters.
+        """Set the acceleration of gravity.
+
+        Parameters
+        ----------
+        x, y : float or casadi.SX
+            Components [m/s^2] on ground axes, numbers or expressions of parameters.
+
+        Raises
+        ------
+        DeclarationError
+            If a scene has been made.
         """
         self.ownership.refuse_frozen("set gravity")
         self.gravity = (
@@ -688,19 +1023,51 @@ class Mechanism(Graphs):
         self.frozen = True
 
     def values(self, overrides: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Return the values of all parameters: the defaults, with ``overrides`` by name.
+        """Return the values of all parameters.
 
-        Raises :class:`UnknownNameError` for a name that is not a parameter, and
-        :class:`ParameterError` for values that are not finite, out of their range, or make a part
-        impossible: a length that is not positive, a negative mass or density, a load point outside
-        its link, or a mechanism without mass.
+        Parameters
+        ----------
+        overrides : mapping, optional
+            Values by name, in the parameters' units, in place of the defaults.
+
+        Returns
+        -------
+        dict
+            Values by name.
+
+        Raises
+        ------
+        UnknownNameError
+            For a name that is not a parameter.
+        ParameterError
+            For values that are not finite, out of their range, or make a part impossible: a length
+            that is not positive, a negative mass or density, a load point outside its link, or a
+            mechanism without mass.
         """
         values = parameter_values(self.parameters, overrides)
         demands(self).check(list(values.values()), lambda e: self.number(e, values))
         return values
 
     def number(self, expression: Expression, values: Mapping[str, float]) -> float:
-        """Return the value of an expression of parameters."""
+        """Return the value of an expression of parameters.
+
+        Parameters
+        ----------
+        expression : float or casadi.SX
+            The expression.
+        values : mapping
+            Values of all parameters by name, as of :meth:`values`.
+
+        Returns
+        -------
+        float
+            Its value.
+
+        Raises
+        ------
+        DeclarationError
+            If it has other symbols, or a parameter has no value.
+        """
         return value_of(
             expression, {name: one.symbol for name, one in self.parameters.items()}, values
         )
