@@ -140,6 +140,8 @@ def test_no_mass_at_all_is_impossible_everywhere(tmp_path):
         ParameterError, match="its whole mass must be finite and positive, got inf kg"
     ):
         scene.mechanism.values({"a": 1.5e308, "b": 1.5e308})
+    with pytest.raises(ParameterError, match="mechanism 'empty' has neither mass nor load"):
+        Mechanism("empty").values()
 
 
 def test_what_bears_a_load_may_be_massless():

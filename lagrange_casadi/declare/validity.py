@@ -428,7 +428,7 @@ def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
     """Condition that something has a mass, or is loaded: without either there is no force
     anywhere.
     """
-    total = sum(masses[1:], masses[0])
+    total = sum(masses[1:], masses[0]) if masses else ca.SX(0)
 
     def refusal(number: Evaluator) -> str:
         mass = number(total)

@@ -171,7 +171,9 @@ def shortfall(
         dtype=bool,
     )
     if not there.any():
-        raise DeclarationError("shortfall: all peaks are zero or indeterminate; expected a scene with one that is not")
+        raise DeclarationError(
+            "shortfall: all peaks are zero or indeterminate; expected a scene with one that is not"
+        )
     missing = [1.0 - peaks[:-1, there] / true[there] for peaks in (sampled, refined)]
     columns = [distributed(rows, axis=1) for rows in missing for distributed in (np.max, np.median)]
     return [
