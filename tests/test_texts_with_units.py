@@ -278,7 +278,7 @@ def test_a_text_in_another_unit_is_refused(declared):
                 else value
             )
 
-        with pytest.raises(DeclarationError, match=r"got .*'|it is in (m|s|rad), but"):
+        with pytest.raises(DeclarationError, match=r"got .*'|the law is in (m|s|rad), but"):
             declared(at)
 
 

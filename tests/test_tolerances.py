@@ -153,7 +153,7 @@ def test_the_command_ranks_and_writes(tmp_path, monkeypatch, capfd):
     mistakes = {
         "expected NAME=VALUE": ["l"],
         "tolerance of 'l'": ["l=1deg"],
-        "one twice": ["l=1mm", "l=1mm"],
+        "listed twice": ["l=1mm", "l=1mm"],
     }
     for said, given in mistakes.items():
         assert main([*asked, *(word for each in given for word in ("--tolerance", each))]) == 2
