@@ -277,7 +277,7 @@ def test_a_map_of_stress_tells_the_solutions_stress_and_where_it_is_largest(page
     )
     stress = solution.stress("rod")
     peak = stress.peak("von_mises")
-    words = one.run(f"{card}.querySelector('.told-peak').textContent").translate({0xA0: " "})
+    words = one.run(f"{card}.querySelector('.peak-button').textContent").translate({0xA0: " "})
     place = f"ξ/l = {peak.xi:.3g}, t = {to_digits(1e3 * peak.t, 5):g} ms, {peak.fibre}"
     assert words == f"largest: {to_digits(peak.value / 1e6, 5):g} MPa at {place}"
     one.run(
@@ -449,7 +449,7 @@ def test_the_largest_moment_in_the_rod_is_found_by_keyboard_alone(page, width, h
         "{ const list = document.querySelector('.map').closest('.card').querySelector('select');"
         " list.value = 'rod'; list.dispatchEvent(new Event('change')); }"
     )
-    told = one.run("document.querySelector('.told-peak').textContent").translate(
+    told = one.run("document.querySelector('.peak-button').textContent").translate(
         {0x2212: "-", 0xA0: " "}
     )
     assert told == f"largest: {to_digits(peak.value, 5)} N·m at ξ/l = {peak.xi:.3g}, {when}"

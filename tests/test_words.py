@@ -50,12 +50,12 @@ def test_identifiers_are_in_the_words_of_the_field():
 
 
 def test_no_program_tells_or_feels():
-    """Docstrings, comments and messages, in Python and C: a program reports, states, returns."""
+    """Docstrings, comments, messages and scripts: a program reports, states, returns."""
     spoken = re.compile(r"\b(told|tells?|telling|felt|feels?)\b(?!\()", re.IGNORECASE)
     found = [
         f"{path.relative_to(PACKAGE)}:{number}: {line.strip()}"
         for path in sorted(PACKAGE.rglob("*.*"))
-        if path.suffix in {".py", ".c", ".h", ".md"} and path.name != "renamed.py"
+        if path.suffix in {".py", ".c", ".h", ".js", ".md"} and path.name != "renamed.py"
         for number, line in enumerate(path.read_text().splitlines(), 1)
         if spoken.search(line)
     ]

@@ -31,8 +31,8 @@ class Engine {
     this.count = count;
     this.in = this.start;
     this.out = (this.in + size * this.layout.inputs * count + 15) & ~15;
-    this.told = (this.out + size * this.layout.outputs * count + 15) & ~15;
-    const lacking = this.told + 4 * count - this.calls.memory.buffer.byteLength;
+    this.statusAt = (this.out + size * this.layout.outputs * count + 15) & ~15;
+    const lacking = this.statusAt + 4 * count - this.calls.memory.buffer.byteLength;
     if (lacking > 0) this.calls.memory.grow(Math.ceil(lacking / 65536));
   }
 
@@ -45,7 +45,7 @@ class Engine {
   }
 
   get statuses() {
-    return new Int32Array(this.calls.memory.buffer, this.told, this.count);
+    return new Int32Array(this.calls.memory.buffer, this.statusAt, this.count);
   }
 
   /** Take parameters, in the order of the C's struct, and begin anew. Returns a status, as all that follow do: 0 where all is well. */
@@ -63,7 +63,7 @@ class Engine {
 
   /** Evaluate the first instants, so many; the status of each is among the statuses. */
   evaluate(count = this.count) {
-    return this.own.batch(this.model, count, this.in, this.out, this.told);
+    return this.own.batch(this.model, count, this.in, this.out, this.statusAt);
   }
 
   /** The forces inside a link at a ratio xi/l, for the outputs with a number; null if there are none; `failed` is the status with the reason. */

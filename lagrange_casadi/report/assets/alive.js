@@ -4,17 +4,17 @@ const BLOCK = 128; // Instants that are evaluated at once: so many that their nu
 
 class Alive {
   constructor(instance) {
-    const told = contents.live;
-    this.told = told;
-    this.engine = new Engine(instance, told.layout);
+    const live = contents.live;
+    this.live = live;
+    this.engine = new Engine(instance, live.layout);
     this.values = Float64Array.from(contents.parameters, (one) => one.value);
-    this.file = { values: this.values.slice(), defaults: told.defaults, rows: structuredClone(contents.rows), t: instants.t.slice() };
+    this.file = { values: this.values.slice(), defaults: live.defaults, rows: structuredClone(contents.rows), t: instants.t.slice() };
     this.why = null;
     this.read();
     const kept = [...this.targets, ...this.paths, ...this.curves.flatMap((curve) => [...curve.series.values()].flat())].map((one) => one.array);
     // What the module does not compute, as residuals, is of the file's design alone.
-    const toldOf = new Set(told.of.map(([number]) => number));
-    this.unknown = contents.series.filter((one) => one.group !== "section" && !toldOf.has(one.values)).map((one) => array(one.values));
+    const liveOf = new Set(live.of.map(([number]) => number));
+    this.unknown = contents.series.filter((one) => one.group !== "section" && !liveOf.has(one.values)).map((one) => array(one.values));
     const rowsTold = new Set([...this.targets.map((target) => target.row), ...this.curves.flatMap((curve) => [...curve.rowOf.values()])]);
     this.untold = contents.rows.filter((row) => !row.open && !rowsTold.has(row));
     this.shown = [...kept, ...this.unknown];
@@ -24,21 +24,21 @@ class Alive {
 
   /** Find what each array of the page is made of. */
   read() {
-    const { told } = this;
-    const of = new Map(told.of);
+    const { live } = this;
+    const of = new Map(live.of);
     const rows = new Map(contents.rows.map((row) => [row.name, row]));
-    const single = (number) => of.get(number)[0] - told.layout.inputs;
+    const single = (number) => of.get(number)[0] - live.layout.inputs;
     const named = new Map(contents.series.map((one) => [one.values, one.name]));
-    this.targets = told.of.map(([number, sources]) => ({ array: array(number), sources, row: rows.get(named.get(number)) }));
+    this.targets = live.of.map(([number, sources]) => ({ array: array(number), sources, row: rows.get(named.get(number)) }));
     this.column = new Float64Array(BLOCK);
     this.paths = contents.bodies.flatMap((body) => {
-      const sources = told.poses[body.name];
+      const sources = live.poses[body.name];
       return body.pose.map((number, k) => ({ array: array(number), source: sources[k], body: body.name }));
     });
-    this.bars = contents.bodies.filter((body) => told.poses[body.name].slice(6).some((source) => source < 0)).map((body) => body.pose.map(array));
+    this.bars = contents.bodies.filter((body) => live.poses[body.name].slice(6).some((source) => source < 0)).map((body) => body.pose.map(array));
     // What equilibrium leaves open is not in the module.
-    this.curves = contents.sections.filter((entry) => told.links[entry.link] && knownForces(sectionByLink.get(entry.link)).length).map((entry) => {
-      const curve = new Along(entry, told.links[entry.link], this.engine, single);
+    this.curves = contents.sections.filter((entry) => live.links[entry.link] && knownForces(sectionByLink.get(entry.link)).length).map((entry) => {
+      const curve = new Along(entry, live.links[entry.link], this.engine, single);
       entry.forces.forEach((force, k) => {
         const one = seriesByName.get(`section:${entry.link}:${force.name}`);
         const row = rows.get(`section:${entry.link}:${force.name}`);
@@ -48,9 +48,9 @@ class Alive {
       return curve;
     });
     this.position = null;
-    if (told.shown) {
-      this.position = new Int32Array(told.timing.count).fill(-1);
-      told.shown.forEach((instant, k) => (this.position[instant] = k));
+    if (live.shown) {
+      this.position = new Int32Array(live.timing.count).fill(-1);
+      live.shown.forEach((instant, k) => (this.position[instant] = k));
     }
   }
 
@@ -84,22 +84,22 @@ class Alive {
   }
 
   evaluate(whole) {
-    const { engine, told } = this;
+    const { engine, live } = this;
     this.check(engine.prepare(this.values), null);
     const numbers = this.place();
     const times = this.times(numbers[0], numbers[1]);
-    if (told.loops) this.close(times[0]);
+    if (live.loops) this.close(times[0]);
     const weights = weightsOf(times);
     const tallies = new Map();
     const tallyOf = (row, along) => row && !row.open && (tallies.get(row) ?? tallies.set(row, new Tally(along)).get(row));
     for (const target of this.targets) target.tally = tallyOf(target.row, false);
     for (const curve of this.curves) curve.fit(times.length);
-    this.turns = told.wrapped.map(() => null);
+    this.turns = live.wrapped.map(() => null);
     for (let from = 0; from < times.length; from += BLOCK) this.block(times, weights, from, Math.min(BLOCK, times.length - from));
     this.put(instants.t, times, 0, times.length);
     if (over) this.put(array(over.values), this.coordinates, 0, times.length);
     for (const curve of this.curves) this.along(curve, times.length, whole, (row) => tallyOf(row, true));
-    for (const [row, tally] of tallies) Object.assign(row, tally.told(times, this.coordinates));
+    for (const [row, tally] of tallies) Object.assign(row, tally.described(times, this.coordinates));
     for (const bar of this.bars) complete(bar);
     for (const values of this.unknown) values.fill(NaN);
     for (const row of this.untold) lose(row);
@@ -115,16 +115,16 @@ class Alive {
   }
 
   block(times, weights, from, count) {
-    const { engine, told, column } = this;
+    const { engine, live, column } = this;
     engine.fit(count);
     for (let i = 0; i < count; i += 1) this.check(engine.motion(times[from + i], i), times[from + i]);
     if (engine.evaluate(count)) {
       const i = engine.statuses.findIndex(Boolean);
       this.check(engine.statuses[i], times[from + i]);
     }
-    const { inputs: given, outputs: many } = told.layout;
+    const { inputs: given, outputs: many } = live.layout;
     const [inputs, outputs] = [engine.inputs, engine.outputs];
-    told.wrapped.forEach((output, k) => (this.turns[k] = unwrap(outputs, many, output, count, this.turns[k])));
+    live.wrapped.forEach((output, k) => (this.turns[k] = unwrap(outputs, many, output, count, this.turns[k])));
     const read = (source) => {
       const [view, stride, start] = source < given ? [inputs, given, source] : [outputs, many, source - given];
       for (let i = 0; i < count; i += 1) column[i] = view[i * stride + start];
@@ -164,7 +164,7 @@ class Alive {
 
   /** The times of the instants: equal steps, or when the drive's coordinate takes equal steps. */
   times(start, stop) {
-    const { count, joint, coordinate } = this.told.timing;
+    const { count, joint, coordinate } = this.live.timing;
     if (!(Number.isFinite(start) && Number.isFinite(stop)) || (joint ? start === stop : stop < start)) throw new NoResult("there are no instants between the ends that these parameters give");
     const even = Float64Array.from({ length: count }, (_, i) => (i === count - 1 ? stop : start + i * ((stop - start) / (count - 1))));
     this.coordinates = joint ? even : null;
@@ -197,8 +197,8 @@ class Alive {
 
   /** Have iterated loops begin where they stand in this design: from that of the file in steps, the fewer the better. */
   close(time) {
-    const { engine, told, file } = this;
-    const loops = () => new Float64Array(engine.calls.memory.buffer, engine.model + told.loops[0], told.loops[1]);
+    const { engine, live, file } = this;
+    const loops = () => new Float64Array(engine.calls.memory.buffer, engine.model + live.loops[0], live.loops[1]);
     const closes = (values, from) => {
       const status = engine.prepare(values);
       if (status) return status;
@@ -222,11 +222,11 @@ class Alive {
 
   /** Evaluate lengths, places and axes, and put them into the picture's parts; returns all numbers of the design. */
   place() {
-    const { engine, told } = this;
+    const { engine, live } = this;
     engine.calls.live_numbers(engine.given, engine.more);
-    const numbers = new Float64Array(engine.calls.memory.buffer, engine.more, told.numbers).slice();
+    const numbers = new Float64Array(engine.calls.memory.buffer, engine.more, live.numbers).slice();
     const at = (places) => places.map((place) => (place < 0 ? 0 : numbers[place]));
-    const { picture } = told;
+    const { picture } = live;
     this.lengths = {};
     contents.joints.forEach((joint, k) => {
       const own = picture.joints[k];
@@ -289,7 +289,7 @@ class Tally {
     if (this.most[2] === null || Math.abs(ends[4]) > Math.abs(this.most[0])) this.most = [ends[4], instant, ends[5]];
   }
 
-  told(times, coordinates) {
+  described(times, coordinates) {
     const mark = ([value, instant, xi]) => ({ value, t: times[instant], xi, over: coordinates ? coordinates[instant] : null });
     const ends = { peak: mark(this.most), smallest: mark(this.low), largest: mark(this.high), error: null };
     return this.along ? ends : { ...ends, mean: this.sum, rms: Math.sqrt(this.squares) };

@@ -2,9 +2,9 @@
 
 /** The law of a link in a live page. `sourceOf` gives the output that an array of the page is. */
 class Along {
-  constructor(entry, told, engine, sourceOf) {
-    Object.assign(this, { entry, told, engine });
-    this.many = told.degree + 1;
+  constructor(entry, live, engine, sourceOf) {
+    Object.assign(this, { entry, live, engine });
+    this.many = live.degree + 1;
     this.plain = entry.forces.filter((force) => !force.parts.length);
     const place = new Map(this.plain.map((force, k) => [force.name, k]));
     // Of all outputs it keeps its own, an instant after another.
@@ -15,7 +15,7 @@ class Along {
     };
     const kept = (number) => own(sourceOf(number));
     this.terms = this.plain.map((force) => [...new Set(force.terms.map(([coefficient]) => kept(coefficient)))]);
-    this.spreads = told.spreads.map((ends) => ends.map((source) => own(source - engine.layout.inputs)));
+    this.spreads = live.spreads.map((ends) => ends.map((source) => own(source - engine.layout.inputs)));
     this.stations = entry.loads.map((load) => kept(load.station));
     this.acting = this.plain.map((force) => entry.loads.map((load) => kept(load[force.acting])));
     this.across = this.plain.map((force) => (force.arm ? entry.loads.map((load) => kept(load[force.across])) : null));
@@ -51,12 +51,12 @@ class Along {
 
   /** Take the design that the engine is prepared for, of which all instants are kept. */
   prepare(length) {
-    const { told, engine, entry, held, many } = this;
+    const { live, engine, entry, held, many } = this;
     this.length = length;
     for (const { known } of this.asked) [known[0], known[1]] = [Infinity, -Infinity];
     const constants = this.spreads.flat().map((own) => [this.outputs[own], held[own]]);
     const marks = this.spreads.flatMap(([width, end]) => [held[end] - held[width], held[end]]).filter((u) => u > 0 && u < 1);
-    let changed = this.cut([...new Set([...told.breaks, ...marks])].sort((a, b) => a - b));
+    let changed = this.cut([...new Set([...live.breaks, ...marks])].sort((a, b) => a - b));
     engine.fit(1);
     const outputs = engine.outputs;
     const columns = this.plain.map((force) => contents.live.forces.indexOf(force.name));
@@ -65,15 +65,15 @@ class Along {
       outputs.fill(0);
       for (const [output, value] of constants) outputs[output] = value;
       outputs[this.outputs[source]] = 1;
-      const felt = this.plain.map((_, k) => k).filter((k) => this.terms[k].includes(source));
+      const changing = this.plain.map((_, k) => k).filter((k) => this.terms[k].includes(source));
       for (const piece of this.pieces) {
         for (let j = 0; j < many; j += 1) {
-          const forces = this.forcesAt(Math.max(0, Math.min(1, piece.middle + piece.half * Math.cos((Math.PI * j) / told.degree))));
-          for (const k of felt) values[k][j] = forces[columns[k]];
+          const forces = this.forcesAt(Math.max(0, Math.min(1, piece.middle + piece.half * Math.cos((Math.PI * j) / live.degree))));
+          for (const k of changing) values[k][j] = forces[columns[k]];
         }
-        for (const k of felt) if (chebyshevInto(piece.rows[k][this.terms[k].indexOf(source)], values[k])) changed = true;
+        for (const k of changing) if (chebyshevInto(piece.rows[k][this.terms[k].indexOf(source)], values[k])) changed = true;
       }
-      if (changed) this.fill(array(entry.xi), source, felt, columns);
+      if (changed) this.fill(array(entry.xi), source, changing, columns);
     }
   }
 
@@ -86,11 +86,11 @@ class Along {
   }
 
   /** Put a function along the link into the rows of the page. */
-  fill(xi, source, felt, columns) {
+  fill(xi, source, changing, columns) {
     for (let j = 0; j < xi.length; j += 1) {
       const piece = this.pieces.find(({ low, high }) => xi[j] > low && xi[j] < high);
       const forces = piece ? null : this.forcesAt(xi[j]);
-      for (const k of felt) {
+      for (const k of changing) {
         const value = piece ? chebyshevAt(piece.rows[k][this.terms[k].indexOf(source)], (xi[j] - piece.middle) / piece.half, this.many) : forces[columns[k]];
         for (const [own, row, sign] of this.rowsOf[k]) if (own === source) row[j] = value / sign;
       }
@@ -103,7 +103,7 @@ class Along {
   }
 
   forcesAt(u) {
-    const found = this.engine.section(this.told.number, u);
+    const found = this.engine.section(this.live.number, u);
     if (!found) throw new Error(this.engine.message(this.engine.failed));
     return found;
   }
@@ -111,12 +111,12 @@ class Along {
   /** Report of every instant, with its number, what each determined force is there: smallest, where, largest, where, largest in size,
    *  where. The numbers hold until the next instant. Unless `whole`, what is beyond nothing that was found for this design is left out:
    *  the ends of the cycle are the same. */
-  reachAll(count, whole, tell) {
+  reachAll(count, whole, put) {
     // Where the ends were in the design before, those of this one are near: then little is beyond what is known.
     if (!whole) for (const instant of this.ends) if (instant < count) this.reach(instant, false);
     this.ends.clear();
     for (const one of this.asked) one.none = false;
-    for (let i = 0; i < count; i += 1) tell(this.reach(i, whole), i);
+    for (let i = 0; i < count; i += 1) put(this.reach(i, whole), i);
   }
 
   reach(instant, whole) {
@@ -141,7 +141,7 @@ class Along {
     return tallies;
   }
 
-  /** Look for smallest and largest values in a part of a piece; what acts beyond its `low` end is felt there. */
+  /** Look for smallest and largest values in a part of a piece; what acts beyond its `low` end is included there. */
   look(piece, low, high, place, whole) {
     const edge = edgeAt(this.entry, low);
     for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, edge, place);

@@ -51,15 +51,15 @@ function drawActions(paper, instant, kinds, scale, values) {
     const ink = paper.inks[action.kind];
     const place = spotOf(action.spot, instant);
     if (!(size > 0)) continue;
-    const tells = values ? `${shown(size, action.moment ? "N m" : "N", 3)}` : "";
+    const caption = values ? `${shown(size, action.moment ? "N m" : "N", 3)}` : "";
     if (action.moment && !contents.space) {
-      turnArrow(paper, place, vector[2] * scale.moment, ink, action.kind, tells);
+      turnArrow(paper, place, vector[2] * scale.moment, ink, action.kind, caption);
       continue;
     }
     const way = times(vector, action.moment ? scale.moment : scale.force);
     // An applied load pushes at its place; what a joint or drive does begins at its own.
     const [from, to] = action.kind === "load" ? [less(place, way), place] : [place, plus(place, way)];
-    arrow(paper, from, to, ink, action, tells);
+    arrow(paper, from, to, ink, action, caption);
   }
 }
 
@@ -77,7 +77,7 @@ function arrowEnds(kinds, scale) {
 }
 
 /** A straight arrow; of a moment with two heads. Heads differ by kind, for those who see no colours. */
-function arrow(paper, from, to, ink, action, tells) {
+function arrow(paper, from, to, ink, action, caption) {
   const [a, b] = [paper.on(from), paper.on(to)];
   const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
   if (length < 2) return;
@@ -104,12 +104,12 @@ function arrow(paper, from, to, ink, action, tells) {
       context.fill();
       context.fillStyle = ink;
     }
-    if (tells) writeBeside(paper, context, tells, action.kind === "load" ? [a[0] - 8 * x, a[1] - 8 * y] : [b[0] + 8 * x, b[1] + 8 * y], x, ink);
+    if (caption) writeBeside(paper, context, caption, action.kind === "load" ? [a[0] - 8 * x, a[1] - 8 * y] : [b[0] + 8 * x, b[1] + 8 * y], x, ink);
   });
 }
 
 /** An arrow around a place, counter-clockwise where positive; a whole unit sweeps most of a turn. */
-function turnArrow(paper, place, sweep, ink, kind, tells) {
+function turnArrow(paper, place, sweep, ink, kind, caption) {
   const [x, y, depth] = paper.on(place);
   const r = 2.6 * pinSize(paper) + (kind === "reaction" ? 5 : 0);
   const angle = Math.max(-5.2, Math.min(5.2, sweep * 5.2));
@@ -129,7 +129,7 @@ function turnArrow(paper, place, sweep, ink, kind, tells) {
     const tip = [ex + 7 * tx, ey + 7 * ty];
     lineThrough(context, [tip, [ex - 4 * tx - 5 * ty, ey - 4 * ty + 5 * tx], [ex - 4 * tx + 5 * ty, ey - 4 * ty - 5 * tx]], true);
     context.fill();
-    if (tells) writeBeside(paper, context, tells, [x + r + 6, y - r], 1, ink);
+    if (caption) writeBeside(paper, context, caption, [x + r + 6, y - r], 1, ink);
   });
 }
 

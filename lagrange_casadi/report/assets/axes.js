@@ -92,12 +92,12 @@ function scaled([low, high], [from, to], unit, title, room = 0) {
   const step = ticks.length > 1 ? Math.abs(ticks[1][1] - ticks[0][1]) : 1;
   const decimals = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
   const size = Math.max(...ticks.map(([, tick]) => Math.abs(tick)), 0);
-  const tell = (tick) => {
+  const describe = (tick) => {
     if (size >= 1e6 || (size && size < 1e-4)) return format(tick, 3);
     const text = stripped(tick.toFixed(Math.min(8, decimals + 1)));
     return minus(text === "-0" ? "0" : text);
   };
-  return { at, back, ticks, tell, factor, unit: readable, label: labelled(title, readable), from, to, low: a, high: b };
+  return { at, back, ticks, describe, factor, unit: readable, label: labelled(title, readable), from, to, low: a, high: b };
 }
 
 /** Whether values with these ends are all on a scale, and take up much of it. */
@@ -110,18 +110,18 @@ function axesOf(x, y, { ground = true, bottom = true } = {}) {
   const group = drawn("g", { class: "axes" });
   for (const [at, tick] of y.ticks) {
     group.append(drawn("line", { x1: x.from, x2: x.to, y1: at, y2: at, class: tick === 0 ? "zero" : "net" }));
-    group.append(drawn("text", { x: x.from - 7, y: at, class: "y" }, y.tell(tick)));
+    group.append(drawn("text", { x: x.from - 7, y: at, class: "y" }, y.describe(tick)));
   }
   for (const [at, tick] of x.ticks) {
     group.append(drawn("line", { x1: at, x2: at, y1: y.from, y2: y.to, class: "net" }));
-    if (bottom) group.append(drawn("text", { x: at, y: y.from + 15, class: "x" }, x.tell(tick)));
+    if (bottom) group.append(drawn("text", { x: at, y: y.from + 15, class: "x" }, x.describe(tick)));
   }
   if (ground) group.append(drawn("line", { x1: x.from, x2: x.to, y1: y.from, y2: y.from, class: "edge" }));
   return group;
 }
 
 /** A curve as the path of an element, broken where there are no numbers. Of more instants than its columns, each so many points wide,
- *  can tell, a column has its lowest and its highest. */
+ *  can show, a column has its lowest and its highest. */
 function pathOf(xs, ys, x, y, column) {
   const [perX, perY] = [(x.to - x.from) / (x.high - x.low), (y.to - y.from) / (y.high - y.low)];
   const across = (i) => Math.round(10 * (x.from + (xs[i] - x.low) * perX)) / 10;

@@ -79,7 +79,7 @@ class Card {
         const drop = this.drop && signButton("✕", `Leave ${curve.title} out`, () => this.drop(k), { class: "sign tiny" });
         return element("li", {}, swatch, element("span", {}, curve.title), value, drop);
       }),
-      ...(this.plot?.told?.() ?? []),
+      ...(this.plot?.described?.() ?? []),
     );
   }
 }
@@ -133,7 +133,7 @@ function sectionCard(section, ratio, focus = false) {
   const card = new Card(
     "A section",
     (own) => {
-      const told = element("output", { class: "ratio" });
+      const described = element("output", { class: "ratio" });
       const slider = element("input", {
         type: "range", min: 0, max: section.xi.length - 1, value: ratio, "aria-label": "Place along the link, ξ/l",
         input: () => own.pin({ section: state.section, ratio: Number(slider.value) }),
@@ -149,14 +149,14 @@ function sectionCard(section, ratio, focus = false) {
         deck.stage.pinned = { section: state.section, ratio: state.ratio };
         deck.stage.draw();
       };
-      own.tell = () => {
+      own.describe = () => {
         const xi = state.section.xi[state.ratio];
-        told.textContent = `ξ/l = ${format(xi, 3)}, ${shown(xi * state.section.length, "m", 4, state.section.length)} from the base`;
+        described.textContent = `ξ/l = ${format(xi, 3)}, ${shown(xi * state.section.length, "m", 4, state.section.length)} from the base`;
       };
-      own.choices.append(link, slider, told);
+      own.choices.append(link, slider, described);
     },
     (own) => {
-      own.tell();
+      own.describe();
       const forces = knownForces(state.section).filter((force) => !contents.space || ["axial", "shear", "torsion", "bending"].includes(force.name));
       return forces.length ? new Chart(curveOf(alongInstants), forces.map((force) => curveOfSection(state.section, force, state.ratio))) : null;
     },

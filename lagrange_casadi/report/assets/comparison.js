@@ -20,8 +20,8 @@ function buildComparison() {
     const from = frames.findIndex((frame) => frame.lastChild.contentWindow === event.source);
     if (from >= 0) frames[1 - from].lastChild.contentWindow.postMessage(event.data, "*");
   });
-  const tell = (data) => frames.forEach((frame) => frame.lastChild.contentWindow.postMessage(data, "*"));
-  root.append(headOf(tell), element("div", { class: "beside" }, frames), element("div", { class: "cards beside" }, cards.map((card) => card.body)),
+  const send = (data) => frames.forEach((frame) => frame.lastChild.contentWindow.postMessage(data, "*"));
+  root.append(headOf(send), element("div", { class: "beside" }, frames), element("div", { class: "cards beside" }, cards.map((card) => card.body)),
     element("div", { class: "tables" }, largestTable(), parameterTable()), tip, said);
   const renew = () => cards.forEach((card) => card.draw());
   reading.watchers.add(renew);
@@ -47,19 +47,19 @@ function swatch(k) {
   return drawn("svg", { width: 26, height: 8, "aria-hidden": "true" }, drawn("line", { x1: 1, x2: 25, y1: 4, y2: 4, class: `curve of-${k}`, "stroke-dasharray": k ? "7 3" : "" }));
 }
 
-function headOf(tell) {
+function headOf(send) {
   const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", title: "Units of the file: SI, without prefixes", click: () => {
     setSi(!reading.si);
     si.setAttribute("aria-pressed", String(reading.si));
-    tell({ act: "si", given: [reading.si] });
+    send({ act: "si", given: [reading.si] });
   } }, "SI units");
   const names = runs.map((run, k) => element("span", { class: "run" }, swatch(k), ` ${run.name}${run.certified ? "" : ", not certified"}`));
   return element("header", { class: "head" },
-    element("div", {}, element("h1", {}, `${contents.case}: two runs`), element("p", { class: "told" }, names),
+    element("div", {}, element("h1", {}, `${contents.case}: two runs`), element("p", { class: "subtitle" }, names),
       contents.same && element("p", { class: "alarm" }, "Both runs are the same: all their values are equal.")),
     element("div", { class: "switches" }, si, element("button", { type: "button", class: "switch", click: () => {
       // Both pictures are at rest, and at the same time, before they are printed.
-      tell({ act: "pause", given: [] });
+      send({ act: "pause", given: [] });
       setTimeout(() => window.print(), 200);
     } }, "Print")));
 }

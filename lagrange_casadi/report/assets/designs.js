@@ -90,8 +90,8 @@ function frontOf(first, second) {
 
 /** A design in words: its number and parameters. */
 function designWords(row) {
-  const told = contents.parameters.map((one) => `${one.name} = ${shown(columnOf.get(one.name).values[row], one.unit)}`);
-  return `design ${designs.numbers[row]}: ${told.join(", ")}`;
+  const described = contents.parameters.map((one) => `${one.name} = ${shown(columnOf.get(one.name).values[row], one.unit)}`);
+  return `design ${designs.numbers[row]}: ${described.join(", ")}`;
 }
 
 /** What a column of a design is, in words. */

@@ -35,7 +35,7 @@ function sweepHead() {
     si.setAttribute("aria-pressed", String(reading.si));
   } }, "SI units");
   return element("header", { class: "head" },
-    element("div", {}, element("h1", {}, contents.case), element("p", { class: "told" }, `${total} designs over ${contents.parameters.map((one) => one.name).join(", ")}: ${counts}${some}`)),
+    element("div", {}, element("h1", {}, contents.case), element("p", { class: "subtitle" }, `${total} designs over ${contents.parameters.map((one) => one.name).join(", ")}: ${counts}${some}`)),
     element("div", { class: "switches" }, si, element("button", { type: "button", class: "switch", click: () => window.print() }, "Print")));
 }
 
@@ -43,12 +43,12 @@ function sweepHead() {
 function conditionBar() {
   const wrong = element("output", { class: "alarm" });
   const count = element("output", {});
-  const tell = () => (count.textContent = `${picked.met.length} of ${designs.count} designs`);
+  const describe = () => (count.textContent = `${picked.met.length} of ${designs.count} designs`);
   const field = element("input", { type: "search", placeholder: `conditions, as ${contents.parameters[0].name}<0.3, ${pair[0]?.name ?? contents.parameters[0].name}<=12`, "aria-label": "Conditions", input: () => {
     wrong.textContent = filter(field.value);
   } });
-  picked.watchers.add(tell);
-  tell();
+  picked.watchers.add(describe);
+  describe();
   return element("div", { class: "conditions" }, field, count, wrong);
 }
 
@@ -125,7 +125,7 @@ function designTable() {
     ...chosen.map((one) => [one.title.replaceAll(":", ":\u200b"), (row) => (status[row.at] && !parameters.includes(one) ? "–" : columnWords(one, row.at)), (row) => costOf(one, row.at)]),
     ["result", (row) => (status[row.at] ? contents.statuses[status[row.at]] : "ok")]];
   const plain = [["design", (row) => designs.numbers[row.at]], ...columns.map((one) => [`${one.name} [${one.unit}]`, (row) => one.values[row.at]]), ["status", (row) => status[row.at]]];
-  const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), told: "Look at this design", aside: sameLine(), plain, most: MOST_ROWS });
+  const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), described: "Look at this design", aside: sameLine(), plain, most: MOST_ROWS });
   table.body.classList.add("designs");
   let met = picked.met;
   picked.watchers.add(() => {
@@ -155,17 +155,17 @@ function lookedAt(body) {
     else if (event.data?.height > 0) frame.style.height = `${Math.min(event.data.height, TALLEST)}px`;
   });
   body.append(frame || element("p", { class: "none" }, contents.note));
-  const tell = () => {
+  const describe = () => {
     if (picked.row < 0) return;
     words.textContent = designWords(picked.row);
-    const told = status[picked.row] ? [["no result", contents.statuses[status[picked.row]]]] : varying.filter((one) => one.name.startsWith("peak:")).map((one) => [one.title, columnWords(one, picked.row)]);
-    list.replaceChildren(...told.map(([name, value]) => element("div", {}, element("dt", {}, name.replaceAll(":", ":\u200b")), element("dd", {}, value))));
+    const described = status[picked.row] ? [["no result", contents.statuses[status[picked.row]]]] : varying.filter((one) => one.name.startsWith("peak:")).map((one) => [one.title, columnWords(one, picked.row)]);
+    list.replaceChildren(...described.map(([name, value]) => element("div", {}, element("dt", {}, name.replaceAll(":", ":\u200b")), element("dd", {}, value))));
     announce(words.textContent);
   };
-  picked.watchers.add(tell);
+  picked.watchers.add(describe);
   picked.watchers.add(send);
-  reading.watchers.add(tell);
-  tell();
+  reading.watchers.add(describe);
+  describe();
 }
 
 buildSweep();

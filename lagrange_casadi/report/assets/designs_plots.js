@@ -25,7 +25,7 @@ class DesignPlot {
       showTip(null);
       return;
     }
-    showTip(event, designWords(row), status[row] ? [["no result", contents.statuses[status[row]]]] : this.told.map((column) => [column.title, columnWords(column, row)]));
+    showTip(event, designWords(row), status[row] ? [["no result", contents.statuses[status[row]]]] : this.described.map((column) => [column.title, columnWords(column, row)]));
   }
 
   mark() {
@@ -38,7 +38,7 @@ class DesignPlot {
 class DesignMap extends DesignPlot {
   constructor(column, x, y) {
     super("map", `${column.title} over ${x.name} and ${y.name}`);
-    Object.assign(this, { column, x, y, told: [column] });
+    Object.assign(this, { column, x, y, described: [column] });
   }
 
   draw(width) {
@@ -78,14 +78,14 @@ function cellsOf(column, values, from, to) {
   const { factor, unit } = scaleFor(column.unit, most);
   const stride = Math.max(1, Math.ceil(values.length / Math.max(2, Math.floor(Math.abs(to - from) / 62))));
   const ticks = values.map((value, k) => [place.get(value), value * factor, k]).filter(([, , k]) => k % stride === 0);
-  return { at: (value) => place.get(value), step: Math.abs(step), ticks, tell: (tick) => format(tick, 4), label: labelled(column.name, unit), from, to };
+  return { at: (value) => place.get(value), step: Math.abs(step), ticks, describe: (tick) => format(tick, 4), label: labelled(column.name, unit), from, to };
 }
 
 /** Two columns against each other: all designs faint, those that no other beats in both strong and joined. */
 class DesignFront extends DesignPlot {
   constructor(x, y) {
     super("curves", `${y.title} against ${x.title}`);
-    Object.assign(this, { x, y, told: [x, y] });
+    Object.assign(this, { x, y, described: [x, y] });
   }
 
   draw(width) {

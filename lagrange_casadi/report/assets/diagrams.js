@@ -116,7 +116,7 @@ class Diagram {
   }
 
   /** At which instant, and why then. */
-  told() {
+  described() {
     const row = governing(this.section.link);
     const words = this.middle ? "at the instant that is shown" : `at ${whenIs(this.instant)}: largest ${row.what}`;
     return [element("li", {}, words), element("li", {}, "action of the tip's side on the base's")];

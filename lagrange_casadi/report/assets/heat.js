@@ -10,7 +10,7 @@ function fieldOfForce(section, force) {
     peak: () => (!row || row.open ? null : isNothing(row) ? { ...row.peak, value: 0 } : row.peak),
     column: (place, near) => (over ? nearest(values, place, near) : instantAt(place)),
     fill: (column, found, step) => (row && isNothing(row) ? found.fill(0) : sectionForces(section, force.name, column, found, step)),
-    tell: (column, ratio) => [whenIs(column), sectionLines(section, ratio, column)],
+    describe: (column, ratio) => [whenIs(column), sectionLines(section, ratio, column)],
     show: () => showRow(row),
   };
 }
@@ -24,7 +24,7 @@ function fieldOfMap(map) {
     peak: () => map.peak,
     column: (place) => nearest(places, place, 0),
     fill: (column, found) => found.set(at(column)),
-    tell: (column, ratio) => [whenOf(t[column], over ? places[column] : null), [[map.what, shown(at(column)[ratio], map.unit)]]],
+    describe: (column, ratio) => [whenOf(t[column], over ? places[column] : null), [[map.what, shown(at(column)[ratio], map.unit)]]],
     show: () => {
       seekTo(instantAt(map.peak.t));
       showSection(map.link, map.peak.xi);
@@ -91,14 +91,14 @@ class Heat {
   }
 
   /** Where and when it is largest, as a button that shows it. */
-  told() {
+  described() {
     const { field } = this;
     const peak = field.peak();
     if (!peak || !Number.isFinite(peak.value)) return [];
     const row = field.row?.();
     if (row && isNothing(row)) return [element("li", {}, "it is 0")];
     const words = `largest: ${shown(peak.value, field.unit)} at ξ/l = ${format(peak.xi, 3)}, ${whenOf(peak.t, peak.over)}${field.where ? `, ${field.where}` : ""}`;
-    return [element("li", {}, element("button", { type: "button", class: "told-peak", title: "Show when and where", click: field.show }, words))];
+    return [element("li", {}, element("button", { type: "button", class: "peak-button", title: "Show when and where", click: field.show }, words))];
   }
 
   peakMark(peak, scale) {
@@ -188,7 +188,7 @@ class Heat {
     }
     const { field } = this;
     const ratio = Math.round(at.xi * (field.xi.length - 1));
-    const [when, lines] = field.tell(field.column(at.x, 0), ratio);
+    const [when, lines] = field.describe(field.column(at.x, 0), ratio);
     showTip(event, `${field.link} at ξ/l = ${format(field.xi[ratio], 3)}; ${when}`, lines);
   }
 }

@@ -73,8 +73,8 @@ function headOf() {
   reading.watchers.add(verdict);
   const shownOf = instants.count < instants.total ? `, ${instants.count} of them shown` : "";
   const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => shown(instants.t.at(k), "s", 5, Math.abs(instants.t.at(-1)))).join(" to ")}`;
-  const told = element("p", { class: "told" }, span());
-  reading.watchers.add(() => say(told, span()));
+  const described = element("p", { class: "subtitle" }, span());
+  reading.watchers.add(() => say(described, span()));
   const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", title: "Units of the file: SI, without prefixes", click: () => {
     setSi(!reading.si);
     si.setAttribute("aria-pressed", String(reading.si));
@@ -89,7 +89,7 @@ function headOf() {
   } }, "◐ auto");
   const print = element("button", { type: "button", class: "switch", click: () => window.print() }, "Print");
   return element("header", { class: "head" },
-    element("div", {}, element("h1", {}, contents.case), told),
+    element("div", {}, element("h1", {}, contents.case), described),
     badge,
     element("div", { class: "switches" }, si, theme, print));
 }

@@ -89,7 +89,7 @@ function transportBar() {
     },
   );
   let playing = false;
-  const tell = (instant) => {
+  const describe = (instant) => {
     if (playing !== player.playing) {
       playing = player.playing;
       play.replaceChildren(icon(playing ? "pause" : "play"));
@@ -102,9 +102,9 @@ function transportBar() {
     slider.setAttribute("aria-valuetext", when);
     say(readout, when);
   };
-  player.watchers.add(tell);
-  reading.watchers.add(() => tell(player.instant));
-  tell(0);
+  player.watchers.add(describe);
+  reading.watchers.add(() => describe(player.instant));
+  describe(0);
   return element(
     "div", { class: "transport", role: "group", "aria-label": "Motion" },
     signButton(icon("back"), "One instant back (left arrow)", () => player.step(-1)),

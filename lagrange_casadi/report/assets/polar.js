@@ -139,9 +139,9 @@ class Polar {
     this.mark(found, this.sheet.pointer);
     const [x, y] = this.points[found];
     const most = this.most();
-    const told = (value) => shownOf(value, "N", most);
+    const described = (value) => shownOf(value, "N", most);
     const turn = ((Math.atan2(y, x) * 180) / Math.PI).toFixed(1);
     const [right, up] = this.way.pair;
-    showTip(event, whenIs(found), [[right, told(x)], [up, told(y)], ["size", told(Math.hypot(x, y))], ["direction", `${minus(turn)} deg`]]);
+    showTip(event, whenIs(found), [[right, described(x)], [up, described(y)], ["size", described(Math.hypot(x, y))], ["direction", `${minus(turn)} deg`]]);
   }
 }

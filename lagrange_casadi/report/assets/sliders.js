@@ -66,10 +66,10 @@ function slidersOf(engine) {
       if (field.value !== "" && Number.isFinite(Number(field.value))) set(Number(field.value), field);
     }, change: settle });
     const reads = element("output", {});
-    const tell = () => (reads.textContent = ["m", "rad", "1"].includes(one.unit) && !scaleFor(one.unit, Math.abs(engine.values[k])).unit ? "" : shown(engine.values[k], one.unit, 5));
-    fields.push({ slider, field, tell });
+    const describe = () => (reads.textContent = ["m", "rad", "1"].includes(one.unit) && !scaleFor(one.unit, Math.abs(engine.values[k])).unit ? "" : shown(engine.values[k], one.unit, 5));
+    fields.push({ slider, field, describe });
     live.fields.push([slider, field]);
-    tell();
+    describe();
     return element("label", {}, element("span", { class: "name" }, one.name), slider, field, reads);
   });
   const own = signButton("↺", "The design of the file", () => {
@@ -84,7 +84,7 @@ function slidersOf(engine) {
     setTimeout(() => (copy.textContent = "copy as --set"), 1500);
   } }, "copy as --set");
   live.alarm = element("p", { class: "alarm", role: "alert", hidden: true });
-  reading.watchers.add(() => fields.forEach((one) => one.tell()));
+  reading.watchers.add(() => fields.forEach((one) => one.describe()));
   return [element("header", {}, element("h3", {}, "Parameters"), own, copy), element("div", { class: "sliders" }, rows), live.alarm];
 }
 

@@ -1,9 +1,9 @@
 // Tables that can be sorted, and copied as CSV.
 
-/** A table: heads as [words, how a cell is written, what it is sorted by]; `chosen` hears of a row that is pressed, and `told` says what that does; of more rows than `most` the first are shown.
+/** A table: heads as [words, how a cell is written, what it is sorted by]; `chosen` hears of a row that is pressed, and `described` says what that does; of more rows than `most` the first are shown.
  *
  * `plain` are heads for the copy, whose numbers are those of the file: SI, with all their digits. */
-function sortedTable(caption, heads, rows, { chosen = null, told = "Show this instant", aside = null, plain = heads, most = Infinity } = {}) {
+function sortedTable(caption, heads, rows, { chosen = null, described = "Show this instant", aside = null, plain = heads, most = Infinity } = {}) {
   let order = { column: -1, down: false };
   const body = element("tbody");
   const more = element("p", { class: "fine" });
@@ -14,12 +14,12 @@ function sortedTable(caption, heads, rows, { chosen = null, told = "Show this in
   const fill = () => {
     body.replaceChildren(
       ...rows().slice(0, most).map((row) => {
-        const line = element("tr", {}, heads.map(([, tell, by], k) => element(k ? "td" : "th", { class: by ? "number" : "", scope: k ? null : "row" }, tell(row))));
+        const line = element("tr", {}, heads.map(([, describe, by], k) => element(k ? "td" : "th", { class: by ? "number" : "", scope: k ? null : "row" }, describe(row))));
         if (chosen) {
           line.classList.add("pressable");
           line.addEventListener("click", () => chosen(row));
           const first = line.firstChild;
-          const go = element("button", { type: "button", class: "go", title: told, "aria-label": `${told}: ${row.name}` }, "▸");
+          const go = element("button", { type: "button", class: "go", title: described, "aria-label": `${described}: ${row.name}` }, "▸");
           first.prepend(go);
         }
         return line;
@@ -31,8 +31,8 @@ function sortedTable(caption, heads, rows, { chosen = null, told = "Show this in
   const ordered = () => {
     const found = [...rows.all()];
     if (order.column < 0) return found;
-    const [, tell, by] = heads[order.column];
-    const key = by ?? tell;
+    const [, describe, by] = heads[order.column];
+    const key = by ?? describe;
     found.sort((a, b) => {
       const [x, y] = [key(a), key(b)];
       return typeof x === "string" ? x.localeCompare(y) : (x ?? -Infinity) - (y ?? -Infinity);
@@ -70,7 +70,7 @@ function csvOf(heads, rows) {
     const cell = String(text ?? "").replaceAll("\u2212", "-").replaceAll("\u00a0", " ");
     return /[",\n;]/.test(cell) ? `"${cell.replaceAll('"', '""')}"` : cell;
   };
-  const lines = [heads.map(([words]) => quoted(words)), ...rows.map((row) => heads.map(([, tell]) => quoted(tell(row))))];
+  const lines = [heads.map(([words]) => quoted(words)), ...rows.map((row) => heads.map(([, describe]) => quoted(describe(row))))];
   return `${lines.map((line) => line.join(",")).join("\n")}\n`;
 }
 

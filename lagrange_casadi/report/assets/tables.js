@@ -135,10 +135,10 @@ function certificateText() {
   const { state, residuals, tolerance, words } = contents.certificate;
   const right = forcesChecked ? "Checked independently, and right" : "The motion is checked, and right; the forces are not checked, because outputs are missing";
   const head = { certified: right, failed: "The check fails: do not trust these numbers", none: "Not checked" }[state];
-  const told = (one) => (one.largest === null ? "–" : format(one.largest, 2));
-  const lines = residuals.filter((one) => one.name !== "condition").map((one) => [one.what, told(one)]);
+  const described = (one) => (one.largest === null ? "–" : format(one.largest, 2));
+  const lines = residuals.filter((one) => one.name !== "condition").map((one) => [one.what, described(one)]);
   const limit = lines.length > 0 && element("p", {}, `No residual may be above ${format(tolerance, 2)}.`);
-  const loops = residuals.filter((one) => one.name === "condition").map((one) => element("p", {}, `The condition number of the loops is at most ${told(one)}; 1 is best, and it grows without bound towards a dead centre.`));
+  const loops = residuals.filter((one) => one.name === "condition").map((one) => element("p", {}, `The condition number of the loops is at most ${described(one)}; 1 is best, and it grows without bound towards a dead centre.`));
   const alarm = state === "failed" && element("p", { class: "alarm" }, words);
   const forces = "The reported motions, reactions, efforts and loads were inserted into the Newton-Euler equations of every body, by an independent program, at every instant.";
   const sentence = forcesChecked ? forces : "The positions of all bodies were recomputed from the reported motion, by an independent program, at every instant.";
