@@ -45,8 +45,8 @@ _KEPT, _SHORTEST = 0.1, 1e-6
 class Consistency(Graphs):
     """Conditions on the unknown parameters, of usual sizes ``scales`` (k,) and bounds (k,).
 
-    ``positive(theta)`` has the masses of bodies and the principal minors' matrices, entry by entry;
-    ``masses`` is how many masses come first, ``orders`` the orders of the matrices behind them.
+    ``positive(theta)`` has the masses of bodies, so many ``masses``, and then the matrices that
+    must be positive definite, of these ``orders``, each by its entries on and below the diagonal.
     ``barrier(theta)`` has the sum of their logarithms times -1, its gradient and its second
     derivatives. ``bodies`` are the names of those of each mass, and of each matrix.
     """
@@ -104,19 +104,19 @@ class Consistency(Graphs):
         """Return the bodies whose mass is not positive, or whose inertia no body can have."""
         values = np.asarray(self.positive(theta)).ravel()
         values[~np.isfinite(values)] = -1.0  # an inertia about the centre of no mass
-        least = [*values[: self.masses], *(roots.min() for roots, _ in self._matrices(values))]
+        least = [*values[: self.masses], *self._least_eigenvalues(values)]
         wrong = [name for name, low in zip(self.bodies, least, strict=True) if not low > 0.0]
         return tuple(dict.fromkeys(wrong))
 
-    def _matrices(self, values: Array) -> Iterator[tuple[Array, Array]]:
-        """Yield eigenvalues and eigenvectors of each matrix of the conditions."""
+    def _least_eigenvalues(self, values: Array) -> Iterator[float]:
+        """Yield the least eigenvalue of each matrix of the conditions."""
         start = self.masses
         for order in self.orders:
             matrix = np.zeros((order, order))
             places = np.tril_indices(order)
             matrix[places] = values[start : start + places[0].size]
             start += places[0].size
-            yield np.linalg.eigh(matrix)  # reads the lower half
+            yield float(np.linalg.eigvalsh(matrix)[0])  # reads the lower half; ascending
 
     @symbolic
     def step(self, triangle: Array, right: Array, theta: Array) -> Array:

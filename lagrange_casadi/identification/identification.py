@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -277,9 +277,16 @@ def identify(
     loss = Loss(given, robust, data.theta, spread, consistency if consistent else None)
     curved = nonlinear(data, z, names, ranking.scales)
     found = fit(data, z, loss, ranking)
-    result = _result(scene, measurements, data, found, (names, curved, ranking), cutoff)
-    impossible = consistency.impossible(found.theta)
-    return replace(result, prior=dict(prior or {}), impossible=impossible)
+    return _result(
+        scene,
+        measurements,
+        data,
+        found,
+        (names, curved, ranking),
+        cutoff,
+        dict(prior or {}),
+        consistency.impossible(found.theta),
+    )
 
 
 def _measured(measurements: Measurements, regressor: Regressor) -> Array:
@@ -316,6 +323,8 @@ def _result(
     found: Fit,
     unknown: tuple[Sequence[str], Mapping[str, tuple[str, ...]], Ranking],
     cutoff: float | None,
+    prior: Mapping[str, float],
+    impossible: tuple[str, ...],
 ) -> Identification:
     """Return the result of a fit."""
     names, curved, ranking = unknown
@@ -364,8 +373,8 @@ def _result(
         regressor=regressor,
         parameters=regressor.program.data.values(p),
         initial=dict(zip(names, data.theta.tolist(), strict=True)),
-        prior={},
-        impossible=(),
+        prior=prior,
+        impossible=impossible,
     )
 
 

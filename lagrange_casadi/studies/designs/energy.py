@@ -23,7 +23,7 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.status import Status
-from ...base.symbolic import symbolic
+from ...base.symbolic import symbolic_property
 from ...errors import DeclarationError
 from ...sensitivity.ends import Ends
 from .engine import DesignEngine
@@ -56,15 +56,15 @@ class DriveEnergy:
         nodes = self._nodes(p)
         if nodes is None:
             return np.full(p.size, np.nan)
-        engine, t = self.engine, nodes.t
-        instants = engine.times.of(p[None], asked=False)[0][0]
+        engine, t, instants = self.engine, nodes.t, self._instants(p)
         first, last = Ends(engine.program.laws, engine.times.timing, instants, p).slopes
         share, span = ((t - t[0]) / (t[-1] - t[0]))[:, None], t[-1] - t[0]
         moved = (1.0 - share) * first + share * last
         number = np.full(t.size, engine.quantities.index(str(self.drive)), np.intc)
         nowhere, z = np.full_like(t, np.nan), engine.slopes.iterated(instants, p, t)
         there = engine.slopes.at(t, z, p, number, nowhere)
-        by_time, by_p = self._rate_slopes(p, t)
+        rows = np.atleast_2d(self._rate_slopes(t[None], p).full())
+        by_time, by_p = rows[0], rows[1:].T
         effort = there.slopes + there.rate[:, None] * moved
         rate = by_p + by_time[:, None] * moved + nodes.rate[:, None] * (last - first) / span
         work = effort * nodes.rate[:, None] + nodes.effort[:, None] * rate
@@ -73,29 +73,32 @@ class DriveEnergy:
             nodes.swing @ (work - nodes.mean * rate - nodes.rate[:, None] * mean), float
         )
 
-    @symbolic
-    def _rate_slopes(self, p: Array, t: Array) -> tuple[Array, Array]:
-        """Derivatives of the coordinate's rate by time, (t,), and by parameters, (t, n)."""
+    @symbolic_property
+    def _rate_slopes(self) -> ca.Function:
+        """Derivatives of the coordinate's rate by the time, and by each parameter."""
         program = self.engine.program
-        time, values = ca.SX.sym("t"), ca.SX.sym("p", p.size)
+        time, values = ca.SX.sym("t"), ca.SX.sym("p", len(self.engine.parameters))
         _, rates, accelerations = program.motion(time, values)
         row = program.driven.index(self.drive.part)
         found = ca.horzcat(accelerations[row], ca.jacobian(rates[row], values))
-        both = ca.Function("rate_slopes", [time, values], [ca.densify(found.T)])
-        rows = np.atleast_2d(both(t[None], p).full())
-        return rows[0], rows[1:].T
+        return ca.Function("rate_slopes", [time, values], [ca.densify(found.T)])
+
+    def _instants(self, p: Array) -> Array:
+        """Instants of a design."""
+        instants: Array = self.engine.times.of(p[None], asked=False)[0][0]
+        return instants
 
     def _nodes(self, p: Array) -> _Nodes | None:
         """Sample a design; None without a result."""
-        engine = self.engine
-        instants = engine.times.of(p[None], asked=False)[0][0]
+        engine, instants = self.engine, self._instants(p)
+        path = instants if engine.program.newton is not None else instants[:0]
         t = np.linspace(instants[0], instants[-1], 4 * (-(-(instants.size - 1) // 4)) + 1)
         close, most = _CLOSE[engine.method.precision], _MORE * t.size
         if t.size < 5:
             return None
         fresh, sampled = t, np.empty((2, 0))
         for _ in range(_ROUNDS):
-            found = self._sampled(fresh, p)
+            found = self._sampled(fresh, p, path)
             if found is None:
                 return None
             times = fresh if fresh is t else np.concatenate([t, fresh])
@@ -120,10 +123,11 @@ class DriveEnergy:
             )
         return _Nodes.of(t, *sampled)
 
-    def _sampled(self, t: Array, p: Array) -> Array | None:
-        """Effort and rate at times, (2, t); None without a result."""
+    def _sampled(self, t: Array, p: Array, first: Array) -> Array | None:
+        """Effort and rate at times, (2, t), evaluated with the ``first`` times as well, along which
+        loops are followed; None without a result.
+        """
         engine, program = self.engine, self.engine.program
-        first = engine.times.of(p[None], asked=False)[0][0] if program.newton is not None else t[:0]
         path, back = np.unique(np.concatenate([first, t]), return_inverse=True)
         columns = np.empty((1, len(program.columns), path.size))
         status = np.zeros(1, np.int8)
