@@ -6,29 +6,13 @@ from collections.abc import Iterable, Mapping
 
 from ..codegen.printer import literal
 from ..portable.contract import Contract, Member
+from ..portable.naming import taken_words
 from ..portable.source import Source
 from ..portable.text import octave, octave_printed, template
 
 _RESTS = """
    Numbers are doubles here: what single precision would round off a coordinate or a time is kept,
    without a member of its own."""
-
-_WORDS = frozenset(
-    [
-        "catch",
-        "classdef",
-        "elseif",
-        "end",
-        "function",
-        "global",
-        "otherwise",
-        "parfor",
-        "persistent",
-        "spmd",
-        "try",
-    ]
-)
-"""Words of MATLAB and Octave that are none of C."""
 
 
 def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]:
@@ -69,7 +53,7 @@ def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]
 
 def _field(member: Member) -> str:
     """Expression by which a script reads a member of a struct."""
-    plain = member.name[0].isalpha() and member.name not in _WORDS
+    plain = member.name[0].isalpha() and member.name not in taken_words("matlab")
     return f".{member.name}" if plain else f".('{member.name}')"
 
 
