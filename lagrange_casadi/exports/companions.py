@@ -4,18 +4,16 @@ README.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from ..base.tables import Table
 from ..codegen.printer import literal
 from ..portable.contract import CORNERS, REST, Contract, Member
-from ..portable.golden import RATIOS
+from ..portable.golden import RATIOS, Golden
 from ..portable.sections import comparisons, in_words
 from ..portable.slopes import in_readme, selftest_function, selftest_numbers
 from ..portable.source import Source
-from ..portable.text import markdown, quoted, template
+from ..portable.text import markdown, number_rows, numbers, quoted, template
 from .fatigue import counting
 from .matlab import matlab
 
@@ -26,17 +24,13 @@ _ROWS = 12
 def companions(source: Source) -> dict[str, str]:
     """The other files of the folder, by name."""
     c = source.contract
-    words = source.words
-    effort = next((m for m in c.outputs if m.source.startswith("effort:")), c.outputs[0])
-    drive = next(m for m in c.inputs if m.source.startswith("motion:"))
+    words, (drive, effort) = source.words, c.shown
     link = c.links[0] if c.links else None
     rest = f", {literal(c.precision)(0.0)}" if c.rests else ""
     null = ", 0" if c.settings else ""
     mid = _example_section(c) if link else ""
-    (start, stop), count = (
-        source.exported.program.data.span,
-        source.exported.program.data.timing.count,
-    )
+    data = source.exported.program.data
+    (start, stop), count = data.span, data.timing.count
     steps = max(1, round((count - 1) / _ROWS)) if source.iterated else 1
     number = literal(c.precision)
     return (
@@ -77,7 +71,7 @@ def companions(source: Source) -> dict[str, str]:
                 mapped=_mapped(c) + (in_readme(c, source.slopes) if source.slopes else ""),
             ),
         }
-        | matlab(source, drive, effort)
+        | matlab(source)
         | counting(source)
     )
 
@@ -124,14 +118,6 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
     g, c = source.golden, source.contract
     coordinates = {m.source: k for k, m in enumerate(c.inputs)}
     times = [(t, _rest(t) if c.rests else 0.0) for t in g.times]
-    wide = literal("double")
-
-    def row(values: Iterable[float]) -> str:
-        return ", ".join(wide(float(x)) for x in values)
-
-    def rows(table: Iterable[Iterable[float]]) -> str:
-        return ",\n".join(f"  {{{row(values)}}}" for values in table)
-
     return template(
         "selftest.c",
         **words,
@@ -141,17 +127,13 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         n_links=len(c.links),
         n_ratios=len(RATIOS),
         steps=g.steps,
-        times=rows(times),
-        inputs=rows(g.inputs),
-        inputs_off=row(g.inputs_off),
-        outputs=rows(g.outputs),
-        outputs_off=row(g.outputs_off),
-        forces=(
-            _forces(c.table, rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel()))
-            if c.links
-            else ""
-        )
-        + (selftest_numbers(source.slopes, row) if source.slopes else ""),
+        times=number_rows(times),
+        inputs=number_rows(g.inputs),
+        inputs_off=numbers(g.inputs_off),
+        outputs=number_rows(g.outputs),
+        outputs_off=numbers(g.outputs_off),
+        forces=(_forces(c.table, g) if c.links else "")
+        + (selftest_numbers(source.slopes) if source.slopes else ""),
         given="\n".join(
             f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)
         ),
@@ -165,7 +147,7 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         + (selftest_function(c, source.slopes) if source.slopes else ""),
         check_sections=("  check_sections(&model, &outputs, k);\n" if c.links else "")
         + ("  check_sensitivity(&model, k);\n" if source.slopes else ""),
-        first_input=next(m.name for m in c.inputs if m.source.startswith("motion:")),
+        first_input=c.shown[0].name,
         first_output=c.outputs[0].name,
         null=", 0" if c.settings else "",
         time_rest=f", ({c.prefix}_real) times[k][1]" if c.rests else "",
@@ -191,8 +173,10 @@ def _taken(c: Contract, m: Member, coordinates: dict[str, int]) -> str:
     return f'    compare("motion: {m.name}", {given}, {value}, inputs_off[{k}], 0);'
 
 
-def _forces(table: Table, rows: str, off: str) -> str:
+def _forces(table: Table, golden: Golden) -> str:
     words, many = in_words(table), len(table.forces)
+    rows = number_rows(golden.forces.reshape(len(golden.times), -1))
+    off = numbers(golden.forces_off.ravel())
     return (
         f"\n/* {words[0].upper()}{words[1:]}, of each link, at each ratio. */\n"
         f"static const double forces_at[INSTANTS][LINKS*RATIOS*{many}] = {{\n{rows}\n}};\n"

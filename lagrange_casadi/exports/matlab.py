@@ -15,9 +15,9 @@ _RESTS = """
    without a member of its own."""
 
 
-def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]:
-    """The files by name; the example shows an input and an output."""
-    c = source.contract
+def matlab(source: Source) -> dict[str, str]:
+    """The files by name."""
+    c, (coordinate, output) = source.contract, source.contract.shown
     words = source.words | {
         "coordinate": coordinate.name,
         "coordinate_unit": octave(coordinate.unit),

@@ -63,8 +63,10 @@ def structured_text(source: Source) -> dict[str, str]:
         raise DeclarationError("structured text: expected double precision and no table")
     given = _identifiers("in", (m.name for m in c.inputs))
     taken = _identifiers("out", (m.name for m in c.outputs))
-    inputs = {m.source: name for m, name in zip(c.inputs, given, strict=True)}
-    instant, drive = _Block(source, inputs), _Block(source, inputs)
+    called = {m.name: name for m, name in zip(c.inputs, given, strict=True)}
+    time = called[c.input_of("time")] if c.timed else "0.0"
+    moved = [[called[member] for member in members] for members in c.motion]
+    instant, drive = _Block(source, time, moved), _Block(source, time, moved)
     body, motion = list(instant.instant()), list(drive.motion())
     outputs = []
     for name, m in zip(taken, c.outputs, strict=True):
@@ -91,10 +93,13 @@ def structured_text(source: Source) -> dict[str, str]:
 
 @dataclass(eq=False)
 class _Block:
-    """A function block under way: its arrays by their sizes, and its tables."""
+    """A function block under way: the names of the time and of coordinates, rates and
+    accelerations, its arrays by their sizes, and its tables.
+    """
 
     source: Source
-    inputs: dict[str, str]
+    time: str
+    moved: list[list[str]]
     arrays: dict[str, int] = field(default_factory=dict)
     tables: dict[str, Sequence[float]] = field(default_factory=dict)
 
@@ -115,33 +120,24 @@ class _Block:
 
     def motion(self) -> Iterator[str]:
         """Yield the statements of the scene's motion at t."""
-        c, functions = self.source.contract, self.source.exported.functions
-        names = [
-            [self.inputs[f"motion:{drive}{end}"] for drive in c.drives]
-            for end in ("", "_rate", "_acceleration")
-        ]
-        yield from self.lines(functions["law"], [["t"], self.parameters()], names)
-        if c.timed:
-            yield f"{self.inputs['time']} := t;"
+        law = self.source.exported.functions["law"]
+        yield from self.lines(law, [["t"], self.parameters()], self.moved)
+        if self.source.contract.timed:
+            yield f"{self.time} := t;"
 
     def instant(self) -> Iterator[str]:
         """Yield the statements of an instant, up to whether it is valid."""
-        c, exported = self.source.contract, self.source.exported
-        functions, sizes, p = exported.functions, exported.sizes, self.parameters()
-        moment = [self.inputs.get("time", "0.0")]
-        moment += [self.inputs[f"motion:{drive}"] for drive in c.drives]
+        exported, (coordinates, *rates) = self.source.exported, self.moved
+        functions, sizes = exported.functions, exported.sizes
         counted = self.array("counted", sizes["counted"])
         if counted:
-            yield from self.lines(functions["count"], [moment, p], [counted])
+            given = [[self.time, *coordinates], self.parameters()]
+            yield from self.lines(functions["count"], given, [counted])
         z: list[str] = []
         yield from ("iterated := 0.0;", "valid := TRUE;")
         if self.source.iterated:
             z = self.array("w", sizes["loops"])
             yield from self.closing(z, counted)
-        rates = [
-            [self.inputs[f"motion:{drive}{end}"] for drive in c.drives]
-            for end in ("_rate", "_acceleration")
-        ]
         columns = [f"y[{k}]" for k in range(sizes["evaluated"])]
         given = [counted, *rates, z, self.fixed("constants_of")]
         yield from self.lines(functions["instant"], given, [columns])

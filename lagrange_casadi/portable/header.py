@@ -94,17 +94,14 @@ def _begin(source: Source) -> str:
     c, start = source.contract, source.exported.program.data.span[0]
     if source.iterated:
         return f"status = {c.prefix}_motion(&model, {start:g}{', 0' if c.rests else ''}, &inputs);"
-    drive = next(m for m in c.inputs if m.source.startswith("motion:"))
-    return f"inputs.{drive.name} = 0.3{'f' if c.rests else ''};"
+    return f"inputs.{c.shown[0].name} = 0.3{'f' if c.rests else ''};"
 
 
 def _follows(source: Source) -> str:
     if not source.iterated:
         return ""
-    (start, stop), count = (
-        source.exported.program.data.span,
-        source.exported.program.data.timing.count,
-    )
+    data = source.exported.program.data
+    (start, stop), count = data.span, data.timing.count
     near = (
         f", as instants {(stop - start) / (count - 1):.2g} s apart are in the scene's motion"
         if count > 1

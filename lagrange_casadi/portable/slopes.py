@@ -5,7 +5,7 @@ C, and what they must be.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +20,7 @@ from ..instants.evaluation_method import EvaluationMethod
 from ..sensitivity.jacobian import total
 from ..sensitivity.series import at_instants
 from .contract import Contract, Setting
-from .text import comment, indented, template
+from .text import comment, indented, number_rows, numbers, template
 
 FUNCTION = "slopes_of"
 """Name of CasADi's function in C."""
@@ -125,19 +125,18 @@ def code(c: Contract, slopes: ExportedSlopes, drives: int, loops: bool) -> str:
 
 
 def _given(c: Contract) -> Iterator[str]:
-    for name, ending in (("d", ""), ("rate", "_rate"), ("acceleration", "_acceleration")):
-        for k, drive in enumerate(c.drives):
-            yield f"{name}[{k}] = inputs->{c.input_of(f'motion:{drive}{ending}')};"
+    for name, members in zip(("d", "rate", "acceleration"), c.motion, strict=True):
+        yield from (f"{name}[{k}] = inputs->{member};" for k, member in enumerate(members))
 
 
-def selftest_numbers(slopes: ExportedSlopes, row: Callable[[Array], str]) -> str:
-    """Expected values of the self-test; ``row`` writes numbers."""
-    rows = ",\n".join(f"  {{{row(x.ravel())}}}" for x in slopes.expected)
+def selftest_numbers(slopes: ExportedSlopes) -> str:
+    """Expected values of the self-test."""
     many = slopes.off.size
+    rows = number_rows(slopes.expected.reshape(-1, many))
     return (
         "\n/* How the outputs change with each parameter. */\n"
         f"static const double slopes_at[INSTANTS][{many}] = {{\n{rows}\n}};\n"
-        f"static const double slopes_off[{many}] = {{{row(slopes.off.ravel())}}};\n"
+        f"static const double slopes_off[{many}] = {{{numbers(slopes.off.ravel())}}};\n"
     )
 
 
