@@ -20,7 +20,7 @@ from ..instants.evaluation_method import EvaluationMethod
 from ..sensitivity.jacobian import total
 from ..sensitivity.series import at_instants
 from .contract import Contract, Setting
-from .text import comment, indented, number_rows, numbers, template
+from .text import comment, indented, member, number_rows, numbers, template
 
 FUNCTION = "slopes_of"
 """Name of CasADi's function in C."""
@@ -77,35 +77,16 @@ def check_method(method: EvaluationMethod) -> None:
 
 def types(c: Contract, slopes: ExportedSlopes) -> str:
     """The structs, for the header."""
-    p = c.prefix
-    rows = [
-        f"  {p}_real {s.name}; /* {comment(f'by {s.meaning}, for a unit of it [{s.unit}]')} */"
-        for s in slopes.by
-    ]
+    rows = (
+        member(c.prefix, s.name, f"by {s.meaning}, for a unit of it [{s.unit}]") for s in slopes.by
+    )
     units = ("; ".join(quotient(m.unit, s.unit) for s in slopes.by) for m in c.outputs)
     members = (
-        f"  {p}_changes {m.name}; /* [{comment(unit)}] */"
+        f"  {c.prefix}_changes {m.name}; /* [{comment(unit)}] */"
         for m, unit in zip(c.outputs, units, strict=True)
     )
-    return (
-        "\n/* How an output changes with parameters. */\n"
-        f"typedef struct {{\n{chr(10).join(rows)}\n}} {p}_changes;\n"
-        "\n/* How the outputs change, each by its own name. */\n"
-        f"typedef struct {{\n{chr(10).join(members)}\n}} {p}_sensitivities;\n"
-    )
-
-
-def declaration(c: Contract) -> str:
-    """The function, for the header."""
-    p = c.prefix
-    head = f"{p}_status {p}_sensitivity("
-    return (
-        "\n/* The outputs at an instant, and their exact derivatives by parameters. The time [s]"
-        " is that of the instant:\n   where the scene's motion depends on parameters, drives"
-        f" change with them as its laws do at that time. */\n{head}{p}_model* model, {p}_real time,"
-        f" const {p}_inputs* inputs,\n{' ' * len(head)}{p}_outputs* outputs, {p}_sensitivities*"
-        " sensitivities);\n"
-    )
+    words = {"rows": "\n".join(rows), "members": "\n".join(members)}
+    return template("sensitivity_types.h", p=c.prefix, **words)
 
 
 def code(c: Contract, slopes: ExportedSlopes, drives: int, loops: bool) -> str:

@@ -88,6 +88,7 @@ class Source:
             "called": printed(self.contract.name),
             "p": self.contract.prefix,
             "P": self._upper,
+            "space": " " * (2 * len(self.contract.prefix) + 9),
             "version": __version__,
             "casadi": ca.CasadiMeta.version(),
             "scene": self.identity,
