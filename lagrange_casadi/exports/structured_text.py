@@ -14,6 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.interpret import INFIX, operation_name, steps
+from ..arithmetic.lookups import Lookup
 from ..base.quantities import Output
 from ..base.status import Status
 from ..errors import DeclarationError
@@ -192,43 +193,39 @@ class _Block:
         within: str = "n",
     ) -> Iterator[str]:
         """Yield the instructions of a function, one statement each; ``within`` counts in tables."""
-        largest = self.arrays.get("a", 0)
+        computed = [step for step in steps(function) if step.operation != ca.OP_OUTPUT]
+        size = 1 + max(step.results[0] for step in computed)
+        self.arrays["a"] = max(size, self.arrays.get("a", 0))
         for step in steps(function):
-            target = f"a[{step.results[0]}]"
+            target, given = f"a[{step.results[0]}]", [f"a[{place}]" for place in step.arguments]
+            if step.looked_up is not None:
+                yield from self.looked_up(target, given[0], step.looked_up, within)
+                continue
             if step.operation == ca.OP_OUTPUT:
                 i, k = step.results
-                yield f"{outputs[i][k]} := a[{step.arguments[0]}];"
-                continue
-            largest = max(largest, step.results[0] + 1)
-            given = [f"a[{place}]" for place in step.arguments]
-            if step.operation == ca.OP_INPUT:
+                target, value = outputs[i][k], given[0]
+            elif step.operation == ca.OP_INPUT:
                 i, k = step.arguments
-                yield f"{target} := {inputs[i][k]};"
+                value = inputs[i][k]
             elif step.operation == ca.OP_CONST:
-                yield f"{target} := {_number(step.constant)};"
-            elif step.looked_up is not None:
-                cell = step.looked_up.kind == "cell"
-                numbers = step.looked_up.numbers[1:-1] if cell else step.looked_up.numbers
-                yield from self.looked_up(
-                    target, given[0], numbers.tolist(), within if cell else ""
-                )
+                value = _number(step.constant)
             elif step.operation in _WRITTEN:
-                yield f"{target} := {_WRITTEN[step.operation].format(*given)};"
+                value = _WRITTEN[step.operation].format(*given)
             else:
                 raise DeclarationError(
                     f"structured text has no word for {operation_name(step.operation)}, which the"
                     " scene needs"
                 )
-        self.arrays["a"] = largest
+            yield f"{target} := {value};"
 
-    def looked_up(
-        self, target: str, given: str, numbers: Sequence[float], counter: str
-    ) -> Iterator[str]:
-        """Yield statements that look a number up: its cell with a counter, else its entry."""
+    def looked_up(self, target: str, given: str, table: Lookup, counter: str) -> Iterator[str]:
+        """Yield statements that look a number up: its entry, or by counting its cell."""
+        cell = table.kind == "cell"
+        numbers = (table.numbers[1:-1] if cell else table.numbers).tolist()
         name = next((one for one, held in self.tables.items() if held == numbers), "")
         name = name or f"table_{len(self.tables)}"
         self.tables[name] = numbers
-        if not counter:
+        if not cell:
             yield f"{target} := {name}[LREAL_TO_DINT({given})];"
             return
         yield from (f"x := {given};", f"{target} := 0.0;")
