@@ -19,7 +19,7 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib import resources
@@ -349,6 +349,31 @@ def _compile(
         raise CompilerError(f"{complaint(compiler, run)}{where}")
     library.with_suffix(".sha256").write_text(cache.digest(library.read_bytes()))
     return library
+
+
+def built(
+    compiler: Compiler,
+    command: Sequence[str],
+    files: Mapping[str, str],
+    result: str,
+    check: Callable[[Path], None] = lambda path: None,
+) -> bytes:
+    """Compile ``files`` in a folder of their own, so that no path gets into the ``result``; what it
+    holds is returned, once ``check`` has seen it.
+
+    Raises :class:`CompilerError`.
+    """
+    with cache.working_folder() as work:
+        try:
+            for file, text in files.items():
+                (work / file).write_text(text, encoding="utf-8")
+            run = compiled(command, work)
+            if run.returncode == 0:
+                check(work / result)
+                return (work / result).read_bytes()
+        except OSError as error:
+            raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
+    raise CompilerError(complaint(compiler, run))
 
 
 def compiled(
