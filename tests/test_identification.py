@@ -459,6 +459,24 @@ def test_a_file_of_a_logger_is_read_as_it_is(tmp_path):
     assert given.cutoff("A") == 0.0
 
 
+def test_heads_and_units_of_a_file_may_stand_in_two_lines(tmp_path):
+    path = tmp_path / "log.csv"
+    rows = [f"{k},{k},{10 * k}" for k in range(9)]
+    path.write_text("\n".join(["t,A,effort:A", "ms,deg,(N m)", *rows]))
+    given = read_measurements(path, noise={"A": 1.0})
+    assert given.t[3] == pytest.approx(0.003)
+    assert given.columns["A"][3] == pytest.approx(np.radians(3.0))
+    assert given.units == {"t": "ms", "A": "deg", "effort:A": "N m"}
+    path.write_text("\n".join(rows))
+    with pytest.raises(DeclarationError, match=r"line 1: expected names of columns, .* got '0'"):
+        read_measurements(path)
+    path.write_text("\n".join(["time,A,effort:A", *rows]))
+    with pytest.raises(UnknownNameError, match="unknown column of times 't'"):
+        read_measurements(path)
+    with pytest.raises(DeclarationError, match="noise of 'A': expected a number that is not neg"):
+        read_measurements(path, noise={"A": -1.0}, time="time")
+
+
 def test_a_drive_at_rest_and_a_wrong_sign_are_said():
     scene = two_links()
     given = record(scene, ARM, "effort:A")

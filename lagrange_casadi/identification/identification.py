@@ -22,7 +22,7 @@ from .fit import Data, Fit, fit, nonlinear
 from .measurements import Filter, Measurements, check_units
 from .regressor import DrivenMotion, Regressor
 
-_OPPOSITE = -0.5
+_OPPOSITE = -0.7
 """Correlation of a force with the model from which its sign may be wrong."""
 
 _ROUNDED = 1e-6
@@ -97,7 +97,7 @@ class Identification:
     those that have one. ``impossible`` are bodies whose mass is not positive, or whose inertia no
     body can have. ``unused`` are columns of the record that are neither the motion of a drive nor a
     force. ``opposite`` are the correlations of forces with those of the initial values, if they are
-    below -0.5: such a force may have been measured with another sign.
+    below -0.7: such a force may have been measured with another sign.
     """
 
     name: str

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy.typing as npt
 
 from ..arguments import NotNegative, Positive, public
 from ..base.arrays import Array
-from ..base.csv_rows import headings, read_rows
+from ..base.csv_rows import Row, headings, read_rows
 from ..base.units import UNITS
 from ..declare.curves import curve
 from ..errors import DeclarationError, UnknownNameError
@@ -109,6 +110,11 @@ class Measurements:
                 raise DeclarationError(f"{self.name}: column '{name}' has no values")
         if unknown := [name for name in self.noise if name not in columns]:
             raise UnknownNameError("column of noise=", unknown, columns, place=self.name)
+        if wrong := [name for name, noise in self.noise.items() if not 0.0 <= noise < math.inf]:
+            raise DeclarationError(
+                f"{self.name}: noise of '{wrong[0]}': expected a number that is not negative, got"
+                f" {self.noise[wrong[0]]:g}"
+            )
         object.__setattr__(self, "t", t)
         object.__setattr__(self, "columns", columns)
 
@@ -258,8 +264,9 @@ def read_measurements(
     ----------
     path
         The file. Its first line has the names of the columns and their units, as ``J1 [deg]``,
-        ``effort:J1 [N m]``, ``strain:rod:side +y@0.5 [ustrain]``, ``J1 [counts]``. Empty cells and
-        ``nan`` are missing values. An angle that begins again after each turn is made to go on.
+        ``effort:J1 [N m]``, ``strain:rod:side +y@0.5 [ustrain]``, ``J1 [counts]``; units may
+        also stand in a line of their own below the names. Empty cells and ``nan`` are missing
+        values. An angle that begins again after each turn is made to go on.
     names
         Heads of the file, by the name that they are to have: ``{"J1": "position 1"}``. Columns
         that are not named here keep theirs, if none has it. The name of the times is ``t``.
@@ -285,12 +292,13 @@ def read_measurements(
     UnknownNameError
         For names that the file does not have.
     """
-    rows = read_rows(path, "columns of times, motion and forces")
-    heads = headings(next(rows).cells)
+    heads, rows = _opened(path)
     plain = [head for head, _ in heads]
     if twice := [head for head in plain if plain.count(head) > 1]:
         raise DeclarationError(f"{path}: expected one column '{twice[0]}', got {len(twice)}")
     chosen = {"t": time, **(names or {})}
+    if chosen["t"] not in plain:
+        raise UnknownNameError("column of times", chosen["t"], plain, place=str(path))
     if lost := [head for head in chosen.values() if head not in plain]:
         raise UnknownNameError("column", lost, plain, place=str(path))
     named = {head: name for name, head in chosen.items()}
@@ -324,6 +332,25 @@ def read_measurements(
     found_in = Measurements(columns.pop("t"), columns, deviations, Path(path).name, units)
     check_units(found_in, {"t": "s"})
     return found_in
+
+
+def _opened(path: str | Path) -> tuple[list[tuple[str, str]], Iterator[Row]]:
+    """Return names and units of columns, units from a row below the names if there is one, and the
+    rows of a file.
+    """
+    rows = read_rows(path, "columns of times, motion and forces")
+    first = next(rows)
+    if not any(math.isnan(first.number(cell)) for cell in first.cells):
+        raise DeclarationError(
+            f"{first.where}: expected names of columns, as 't [s]', got {first.cells[0]!r}"
+        )
+    heads, below = headings(first.cells), next(rows, None)
+    if below is None:
+        return heads, rows
+    words = [cell.strip("[]()") for cell in below.cells]
+    if {"", "1"}.issuperset(words) or not {"", *_SIZES, *_COUNTS}.issuperset(words):
+        return heads, chain([below], rows)
+    return [(name, unit or word) for (name, unit), word in zip(heads, words, strict=True)], rows
 
 
 def _size(path: str, head: str, unit: str, counts_per_turn: float | None) -> float:
