@@ -40,6 +40,7 @@ from .options import (
     place,
     ratios,
     resumable,
+    separated,
     settings_by,
     several,
     share,
@@ -427,7 +428,10 @@ def trade(**given: Any) -> None:
 @click.argument("case", type=CASE)
 @click.argument("data", metavar="DATA.csv", type=PATH)
 @several(
-    "--unknown", "NAME", "Find this parameter; repeatable. Default: all parameters of the case."
+    "--unknown",
+    "NAME",
+    "Find these parameters, with commas between; repeatable. Default: all of the case.",
+    callback=separated,
 )
 @settings_by("Set a known parameter, or the first value of an unknown one, as l=0.25; repeatable.")
 @several(

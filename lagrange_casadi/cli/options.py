@@ -285,11 +285,18 @@ def several(
     kind: Kind | None = None,
     into: str = "",
     required: bool = False,
+    callback: Callable[..., Any] | None = None,
 ) -> Option:
     """Values of an option that is repeatable, for the argument ``into``."""
     names = [name, into] if into else [name]
     return click.option(
-        *names, type=kind, multiple=True, required=required, metavar=metavar, help=says
+        *names,
+        type=kind,
+        multiple=True,
+        required=required,
+        callback=callback,
+        metavar=metavar,
+        help=says,
     )
 
 
