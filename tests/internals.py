@@ -81,7 +81,6 @@ from lagrange_casadi.declare.joints import Joint
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.laws import Laws
 from lagrange_casadi.declare.limits import END
-from lagrange_casadi.declare.lowest import lowest
 from lagrange_casadi.declare.motion_inverse import Missed, MotionInverse
 from lagrange_casadi.declare.parts import (
     Force,
@@ -94,7 +93,7 @@ from lagrange_casadi.declare.parts import (
     Spring,
     Torque,
 )
-from lagrange_casadi.declare.powers import powers
+from lagrange_casadi.declare.polynomials import lowest, powers
 from lagrange_casadi.declare.recordings import _read
 from lagrange_casadi.declare.rest_laws import (
     LAWS,

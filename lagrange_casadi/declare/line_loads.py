@@ -13,7 +13,7 @@ from ..errors import DeclarationError
 from .expressions import expressed
 from .ownership import Ownership
 from .parts import Expression, LineLoad, Link
-from .powers import powers
+from .polynomials import powers
 
 LoadDensity: TypeAlias = "Expression | tuple[Expression, Expression] | Callable[[Any], Expression]"
 """A value along a link: one throughout, a pair for where it begins and ends, or a polynomial of the
