@@ -51,20 +51,8 @@ def friction(
             f"{what}: joint '{joint.name}' slides and turns at once, for which smooth= is not"
             " available; leave smooth out"
         )
-    return Friction(
-        name,
-        joint,
-        axis,
-        ca.SX.sym(f"friction_{name}"),
-        numbers.get("mu", 0.0),
-        numbers.get("radius"),
-        numbers.get("length"),
-        numbers.get("viscous", 0.0),
-        numbers.get("static"),
-        numbers.get("stribeck"),
-        numbers.get("smooth"),
-        beside,
-    )
+    symbol = ca.SX.sym(f"friction_{name}")
+    return Friction(name, joint, axis, symbol, beside=beside, **numbers)
 
 
 def _axes(own: Ownership, what: str, joint: Joint, along: str) -> tuple[Axis, Axis | None]:
@@ -118,56 +106,47 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
         if needless:
             raise DeclarationError(f"{what}: {needless[0]} needs mu=, a friction coefficient")
         return
-    if joint.kind == "screw" and "static" in numbers:
-        raise DeclarationError(
-            f"{what}: joint '{joint.name}' is a screw, whose thread has one friction coefficient;"
-            " valid: mu, radius, viscous, smooth"
-        )
-    if (
-        joint.turned is not None
-        and joint.kind == "prismatic"
-        and joint.bears_moment
-        and "radius" not in numbers
-    ):
-        raise DeclarationError(
-            f"{what}: joint '{joint.name}' transmits a moment about its axis; expected radius="
-            " [m], at which friction acts against that"
-        )
-    if axis.kind == "angle" or joint.kind == "cylindrical":
-        if "radius" not in numbers:
-            raise DeclarationError(
-                f"{what}: joint '{joint.name}' turns; expected radius=, that of its pin [m]"
-            )
-        bears_moment = (
-            joint.turned is not None
-            and joint.kind in ("revolute", "cylindrical")
-            and joint.bears_moment
-        )
-        if bears_moment and "length" not in numbers:
-            raise DeclarationError(
-                f"{what}: joint '{joint.name}' transmits a moment; expected length=, the distance"
-                " of its two bearings [m]"
-            )
-        if "length" in numbers and not bears_moment:
-            raise DeclarationError(
-                f"{what}: joint '{joint.name}' turns and has no guide length; expected radius= in"
-                " place of length="
-            )
-        return
-    if "radius" in numbers and not (joint.turned is not None and joint.bears_moment):
-        raise DeclarationError(
-            f"{what}: joint '{joint.name}' slides and has no radius; expected length=, the guide"
-            " length [m], in place of radius="
-        )
-    if joint.bears_moment and "length" not in numbers:
-        raise DeclarationError(
-            f"{what}: joint '{joint.name}' transmits a moment; expected length=, the guide length"
-            " [m]"
-        )
-    if not joint.bears_moment and "length" in numbers:
-        raise DeclarationError(
-            f"{what}: joint '{joint.name}' transmits no moment; leave length= out"
-        )
+    space, moment = joint.turned is not None, joint.bears_moment
+    turns = axis.kind == "angle" or joint.kind == "cylindrical"
+    bearings = space and moment and joint.kind in ("revolute", "cylindrical")
+    radius, length = "radius" in numbers, "length" in numbers
+    refused = (
+        (
+            joint.kind == "screw" and "static" in numbers,
+            (
+                "is a screw, whose thread has one friction coefficient; valid: mu, radius, viscous,"
+                " smooth"
+            ),
+        ),
+        (
+            space and moment and joint.kind == "prismatic" and not radius,
+            (
+                "transmits a moment about its axis; expected radius= [m], at which friction acts"
+                " against that"
+            ),
+        ),
+        (turns and not radius, "turns; expected radius=, that of its pin [m]"),
+        (
+            turns and bearings and not length,
+            "transmits a moment; expected length=, the distance of its two bearings [m]",
+        ),
+        (
+            turns and length and not bearings,
+            "turns and has no guide length; expected radius= in place of length=",
+        ),
+        (
+            radius and not turns and not (space and moment),
+            "slides and has no radius; expected length=, the guide length [m], in place of radius=",
+        ),
+        (
+            moment and not turns and not length,
+            "transmits a moment; expected length=, the guide length [m]",
+        ),
+        (length and not turns and not moment, "transmits no moment; leave length= out"),
+    )
+    for here, words in refused:
+        if here:
+            raise DeclarationError(f"{what}: joint '{joint.name}' {words}")
 
 
 def _number(own: Ownership, what: str, word: str, value: Expression, unit: str) -> Expression:
