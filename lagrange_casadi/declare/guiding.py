@@ -3,7 +3,7 @@ mass, that guide them.
 
 The point of a path is pinned to a guide that slides along the ground's x and y; a body whose pose
 is given is turned on it. The guide bears nothing: no effort is at its joints, and what holds it
-there are the drives (:mod:`.drives`). So everything that solves loops of joints serves here too.
+there are the drives of the scene. So everything that solves loops of joints serves here too.
 """
 
 from __future__ import annotations

@@ -26,9 +26,8 @@ from ..arithmetic.lookups import is_entry
 from ..base.arrays import Array, Expression
 from ..base.symbolic import symbolic_property
 from ..errors import DeclarationError
-from .clearance import Clearance
-from .limits_beside import Flags, Side, between, vanishes
-from .steps import Steps, called, sides_of
+from .clearance import Clearance, Flags
+from .steps import Side, Steps, between, called, sides_of, vanishes
 
 _SAME, _FAINT = 1e-6, 1e-9
 """Relative size of a jump that is rounding: of the value or slope there, and of the largest along

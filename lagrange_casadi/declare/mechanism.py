@@ -25,10 +25,9 @@ from ..renamed import renamed
 from .density import Density
 from .expressions import bound, check_line, check_name, unit_vector, value_of
 from .fitted import Fitted
-from .friction import friction
 from .joints import Axis, Joint, JointKind
 from .limits import check_connected, parameter_values
-from .line_loads import Between, LoadDensity, line_load
+from .loads import Between, LoadDensity, friction, line_load
 from .mass_properties import beam_of, mass_properties_of
 from .measures import Measures
 from .ownership import Ownership

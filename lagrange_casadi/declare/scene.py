@@ -16,9 +16,7 @@ from ..base.vocabulary import Precision
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
 from ..methods import method
 from ..renamed import renamed
-from .compliant import Elastic, compliant_links
 from .density import Density
-from .drives import weighed
 from .even_points import EvenPoints, checked_ratios
 from .guiding import guided, laws_of
 from .laws import Laws
@@ -26,7 +24,7 @@ from .limits import no_sections, parameters_note
 from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Expression, Friction, Parameter
-from .posture import rough_posture
+from .scene_arguments import Elastic, compliant_links, rough_posture, weighed
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
 from .times import Over, Times, Timing, span_of

@@ -16,7 +16,7 @@ from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
 from .joints import IN_SPACE, Joint, JointKind, Triad
-from .line_loads import Between, LoadDensity, line_load
+from .loads import Between, LoadDensity, line_load
 from .mass_properties import beam_of, mass_properties_of
 from .measures import Measures
 from .mechanism import Mechanism
