@@ -32,7 +32,7 @@ from ..declare.meshes import Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot, minus, plus
-from .courses import Course, Numbers, along, courses_on, fits_of, length
+from .courses import Course, along, courses_on, fits_of, length
 from .pitch import Pitch, Teeth, pitch_of
 from .ranges import LEAST, at_least, positive, share, whole, within
 
@@ -135,7 +135,7 @@ def gears(
     if not many:
         raise DeclarationError(f"{what}: expected a second gear")
     found = [courses_on(mechanism, what, centre, one, carrier) for one in many]
-    numbers, fits, lossy = Numbers(mechanism), [], efficiency is not None or mu is not None
+    fits, lossy = [], efficiency is not None or mu is not None
     toothing, more = _teeth(
         what,
         mechanism,
@@ -147,7 +147,7 @@ def gears(
         hand == "right",
     )
     fits += more
-    pitches = [pitch_of(what, numbers, *pair, toothing) for pair in found]
+    pitches = [pitch_of(what, ownership.at_defaults, *pair, toothing) for pair in found]
     meshes = []
     for pair, pitch, point in zip(found, pitches, many, strict=True):
         if pitch.kind == "crossed" and (teeth is None or radii is None):
