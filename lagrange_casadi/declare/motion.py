@@ -156,8 +156,6 @@ def expression(law: Callable[[ca.SX], Expression]) -> Motion:
     DeclarationError
         If ``law`` is not a function.
     """
-    if not callable(law):
-        raise DeclarationError(f"expression: expected a function of the symbol t, got {law!r}")
     return Motion(law)
 
 

@@ -57,7 +57,7 @@ class Bent:
         DeclarationError
             If there is no such corner.
         """
-        if type(number) is not int or not 0 <= number < len(self.corners):
+        if not 0 <= number < len(self.corners):
             raise DeclarationError(
                 f"'{self.pieces[0].name}': there is no corner {number!r}, expected 0 to"
                 f" {len(self.corners) - 1}"

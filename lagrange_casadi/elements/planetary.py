@@ -90,11 +90,7 @@ def planetary(
         raise DeclarationError(
             f"{what}: only a mechanism in a plane has it; in space declare planets, pins and gears"
         )
-    if (
-        not isinstance(teeth, (list, tuple))
-        or len(teeth) != 3
-        or any(type(count) is not int or count < 1 for count in teeth)
-    ):
+    if len(teeth) != 3 or min(teeth) < 1:
         raise DeclarationError(
             f"{what}: teeth must be three whole numbers, of sun, planets and ring, got {teeth!r}"
         )
@@ -104,7 +100,7 @@ def planetary(
             f"{what}: its ring has {of_ring} teeth; expected {of_sun + 2 * of_planet}, those of the"
             " sun and twice those of a planet"
         )
-    if type(planets) is not int or planets < 1 or (of_sun + of_ring) % planets:
+    if planets < 1 or (of_sun + of_ring) % planets:
         raise DeclarationError(
             f"{what}: {planets!r} planets cannot be evenly spaced; expected a number that divides"
             f" {of_sun + of_ring}, the teeth of sun and ring together"

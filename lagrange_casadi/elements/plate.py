@@ -44,7 +44,7 @@ class Plate:
         DeclarationError
             If there is no such corner.
         """
-        if type(number) is not int or not 0 <= number < len(self.corners):
+        if not 0 <= number < len(self.corners):
             raise DeclarationError(
                 f"'{self.link.name}': there is no corner {number!r}, expected 0 to"
                 f" {len(self.corners) - 1}"
