@@ -28,10 +28,8 @@ def rows(
     Raises :class:`DeclarationError`, saying ``what`` is wrong where.
     """
     try:
-        at, to = (
-            [number(p, finite=False) for p in places],
-            [number(v, finite=False) for v in values],
-        )
+        at = [number(p, finite=False) for p in places]
+        to = [number(v, finite=False) for v in values]
     except (TypeError, NumberError):
         raise DeclarationError(
             f"{what}: expected two rows of finite numbers, got {shown(places)} and {shown(values)}"

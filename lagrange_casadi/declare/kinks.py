@@ -182,10 +182,8 @@ class Smooth:
         count, _, n = paths.shape
         if n < 2 or not count:
             return
-        flat, fixed = (
-            np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1),
-            np.repeat(p.T, n, axis=1),
-        )
+        flat = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1)
+        fixed = np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
             marks = called(self.marks, flat, fixed).reshape(-1, count, n)
             passed, touched, _ = self._places(Steps.of(paths, p), marks)

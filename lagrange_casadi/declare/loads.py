@@ -28,10 +28,8 @@ HIGHEST = 7
 """The highest power of the distance that a load may have."""
 
 _UNITS = {"radius": "m", "length": "m", "stribeck": "m/s"}
-_IN_PLANE, _IN_SPACE = (
-    ("revolute", "prismatic", "slot"),
-    ("revolute", "prismatic", "cylindrical", "screw", "spherical"),
-)
+_IN_PLANE = ("revolute", "prismatic", "slot")
+_IN_SPACE = ("revolute", "prismatic", "cylindrical", "screw", "spherical")
 
 
 def line_load(

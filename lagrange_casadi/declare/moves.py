@@ -402,10 +402,8 @@ def _timed(
         broken = ", ".join(
             f"{name} {readable(number(limit))}" for name, limit in limits.given.items()
         )
-        asked, needed = (
-            f"{readable(abs(number(by)))} in {readable(number(time))} s",
-            f"{number(least):.6g} s or more",
-        )
+        asked = f"{readable(abs(number(by)))} in {readable(number(time))} s"
+        needed = f"{number(least):.6g} s or more"
         return (
             f"{what}: {asked} by the law {law.name} breaks its limits ({broken}): it takes {needed}"
         )

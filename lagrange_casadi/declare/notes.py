@@ -50,10 +50,8 @@ def notes(
                 " all their rates are not evaluated; choose other instants, or another axis and"
                 " second"
             )
-        body, directions = (
-            description["bodies"].get(joint["parent"]["body"], {}),
-            _along(name, joint),
-        )
+        body = description["bodies"].get(joint["parent"]["body"], {})
+        directions = _along(name, joint)
         if not directions or "density" not in body:
             continue
         ratio = outputs.get(Output("station", joint["parent"]["body"], "station", name))

@@ -358,11 +358,9 @@ class Scene(Graphs):
         return self.drives if isinstance(self.drives, Mapping) else None
 
     def __repr__(self) -> str:
-        (start, stop), motion, wanted = (
-            self.t[:2],
-            ", ".join(self.motion) or "nothing",
-            ", ".join(self.wanted),
-        )
+        start, stop = self.t[:2]
+        motion = ", ".join(self.motion) or "nothing"
+        wanted = ", ".join(self.wanted)
         asked = (
             f"from {start} to {stop} s"
             if self.over is None
@@ -545,10 +543,8 @@ class Scene(Graphs):
         ParameterConstraints
             The conditions.
         """
-        parts, moved = (
-            demands(self.mechanism, precision),
-            [demand for law in self.laws.values() for demand in law.parameter_constraints],
-        )
+        parts = demands(self.mechanism, precision)
+        moved = [demand for law in self.laws.values() for demand in law.parameter_constraints]
         return ParameterConstraints(parts.symbols, (*parts.each, *moved)) if moved else parts
 
     @public

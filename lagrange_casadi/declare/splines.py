@@ -134,20 +134,16 @@ def _bends_around(h: list[Decimal], slopes: list[Decimal]) -> list[Decimal]:
     formula.
     """
     n = len(h)
-    below, diagonal, above = (
-        [h[i - 1] for i in range(n)],
-        [2 * (h[i - 1] + h[i]) for i in range(n)],
-        h[:],
-    )
+    below = [h[i - 1] for i in range(n)]
+    diagonal = [2 * (h[i - 1] + h[i]) for i in range(n)]
+    above = h[:]
     right = [6 * (slopes[i] - slopes[i - 1]) for i in range(n)]
     corner = h[-1]
     diagonal[0] -= corner
     diagonal[-1] -= corner
     ends = [corner, *[Decimal(0)] * (n - 2), corner]
-    found, other = (
-        _tridiagonal(below, diagonal, above, right),
-        _tridiagonal(below, diagonal, above, ends),
-    )
+    found = _tridiagonal(below, diagonal, above, right)
+    other = _tridiagonal(below, diagonal, above, ends)
     share = (found[0] + found[-1]) / (1 + other[0] + other[-1])
     bends = [a - share * b for a, b in zip(found, other, strict=True)]
     return [*bends, bends[0]]

@@ -155,17 +155,13 @@ def sides_of(function: ca.Function, steps: Steps, middle: Array) -> tuple[Side, 
     after a share of each step.
     """
     far = (_WIDEST * 0.5 ** np.arange(_LIMITS))[:, None]
-    wide, shape = (
-        Steps.joined([steps] * _LIMITS),
-        (function.size1_out(0), _LIMITS, steps.owner.size),
-    )
+    wide = Steps.joined([steps] * _LIMITS)
+    shape = (function.size1_out(0), _LIMITS, steps.owner.size)
     sides = []
     for direction in (-1, 1):
         share = middle + direction * far
-        given, there = (
-            (wide.at(share.ravel()), wide.p, wide.change),
-            (share >= steps.least) & (share <= steps.most),
-        )
+        given = (wide.at(share.ravel()), wide.p, wide.change)
+        there = (share >= steps.least) & (share <= steps.most)
         value, off = (
             of(function, *given[: function.n_in()]).reshape(shape)
             for of in (called, running_errors)

@@ -267,10 +267,8 @@ def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Passage:
     if why is Missed.REACHED:
         return passage
     joint, shown = timing.joint, functools.partial(_shown, timing)
-    asked, where = (
-        f"from {shown(start[0])} to {shown(stop[0])}",
-        f"t = {passage.t[0]:.6g} s, at {shown(passage.d[0])}",
-    )
+    asked = f"from {shown(start[0])} to {shown(stop[0])}"
+    where = f"t = {passage.t[0]:.6g} s, at {shown(passage.d[0])}"
     said = {
         Missed.STANDS_STILL: f"is at rest and does not go {asked}",
         Missed.OTHER_WAY: (

@@ -325,11 +325,9 @@ def _translating_flat(base: Expression, x: Expression, rise: Expression, layout:
 
 def _swinging(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
     away, arm = layout.away, layout.arm
-    length, distance, prime = (
-        ca.sqrt(ca.SX(_dot(arm, arm))),
-        ca.sqrt(ca.SX(_dot(away, away))),
-        base + layout.roller,
-    )
+    length = ca.sqrt(ca.SX(_dot(arm, arm)))
+    distance = ca.sqrt(ca.SX(_dot(away, away)))
+    prime = base + layout.roller
     along, across = _swung(
         layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance
     )
