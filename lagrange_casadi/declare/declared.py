@@ -124,8 +124,7 @@ class Declared:
             gravity=_triple(description["gravity"]),
             bodies={name: _body(body, space) for name, body in description["bodies"].items()},
             joints={
-                name: (_joint if space else _planar_joint)(name, joint)
-                for name, joint in description["joints"].items()
+                name: _joint(name, joint, space) for name, joint in description["joints"].items()
             },
             loads={
                 name: LoadNumbers(tuple(map(_place, load["points"])), *_friction(load))
@@ -205,37 +204,28 @@ def _body(entry: Description, space: bool) -> BodyNumbers:
     return BodyNumbers(length, mass, (middle * length, 0.0, 0.0), inertia)
 
 
-def _joint(_: str, entry: Description) -> JointNumbers:
-    axes = zip(entry["coordinates"].items(), entry["axes"], strict=True)
+def _joint(name: str, entry: Description, space: bool) -> JointNumbers:
+    """A joint; of the plane, one whose child turns about z."""
+    slides, axes = entry["kind"] in ("prismatic", "slot"), []
+    if space:
+        coordinates = zip(entry["coordinates"].items(), entry["axes"], strict=True)
+        axes = [AxisNumbers(name, kind, tuple(one)) for (name, kind), one in coordinates]
+        triad, turned = _rows(entry["triad"]), _rows(entry["turned"])
+    else:
+        (x, y), c, s = entry["axis"], math.cos(entry["angle"]), math.sin(entry["angle"])
+        triad = ((x, y, 0.0), (-y, x, 0.0), _Z) if slides else (_Z, _X, _Y)
+        turned = (c, s, 0.0), (-s, c, 0.0), _Z
+        if entry["coordinate"]:
+            axes = [AxisNumbers(name, entry["coordinate"], triad[0])]
     return JointNumbers(
-        kind=entry["kind"],
-        parent=_place(entry["parent"]),
-        child=_place(entry["child"]),
-        axes=tuple(AxisNumbers(name, kind, tuple(direction)) for (name, kind), direction in axes),
-        triad=_rows(entry["triad"]),
-        turned=_rows(entry["turned"]),
-        pitch=entry["pitch"],
-    )
-
-
-def _planar_joint(name: str, entry: Description) -> JointNumbers:
-    """A joint of the plane: what turns does so about z."""
-    x, y = entry["axis"]
-    slides = entry["kind"] in ("prismatic", "slot")
-    c, s = math.cos(entry["angle"]), math.sin(entry["angle"])
-    axis = (
-        [AxisNumbers(name, entry["coordinate"], (x, y, 0.0) if slides else _Z)]
-        if entry["coordinate"]
-        else []
-    )
-    return JointNumbers(
-        kind=entry["kind"],
-        parent=_place(entry["parent"]),
-        child=_place(entry["child"]),
-        axes=tuple(axis),
-        triad=((x, y, 0.0), (-y, x, 0.0), _Z) if slides else (_Z, _X, _Y),
-        turned=((c, s, 0.0), (-s, c, 0.0), _Z),
-        free=entry["kind"] == "slot",
+        entry["kind"],
+        _place(entry["parent"]),
+        _place(entry["child"]),
+        tuple(axes),
+        triad,
+        turned,
+        pitch=entry.get("pitch", 0.0),
+        free=not space and entry["kind"] == "slot",
     )
 
 

@@ -24,7 +24,13 @@ from .limits import no_sections, parameters_note
 from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Expression, Friction, Parameter
-from .scene_arguments import Elastic, compliant_links, rough_posture, weighed
+from .scene_arguments import (
+    Elastic,
+    compliant_links,
+    links_with_beams,
+    rough_posture,
+    weighed,
+)
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
 from .times import Over, Times, Timing, span_of
@@ -93,7 +99,7 @@ class Wanted:
             if chosen & {"output", f"output:{name}"}
         )
         chosen |= {asked.wanted for output in user_outputs for asked in output.made_of}
-        beams = _made_of_something(mechanism)
+        beams = links_with_beams(mechanism)
         chosen |= {f"section:{link}" for kind in STRENGTH for link in among(kind, beams, names)}
         if fitted := among("safety", mechanism.fitted, names):
             chosen |= {"motion", *(f"reaction:{joint}" for joint in fitted)}
@@ -134,7 +140,7 @@ def outputs(mechanism: Mechanism) -> list[str]:
         if isinstance(link.mass, Density)
     ]
     user_outputs = [f"output:{name}" for name in mechanism.outputs]
-    strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
+    strength = [f"{kind}:{name}" for kind in STRENGTH for name in links_with_beams(mechanism)]
     strength += [f"safety:{joint}" for joint in mechanism.fitted]
     slopes = [f"{SENSITIVITY}:{name}" for name in mechanism.parameters]
     named = [
@@ -167,15 +173,6 @@ def _check_material(mechanism: Mechanism, name: str) -> None:
     beam.material.needs(f"output '{name}'", *needs.get(kind, ()))
 
 
-def _made_of_something(mechanism: Mechanism) -> list[str]:
-    """The links that have sections and a beam."""
-    return [
-        name
-        for name, link in mechanism.links.items()
-        if isinstance(link.mass, Density) and link.beam is not None
-    ]
-
-
 def kinds(names: Sequence[str]) -> list[str]:
     """Choose the kinds of output of which there are any among names, beside the efforts and the
     motion; each can be wanted.
@@ -197,7 +194,7 @@ def _refuse_output(mechanism: Mechanism, name: str) -> None:
     if kind in STRENGTH and part in mechanism.links:
         raise DeclarationError(
             f"output '{name}': link '{part}' has no beam=; links with a beam:"
-            f" {', '.join(_made_of_something(mechanism)) or 'none'}"
+            f" {', '.join(links_with_beams(mechanism)) or 'none'}"
         )
     if kind == "section" and part in mechanism.bodies:
         why = no_sections(part, link=part in mechanism.links, links=mechanism.links)

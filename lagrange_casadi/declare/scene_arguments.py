@@ -86,11 +86,7 @@ def compliant_links(mechanism: Mechanism, elastic: Elastic) -> Elastic:
         raise DeclarationError(
             f"elastic: expected True, or a list of the links that are elastic, got {elastic!r}"
         )
-    having = [
-        name
-        for name, link in mechanism.links.items()
-        if isinstance(link.mass, Density) and link.beam is not None
-    ]
+    having = links_with_beams(mechanism)
     for name in elastic:
         if name not in mechanism.links:
             raise UnknownNameError("link in elastic", name, having)
@@ -102,6 +98,15 @@ def compliant_links(mechanism: Mechanism, elastic: Elastic) -> Elastic:
             )
         beam.material.needs(f"elastic link '{name}'", "elasticity")
     return tuple(name for name in having if name in elastic)
+
+
+def links_with_beams(mechanism: Mechanism) -> list[str]:
+    """The links that have sections and a beam."""
+    return [
+        name
+        for name, link in mechanism.links.items()
+        if isinstance(link.mass, Density) and link.beam is not None
+    ]
 
 
 def rough_posture(mechanism: Mechanism, posture: Mapping[str, object]) -> dict[str, float]:
