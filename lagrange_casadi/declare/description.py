@@ -102,9 +102,9 @@ def shape_of(value: Any) -> dict[str, Any]:
         "losses": [str],
         "beside": {str: _VECTOR},
         "rounded": {str: [float]},
+        "snapped": {str: [float]},
+        "unturned": [str],
     }
-    optional["snapped"] = {str: [float]}
-    optional["unturned"] = [str]
     return shape | {
         name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value
     }
@@ -292,7 +292,7 @@ class Template(Graphs):
         cls, mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None = None
     ) -> Template:
         """The template of what :func:`describe` gives."""
-        content, asked = numbered(mechanism, driven)
+        content, asked = _numbered(mechanism, driven)
         if mechanism.outputs:
             content["outputs"] = {name: output.unit for name, output in mechanism.outputs.items()}
         if mechanism.rounded:
@@ -390,8 +390,8 @@ def motions_of(description: Description) -> dict[str, str]:
 
 
 @symbolic
-def numbered(
-    mechanism: Mechanism, driven: Collection[str] = ()
+def _numbered(
+    mechanism: Mechanism, driven: Collection[str]
 ) -> tuple[Description, list[Expression]]:
     """A description with places in the place of its numbers, and the expressions of the parameters
     that stand at these places.
@@ -405,12 +405,6 @@ def numbered(
         asked.append(expression)
         return Place(len(asked) - 1)
 
-    return _described(mechanism, driven, number), asked
-
-
-def _described(
-    mechanism: Mechanism, driven: Collection[str], number: Callable[[Expression], Expression]
-) -> Description:
     def place(point: Point) -> Description:
         found = {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
         return found | {"z": number(point.z)} if mechanism.space else found
@@ -515,7 +509,7 @@ def _described(
         ("beside", beside),
         ("unturned", unturned),
     )
-    return {
+    content: Description = {
         "name": mechanism.name,
         "parameters": parameters,
         "gravity": vector(mechanism.gravity[: 3 if mechanism.space else 2]),
@@ -524,4 +518,5 @@ def _described(
         "loads": loads,
         "rows": {name: row.replaces for name, row in mechanism.rows.items()},
         "constraints": list(mechanism.constraints),
-    } | {name: found for name, found in optional if found}
+    }
+    return content | {name: found for name, found in optional if found}, asked

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from types import MappingProxyType
@@ -128,31 +128,19 @@ class Wanted:
 
 def outputs(mechanism: Mechanism) -> list[str]:
     """Every output that can be wanted of a mechanism."""
-    reactions = [f"reaction:{joint}" for joint in mechanism.joints]
-    multipliers = [f"multiplier:{name}" for name in (*mechanism.constraints, *mechanism.rows)]
-    loads = [f"load:{name}" for name in mechanism.loads]
-    frictions = [
-        f"friction:{name}" for name, load in mechanism.loads.items() if isinstance(load, Friction)
+    links, loads = mechanism.links.items(), mechanism.loads.items()
+    parts: list[tuple[str, Iterable[str]]] = [
+        ("reaction", mechanism.joints),
+        ("multiplier", (*mechanism.constraints, *mechanism.rows)),
+        ("load", mechanism.loads),
+        ("friction", [name for name, load in loads if isinstance(load, Friction)]),
+        ("section", [name for name, link in links if isinstance(link.mass, Density)]),
+        ("output", mechanism.outputs),
+        *((kind, links_with_beams(mechanism)) for kind in STRENGTH),
+        ("safety", mechanism.fitted),
+        (SENSITIVITY, mechanism.parameters),
     ]
-    sections = [
-        f"section:{name}"
-        for name, link in mechanism.links.items()
-        if isinstance(link.mass, Density)
-    ]
-    user_outputs = [f"output:{name}" for name in mechanism.outputs]
-    strength = [f"{kind}:{name}" for kind in STRENGTH for name in links_with_beams(mechanism)]
-    strength += [f"safety:{joint}" for joint in mechanism.fitted]
-    slopes = [f"{SENSITIVITY}:{name}" for name in mechanism.parameters]
-    named = [
-        *reactions,
-        *multipliers,
-        *loads,
-        *frictions,
-        *sections,
-        *user_outputs,
-        *strength,
-        *slopes,
-    ]
+    named = (f"{kind}:{part}" for kind, each in parts for part in each)
     return ["all", "effort", "motion", *named]
 
 

@@ -168,46 +168,29 @@ def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
 def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
     """The expressions in parameters of which parts are made, and what they are of."""
     for body in mechanism.moving:
-        mass_properties = body.mass
-        made = (
-            [
-                c
-                for of in (
-                    mass_properties,
-                    *(mass_properties.slices.each if mass_properties.slices else ()),
-                )
-                for cell in of.cells
-                for c in cell
-            ]
-            if isinstance(mass_properties, Density)
-            else (
-                [mass_properties.mass, *mass_properties.centre, *inertias(mass_properties)]
-                if isinstance(mass_properties, RigidMass)
-                else [mass_properties]
-            )
-        )
-        link = isinstance(body, Link)
-        beam = body.beam if isinstance(body, Link) else None
-        made += (
-            []
-            if beam is None
-            else [x for shape in beam.course.shapes() for x in shape.dimensions.values()]
-        )
-        numbers = [*([body.length] if isinstance(body, Link) else []), *made]
-        yield f"{'link' if link else 'point mass'} '{body.name}'", numbers
+        if isinstance(body, PointMass):
+            yield f"point mass '{body.name}'", [body.mass]
+            continue
+        numbers, mass = [body.length], body.mass
+        if isinstance(mass, RigidMass):
+            numbers += [mass.mass, *mass.centre, *inertias(mass)]
+        else:
+            densities = (mass, *(mass.slices.each if mass.slices else ()))
+            numbers += [c for density in densities for cell in density.cells for c in cell]
+        for shape in () if body.beam is None else body.beam.course.shapes():
+            numbers += shape.dimensions.values()
+        yield f"link '{body.name}'", numbers
     for joint in mechanism.joints.values():
         places = [number for point in (joint.parent, joint.child) for number in point.place]
         yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
     for load in mechanism.loads.values():
-        at_points = [number for point in load.points for number in point.place]
-        own = (
-            load.between
-            if isinstance(load, LineLoad)
-            else load.numbers.values()
-            if isinstance(load, Friction)
-            else at_points
-        )
-        yield f"load '{load.name}'", [*own]
+        if isinstance(load, LineLoad):
+            numbers = [*load.between]
+        elif isinstance(load, Friction):
+            numbers = [*load.numbers.values()]
+        else:
+            numbers = [number for point in load.points for number in point.place]
+        yield f"load '{load.name}'", numbers
     yield "gravity", [*mechanism.gravity]
 
 
