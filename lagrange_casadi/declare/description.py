@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import functools
 import marshal
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -287,33 +287,6 @@ class Template(Graphs):
         found: Description = _with(content, lambda place: numbers[place])
         return found
 
-    @classmethod
-    def of(
-        cls, mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None = None
-    ) -> Template:
-        """The template of what :func:`describe` gives."""
-        content, asked = _numbered(mechanism, driven)
-        if mechanism.outputs:
-            content["outputs"] = {name: output.unit for name, output in mechanism.outputs.items()}
-        if mechanism.rounded:
-            content["rounded"] = {name: list(by) for name, by in mechanism.rounded.items()}
-        if mechanism.snapped:
-            content["snapped"] = {name: list(by) for name, by in mechanism.snapped.items()}
-        if drives is not None:
-            content |= {
-                "drives": list(drives),
-                "motions": {name: _kind(mechanism, name) for name in driven},
-            }
-        return cls.over(content, asked, mechanism.symbols)
-
-    @classmethod
-    def over(cls, content: Description, asked: Sequence[Expression], symbols: ca.SX) -> Template:
-        """The template whose numbers are expressions of the parameters' symbols, in the order of
-        its places.
-        """
-        numbers = ca.densify(column(ca.SX(expression) for expression in asked))
-        return cls(content, ca.Function("numbers", [symbols], [numbers], ["p"], ["numbers"]))
-
 
 def _places(
     content: Json | Place, path: tuple[str | int, ...] = ()
@@ -361,7 +334,13 @@ def template_of(
     mechanism: Mechanism, driven: tuple[str, ...], drives: tuple[str, ...] | None
 ) -> Template:
     """The template of what :func:`describe` gives, made once."""
-    return Template.of(mechanism, driven, drives)
+    content, asked = _numbered(mechanism, driven)
+    if drives is not None:
+        motions = {name: _kind(mechanism, name) for name in driven}
+        content |= {"drives": list(drives), "motions": motions}
+    numbers = ca.densify(column(ca.SX(expression) for expression in asked))
+    function = ca.Function("numbers", [mechanism.symbols], [numbers], ["p"], ["numbers"])
+    return Template(content, function)
 
 
 def _lies_by_default(joint: Joint) -> bool:
@@ -508,6 +487,9 @@ def _numbered(
         ("losses", lossy),
         ("beside", beside),
         ("unturned", unturned),
+        ("outputs", {name: output.unit for name, output in mechanism.outputs.items()}),
+        ("rounded", {name: list(by) for name, by in mechanism.rounded.items()}),
+        ("snapped", {name: list(by) for name, by in mechanism.snapped.items()}),
     )
     content: Description = {
         "name": mechanism.name,
