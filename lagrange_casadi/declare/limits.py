@@ -79,18 +79,6 @@ def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, f
     return [fault for name, value in values.items() if (fault := parameters[name].fault(value))]
 
 
-def margins(point: Point, precision: Precision) -> list[Expression]:
-    """Distances of a fixed point from both ends of its link, if that has sections: neither must be
-    negative.
-    """
-    if not (
-        isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None
-    ):
-        return []
-    slack = END[precision] * point.body.length
-    return [point.x + slack, (point.body.length - point.x) + slack]
-
-
 def on_link(point: Point, number: Callable[[Expression], float]) -> tuple[Point, float]:
     """A point; or where the rounding of a drawing put it beyond an end of a link that has sections,
     the end; and how far it was.

@@ -24,7 +24,7 @@ from .density import Density, Slices
 from .directions import RIGHT, not_right
 from .ends import BEYOND, beyond_ends
 from .joints import Joint
-from .limits import END, margins
+from .limits import END
 from .mass_properties import inertias, second_moments
 from .meshes import FITTING, Fit
 from .parts import (
@@ -33,6 +33,7 @@ from .parts import (
     Friction,
     LineLoad,
     Link,
+    Point,
     PointMass,
     RigidMass,
     Vector,
@@ -411,11 +412,15 @@ def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> 
     ]
 
 
-def _of_load_point(what: str, point: Any, precision: Precision, *, space: bool) -> list[Demand]:
+def _of_load_point(what: str, point: Point, precision: Precision, *, space: bool) -> list[Demand]:
+    """A fixed point is between both ends of its link, if that has sections."""
+    body = point.body
+    if point.end is not None or not (isinstance(body, Link) and isinstance(body.mass, Density)):
+        return []
     back = ", turned=[('z', '180 deg')]" if space else ", angle='180 deg'"
 
     def refusal(number: Evaluator) -> str:
-        x, length, link = number(point.x), number(point.body.length), point.body.name
+        x, length, link = number(point.x), number(body.length), body.name
         there = (
             f"its point at {readable(x, 0.0, length)} m is outside link '{link}', 0 to"
             f" {readable(length, x)} m"
@@ -430,4 +435,6 @@ def _of_load_point(what: str, point: Any, precision: Precision, *, space: bool) 
             " use tail.tip as the point"
         )
 
-    return [Demand(margin, False, refusal) for margin in margins(point, precision)]
+    slack = END[precision] * body.length
+    margins = point.x + slack, (body.length - point.x) + slack
+    return [Demand(margin, False, refusal) for margin in margins]
