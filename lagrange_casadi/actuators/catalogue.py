@@ -122,7 +122,8 @@ def _motor(
                 f"{row.where}: {column} must be a positive number, got {cells[column]!r}"
             )
         numbers[column] = number * unit
-    stall, rated, rated_speed, peak, most, inertia = (numbers[column] for column in needed)
+    each = [numbers[column] for column in needed]
+    stall, rated, rated_speed, peak, most, _ = each
     if rated > stall or stall > peak or rated_speed > most:
         relation = f"{needed[1]} <= {needed[0]} <= {needed[3]}"
         raise DeclarationError(f"{row.where}: expected {relation}, and rated_speed <= max_speed")
@@ -132,16 +133,5 @@ def _motor(
         raise DeclarationError(
             f"{row.where}: expected knee_speed <= max_speed, and {knee[1]} <= {needed[3]}"
         )
-    turning = numbers.get(knee[0]), numbers.get(knee[1])
-    return Motor(
-        cells["name"],
-        stall,
-        rated,
-        rated_speed,
-        peak,
-        most,
-        inertia,
-        *turning,
-        numbers.get(_LASTS, math.inf),
-        linear=linear,
-    )
+    limit = [numbers.get(column) for column in knee]
+    return Motor(cells["name"], *each, *limit, numbers.get(_LASTS, math.inf), linear=linear)

@@ -137,13 +137,9 @@ def _edge(
 ) -> Fibre:
     """A fibre on the edge of an oval, where shear stresses lie along the edge."""
     aside = -most * s * c
-    return Fibre(
-        f"{angle} deg",
-        y,
-        z,
-        (most * s * s, aside / slope, torsion[0]),
-        (aside * slope, most * c * c, torsion[1]),
-    )
+    along_y = (most * s * s, aside / slope, torsion[0])
+    along_z = (aside * slope, most * c * c, torsion[1])
+    return Fibre(f"{angle} deg", y, z, along_y, along_z)
 
 
 def polygon(places: Sequence[tuple[Operand, Operand]]) -> Properties:

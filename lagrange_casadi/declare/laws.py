@@ -41,13 +41,10 @@ class Laws(Graphs):
     @symbolic
     def of(cls, laws: Mapping[str, Motion], parameters: Expression) -> Laws:
         """The function of laws by the joint's name."""
-        return cls(
-            tuple(laws),
-            motion_function(laws, parameters),
-            tuple(law.span for law in laws.values()),
-            tuple(law.knots for law in laws.values()),
-            ends_function(laws, parameters),
-        )
+        spans = tuple(law.span for law in laws.values())
+        knots = tuple(law.knots for law in laws.values())
+        motion, beyond = motion_function(laws, parameters), ends_function(laws, parameters)
+        return cls(tuple(laws), motion, spans, knots, beyond)
 
     @property
     def span(self) -> tuple[float, float]:

@@ -170,13 +170,8 @@ class MotionInverse:
         there = np.flatnonzero(passage.missed == Missed.REACHED)
         for k in range(0, there.size, size):
             some = there[k : k + size]
-            found[some] = self._between(
-                passage.first[some],
-                passage.last[some],
-                passage.sense[some, None],
-                targets[some],
-                p[some],
-            )
+            first, last, sense = passage.first[some], passage.last[some], passage.sense[some, None]
+            found[some] = self._between(first, last, sense, targets[some], p[some])
         return found
 
     def _steady(self, start: Array, stop: Array, sense: Array, p: Array) -> Passage:

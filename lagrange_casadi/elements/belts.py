@@ -100,13 +100,8 @@ def belt(
     what, ownership = f"belt '{name}'", mechanism.ownership
     ownership.free("constraint", name, mechanism.constraints)
     ends = ownership.point(what, first), ownership.point(what, second)
-    one, two = courses_on(
-        mechanism,
-        what,
-        *ends,
-        None if carrier is None else ownership.point(what, carrier).body,
-        rack=False,
-    )
+    carrier = None if carrier is None else ownership.point(what, carrier).body
+    one, two = courses_on(mechanism, what, *ends, carrier, rack=False)
     if not isinstance(radii, (list, tuple)) or len(radii) != 2:
         raise DeclarationError(f"{what}: expected 2 radii, got {radii!r}")
     r1, r2 = (ownership.expression(f"{what}: radii", radius, "m") for radius in radii)
@@ -134,22 +129,10 @@ def belt(
             f"{what}: its centres are {number(distance):.6g} m apart; expected more than"
             f" {which} of its radii, {number(reach):.6g} m"
         )
-    fits.append(
-        Fit(
-            "its pulleys are offset by {got} m along their axes; expected {meant} m",
-            beside,
-            0.0,
-            scale,
-        )
-    )
-    fits.append(
-        Fit(
-            "its centres are {got} m apart, too near for the radii",
-            distance,
-            ca.fmax(distance, reach),
-            scale,
-        )
-    )
+    words = "its pulleys are offset by {got} m along their axes; expected {meant} m"
+    fits.append(Fit(words, beside, 0.0, scale))
+    words = "its centres are {got} m apart, too near for the radii"
+    fits.append(Fit(words, distance, ca.fmax(distance, reach), scale))
     e = along(away, distance)
     # The sine of the angle between a strand and the line of the centres, where the strands lead
     # apart.

@@ -125,15 +125,9 @@ def bent_bar(
     for k, length in enumerate(lengths):
         piece_mass = per_length * length if mass is None else mass * (length / whole)
         pieces.append(mechanism.link(f"{name}_{k + 1}", length=length, mass=piece_mass))
-    for k in range(len(pieces) - 1):
-        _weld(
-            mechanism,
-            f"{name}_bend_{k + 1}",
-            pieces[k],
-            pieces[k + 1],
-            directions[k],
-            directions[k + 1],
-        )
+    joined = zip(itertools.pairwise(pieces), itertools.pairwise(directions), strict=True)
+    for k, (pair, ways) in enumerate(joined, 1):
+        _weld(mechanism, f"{name}_bend_{k}", *pair, *ways)
     return Bent(tuple(pieces), (pieces[0].base, *(piece.tip for piece in pieces)))
 
 

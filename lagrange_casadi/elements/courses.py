@@ -151,16 +151,9 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
     whole = (zero.inverse if outward else zero).then(course.seen)
     axis, place, shifted = course.axis, course.place, course.shifted
     if joint.kind == "weld":
-        return Course(
-            other,
-            seen(place),
-            axis and turn(axis),
-            course.rotations,
-            course.slides,
-            (*course.joints, joint),
-            shifted,
-            whole,
-        )
+        axis, joints = axis and turn(axis), (*course.joints, joint)
+        moved = course.rotations, course.slides
+        return Course(other, seen(place), axis, *moved, joints, shifted, whole)
     # The joint's axis is in its parent's axes, and the same in its child's, turned.
     direction = joint.axes[0].direction
     here = direction if outward else zero.resolve(direction)

@@ -136,16 +136,8 @@ def gears(
         raise DeclarationError(f"{what}: expected a second gear")
     found = [courses_on(mechanism, what, centre, one, carrier) for one in many]
     fits, lossy = [], efficiency is not None or mu is not None
-    toothing, more = _teeth(
-        what,
-        mechanism,
-        found[0],
-        teeth,
-        module,
-        radii,
-        (pressure_angle, helix_angle),
-        hand == "right",
-    )
+    angles, right = (pressure_angle, helix_angle), hand == "right"
+    toothing, more = _teeth(what, mechanism, found[0], teeth, module, radii, angles, right)
     fits += more
     pitches = [pitch_of(what, ownership.at_defaults, *pair, toothing) for pair in found]
     meshes = []

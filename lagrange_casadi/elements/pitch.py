@@ -99,14 +99,8 @@ def _parallel(what: str, number: Evaluator, first: Course, second: Course, teeth
     words = "its centres are {got} m apart; expected {meant} m by the radii"
     fits = [Fit(words, distance, sides[side], r1 + r2)]
     _refuse_beside(what, number, beside, r1 + r2)
-    fits.append(
-        Fit(
-            "its gears are offset by {got} m along their axes; expected {meant} m",
-            beside,
-            0.0,
-            r1 + r2,
-        )
-    )
+    words = "its gears are offset by {got} m along their axes; expected {meant} m"
+    fits.append(Fit(words, beside, 0.0, r1 + r2))
     # The pitch point is beyond the first centre where the second gear is a ring.
     e = along(away, distance if side != -1 else -distance)
     t = cross(u, e)
@@ -116,18 +110,8 @@ def _parallel(what: str, number: Evaluator, first: Course, second: Course, teeth
     apart = times(size if side == -2 else -size, e)
     other = r2 * sense if side == 1 else -(r2 * sense)
     relative = plus(u, times(r1 / other, second.axis))
-    return Pitch(
-        "parallel",
-        times(r1, e),
-        force,
-        apart,
-        minus(second.place, first.place),
-        other,
-        e,
-        u,
-        relative,
-        tuple(fits),
-    )
+    arm, reach = times(r1, e), minus(second.place, first.place)
+    return Pitch("parallel", arm, force, apart, reach, other, e, u, relative, tuple(fits))
 
 
 def _bevel(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
@@ -152,14 +136,8 @@ def _bevel(what: str, number: Evaluator, first: Course, second: Course, teeth: T
             " {meant} m by the radii"
         )
         fits.append(_held(what, number, Fit(words, far, height, r1 + r2)))
-    fits.append(
-        Fit(
-            "the axes of its gears are {got} m apart; expected {meant} m",
-            dot(away, cross(u, v)) / sine,
-            0.0,
-            r1 + r2,
-        )
-    )
+    words = "the axes of its gears are {got} m apart; expected {meant} m"
+    fits.append(Fit(words, dot(away, cross(u, v)) / sine, 0.0, r1 + r2))
     e = along(minus(w2, times(cosine, w1)), sine)
     t = cross(u, e)
     slant = root(heights[0] * heights[0] + r1 * r1)
@@ -168,18 +146,8 @@ def _bevel(what: str, number: Evaluator, first: Course, second: Course, teeth: T
     size = _tan(teeth.pressure) / _cos(teeth.helix)
     apart = times(size, along(minus(times(r1, w1), times(heights[0], e)), slant))
     other = one * two * r2
-    return Pitch(
-        "bevel",
-        times(r1, e),
-        force,
-        apart,
-        away,
-        other,
-        e,
-        u,
-        plus(u, times(r1 / other, v)),
-        tuple(fits),
-    )
+    relative = plus(u, times(r1 / other, v))
+    return Pitch("bevel", times(r1, e), force, apart, away, other, e, u, relative, tuple(fits))
 
 
 def _crossed(what: str, number: Evaluator, first: Course, second: Course, teeth: Teeth) -> Pitch:
@@ -245,18 +213,8 @@ def _rack(what: str, number: Evaluator, first: Course, second: Course, teeth: Te
     t = cross(u, e)
     force = minus(t, times(_tan(teeth.helix), u))
     apart = times(-(_tan(teeth.pressure) / _cos(teeth.helix)), e)
-    return Pitch(
-        "rack",
-        times(radius, e),
-        force,
-        apart,
-        times(radius, e),
-        -_sign(number, dot(t, d)),
-        e,
-        u,
-        u,
-        fits,
-    )
+    arm, other = times(radius, e), -_sign(number, dot(t, d))
+    return Pitch("rack", arm, force, apart, arm, other, e, u, u, fits)
 
 
 def _held(what: str, number: Evaluator, fit: Fit) -> Fit:

@@ -113,38 +113,28 @@ def planetary(
     size = ownership.expression(f"{what}: module", module, "m")
     positive(what, "module", size)
     middle, centres = ownership.point(what, carrier), size * (of_sun + of_planet) / 2
-    found, pins = [], []
+    found, pins, made = [], [], {"mass": mass, "width": width, "teeth": of_planet}
     for k in range(planets):
         angle = math.tau * k / planets
         # So turned that teeth are drawn in gaps where sun and carrier are at zero.
         turned = angle + math.pi - (math.pi - of_sun * angle) / of_planet
         radius = size * of_planet / 2
-        planet = wheel(
-            mechanism,
-            f"{name}_planet_{k + 1}",
-            radius=radius,
-            mass=mass,
-            width=width,
-            teeth=of_planet,
-            turned=turned,
-        )
+        planet = wheel(mechanism, f"{name}_planet_{k + 1}", radius=radius, turned=turned, **made)
         spot = Point(
             middle.body, middle.x + centres * math.cos(angle), middle.y + centres * math.sin(angle)
         )
         found.append(planet)
         pins.append(mechanism.revolute(f"{name}_pin_{k + 1}", spot, planet))
-    body = middle.body
     options = {
         "module": size,
         "pressure_angle": pressure_angle,
         "efficiency": efficiency,
-        "carrier": body,
+        "carrier": middle.body,
     }
     inner = gears(mechanism, f"{name}_sun", sun, found, teeth=(of_sun, of_planet), **options)
+    meshing = {"teeth": (of_planet, of_ring), **options}
     outer = tuple(
-        gears(
-            mechanism, f"{name}_ring_{k + 1}", planet, ring, teeth=(of_planet, of_ring), **options
-        )
-        for k, planet in enumerate(found)
+        gears(mechanism, f"{name}_ring_{k}", planet, ring, **meshing)
+        for k, planet in enumerate(found, 1)
     )
     return Planetary(tuple(found), tuple(pins), inner, outer, centres)
