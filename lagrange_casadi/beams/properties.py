@@ -106,11 +106,9 @@ def smaller(a: Operand, b: Operand) -> Operand:
 
 def chosen(a: Operand, b: float, first: Operand, second: float) -> Array:
     """``first`` where a is b or more, else ``second``."""
-    return (
-        ca.if_else(a >= b, first, second)
-        if symbolic(a, b, first, second)
-        else np.where(a >= b, first, second)
-    )
+    if symbolic(a, b, first, second):
+        return ca.if_else(a >= b, first, second)
+    return np.where(a >= b, first, second)
 
 
 def exponential(x: Operand) -> Operand:

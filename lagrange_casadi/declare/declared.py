@@ -230,8 +230,6 @@ def _joint(name: str, entry: Description, space: bool) -> JointNumbers:
 
 
 def _friction(entry: Description) -> tuple[()] | tuple[str, dict[str, float]]:
-    return (
-        (entry["friction"]["coordinate"], entry["friction"]["numbers"])
-        if "friction" in entry
-        else ()
-    )
+    if "friction" in entry:
+        return entry["friction"]["coordinate"], entry["friction"]["numbers"]
+    return ()

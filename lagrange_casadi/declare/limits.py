@@ -147,8 +147,6 @@ def values_note(values: Mapping[str, float], default: bool = False) -> str:
     listed = [f"{name} = {value:.6g}" for name, value in values.items()]
     if len(listed) > _LISTED:
         listed = [*listed[:_LISTED], f"{len(listed) - _LISTED} more"]
-    return (
-        f"; with the {'default ' if default else ''}parameters {', '.join(listed)}"
-        if listed
-        else ""
-    )
+    if listed:
+        return f"; with the {'default ' if default else ''}parameters {', '.join(listed)}"
+    return ""

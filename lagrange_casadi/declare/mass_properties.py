@@ -113,11 +113,9 @@ def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[float]]
 
 def inertias(mass_properties: RigidMass) -> list[Expression]:
     """The numbers of its moments of inertia."""
-    return (
-        [entry for row in mass_properties.inertia for entry in row]
-        if isinstance(mass_properties.inertia, tuple)
-        else [mass_properties.inertia]
-    )
+    if isinstance(mass_properties.inertia, tuple):
+        return [entry for row in mass_properties.inertia for entry in row]
+    return [mass_properties.inertia]
 
 
 def masses_of(mechanism: Mechanism) -> ca.SX:

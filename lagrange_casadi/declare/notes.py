@@ -167,11 +167,9 @@ def _along(name: str, joint: Description) -> dict[Output, float]:
     it does not slide.
     """
     if "coordinates" not in joint:
-        return (
-            {Output("motion", name): joint["axis"][0]}
-            if joint["kind"] in ("prismatic", "slot")
-            else {}
-        )
+        if joint["kind"] in ("prismatic", "slot"):
+            return {Output("motion", name): joint["axis"][0]}
+        return {}
     each = zip(joint["coordinates"].items(), joint["axes"], strict=True)
     found = {
         Output("motion", own): axis[0] * (1.0 if kind == "slide" else joint["pitch"])

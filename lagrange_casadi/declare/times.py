@@ -137,11 +137,9 @@ class Timing:
         start, stop, around = (
             _text(bound, symbols) if isinstance(bound, str) else bound for bound in bounds
         )
-        return (
-            [start, stop, self.count, self.joint, around]
-            if self.joint
-            else [start, stop, self.count]
-        )
+        if self.joint:
+            return [start, stop, self.count, self.joint, around]
+        return [start, stop, self.count]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -208,11 +208,9 @@ def _carried(joint: Joint, angle: Expression) -> Rotation:
     """Rotation of the child of a joint on the ground, at an angle of the joint."""
     assert joint.turned is not None
     resting = Rotation.of(*joint.turned)
-    return (
-        resting
-        if joint.kind == "prismatic"
-        else Rotation.about(joint.triad[0], *direction(angle), angle).then(resting)
-    )
+    if joint.kind == "prismatic":
+        return resting
+    return Rotation.about(joint.triad[0], *direction(angle), angle).then(resting)
 
 
 def _groove(

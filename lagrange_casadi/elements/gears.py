@@ -257,11 +257,9 @@ def braking_of(pitch: Pitch) -> Wrench:
     or a force against sliding.
     """
     direction = along(pitch.relative, length(pitch.relative))
-    return (
-        Wrench(direction, cross(pitch.arm, direction))
-        if pitch.kind == "crossed"
-        else Wrench(couple=direction)
-    )
+    if pitch.kind == "crossed":
+        return Wrench(direction, cross(pitch.arm, direction))
+    return Wrench(couple=direction)
 
 
 def loss_of(
