@@ -122,8 +122,7 @@ def _motor(
                 f"{row.where}: {column} must be a positive number, got {cells[column]!r}"
             )
         numbers[column] = number * unit
-    each = [numbers[column] for column in needed]
-    stall, rated, rated_speed, peak, most, _ = each
+    stall, rated, rated_speed, peak, most, inertia = (numbers[column] for column in needed)
     if rated > stall or stall > peak or rated_speed > most:
         relation = f"{needed[1]} <= {needed[0]} <= {needed[3]}"
         raise DeclarationError(f"{row.where}: expected {relation}, and rated_speed <= max_speed")
@@ -133,5 +132,6 @@ def _motor(
         raise DeclarationError(
             f"{row.where}: expected knee_speed <= max_speed, and {knee[1]} <= {needed[3]}"
         )
-    limit = [numbers.get(column) for column in knee]
-    return Motor(cells["name"], *each, *limit, numbers.get(_LASTS, math.inf), linear=linear)
+    limits = numbers.get(knee[0]), numbers.get(knee[1]), numbers.get(_LASTS, math.inf)
+    main = stall, rated, rated_speed, peak, most, inertia
+    return Motor(cells["name"], *main, *limits, linear=linear)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from ..arguments import public
 from ..declare.joints import Joint
@@ -113,7 +114,8 @@ def planetary(
     size = ownership.expression(f"{what}: module", module, "m")
     positive(what, "module", size)
     middle, centres = ownership.point(what, carrier), size * (of_sun + of_planet) / 2
-    found, pins, made = [], [], {"mass": mass, "width": width, "teeth": of_planet}
+    made: dict[str, Any] = {"mass": mass, "width": width, "teeth": of_planet}
+    found, pins = [], []
     for k in range(planets):
         angle = math.tau * k / planets
         # So turned that teeth are drawn in gaps where sun and carrier are at zero.
