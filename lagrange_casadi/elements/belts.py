@@ -30,7 +30,6 @@ from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot, minus, times
 from .courses import along, courses_on, fits_of, length, size
-from .pitch import root
 from .ranges import positive, share
 
 
@@ -138,7 +137,7 @@ def belt(
     # apart.
     lean = (-(r1 + r2) if crossed else r2 - r1) / distance
     across = times(-lean, cross(u, e))
-    both = times(root(1 - lean * lean), e)
+    both = times(ca.sqrt(1 - lean * lean), e)
     mesh = Mesh(*ends, one.carrier, one.place, away, Wrench(across, times(r1, u)), Wrench(both))
     sense = 1 if (number(dot(u, v)) > 0.0) != crossed else -1
     other = -sense * r2

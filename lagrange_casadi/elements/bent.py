@@ -143,10 +143,6 @@ def _length(step: Sequence[Expression]) -> Expression:
     return math.hypot(*step)
 
 
-def _turn(y: Expression, x: Expression) -> Expression:
-    return ca.atan2(y, x) if isinstance(x, ca.SX) or isinstance(y, ca.SX) else math.atan2(y, x)
-
-
 def _weld(
     mechanism: Mechanism,
     name: str,
@@ -158,14 +154,14 @@ def _weld(
     """Weld a piece to the tip of the one before, at the angle between their ways."""
     if not isinstance(mechanism, SpatialMechanism):
         # By the sine and cosine of the angle between them, so that it is half a turn at most.
-        angle = _turn(
+        angle = ca.atan2(
             direction[0] * onward[1] - direction[1] * onward[0],
             direction[0] * onward[0] + direction[1] * onward[1],
         )
         mechanism.weld(name, first.tip, second, angle=angle)
         return
     (bearing, rise), (next_bearing, next_rise) = (
-        (_turn(y, x), _turn(z, _length([x, y]))) for x, y, z in (direction, onward)
+        (ca.atan2(y, x), ca.atan2(z, _length([x, y]))) for x, y, z in (direction, onward)
     )
     rotations: Any = [("y", rise), ("z", next_bearing - bearing), ("y", -next_rise)]
     mechanism.weld(name, first.tip, second, turned=rotations)

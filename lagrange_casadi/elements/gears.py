@@ -214,8 +214,7 @@ def _teeth(
             raise DeclarationError(f"{what}: expected module= and teeth=, or radii=")
         size = ownership.expression(f"{what}: module", module, "m")
         fits += positive(what, "module", size)
-        cosine = ca.cos(helix) if isinstance(helix, ca.SX) else math.cos(helix)
-        r = [size * value / (2 * cosine) for value in z]
+        r = [size * value / (2 * ca.cos(helix)) for value in z]
     else:
         r = each("radii", radii, "m")
         for value in r:
@@ -280,14 +279,8 @@ def loss_of(
         value = ownership.expression(f"{what}: mu", mu)
         fits = at_least(what, "mu must not be negative", value, 0.0, value)
         # The force at right angles to the teeth, of that along the pitch circle.
-        cosine = (
-            ca.cos(teeth.pressure)
-            if isinstance(teeth.pressure, ca.SX)
-            else math.cos(teeth.pressure)
-        )
-        return Loss(
-            f"{name}:loss", value * length(pitch.force) / cosine, 0.0, first.rotations
-        ), fits
+        arm = value * length(pitch.force) / ca.cos(teeth.pressure)
+        return Loss(f"{name}:loss", arm, 0.0, first.rotations), fits
     value = ownership.expression(f"{what}: efficiency", efficiency)
     fits = share(what, value)
     q, radius = length(pitch.relative), teeth.radii[0]

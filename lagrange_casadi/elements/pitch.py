@@ -12,7 +12,6 @@ helical, bevel and worm gears); G. Niemann, H. Winter, *Maschinenelemente* II, c
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import casadi as ca
@@ -104,8 +103,8 @@ def _parallel(what: str, number: Evaluator, first: Course, second: Course, teeth
     # The pitch point is beyond the first centre where the second gear is a ring.
     e = along(away, distance if side != -1 else -distance)
     t = cross(u, e)
-    force = minus(t, times(_tan(teeth.helix), u))
-    size = _tan(teeth.pressure) / _cos(teeth.helix)
+    force = minus(t, times(ca.tan(teeth.helix), u))
+    size = ca.tan(teeth.pressure) / ca.cos(teeth.helix)
     # Off the teeth: toward the axis of a gear, away from that of a ring.
     apart = times(size if side == -2 else -size, e)
     other = r2 * sense if side == 1 else -(r2 * sense)
@@ -127,7 +126,7 @@ def _bevel(what: str, number: Evaluator, first: Course, second: Course, teeth: T
     far2 = (dot(away, v) - slope * dot(away, u)) / steep
     one, two = (_sign(number, far) for far in (far1, far2))
     w1, w2, cosine = times(one, u), times(two, v), one * two * slope
-    sine = root(1 - cosine * cosine)
+    sine = ca.sqrt(1 - cosine * cosine)
     heights = (r2 + r1 * cosine) / sine, (r1 + r2 * cosine) / sine
     fits = []
     for k, (far, height) in enumerate(zip((one * far1, two * far2), heights, strict=True), 1):
@@ -140,10 +139,10 @@ def _bevel(what: str, number: Evaluator, first: Course, second: Course, teeth: T
     fits.append(Fit(words, dot(away, cross(u, v)) / sine, 0.0, r1 + r2))
     e = along(minus(w2, times(cosine, w1)), sine)
     t = cross(u, e)
-    slant = root(heights[0] * heights[0] + r1 * r1)
+    slant = ca.sqrt(heights[0] * heights[0] + r1 * r1)
     generator = along(plus(times(heights[0], w1), times(r1, e)), slant)
-    force = minus(t, times(_tan(teeth.helix) * one, generator))
-    size = _tan(teeth.pressure) / _cos(teeth.helix)
+    force = minus(t, times(ca.tan(teeth.helix) * one, generator))
+    size = ca.tan(teeth.pressure) / ca.cos(teeth.helix)
     apart = times(size, along(minus(times(r1, w1), times(heights[0], e)), slant))
     other = one * two * r2
     relative = plus(u, times(r1 / other, v))
@@ -180,7 +179,7 @@ def _crossed(what: str, number: Evaluator, first: Course, second: Course, teeth:
     sign = 1 if right[0] == teeth.right else -1
     lean = leans[0] if sign == 1 else leans[1]
     force = plus(t, times(lean, u))
-    apart = times(-(_tan(teeth.pressure) * root(1 + lean * lean)), e)
+    apart = times(-(ca.tan(teeth.pressure) * ca.sqrt(1 + lean * lean)), e)
     other = sign * teeth.ratio * r1
     sliding = minus(times(r1, t), times(r1 * r2 / other, cross(v, e)))
     return Pitch("crossed", times(r1, e), force, apart, away, other, e, u, sliding, tuple(fits))
@@ -211,8 +210,8 @@ def _rack(what: str, number: Evaluator, first: Course, second: Course, teeth: Te
     )
     e = along(across, distance)
     t = cross(u, e)
-    force = minus(t, times(_tan(teeth.helix), u))
-    apart = times(-(_tan(teeth.pressure) / _cos(teeth.helix)), e)
+    force = minus(t, times(ca.tan(teeth.helix), u))
+    apart = times(-(ca.tan(teeth.pressure) / ca.cos(teeth.helix)), e)
     arm, other = times(radius, e), -_sign(number, dot(t, d))
     return Pitch("rack", arm, force, apart, arm, other, e, u, u, fits)
 
@@ -235,16 +234,3 @@ def _refuse_beside(what: str, number: Evaluator, beside: Expression, size: Expre
 
 def _sign(number: Evaluator, value: Expression) -> int:
     return 1 if number(value) > 0.0 else -1
-
-
-def root(value: Expression) -> Expression:
-    """The square root of a number or an expression."""
-    return ca.sqrt(value) if isinstance(value, ca.SX) else math.sqrt(value)
-
-
-def _tan(angle: float) -> float:
-    return ca.tan(angle) if isinstance(angle, ca.SX) else math.tan(angle)
-
-
-def _cos(angle: float) -> float:
-    return ca.cos(angle) if isinstance(angle, ca.SX) else math.cos(angle)
