@@ -119,17 +119,13 @@ class Declared:
         """
         known, stated = tuple(map(float, p)), stated or Stated((), (), ())
         space = in_space(description)
-        loads = description["loads"].items()
         return cls(
             gravity=_triple(description["gravity"]),
             bodies={name: _body(body, space) for name, body in description["bodies"].items()},
             joints={
                 name: _joint(name, joint, space) for name, joint in description["joints"].items()
             },
-            loads={
-                name: LoadNumbers(tuple(map(_place, load["points"])), *_friction(load))
-                for name, load in loads
-            },
+            loads={name: _load(load) for name, load in description["loads"].items()},
             drives=tuple(drives_of(description)),
             driven=tuple(motions_of(description)),
             beside={
@@ -229,7 +225,6 @@ def _joint(name: str, entry: Description, space: bool) -> JointNumbers:
     )
 
 
-def _friction(entry: Description) -> tuple[()] | tuple[str, dict[str, float]]:
-    if "friction" in entry:
-        return entry["friction"]["coordinate"], entry["friction"]["numbers"]
-    return ()
+def _load(entry: Description) -> LoadNumbers:
+    friction, points = entry.get("friction", {}), tuple(map(_place, entry["points"]))
+    return LoadNumbers(points, friction.get("coordinate", ""), friction.get("numbers"))

@@ -185,7 +185,9 @@ def cylindrical_cam(
     constraint = _contact(mechanism, name, cam, held, design, rise)
     made = CylindricalCam(name, mechanism, constraint, design, cam)
     turn = mechanism.coordinate(cam)
-    cosine, across = (ca.substitute(ca.SX(value), x, turn) for value in _lean(design))
+    beside = cross(design.normal, design.travel)
+    lean = dot(design.normal, design.travel), ca.sqrt(ca.SX(dot(beside, beside)))
+    cosine, across = (ca.substitute(ca.SX(value), x, turn) for value in lean)
     mechanism.output(f"{name}_force", mechanism.results.multiplier(constraint), unit="N")
     mechanism.output(f"{name}_pressure_angle", ca.atan2(across, cosine), unit="rad")
     if width is not None:
@@ -334,12 +336,6 @@ def _contact(
     return mechanism.constraints.setdefault(
         name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
     )
-
-
-def _lean(design: Groove) -> tuple[Expression, Expression]:
-    """The cosine and the sine of the angle between the force and the way of the roller."""
-    across = cross(design.normal, design.travel)
-    return dot(design.normal, design.travel), ca.sqrt(ca.SX(dot(across, across)))
 
 
 def _unit(vector: Vector) -> Vector:
