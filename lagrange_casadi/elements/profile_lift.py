@@ -147,7 +147,7 @@ def profile_lift(
     def number(expression: Expression) -> float:
         return float(mechanism.number(expression, values))
 
-    away, arm = (np.array([number(x) for x in pair]) for pair in (layout.away, layout.arm))
+    away, arm = (np.array([number(x) for x in pair[:2]]) for pair in (layout.away, layout.arm))
     if isinstance(points, (str, os.PathLike)):
         points = read_profile(points)
     at, normal = _normals(what, np.asarray(points, float))
