@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Any, NoReturn
 
@@ -261,14 +261,12 @@ class Scene(Graphs):
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
             raise DeclarationError(f"scene: expected a Mechanism, got {self.mechanism!r}")
-        for what, mapping in (
-            ("motion", self.motion),
-            ("posture", self.posture),
-            ("assembly", self.assembly),
-        ):
+        put = partial(object.__setattr__, self)
+        for what in ("motion", "posture", "assembly"):
+            mapping = getattr(self, what)
             if not isinstance(mapping, Mapping):
                 raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
-            object.__setattr__(self, what, MappingProxyType(dict(mapping)))
+            put(what, MappingProxyType(dict(mapping)))
         coordinates = self.mechanism.coordinates
         guides = [name for name in self.laws if name not in coordinates]
         if guides and self.drives is None:
@@ -276,9 +274,7 @@ class Scene(Graphs):
                 f"motion of '{guides[0].partition('.')[0]}': a guided point or pose has no effort;"
                 " list the joints that drive it in drives="
             )
-        object.__setattr__(
-            self, "posture", MappingProxyType(rough_posture(self.mechanism, self.posture))
-        )
+        put("posture", MappingProxyType(rough_posture(self.mechanism, self.posture)))
         for row in self.mechanism.rows.values():
             if row.replaces not in self.motion:
                 raise DeclarationError(
@@ -286,17 +282,14 @@ class Scene(Graphs):
                     f" '{row.replaces}', which has no motion"
                 )
         if self.drives is not None:
-            object.__setattr__(
-                self,
-                "drives",
-                MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)),
-            )
-        object.__setattr__(self, "elastic", compliant_links(self.mechanism, self.elastic))
+            weights = weighed(self.mechanism, self.drives, self.needs_drives)
+            put("drives", MappingProxyType(weights))
+        put("elastic", compliant_links(self.mechanism, self.elastic))
         refuse_late(self.mechanism)
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
         checked_ratios(self.xi)
-        object.__setattr__(self, "rounding", within("rounding", self.rounding, 0.0, 1e-3))
+        put("rounding", within("rounding", self.rounding, 0.0, 1e-3))
         timing = self.timing()
         try:
             self.mechanism.values()
@@ -304,9 +297,7 @@ class Scene(Graphs):
             raise ParameterError(f"{error}{parameters_note(self.mechanism, {})}") from None
         numbers = self.mechanism.values(self.assembly)
         self.checked(numbers)
-        object.__setattr__(
-            self, "assembly", MappingProxyType({name: numbers[name] for name in self.assembly})
-        )
+        put("assembly", MappingProxyType({name: numbers[name] for name in self.assembly}))
         if not timing.shared:
             self.span  # noqa: B018 - it refuses what has no instants
 
