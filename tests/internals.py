@@ -81,7 +81,7 @@ from lagrange_casadi.declare.joints import Joint
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.laws import Laws
 from lagrange_casadi.declare.limits import END
-from lagrange_casadi.declare.lowest import lowest
+from lagrange_casadi.declare.motion import Scaled
 from lagrange_casadi.declare.motion_inverse import Missed, MotionInverse
 from lagrange_casadi.declare.parts import (
     Force,
@@ -94,7 +94,7 @@ from lagrange_casadi.declare.parts import (
     Spring,
     Torque,
 )
-from lagrange_casadi.declare.powers import powers
+from lagrange_casadi.declare.polynomials import lowest, powers
 from lagrange_casadi.declare.recordings import _read
 from lagrange_casadi.declare.rest_laws import (
     LAWS,
@@ -106,7 +106,6 @@ from lagrange_casadi.declare.rest_laws import (
     trapezoid_within,
 )
 from lagrange_casadi.declare.revolutions import note
-from lagrange_casadi.declare.scaled import Scaled
 from lagrange_casadi.declare.scene import Wanted, outputs
 from lagrange_casadi.declare.spatial import reference_posture
 from lagrange_casadi.declare.stated import Stated

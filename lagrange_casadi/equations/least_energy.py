@@ -29,12 +29,12 @@ from ..arithmetic.scalars import column
 from ..base.arrays import Expression
 from ..base.quantities import Output, force_members
 from ..base.tables import table_of
-from ..declare.compliant import Elastic
 from ..declare.density import Density
 from ..declare.limits import END
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
 from ..declare.scene import Wanted
+from ..declare.scene_arguments import Elastic
 from ..errors import DeclarationError, one_line
 from .checks import Column
 from .indeterminate import Forces

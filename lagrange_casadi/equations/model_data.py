@@ -32,7 +32,7 @@ from ..declare.description import (
     template_of,
 )
 from ..declare.laws import Laws
-from ..declare.masses import ALL, masses_of
+from ..declare.mass_properties import ALL, masses_of
 from ..declare.parts import LineLoad, Link, Parameter
 from ..declare.scene import Scene
 from ..declare.stated import Stated

@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.posture import posture_entry
+from ..declare.scene_arguments import posture_entry
 from ..errors import PostureError
 from .blocks import Block
 from .multibody import Coordinate, Multibody, own_coordinate, place_along

@@ -12,7 +12,7 @@ from ...base.quantities import Kinds, Output, quotient
 from ...base.status import Status
 from ...base.tables import ANGLE, LENGTH, Table
 from ...declare.description import Description, kinds_of_described, motions_of
-from ...declare.masses import ALL
+from ...declare.mass_properties import ALL
 from ...declare.wanted_names import SENSITIVITY
 from ...instants.ordering import table_of_described
 from .axes import DESIGN
