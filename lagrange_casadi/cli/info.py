@@ -19,7 +19,7 @@ from ..store import runs as store
 from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import counted
 from ..studies.sweep.checking import progress, unfinished
-from ..studies.sweep.instant_axis import in_words
+from ..studies.sweep.meanings import in_words
 from ..studies.sweep.plan import Identity
 from .echo import echo
 from .report import Rows, asked_line

@@ -13,8 +13,7 @@ from ..errors import NoDesignError
 from ..studies.sweep import Sweep, chosen
 from ..studies.sweep.axes import counted, grouped
 from ..studies.sweep.best import conditions_in, counts, missed, with_errors
-from ..studies.sweep.instant_axis import in_words
-from ..studies.sweep.meanings import STATUS
+from ..studies.sweep.meanings import STATUS, in_words
 from .echo import echo
 from .rows import heads_of, show
 
