@@ -11,10 +11,10 @@ import numpy as np
 
 from ...base.publish import uninterrupted
 from ...errors import NoDesignError
-from .evaluated_design import EvaluatedDesign
 from .journal import Journal
 from .optimum import Optimum, optimum_of
 from .problem import Problem
+from .sampled_design import EvaluatedDesign
 from .search_run import STOPPED, SearchRun
 from .solver import SearchTask, Solver
 from .starts import Starts, chosen, named, screen
