@@ -26,10 +26,9 @@ from ..shapes.views import upright
 from ..strength.parts import looked
 from ..verification.certificate import failure, summary
 from .arrays import Arrays, finite
-from .instants import shown_instants
+from .instants import Mark, mark, shown_instants
 from .live import Live
 from .maps import map_entries
-from .marks import Mark, mark
 from .sections import section_entries
 from .words import GROUPS, what
 
