@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import spread
+from ..base.arrays import Json, spread
 from ..instants.ordering import ordered
 from ..instants.solution import Solution
+from .arrays import Arrays
 
 MOST = 1_000_000
 """Numbers that a page holds at most, or little more: 8 bytes each, 11 in the page."""
@@ -44,6 +45,16 @@ def _peaks(solution: Solution) -> list[int]:
                 for extreme in (statistics.smallest, statistics.largest, statistics.peak)
             ]
     return found
+
+
+def drive_entry(
+    solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
+) -> dict[str, Json] | None:
+    """The coordinate by which instants were defined, if any, at those that are chosen."""
+    over = solution.over
+    if over is None:
+        return None
+    return {"joint": over.joint, "unit": over.unit, "values": arrays.add(over.values[chosen])}
 
 
 @dataclass(frozen=True)
