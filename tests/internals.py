@@ -50,8 +50,8 @@ from lagrange_casadi.cli.report import peak_line, shown
 from lagrange_casadi.cli.report import readable as report_readable
 from lagrange_casadi.cli.run import slope_lines
 from lagrange_casadi.cli.strength_lines import not_evaluated_lines, strength_lines
-from lagrange_casadi.cluster import sweeps
-from lagrange_casadi.cluster.sweeps import Cluster
+from lagrange_casadi.cluster import dask_workers
+from lagrange_casadi.cluster.dask_workers import Cluster
 from lagrange_casadi.codegen import compiler, find_compiler, library, printer, programs
 from lagrange_casadi.codegen.calls import Call
 from lagrange_casadi.codegen.compiler import FLAGS, LANES_PLACE
@@ -308,13 +308,12 @@ from lagrange_casadi.studies.sweep.blocks import Queue, chunk_of, slabs
 from lagrange_casadi.studies.sweep.checking import check_sweep, progress
 from lagrange_casadi.studies.sweep.chunks import FILTERS, deflated, encoded, fletcher32
 from lagrange_casadi.studies.sweep.columns import Column as ColumnsColumn
-from lagrange_casadi.studies.sweep.columns import Harvest
+from lagrange_casadi.studies.sweep.columns import Task
 from lagrange_casadi.studies.sweep.default_figures import default_plots
-from lagrange_casadi.studies.sweep.instant_axis import InstantAxis
 from lagrange_casadi.studies.sweep.listing import Listed as ListingListed
 from lagrange_casadi.studies.sweep.notes import resting_note, turning_note
 from lagrange_casadi.studies.sweep.parts import Folder
-from lagrange_casadi.studies.sweep.plan import Plan, Task, difference, signature
+from lagrange_casadi.studies.sweep.plan import Plan, difference
 from lagrange_casadi.studies.sweep.plots import Along as PlotsAlong
 from lagrange_casadi.studies.sweep.plots import Front, Peaks, Scatter, draw_sweep
 from lagrange_casadi.studies.sweep.scale import Scale as ScaleScale

@@ -13,7 +13,7 @@ import pytest
 import sweeps
 from internals import Folder, Sweep
 from internals import columns as kept
-from internals import sweeps as cluster
+from internals import dask_workers as cluster
 from sweeps import ASKED, CASE
 
 from lagrange_casadi.cli import main, progress
