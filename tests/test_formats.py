@@ -145,6 +145,22 @@ MISUSE = {
 }
 
 
+OF_SHAPE = ("another schema", "unknown key", "no joints", "negative mass", "not a number")
+OF_SHAPE = (*OF_SHAPE, "unknown joint", "no kind")
+
+
+def test_the_schema_accepts_what_the_reader_does(tmp_path):
+    """And refuses what is wrong in its shape; what no mechanism is, the reader alone sees."""
+    jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is not installed")
+    schema = json.loads(Path("docs/model.schema.json").read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    valid = jsonschema.Draft202012Validator(schema).is_valid
+    save_model(load_case("delta").scene, tmp_path / "model.json")
+    assert valid(json.loads((tmp_path / "model.json").read_text()))
+    assert valid(ARM)
+    assert [what for what in OF_SHAPE if valid(MISUSE[what][0])] == []
+
+
 @pytest.mark.parametrize("what", MISUSE)
 def test_misuse_is_one_line_that_names_the_element(what, tmp_path):
     told, words = MISUSE[what]

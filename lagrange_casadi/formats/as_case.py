@@ -19,7 +19,7 @@ from ..base.arrays import Array
 from ..errors import escaped
 from .checks import EXACT, opened
 from .laws import LawError, of_pi, python, text_of, tuple_of
-from .record import GROUND, MOVES, ROWS, Body, Frame, Joint, Law, Model, Tie
+from .record import GROUND, MOVES, Body, Frame, Joint, Law, Model, Tie
 
 WIDTH = 96
 """Characters of a line, at most, where it can be broken."""
@@ -138,8 +138,8 @@ class _Case:
 
     def gravity(self) -> None:
         """Declare gravity where it is not the usual one."""
-        if tuple(self.model.gravity) != (0.0, 0.0, -9.81):
-            self.lines.append(f"m.set_gravity{tuple_of(self.model.gravity)}")
+        if (gravity := self.model.gravity.tolist()) != [0.0, 0.0, -9.81]:
+            self.lines.append(f"m.set_gravity{tuple_of(gravity)}")
 
     def ends(self, body: Body) -> tuple[Place, Place]:
         """Return two places that a link lies between: a joint, and the place farthest from it."""
@@ -265,9 +265,7 @@ class _Case:
                 parent, child = self.turns_about(tie, tie.parent), self.turns_about(tie, tie.child)
                 self.turn("first", _minus(parent), row.angle, ("x", "y", away))
                 self.turn("second", _minus(child), row.other, ("u", "v", back))
-            factor, e, f = text_of(row.factor), "xyz"[row.i], "uvw"[row.j]
-            row_text = ROWS[row.kind].format(e=e, f=f, factor=factor)
-            said = row_text + _signed(-row.value)
+            said = row.text + _signed(-row.value)
             self.lines += _call("m.constraint", [json.dumps(name), said])
 
     def turn(self, name: str, counted: str, start: float, axes: tuple[str, str, str]) -> None:
@@ -336,12 +334,9 @@ class _Case:
 
     def offset(self, coordinate: str) -> float:
         """Return what a coordinate of the file is where that of the case is zero."""
-        owner = coordinate.partition(":")[0]
-        if owner in self.open:
+        if coordinate.partition(":")[0] in self.open:
             return 0.0
-        joint = self.model.joints[owner]
-        values = self.model.at_reference(joint)
-        found = values[joint.coordinates.index(coordinate)]
+        found = self.model.at_reference(coordinate)
         return 0.0 if abs(found) < EXACT * max(self.size, 1.0) else found
 
     def link_axes(self, body: str) -> Array:

@@ -15,19 +15,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from .elements import Element
-from .record import (
-    GROUND,
-    Body,
-    Frame,
-    Joint,
-    Law,
-    Model,
-    Row,
-    Tie,
-    number,
-    numbers,
-    rotation,
-)
+from .record import GROUND, Body, Frame, Joint, Law, Model, Row, Tie
 
 KINDS: dict[str, str] = {
     "RevoluteJoint": "revolute",
@@ -93,24 +81,24 @@ class _Line(Element):
 
     def number(self, name: str, where: str = "") -> float:
         """Return the number below the line of a text."""
-        return number(self.model, where or self.where, self.value(name), name)
+        return self.model.number(where or self.where, self.value(name), name)
 
     def vector(self, name: str) -> Array:
         """Return three numbers below the line of a text."""
-        return numbers(self.model, self.needed(name).where, self.value(name), name, 3)
+        return self.model.numbers(self.needed(name).where, self.value(name), name)
 
     def frame(self) -> Frame:
         """Return the place and axes below it."""
         place, rows = self.vector("Position3D"), self.needed("RotationMatrix")
-        axes = [numbers(self.model, rows.where, one.name, "axes", 3) for one in rows.inside]
+        axes = [self.model.numbers(rows.where, one.name, "axes") for one in rows.inside]
         if len(axes) != 3:
             raise rows.refuse("expected three rows")
-        return Frame(place, rotation(self.model, rows.where, np.array(axes)))
+        return Frame(place, self.model.rotation(rows.where, np.array(axes)))
 
 
 def read(path: Path, text: str) -> Model:
     """Return the model of a file. Raises :class:`.ModelFileError`, which names line and element."""
-    model = Model(path.stem, path.name, gravity=(0.0, 0.0, 0.0))
+    model = Model(path.stem, path.name, gravity=np.zeros(3))
     return _Reader(model, _tree(model, text)).read()
 
 
@@ -164,8 +152,7 @@ class _Reader:
         ignored = [*sets.below("Limits"), *sets.below("GeneralConstraintSets")]
         for one in (*ignored, *root.below("ForceTorques")):
             model.notes.append(f"{one.name} of line {one.line} is ignored.")
-        x, y, z = root.vector("ConstantGravity")
-        model.gravity = (float(x), float(y), float(z))
+        model.gravity = root.vector("ConstantGravity")
         self.times()
         return model
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.arrays import Array
-from .record import GROUND, Body, Frame, Joint, Model, Tie, about_axis
+from .record import GROUND, Body, Frame, Joint, Model, Tie
 
 SLACK = 1e-6
 """Frames of a joint that are apart by less, of the mechanism's size and in rad, are one."""
@@ -94,8 +94,8 @@ def _connected(model: Model) -> None:
     for tie in model.ties.values():
         for one, other in ((tie.parent, tie.child), (tie.child, tie.parent)):
             if one not in reached and other in reached:
-                name = model.name_of("joint", f"{one}_free", tie.where, model.joints)
-                model.joints[name] = Joint(name, "free", GROUND, one, model.frame_of(one), Frame())
+                ends = GROUND, one, model.frame_of(one), Frame()
+                model.add(Joint, f"{one}_free", tie.where, "free", *ends)
                 _connected(model)
                 return
     for body in model.bodies.values():
@@ -118,7 +118,7 @@ def _spins(model: Model) -> None:
         for mine, frame in ((last.parent, last.on_parent), (last.child, last.on_child)):
             # The neighbour carries the axis about which it turns; the body the one across it.
             z = across if mine == other else np.cross(along, across)
-            axes = model.frame_of(mine).axes.T @ about_axis(z)
+            axes = model.frame_of(mine).axes.T @ Frame.about(z).axes
             held.append(Frame(frame.place, axes))
         near, far = held
         model.joints[last.name] = replace(last, kind="universal", on_parent=near, on_child=far)
@@ -136,7 +136,7 @@ def _axis_of(model: Model, body: str, along: Array) -> Array:
             across = axis - (axis @ along) * along
             if (size := float(np.linalg.norm(across))) > 0.1:
                 return np.asarray(across / size)
-    return about_axis(along)[:, 0]
+    return Frame.about(along).axes[:, 0]
 
 
 def _rounding(model: Model) -> None:

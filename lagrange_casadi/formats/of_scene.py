@@ -65,8 +65,7 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
         raise DeclarationError(f"{what}: constraint '{name}' cannot be written into a model file")
     if described["loads"]:
         model.notes.append(f"Loads are not exported: {', '.join(described['loads'])}.")
-    x, y, z = (*described["gravity"], 0.0)[:3]
-    model.gravity = (x, y, z)
+    model.gravity = np.array([*described["gravity"], 0.0][:3])
     declared = Declared.of(described)
     for name, body in described["bodies"].items():
         model.bodies[name] = _body(name, body, declared.bodies[name], _frame(solution, name))
