@@ -46,6 +46,7 @@ def checked(model: Model) -> Model:
         if name not in valid:
             words = f"unknown coordinate '{name}'; valid: {', '.join(valid)}"
             raise model.refuse(where, words)
+    _assemble(model)
     _rounding(model)
     _spins(model)
     return model
@@ -102,6 +103,35 @@ def _connected(model: Model) -> None:
         if body.name not in reached:
             words = f"body '{body.name}' is not connected to the ground"
             raise model.refuse(body.where, words)
+
+
+def _assemble(model: Model) -> None:
+    """Move bodies of a drawing that is not assembled, all of whose joints are open, so that one of
+    these is closed, its coordinates as they are.
+    """
+    apart = opened(model)
+    closed = [one for one in model.joints.values() if one.name not in apart]
+    placed = {GROUND, *(name for one in closed for name in (one.parent, one.child))}
+    while True:
+        between = (
+            one for one in model.joints.values() if (one.parent in placed) != (one.child in placed)
+        )
+        if (joint := next(between, None)) is None:
+            return
+        near, far = model.frames(joint)
+        relative = model.closest(joint)
+        moves = joint.child if joint.parent in placed else joint.parent
+        if moves == joint.child:
+            frame = near.then(relative).then(joint.on_child.inverse())
+        else:
+            frame = far.then(relative.inverse()).then(joint.on_parent.inverse())
+        gap, angle = apart[joint.name]
+        model.bodies[moves] = replace(model.bodies[moves], frame=frame)
+        placed.add(moves)
+        model.notes.append(
+            f"body '{moves}' is moved so that joint '{joint.name}' is closed, which is open by"
+            f" {gap:.3g} m and {angle:.3g} rad in the file"
+        )
 
 
 def _spins(model: Model) -> None:

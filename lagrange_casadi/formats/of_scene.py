@@ -85,7 +85,11 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
                 f"{what}: the motion of '{name}' cannot be written into a model file"
             )
         t = ca.SX.sym("t")
-        law = ca.Function("law", [t], [ca.densify(laws.motion(t, values)[0][k])])
+        motion = ca.densify(laws.motion(t, values)[0][k])
+        if model.joints[name.partition(":")[0]].kind == "universal":
+            # Its turns are counted from the reference posture, which is that at the start.
+            motion = motion - ca.substitute(motion, t, start)
+        law = ca.Function("law", [t], [motion])
         model.motions[name] = _law(law, model.span)
     if scene.drives is not None:
         model.drives = list(scene.drives)

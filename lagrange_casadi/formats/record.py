@@ -83,6 +83,10 @@ class Frame:
         """Return a frame given relative to this one, relative to the reference of this one."""
         return Frame(self.place + self.axes @ inner.place, self.axes @ inner.axes)
 
+    def inverse(self) -> Frame:
+        """Return the reference of this one, relative to this one."""
+        return self.relative(Frame())
+
     def relative(self, other: Frame) -> Frame:
         """Return a frame given relative to the reference of this one, relative to this one."""
         return Frame(self.axes.T @ (other.place - self.place), self.axes.T @ other.axes)
@@ -323,6 +327,27 @@ class Model:
             turns = _three_turns(known.axes[np.ix_(order, order)])
         slides = [known.place["xyz".index(axis)] for _, move, axis in moves if move == "slide"]
         return float([*slides, *turns][joint.coordinates.index(coordinate)])
+
+    def closest(self, joint: Joint) -> Frame:
+        """Return where the child's frame is on the parent's if the joint, open in the reference
+        posture, is closed with the coordinates that it has there.
+        """
+        near, far = self.frames(joint)
+        known, moves = near.relative(far), MOVES[joint.kind]
+        slides = [axis for _, move, axis in moves if move == "slide"]
+        place = np.where([axis in slides for axis in "xyz"], known.place, 0.0)
+        turns = [axis for _, move, axis in moves if move != "slide"]
+        if len(turns) == 3:
+            return Frame(place, known.axes)
+        if len(turns) == 2:  # of a universal joint: the child's z is across the parent's
+            across = np.array([known.axes[0, 2], known.axes[1, 2], 0.0])
+            return Frame.about(across if np.any(across) else np.eye(3)[0], place)
+        if not turns:
+            return Frame(place)
+        angle = math.atan2(known.axes[1, 0], known.axes[0, 0])
+        if joint.kind == "screw":
+            place[2] = joint.lead * angle / math.tau
+        return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
 
     def size(self) -> float:
         """Return the extent of what joints and centres of mass span [m]."""
