@@ -430,6 +430,14 @@ def test_markers_that_a_drawing_has_rounded(tmp_path):
     assert evaluate(read(path), t=(0.0, 1.0, 3)).certified
 
 
+def test_axes_that_a_drawing_has_rounded(tmp_path):
+    """Off by 5e-7, as numbers of six digits are: set at right angles, and said."""
+    path = tmp_path / "press.asmt"
+    path.write_text(refusal(FOUR_BAR, ("0.0\t1.0\t0.0", "0.0\t1.0\t5e-07")))
+    text = case_of(path).replace("\n#  ", "")
+    assert re.search(r"off right angles by 2\.5e-07 \(at line \d+, RotationMatrix\) or less", text)
+
+
 def test_the_press_is_the_one_by_hand():
     """The shipped case, and its file, against a declaration in the plane."""
     m = Mechanism("by_hand")

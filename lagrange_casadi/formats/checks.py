@@ -171,7 +171,10 @@ def _axis_of(model: Model, body: str, along: Array) -> Array:
 
 def _rounding(model: Model) -> None:
     """Lay the frames of each joint on each other where they miss by a drawing's rounding."""
-    size = model.size()
+    size, (off, where) = model.size(), model.rounded
+    if off:
+        words = f"Axes that are off right angles by {off:.1e} (at {where}) or less"
+        model.notes.append(f"{words} are taken as rounding, and set at right angles.")
     for joint in model.joints.values():
         gap, angle = model.apart(joint)
         if max(gap / size, angle) > SLACK or max(gap / size, angle) <= EXACT:

@@ -221,7 +221,7 @@ class Model:
     posture are assembled. ``drives`` are the joints whose efforts make the motion, where these are
     not those that have one; ``preferred`` are joints that are driven first. ``called`` are the
     file's names of parts that have another one here; ``named`` are names here by the kind of a part
-    and its name of the file.
+    and its name of the file. ``rounded`` is by how much axes are off right angles, and where.
     """
 
     name: str
@@ -239,6 +239,7 @@ class Model:
     notes: list[str] = field(default_factory=list)
     called: dict[str, str] = field(default_factory=dict)
     named: dict[tuple[str, str], str] = field(default_factory=dict)
+    rounded: tuple[float, str] = (0.0, "")
 
     def refuse(self, where: str, words: str) -> ModelFileError:
         """Return the error of an element of the file."""
@@ -270,9 +271,12 @@ class Model:
         Raises :class:`.ModelFileError` for axes that are off by more than 1e-4.
         """
         exact = _right_angled(axes)
-        if np.abs(exact - axes).max() > 1e-4 or np.linalg.det(exact) < 0:
+        off = float(np.abs(exact - axes).max())
+        if off > 1e-4 or np.linalg.det(exact) < 0:
             words = "axes: expected three directions at right angles, right-handed"
             raise self.refuse(where, words)
+        if off > max(1e-9, self.rounded[0]):
+            self.rounded = off, where
         return exact
 
     def name_of(self, kind: str, stated: str, where: str, taken: Collection[str]) -> str:
