@@ -84,6 +84,19 @@ def test_turns_about_several_axes_are_counted_from_zero(kind, tmp_path):
     assert np.abs(back - there).max() < 1e-12 * np.abs(there).max()
 
 
+def test_the_legs_of_a_platform_move_as_they_did(tmp_path):
+    """The platform's pose has six motions, and is turned about all axes at the start."""
+    scene = load_case("stewart_gough").scene
+    save_model(scene, tmp_path / "model.json")
+    there, back = (
+        evaluate(one, t=(*scene.span, 3), wanted=["motion"])
+        for one in (scene, read(tmp_path / "model.json"))
+    )
+    for leg in ("P0", "P3"):
+        rate = there.motion(leg).rate
+        assert np.abs(back.motion(leg).rate - rate).max() < 1e-12 * np.abs(rate).max()
+
+
 def test_what_new_writes_gives_the_numbers_of_read(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     assert main(["export", "stewart_gough", "--model", "legs.json"]) == 0
