@@ -135,6 +135,7 @@ from lagrange_casadi.equations.model_data import template
 from lagrange_casadi.equations.multibody import Turned, place_along
 from lagrange_casadi.equations.program import Program
 from lagrange_casadi.equations.reciprocals import differentiable, share_reciprocals
+from lagrange_casadi.equations.released_loops import rank_of
 from lagrange_casadi.equations.revolutions import depends_on_turns
 from lagrange_casadi.equations.section_function import SIDES, SectionInputs, section
 from lagrange_casadi.equations.spherical import axes_of as spherical_axes_of
