@@ -28,7 +28,8 @@ import casadi as ca
 
 from ..arithmetic.scalars import column
 from ..base.arrays import Expression
-from ..base.quantities import Output, force_members, law_members, load_point_members, local_members
+from ..base.quantities import Output, force_members
+from ..base.tables import table_of
 from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.limits import at_end
@@ -228,6 +229,7 @@ def _section_law(
     stations from what acts there.
     """
     link, space = multibody.mechanism.links[name], multibody.mechanism.space
+    table = table_of(space)
     slopes = _material(multibody, name)
     tip = Action()
     load_points: dict[Column, Any] = {}
@@ -242,7 +244,7 @@ def _section_law(
         members = (*acts, place[0] / link.length)
         load_points |= {
             Output("station", name, member, source): value
-            for member, value in zip(load_point_members(space), members, strict=True)
+            for member, value in zip(table.load_point, members, strict=True)
         }
     by_mass, by_moment = ([-slopes[k, column] for k in range(slopes.size1())] for column in (0, 1))
     at_tip, about = list(tip.force), tip.couple
@@ -260,7 +262,7 @@ def _section_law(
         law += [*plane, about[1], about[0]]
     local = {
         Output("law", name, member): ca.SX(value)
-        for member, value in zip(law_members(space), law, strict=True)
+        for member, value in zip(table.law, law, strict=True)
     }
     frame = multibody.accelerated[name].along_axis()
     return (
@@ -467,11 +469,11 @@ def _on_joint_axes(joint: Joint, local: Action) -> dict[Column, Expression]:
     """A reaction on the axes of a joint's triad, which its parent carries: what ideal joints leave
     open lies along one of these.
     """
-    values = [dot(one, vector) for vector in (local.force, local.couple) for one in joint.triad]
-    names = local_members(moment=joint.bears_moment)
+    vectors = {"f": local.force} | ({"m": local.couple} if joint.bears_moment else {})
     return {
-        Output("reaction", joint.name, name): ca.SX(value)
-        for name, value in zip(names, values, strict=False)
+        Output("reaction", joint.name, letter + axis): ca.SX(dot(direction, vector))
+        for letter, vector in vectors.items()
+        for axis, direction in zip("uvw", joint.triad, strict=True)
     }
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.graph_text import dumps, loads
-from ..base.quantities import Output, law_members, load_point_members
+from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..declare.corners import Corners
 from ..declare.description import Place, Template
@@ -30,7 +30,6 @@ from .checks import Check, Column, Kind
 from .fibre_stresses import LinkStress
 from .iteration import NewtonLoop
 from .least_energy import Completion
-from .mobility import load_points_of
 from .model_data import ModelData
 from .section_function import SectionInputs, section
 from .status import Bound, Rule, beside_of, bounds_of, rules_of, status_of
@@ -160,22 +159,10 @@ class Program(Graphs):
     @cached_property
     def links(self) -> tuple[str, ...]:
         """The links of which a whole section law was wanted, and is there."""
-        space = self.data.space
-        needed = {
-            link: (
-                [Output("law", link, member) for member in law_members(space)]
-                + [
-                    Output("station", link, member, load_point)
-                    for load_point in load_points_of(self.outputs, link)
-                    for member in load_point_members(space)
-                ]
-            )
-            for link in self.wanted.sections
-        }
         return tuple(
             link
-            for link, outputs in needed.items()
-            if all(output in self.outputs for output in outputs)
+            for link in self.wanted.sections
+            if SectionInputs.of(self.outputs, link).among(self.outputs)
         )
 
     @symbolic_property

@@ -1,7 +1,7 @@
 """Loads of a link as numbers: what acts at stations, and along it, with the functions that go with
 its coefficients.
 
-See :mod:`..equations.distributed_loads`.
+See :mod:`..equations.section_function`.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ class DistributedLoad(_Load):
         (..., t).
         """
         width, end = self.width[..., :1], self.end[..., :1]
-        # x, L and a of equations/distributed_loads.py.
+        # x, L and a of equations/section_function.py.
         x, reach, lever = (
             np.clip((end - u) / width, 0.0, 1.0),
             length * width,
