@@ -26,7 +26,7 @@ import numpy.typing as npt
 from ..arithmetic.compensated import Pair, Pairs
 from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
 from ..arithmetic.lookups import Lookup
-from ..arithmetic.scalars import applied, column, entries
+from ..arithmetic.scalars import applied, column, entries, graph
 from ..base.arrays import Array, Expression, Operand
 from ..base.symbolic import Graphs, symbolic
 from ..base.vocabulary import Precision
@@ -128,13 +128,12 @@ def controlled(
     Where parameters are ``fixed``, pairs have all the digits of these numbers, as of other
     constants. Raises :class:`DeclarationError` for a graph that cannot be followed in pairs.
     """
-    names = ["moment", "p"]
     if precision == "double":
         stages, p = plain(program), program.instant.sx_in("p")
         moment = ca.SX.sym("moment", stages.instant.size1_in(0))
         return Controlled(
             program.laws.motion,
-            ca.Function("count", [moment, p], [moment], names, ["counted"]),
+            graph("count", {"moment": moment, "p": p}, counted=moment),
             *_others(stages),
         )
     pairs, rows = Pairs(precision), 1 + len(program.driven)
@@ -142,7 +141,7 @@ def controlled(
     t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
     known = [Pair(x) for x in entries(p)] if fixed is None else [pairs.constant(x) for x in fixed]
     handed, loops, instant = _counted(program, pairs, t, driven, known)
-    count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
+    count = graph("count", {"moment": ca.vec(moment), "p": p}, counted=handed)
     return Controlled(
         _paired_law(program.laws.motion, pairs, p, known), count, loops, instant, precision
     )
@@ -366,15 +365,8 @@ def _counted(
         for outputs in found
     ]
     counted, handed = counting.handed()
-    names = ["counted", "d_rate", "d_acceleration", "z", "p"]
-    instant = ca.Function(
-        "instant",
-        [counted, rate, acceleration, z, symbols],
-        results[-1],
-        names,
-        ["out"],
-        {"cse": True},
-    )
+    given = {"counted": counted, "d_rate": rate, "d_acceleration": acceleration}
+    instant = graph("instant", given | {"z": z, "p": symbols}, out=results[-1][0])
     loops = (
         ca.Function("loops", [z, counted, symbols], results[0], {"cse": True})
         if program.newton

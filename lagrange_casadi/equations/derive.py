@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import Outputs, public, texts
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base import cache
 from ..base.arrays import Expression
 from ..base.quantities import Output
@@ -306,15 +306,11 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
         if want is asked
         else {key: value for key, value in columns.items() if not _for_strain_alone(key, asked)}
     )
-    out = ca.densify(column(columns.values()))
-    names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-    instant = share_reciprocals(
-        ca.Function("instant", moving.inputs, [out], names, ["out"], {"cse": True}), "p"
-    )
+    instant = graph("instant", moving.inputs, out=column(columns.values()))
     return Program(
         data=ModelData.of(scene, moving.laws),
         wanted=asked,
-        instant=instant,
+        instant=share_reciprocals(instant, "p"),
         newton=moving.solved.newton,
         columns=tuple(columns),
         loop_angles=loop_angles,

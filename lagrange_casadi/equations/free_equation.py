@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from ..arithmetic.scalars import graph
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..declare.scene import Scene
@@ -100,15 +101,9 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     taken = (reached - inertia * found - change * rate**2 / 2.0) * rate
     rows = [found, reached, pushed + added[0], resisting, taken, inertia * rate**2 / 2.0, -by]
     rows += [-by_rate / by, -1.0 / by, found / by, sine]
-    all_rows = ca.densify(ca.vertcat(*rows))
-    state = ca.Function(
-        "state",
-        [t, d, rate, z, added, p],
-        [all_rows],
-        ["t", "angle", "speed", "z", "added", "p"],
-        ["out"],
-        {"cse": True},
-    )
+    all_rows = ca.vertcat(*rows)
+    given = {"t": t, "angle": d, "speed": rate, "z": z, "added": added, "p": p}
+    state = graph("state", given, out=all_rows)
     slides = scene.mechanism.coordinates[joint][1].kind == "slide"
     timed = bool(ca.depends_on(all_rows, t))
     return FreeEquation(program, joint, state, _loops(program), timed, slides)

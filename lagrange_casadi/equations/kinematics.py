@@ -18,7 +18,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..declare.directions import most_across
 from ..errors import AssemblyError
 from ..geometry.vectors import AXES
@@ -492,20 +492,10 @@ class _Solver:
             return None
         residuals = self.found.put_into(column(block.residual for block in self.residuals))
         correction, relative = self.iterated.step(residuals)
-        inputs = [
-            self.iterated.symbols,
-            self.multibody.mechanism.time,
-            self.d,
-            self.multibody.mechanism.symbols,
-        ]
-        step = ca.Function(
-            "loops",
-            inputs,
-            [correction, relative],
-            ["z", "t", "d", "p"],
-            ["correction", "size"],
-            {"cse": True},
-        )
+        mechanism = self.multibody.mechanism
+        inputs = {"z": self.iterated.symbols, "t": mechanism.time, "d": self.d}
+        inputs["p"] = mechanism.symbols
+        step = graph("loops", inputs, correction=correction, size=relative)
         names = tuple(block.name for block in self.residuals)
         joints = ", ".join(block.joints for block in self.residuals)
         return NewtonLoop(

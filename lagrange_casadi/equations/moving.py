@@ -76,17 +76,9 @@ class Moving:
         return cls(scene, want, body, laws, start, solved, deviations)
 
     @property
-    def inputs(self) -> list[Expression]:
+    def inputs(self) -> dict[str, Expression]:
         """Arguments of every column."""
-        solved, mechanism = self.solved, self.scene.mechanism
-        return [
-            mechanism.time,
-            solved.driven,
-            solved.driven_rate,
-            solved.driven_acceleration,
-            solved.iterated,
-            mechanism.symbols,
-        ]
+        return instant_inputs(self.scene.mechanism, self.solved)
 
     def begins(self, expression: Expression) -> Expression:
         """An expression in the inputs where the motion starts."""
@@ -97,7 +89,7 @@ class Moving:
             newton.guess if newton else [],
             start.parameters,
         )
-        return ca.Function("start", self.inputs, [expression])(*at_start)
+        return ca.Function("start", [*self.inputs.values()], [expression])(*at_start)
 
     def columns(self) -> tuple[dict[Column, Expression], dict[Output, dict[Column, int]]]:
         """Columns that need no force: checks, motion and loads; and the sums of angles that loops
@@ -187,6 +179,18 @@ class Moving:
             if any(check in revolutions for revolutions in loop_angles.values())
         }
         return columns | dict(motions.items()) | _unmeasured_angles(body, motions), loop_angles
+
+
+def instant_inputs(mechanism: Mechanism, solved: kinematics.Kinematics) -> dict[str, Expression]:
+    """The symbols that an instant of a mechanism is a function of, by name."""
+    return {
+        "t": mechanism.time,
+        "d": solved.driven,
+        "d_rate": solved.driven_rate,
+        "d_acceleration": solved.driven_acceleration,
+        "z": solved.iterated,
+        "p": mechanism.symbols,
+    }
 
 
 def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..arithmetic.scalars import graph, inputs_of
+from ..base.arrays import Array, Expression
 from ..base.graph_text import dumps, loads
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic, symbolic_property
@@ -180,12 +181,8 @@ class Program(Graphs):
             function = section(inputs.alike(), density.breaks, sizes, END["double"])
             law, acting, _, xi = function.sx_in()
             numbers = ca.vertcat(length, *itertools.chain.from_iterable(density.cells))
-            forces = function(law, acting, numbers, xi)
-            names = ["law", "acting", "p", "xi"]
-            options = {"cse": True}
-            found[link] = ca.Function(
-                "section", [law, acting, p, xi], [forces], names, ["forces"], options
-            )
+            given = {"law": law, "acting": acting, "p": p, "xi": xi}
+            found[link] = graph("section", given, forces=function(law, acting, numbers, xi))
         return found
 
     @symbolic_property
@@ -203,6 +200,12 @@ class Program(Graphs):
         """The outputs that may be indeterminate, and the columns that show at which instants."""
         checks = ((column, k) for k, column in enumerate(self.columns) if isinstance(column, Check))
         return {check.part: k for check, k in checks if isinstance(check.part, Output)}
+
+    @symbolic
+    def with_columns(self, columns: Sequence[Column], out: Expression) -> Program:
+        """The Program with other columns, ``out`` as expressions of the symbols of ``instant``."""
+        instant = graph("instant", inputs_of(self.instant), out=out)
+        return replace(self, instant=instant, columns=tuple(columns))
 
     def iterates(self, closure: str) -> bool:
         """Return whether the loops of a closure are iterated."""

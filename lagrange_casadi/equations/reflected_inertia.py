@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base.quantities import Output
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
@@ -23,6 +23,7 @@ from .checks import Column
 from .derive import assembled
 from .kinematics import Start
 from .model_data import ModelData
+from .moving import instant_inputs
 from .program import Program
 from .tree import span
 
@@ -71,23 +72,8 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
         ca.hessian(energy, solved.driven_rate)[0],
         ca.jacobian(column(rates), solved.driven_rate),
     )
-    out = ca.densify(ca.vertcat(ca.vec(matrix.T), ca.vec(by_rate.T)))
-    inputs = [
-        mechanism.time,
-        solved.driven,
-        solved.driven_rate,
-        solved.driven_acceleration,
-        solved.iterated,
-        mechanism.symbols,
-    ]
-    instant = ca.Function(
-        "instant",
-        inputs,
-        [out],
-        ["t", "d", "d_rate", "d_acceleration", "z", "p"],
-        ["out"],
-        {"cse": True},
-    )
+    out = ca.vertcat(ca.vec(matrix.T), ca.vec(by_rate.T))
+    instant = graph("instant", instant_inputs(mechanism, solved), out=out)
     columns: list[Column] = [
         Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven
     ]

@@ -29,7 +29,7 @@ from typing import Any, Literal
 
 import casadi as ca
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base.arrays import Expression, Operand
 from ..base.quantities import Output, parts_along
 from ..base.symbolic import symbolic
@@ -284,8 +284,8 @@ def section(
     forces = ca.vertcat(
         *(link.at(force, Place(xi, side=side), slack) for force in inputs.table.forces)
     )
-    given, names = [law, acting, mass_properties, xi], ["law", "acting", "matter", "xi"]
-    return ca.Function(name, given, [ca.densify(forces)], names, ["forces"], {"cse": True})
+    given = {"law": law, "acting": acting, "matter": mass_properties, "xi": xi}
+    return graph(name, given, forces=forces)
 
 
 @functools.cache
@@ -320,14 +320,8 @@ def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int]) 
     def rows(force: str, coefficient: str) -> Expression:
         given = [law[PLANE.law.index(term)] for term in PLANE.sections[force].coefficients]
         given += [loads[k] for k, output in enumerate(acting) if output.member == coefficient]
-        return ca.densify(ca.jacobian(forces[PLANE.forces.index(force)], ca.vertcat(*given)))
+        return ca.jacobian(forces[PLANE.forces.index(force)], ca.vertcat(*given))
 
     spans = (loads[k] for k, output in enumerate(acting) if output.power is None)
-    return ca.Function(
-        "along",
-        [mass_properties, column(spans), xi],
-        [rows("axial", "qn"), rows("bending", "qf")],
-        ["matter", "spans", "xi"],
-        ["force", "bending"],
-        {"cse": True},
-    )
+    inputs = {"matter": mass_properties, "spans": column(spans), "xi": xi}
+    return graph("along", inputs, force=rows("axial", "qn"), bending=rows("bending", "qf"))

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import casadi as ca
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.status import Status
@@ -136,15 +136,8 @@ def status_of(program: Program) -> ca.Function:
         k = rule.bound
         broken = fails(iterated, 0, 0) if k is None else fails(checks[k], limits[k], beside[k])
         first = ca.if_else(broken, number, first)
-    names = ["checks", "limits", "beside", "iterated"]
-    return ca.Function(
-        "status",
-        [checks, limits, beside, iterated],
-        [ca.densify(first)],
-        names,
-        ["rule"],
-        {"cse": True},
-    )
+    given = {"checks": checks, "limits": limits, "beside": beside, "iterated": iterated}
+    return graph("status", given, rule=first)
 
 
 @functools.lru_cache(maxsize=64)
@@ -158,11 +151,11 @@ def beside_of(program: Program) -> ca.Function:
     kink; the mechanism itself may not.
     """
     bounds = bounds_of(program)
-    names = ["before", "checks", "next", "after", "most"]
-    inputs = [ca.SX.sym(name, len(bounds)) for name in names]
+    names = ("before", "checks", "next", "after", "most")
+    inputs = {name: ca.SX.sym(name, len(bounds)) for name in names}
     found = [ca.SX(0)] * len(bounds)
     for k, bound in enumerate(bounds):
-        before, here, following, after, most = (column[k] for column in inputs)
+        before, here, following, after, most = (column[k] for column in inputs.values())
         if bound.kind in ("CLOSURE", "BRANCH"):
             s, next_s = _sine(here), _sine(following)
             left, right = 2 * s - _sine(before), 2 * next_s - _sine(after)
@@ -173,8 +166,7 @@ def beside_of(program: Program) -> ca.Function:
         elif bound.kind == "ROW":
             # Where all stands still, what rounding leaves of rates violates nothing.
             found[k] = most
-    out = ca.densify(column(found))
-    return ca.Function("beside", inputs, [out], names, ["beside"], {"cse": True})
+    return graph("beside", inputs, beside=column(found))
 
 
 def outside(program: Program) -> float:

@@ -10,9 +10,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
-import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array
@@ -113,14 +111,5 @@ def determinate(
 @functools.lru_cache(maxsize=32)
 def _without(program: Program, columns: tuple[Column, ...]) -> Program:
     kept = [k for k, column in enumerate(program.columns) if column not in columns]
-    inputs = program.instant.sx_in()
-    names = [program.instant.name_in(i) for i in range(program.instant.n_in())]
-    instant = ca.Function(
-        "instant",
-        inputs,
-        [ca.densify(program.instant(*inputs)[kept])],
-        names,
-        ["out"],
-        {"cse": True},
-    )
-    return replace(program, instant=instant, columns=tuple(program.columns[k] for k in kept))
+    out = program.instant(*program.instant.sx_in())[kept]
+    return program.with_columns([program.columns[k] for k in kept], out)
