@@ -167,6 +167,26 @@ class Member:
             for mark in (*found, *(still + b for b in self.law.density.breaks[1:-1]))
         ]
 
+    @cached_property
+    def edges(self) -> Array:
+        """Ratios (t, m) from 0 to 1 between which strains are smooth, in order at every instant."""
+        still = np.zeros_like(self.t)
+        fixed = [0.0, 1.0, *(cell.high for cell in self.cells[:-1])]
+        return np.sort(np.stack([*self.marks, *(still + ratio for ratio in fixed)], axis=1), axis=1)
+
+    @property
+    def strain_degree(self) -> int:
+        """The degree of polynomials that give strains between two edges."""
+        changing = max(cell.degree for cell in self.cells)
+        return self.degree + (changing + 6 if changing else 0)
+
+    def index_at(self, u: Array) -> npt.NDArray[np.intp]:
+        """The numbers of the parts of the beam, between breaks of its cross-section, in which
+        ratios are.
+        """
+        inner = np.array(self.beam.course.breaks[1:-1])
+        return np.searchsorted(inner, u, side="right")
+
     def cell_at(self, u: float, side: Side) -> Cell:
         """The part in which a ratio is; at a border that on one of its sides."""
         inside = [c for c in self.cells if c.low <= u <= c.high]
