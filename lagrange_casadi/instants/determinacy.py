@@ -20,7 +20,7 @@ from ..base.tables import MOMENT
 from ..equations.checks import Check, Column
 from ..equations.program import Program
 from .backends import Evaluated, run
-from .elasticity import Elasticity
+from .beyond_equilibrium import Elasticity
 from .evaluation_method import EvaluationMethod
 from .rules import indeterminate_limit
 

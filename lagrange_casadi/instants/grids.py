@@ -19,7 +19,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, during
 from ..base.space import cores, require
 from ..base.threads import in_threads
 from ..codegen import find_compiler
@@ -248,18 +248,13 @@ def _fill_in_blocks(columns: Columns, basis: Array, u: Array, out: Array, slack:
             _sum_up(
                 [c[block] for c in columns.columns[plane * terms : (plane + 1) * terms]],
                 basis,
-                [_cut(load, block) for load in columns.loads[plane * many : (plane + 1) * many]],
+                during(columns.loads[plane * many : (plane + 1) * many], block),
                 u,
                 values,
                 slack,
             )
             if plane:
                 np.sqrt(rows * rows + values * values, out=rows)
-
-
-def _cut(load: Load, block: slice) -> Load:
-    load_point, constant, slope = load
-    return load_point[block], constant[block], slope[block]
 
 
 def _sum_up(

@@ -7,13 +7,12 @@ See :mod:`..equations.section_function`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
-from typing import Any, TypeVar
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Instants, during
 from ..base.quantities import Output
 
 _AnyLoad = TypeVar("_AnyLoad", bound="_Load")
@@ -25,18 +24,9 @@ class _Load:
 
     name: str
 
-    def during(self: _AnyLoad, instants: slice | npt.NDArray[np.generic]) -> _AnyLoad:
+    def during(self: _AnyLoad, instants: Instants) -> _AnyLoad:
         """Load at some of the instants."""
-        arrays = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        del arrays["name"]
-        return replace(self, **{name: _cut(values, instants) for name, values in arrays.items()})
-
-
-def _cut(values: Any, instants: slice | npt.NDArray[np.generic]) -> Any:
-    """Values at some of the instants, each (t,)."""
-    if isinstance(values, Mapping):
-        return {key: tuple(row[instants] for row in rows) for key, rows in values.items()}
-    return values[instants]
+        return replace(self, **during(vars(self), instants))
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array, Operand
+from ..base.arrays import Array, Instants, Operand, during
 from ..base.brief import Brief
 from ..base.quantities import Output
 from ..base.space import require
@@ -107,15 +107,13 @@ class SectionLaw(Brief):
         """
         return grids.largest(self._sum(force, basis), basis.u, self.slack)
 
-    def during(self, instants: slice | npt.NDArray[np.generic]) -> SectionLaw:
+    def during(self, instants: Instants) -> SectionLaw:
         """The law at some of the instants."""
-        coefficients = {name: values[instants] for name, values in self.coefficients.items()}
-        loads = tuple(load.during(instants) for load in self.loads)
-        distributed_loads = tuple(
-            distributed.during(instants) for distributed in self.distributed_loads
-        )
         return replace(
-            self, coefficients=coefficients, loads=loads, distributed_loads=distributed_loads
+            self,
+            coefficients=during(self.coefficients, instants),
+            loads=during(self.loads, instants),
+            distributed_loads=during(self.distributed_loads, instants),
         )
 
     def at(self, force: str, xi: Operand, side: Side = "tip") -> Array:
