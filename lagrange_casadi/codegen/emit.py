@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from importlib import resources
 
 import casadi as ca
 
@@ -19,7 +18,7 @@ from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..equations.program import Program
 from .calls import Call
-from .compiler import WIDE, start
+from .compiler import WIDE, start, written
 from .printer import defined, function_name, literal, print_functions
 from .reduction import Reduction, reduced
 from .stages import Stages, plain
@@ -92,7 +91,7 @@ def emit(
         + WIDE
         + print_functions(wide, precision, prefix="scene", packs=True)
         + defined("SCENE", macros)
-        + resources.files(__package__).joinpath("scene.c").read_text()
+        + written("scene.c")
     )
     return text if reduction is None else text + reduced(program, reduction, precision)
 

@@ -14,7 +14,6 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy as np
@@ -29,7 +28,7 @@ from ..peak_search.between import Flags
 from ..peak_search.intervals import TOPS, Curves, CurveSource, Listed, Peaks, Samples
 from ..peak_search.sharpness import Kind, Watch
 from .calls import Call
-from .compiler import Compiler, broken, loaded, packed, start
+from .compiler import Compiler, entry_of, loaded, packed, start, written
 from .printer import defined
 
 FUNCTION = "lagrange_casadi_search"
@@ -136,9 +135,7 @@ def source(precision: Precision) -> str:
     """The C of the search."""
     text = start(precision) + _PRELUDE + interface(precision)
     text += defined("SEARCH", _macros(precision))
-    return text + "".join(
-        "\n" + resources.files(__package__).joinpath(name).read_text() for name in _FILES
-    )
+    return f"{text}\n{written(*_FILES)}"
 
 
 _PRELUDE = """\
@@ -398,11 +395,7 @@ def load_search(
     Raises :class:`CompilerError`.
     """
     library = loaded(packed(source(precision), compiler), compiler, extra, _LEVEL)
-    try:
-        return Search(
-            CALL.declare(getattr(library, FUNCTION)),
-            CALL.declare(getattr(library, _CAPACITY)),
-            precision,
-        )
-    except AttributeError as error:
-        raise broken(compiler, error) from None
+    entry, room = (
+        CALL.declare(entry_of(library, name, compiler)) for name in (FUNCTION, _CAPACITY)
+    )
+    return Search(entry, room, precision)

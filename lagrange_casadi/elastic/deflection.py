@@ -25,7 +25,7 @@ from ..errors import DeclarationError, UnknownNameError
 from ..instants.sizes import largest
 from ..instants.solution import Solution
 from ..instants.turning import stationary_points
-from ..peak_search.polynomials import interpolation
+from ..peak_search.fits import interpolation
 from ..strength.member import Member
 from .compliance import Compliance
 

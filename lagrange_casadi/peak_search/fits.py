@@ -1,10 +1,14 @@
-"""Polynomials through a few values at equal steps of time, and where they are largest."""
+"""Polynomials through a few values: at equal steps of time, with where they are largest, and at
+Chebyshev's nodes.
+"""
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from ..base.arrays import Array
 
@@ -156,3 +160,14 @@ def kink(y: Array) -> list[tuple[float, float]]:
     if not (up > bend and down > bend and -1.0 < x < 1.0 and left(x) >= y[3]):
         return []
     return [(x, left(x)), (x - ASIDE, left(x - ASIDE)), (x + ASIDE, right(x + ASIDE))]
+
+
+@functools.cache
+def interpolation(degree: int) -> tuple[Array, Array]:
+    """Nodes from -1 to 1, and what makes coefficients of Chebyshev's polynomials of the values
+    there: values @ weights.
+    """
+    nodes = chebyshev.chebpts1(degree + 1)
+    weights = chebyshev.chebvander(nodes, degree) * (2.0 / (degree + 1))
+    weights[:, 0] /= 2.0
+    return nodes, np.asarray(weights, float)

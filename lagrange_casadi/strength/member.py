@@ -19,7 +19,7 @@ from ..errors import DeclarationError, check_kind
 from ..instants.section_law import SectionLaw, Side
 from ..instants.solution import Solution
 from ..instants.statistics import counted
-from ..peak_search.polynomials import interpolation
+from ..peak_search.fits import interpolation
 
 _EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
 """Tolerance of a polynomial for the factors of forces, its degrees, and the length of a part of a

@@ -27,7 +27,7 @@ from ..beams.beam import Notch
 from ..equations.stress import KINDS, concentration, squared
 from ..errors import DeclarationError, UnknownNameError, shown
 from ..instants.section_law import Side
-from ..peak_search.polynomials import interpolation
+from ..peak_search.fits import interpolation
 from .member import Cell, Member
 
 _SAMPLES, _GLANCES, _BLOCK = 8, 4, 1 << 21
