@@ -76,23 +76,12 @@ def assemble(
         _loop_equations(joint.name, joint, *loop_residuals(joint, *resting.ends(joint)))
         for joint in tree.closing
     ]
-    loops += [
-        _loop_equations(
-            two_force_link.link.name, None, *map(ca.SX, resting.span(two_force_link, displace=()))
-        )
-        for two_force_link in tree.two_force_links
-    ]
-    loops[len(tree.closing) :] = [
-        replace(loop, two_force_link=two_force_link)
-        for loop, two_force_link in zip(
-            loops[len(tree.closing) :], tree.two_force_links, strict=True
-        )
-    ]
     for two_force_link in tree.two_force_links:
-        accelerated.span(
-            two_force_link,
-            displace=[joint.name for joint in two_force_link.joints if joint.name in reactions],
-        )
+        residuals = map(ca.SX, resting.span(two_force_link, displace=()))
+        equations = _loop_equations(two_force_link.link.name, None, *residuals)
+        loops.append(replace(equations, two_force_link=two_force_link))
+        released = [joint.name for joint in two_force_link.joints if joint.name in reactions]
+        accelerated.span(two_force_link, displace=released)
     for constraint in mechanism.constraints.values():
         residual = resting.counted(constraint.phi)
         rate = change(residual, resting.coordinates, mechanism.time)

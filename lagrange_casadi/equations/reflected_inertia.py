@@ -65,7 +65,7 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
     rates = [
         user_outputs[name]
         if name in user_outputs
-        else solved.evaluate(ca.SX(body.motion_along(*mechanism.coordinates[name])[1]))
+        else solved.evaluate(body.motion_along(*mechanism.coordinates[name])[1])
         for name in drives
     ]
     matrix, by_rate = (
