@@ -143,10 +143,8 @@ class Pairs:
 
     def negate(self, x: Pair) -> Pair:
         """-x."""
-        low, number = (
-            (None if x.low is None else self._negative(x.low)),
-            (None if x.number is None else -x.number),
-        )
+        low = None if x.low is None else self._negative(x.low)
+        number = None if x.number is None else -x.number
         return Pair(self._negative(x.high), low, number)
 
     def multiply(self, x: Pair, y: Pair) -> Pair:

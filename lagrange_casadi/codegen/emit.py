@@ -98,11 +98,9 @@ def emit(
 
 def _sizes(program: Program, stages: Stages, reduction: Reduction | None) -> dict[str, object]:
     columns, watched = len(program.columns), len(reduction.watches) if reduction else 0
-    nt, nc, nd = (
-        stages.drive.size1_in(0),
-        stages.drive.size1_out(0),
-        program.instant.size1_in("d"),
-    )
+    nt = stages.drive.size1_in(0)
+    nc = stages.drive.size1_out(0)
+    nd = program.instant.size1_in("d")
     return {
         "NT": nt,
         "NP": program.instant.size1_in("p"),

@@ -306,11 +306,9 @@ class Search:
         hidden = np.zeros((2, rows.shape[1]), np.int8)
         hidden[0, : n - 1] = hiding
         asked = _Asked(source, along)
-        found, located, begin = (
-            np.empty((3, quantities)),
-            np.zeros(quantities, np.int8),
-            rows.ctypes.data + _LINE * rows.itemsize,
-        )
+        found = np.empty((3, quantities))
+        located = np.zeros(quantities, np.int8)
+        begin = rows.ctypes.data + _LINE * rows.itemsize
         tops = np.empty((quantities, TOPS, 4)) if listed else None
         error = np.empty(quantities) if sampled else None
         most = np.fmax.reduce(np.abs(values), axis=1, initial=0.0)

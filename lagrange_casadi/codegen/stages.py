@@ -83,10 +83,8 @@ def compensated(program: Program, precision: Precision) -> Stages:
     Raises :class:`DeclarationError` for a graph that cannot be followed.
     """
     pairs, single = Pairs(precision), precision == "single"
-    time, parameters = (
-        ca.SX.sym("t", 2 if single else 1),
-        ca.SX.sym("p", program.instant.size1_in("p"), 2 if single else 1),
-    )
+    time = ca.SX.sym("t", 2 if single else 1)
+    parameters = ca.SX.sym("p", program.instant.size1_in("p"), 2 if single else 1)
     t_pair, *p_pairs = (
         Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters))
     )

@@ -258,10 +258,8 @@ def _peeled(
             block = slopes[np.ix_([row[e] for e in group], [of[c] for c in covered])]
             if covered and len(group) < len(rows) and rank_of(block) == len(covered):
                 found.append((group, covered))
-                rows, columns = (
-                    [e for e in rows if e not in group],
-                    [c for c in columns if c not in covered],
-                )
+                rows = [e for e in rows if e not in group]
+                columns = [c for c in columns if c not in covered]
                 break
         else:
             break
@@ -305,10 +303,8 @@ def _forms(
     """The closed forms that solve a part one after another, where there are any."""
     if any(c.spherical is not None for c in unknown):
         return ()
-    two_force_link, phi = (
-        all(equation.loop.two_force_link is not None for equation in rows),
-        column(equation.residual for equation in rows),
-    )
+    two_force_link = all(equation.loop.two_force_link is not None for equation in rows)
+    phi = column(equation.residual for equation in rows)
     form = solve_loop(phi, unknown, multibody.coordinates, two_force_link=two_force_link)
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
     if (

@@ -257,11 +257,9 @@ class _JointForces:
     @classmethod
     def of(cls, moving: Moving, columns: Mapping[Column, Expression]) -> _JointForces:
         """The forces that are wanted, and those of ``columns`` that friction goes into."""
-        want, links, coordinates = (
-            moving.want,
-            moving.scene.mechanism.links.values(),
-            moving.body.coordinates,
-        )
+        want = moving.want
+        links = moving.scene.mechanism.links.values()
+        coordinates = moving.body.coordinates
         forces = internal_forces(moving.body, moving.solved, want, moving.scene.weights)
         friction = forces.friction
         dependent = {

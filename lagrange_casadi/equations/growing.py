@@ -179,10 +179,8 @@ class Grown:
         if not isinstance(base, Carried):
             return Frame(*motion)
         if free := [coordinate for coordinate in coordinates if coordinate.spherical is not None]:
-            speed, acceleration = (
-                rotation.resolve(moved.speed),
-                rotation.resolve(moved.acceleration),
-            )
+            speed = rotation.resolve(moved.speed)
+            acceleration = rotation.resolve(moved.acceleration)
             local = Frame(
                 speed=speed,
                 acceleration=acceleration,

@@ -417,10 +417,8 @@ class _Solver:
         residuals: dict[str, Any] = {}
         redundancy_residuals: dict[str, Any] = {}
         for block in blocks:
-            rates, accelerations = (
-                column(c.rate for c in block.unknown),
-                column(c.acceleration for c in block.unknown),
-            )
+            rates = column(c.rate for c in block.unknown)
+            accelerations = column(c.acceleration for c in block.unknown)
             still = ca.SX.zeros(len(block.unknown))
             system = LinearSystem.of(found.put_into(block.jacobian))
             found.note(

@@ -68,10 +68,8 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
         else solved.evaluate(body.motion_along(*mechanism.coordinates[name])[1])
         for name in drives
     ]
-    matrix, by_rate = (
-        ca.hessian(energy, solved.driven_rate)[0],
-        ca.jacobian(column(rates), solved.driven_rate),
-    )
+    matrix = ca.hessian(energy, solved.driven_rate)[0]
+    by_rate = ca.jacobian(column(rates), solved.driven_rate)
     out = ca.vertcat(ca.vec(matrix.T), ca.vec(by_rate.T))
     instant = graph("instant", instant_inputs(mechanism, solved), out=out)
     columns: list[Column] = [

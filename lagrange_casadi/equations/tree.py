@@ -79,10 +79,8 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
     two_force_links = find_two_force_links(mechanism, driven)
     barred = {joint for two_force_link in two_force_links for joint in two_force_link.joints}
     joints = [joint for joint in mechanism.joints.values() if joint not in barred]
-    given, driven = (
-        driven,
-        {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven},
-    )
+    given = driven
+    driven = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     # What a driven joint can carry one way only is left to it, for its motion would else close a
     # loop.
     kept = {

@@ -48,10 +48,8 @@ def completed(
     known = np.isfinite(found.out).all(axis=0)
     if not known.any():
         return Elasticity(), {}
-    driven, iterated = (
-        program.motion(t[None, known], p),
-        np.asarray(found.iterated, float)[:, known],
-    )
+    driven = program.motion(t[None, known], p)
+    iterated = np.asarray(found.iterated, float)[:, known]
     rows = completion.function(t[None, known], *driven, iterated, p).full()
     changes, (*through, idle, chosen, unbalanced) = np.split(rows, [len(completion.doubted)])
     doubted = _beyond(

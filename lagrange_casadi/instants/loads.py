@@ -103,11 +103,9 @@ class DistributedLoad(_Load):
         """
         width, end = self.width[..., :1], self.end[..., :1]
         # x, L and a of equations/section_function.py.
-        x, reach, lever = (
-            np.clip((end - u) / width, 0.0, 1.0),
-            length * width,
-            length * np.maximum(end - width - u, 0.0),
-        )
+        x = np.clip((end - u) / width, 0.0, 1.0)
+        reach = length * width
+        lever = length * np.maximum(end - width - u, 0.0)
         within = (x > 0.0) & (x < 1.0)
         by_end, by_width = np.zeros_like(x), np.zeros_like(x)
         for j, values in enumerate(self.terms.get(direction, ())):

@@ -204,10 +204,8 @@ class SectionLaw(Brief):
                     values[:, None] for values in self._acting(force, load)
                 )
                 moved, more, steeper = (values[..., None] for values in self._acting(force, change))
-                gap, size = (
-                    more + steeper * (load_point + moved - u) + slope * moved,
-                    np.abs(constant) + np.abs(slope * (load_point - u)),
-                )
+                gap = more + steeper * (load_point + moved - u) + slope * moved
+                size = np.abs(constant) + np.abs(slope * (load_point - u))
                 for k, visible in enumerate(there):
                     gaps[..., k] += np.where(visible, gap, 0.0)
                     sizes[..., k] += np.where(visible, size, 0.0)
@@ -281,10 +279,8 @@ class SectionLaw(Brief):
                 self.distributed_loads, rates.distributed_loads, strict=True
             )
         )
-        values, passing = (
-            replace(rates, loads=(), distributed_loads=distributed_loads).at(force, u, side),
-            np.zeros(u.shape),
-        )
+        values = replace(rates, loads=(), distributed_loads=distributed_loads).at(force, u, side)
+        passing = np.zeros(u.shape)
         for load, change in zip(self.loads, rates.loads, strict=True):
             load_point, _, slope = (_column(values, u) for values in self._acting(force, load))
             going, more, steeper = (_column(values, u) for values in self._acting(force, change))

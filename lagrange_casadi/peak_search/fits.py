@@ -119,10 +119,8 @@ def where(y: Array, at: int, level: float) -> float:
     number: by a polynomial in the values.
     """
     first = window(at, y.size)
-    values, places = (
-        y[first : first + SEVEN] - level,
-        np.arange(first - at, first - at + SEVEN, dtype=float),
-    )
+    values = y[first : first + SEVEN] - level
+    places = np.arange(first - at, first - at + SEVEN, dtype=float)
     for k in range(1, SEVEN):
         places = (values[k:] * places[:-1] - values[:-k] * places[1:]) / (values[k:] - values[:-k])
     place = float(places[0])
@@ -136,12 +134,10 @@ def kink(y: Array) -> list[tuple[float, float]]:
     And a little before it and after it, for only there does each show what it is worth. Nothing
     where they do not meet in a tip.
     """
-    a1, a2, b1, b2 = (
-        y[2] - y[1],
-        (y[2] - 2 * y[1] + y[0]) / 2,
-        y[4] - y[5],
-        (y[4] - 2 * y[5] + y[6]) / 2,
-    )
+    a1 = y[2] - y[1]
+    a2 = (y[2] - 2 * y[1] + y[0]) / 2
+    b1 = y[4] - y[5]
+    b2 = (y[4] - 2 * y[5] + y[6]) / 2
 
     def left(x: float) -> float:
         return float(y[2] + (x + 1) * (a1 + (x + 2) * a2))

@@ -158,11 +158,9 @@ def section_slopes(
     changes. At a station a force is that on its tip's side.
     """
     table, p = table_of(data.space), ca.SX.sym("p", len(data.parameters))
-    values, slopes, xi = (
-        ca.SX.sym("columns", len(columns)),
-        ca.SX.sym("slopes", len(by), len(columns)),
-        ca.SX.sym("xi"),
-    )
+    values = ca.SX.sym("columns", len(columns))
+    slopes = ca.SX.sym("slopes", len(by), len(columns))
+    xi = ca.SX.sym("xi")
     section = data.section(link, dict(zip(columns, ca.vertsplit(values), strict=True)), p)
     values_here = {force: section.at(force, Place(xi), END["double"]) for force in table.sections}
     seeds = ca.vertcat(slopes.T, _seeds(p.numel(), by))

@@ -92,10 +92,8 @@ class Member:
             )
         member = cls(link, beam_from_numbers(body["beam"]), law, solution.t, solution.xi, space)
         member._check_torsion()
-        two_force_links, aimed = (
-            solution.description.get("bars", ()),
-            solution.description.get("beside", ()),
-        )
+        two_force_links = solution.description.get("bars", ())
+        aimed = solution.description.get("beside", ())
         if link in two_force_links and link not in aimed and not (spun or member.beam.round):
             raise DeclarationError(unaimed(link))
         return member

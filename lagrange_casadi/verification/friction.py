@@ -83,10 +83,8 @@ def _of_laws(placed: Placed) -> Array | None:
     worst: Array | None = None
     for name, load in declared.loads.items():
         numbers, holder = load.friction, load.coordinate.partition(":")[0]
-        value, rate = (
-            outputs.get(Output("friction", name, "along")),
-            outputs.get(Output("motion", load.coordinate, "rate")),
-        )
+        value = outputs.get(Output("friction", name, "along"))
+        rate = outputs.get(Output("motion", load.coordinate, "rate"))
         if numbers is None or value is None or Output("reaction", holder, "fx") not in outputs:
             continue
         joint, spin = declared.joints[holder], None

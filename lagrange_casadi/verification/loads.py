@@ -47,10 +47,8 @@ def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
             )
         worst = np.maximum(worst, residual)
     for name, load in placed.declared.loads.items():
-        value, holder = (
-            placed.reported.outputs.get(Output("friction", name, "along")),
-            load.coordinate.partition(":")[0],
-        )
+        value = placed.reported.outputs.get(Output("friction", name, "along"))
+        holder = load.coordinate.partition(":")[0]
         if (
             load.friction is None
             or value is None

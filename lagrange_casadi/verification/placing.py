@@ -144,10 +144,8 @@ class Placed:
         speeds, changes, turning, gains = zip(
             *(body.sizes for body in self.bodies.values()), strict=True
         )
-        turned, gained = (
-            most([*turning, *map(reported.rate, angles)]),
-            most([*gains, *map(reported.acceleration, angles)]),
-        )
+        turned = most([*turning, *map(reported.rate, angles)])
+        gained = most([*gains, *map(reported.acceleration, angles)])
         return (
             turned,
             most(speeds) + turned * declared.extent,
@@ -232,11 +230,9 @@ def _relative(declared: Declared, reported: Reported, joint: JointNumbers) -> Re
         moves, gains = reported.rate(name), reported.acceleration(name)
         along = direction if axis.kind == "slide" else joint.pitch * direction
         if any(along.components):
-            slide, speed, change = (
-                slide + reported.value(name) * along,
-                speed + moves * along,
-                change + gains * along,
-            )
+            slide = slide + reported.value(name) * along
+            speed = speed + moves * along
+            change = change + gains * along
         if axis.kind == "slide":
             continue
         about[name] = turned.turn(direction)
