@@ -24,7 +24,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.compensated import Pair, Pairs
-from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.interpret import (
+    REMAINDERS,
+    Arithmetic,
+    codes,
+    followable,
+    interpret,
+    numpy_arithmetic,
+)
 from ..arithmetic.lookups import Lookup
 from ..arithmetic.scalars import applied, column, entries, graph
 from ..base.arrays import Array, Expression, Operand
@@ -132,7 +139,9 @@ def controlled(
         return Controlled(
             program.laws.motion,
             graph("count", {"moment": moment, "p": p}, counted=moment),
-            *_others(stages),
+            stages.loops,
+            stages.instant,
+            stages.precision,
         )
     pairs, rows = Pairs(precision), 1 + len(program.driven)
     moment, p = ca.SX.sym("moment", rows, 2), program.instant.sx_in("p")
@@ -143,10 +152,6 @@ def controlled(
     return Controlled(
         _paired_law(program.laws.motion, pairs, p, known), count, loops, instant, precision
     )
-
-
-def _others(stages: Stages) -> tuple[ca.Function | None, ca.Function, Precision]:
-    return stages.loops, stages.instant, stages.precision
 
 
 def _rest(pair: Pair) -> ca.SX:
@@ -320,11 +325,8 @@ class _Counting:
         return self.symbols[key][0]
 
 
-_PHASES = {ca.OP_SIN, ca.OP_COS, ca.OP_TAN}
-_FOLLOWED = {
-    *(ca.OP_ADD, ca.OP_SUB, ca.OP_NEG, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV),
-    *(ca.OP_INV, ca.OP_SQRT, ca.OP_FABS, ca.OP_FLOOR, ca.OP_CEIL),
-}
+_PHASES = {*codes("sin cos tan")}
+_FOLLOWED = codes("add sub neg mul sq twice div inv sqrt fabs floor ceil")
 
 
 def _counted(

@@ -19,7 +19,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..arithmetic.interpret import followable, operations
+from ..arithmetic.interpret import codes, followable, operations
 from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
 from ..arithmetic.scalars import column, graph, inputs_of
@@ -230,16 +230,7 @@ class _Found:
         return divisor
 
 
-_ALIKE = {
-    ca.OP_NEG,
-    ca.OP_INV,
-    ca.OP_SQ,
-    ca.OP_SQRT,
-    ca.OP_TWICE,
-    ca.OP_FABS,
-    ca.OP_COPYSIGN,
-    ca.OP_CONSTPOW,
-}
+_ALIKE = codes("neg inv sq sqrt twice fabs copysign constpow")
 
 
 def _watched(
