@@ -128,8 +128,12 @@ def solving_order(multibody: Multibody, start: Mapping[str, Expression]) -> tupl
     equations = _equations(multibody, unknown)
     parts = _decomposed(equations, unknown)
     if any(len(rows) != len(columns) for rows, columns in parts):
+        # Drives are free to give way in it, for there may be too many.
+        released = ReleasedLoops.of(
+            multibody, start["posture"], start["inputs"], start["values"], ()
+        )
         slopes = _require_freedom(
-            multibody, len(equations), parts, _slopes(multibody, start), start["posture"]
+            multibody, len(equations), parts, released.slopes(start["values"]), start["posture"]
         )
         parts = [piece for part in parts for piece in _pieces(part)]
         if multibody.mechanism.space:
@@ -376,16 +380,6 @@ def _require_freedom(
         f"mechanism '{multibody.mechanism.name}' has {freedom} degree(s) of freedom ({how}) and"
         f" {driven} drive(s); {advice}"
     )
-
-
-def _slopes(multibody: Multibody, start: Mapping[str, Expression]) -> Array | None:
-    """The loops' Jacobian by all coordinates, in a posture near the rough one, drives too; None
-    where no posture is found.
-    """
-    # Drives are free to give way in it, for there may be too many.
-    return ReleasedLoops.of(
-        multibody, start["posture"], start["inputs"], start["values"], ()
-    ).slopes(start["values"])
 
 
 def solve_line(

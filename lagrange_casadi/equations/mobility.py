@@ -51,7 +51,6 @@ from .multibody import Multibody, own_coordinate
 from .multipliers import multipliers_of
 from .pressing import frictions_of, joint_friction
 from .residuals import reach
-from .tree import Branch
 
 
 @dataclass(frozen=True, eq=False)
@@ -413,14 +412,7 @@ def _in_ground_axes(
     for loop in multibody.loop_equations:
         if loop.joint is joint:
             return Action(*reaction(joint, parent, child, loop.multipliers))
-    two_force_link = next(
-        (
-            two_force_link
-            for two_force_link in multibody.tree.two_force_links
-            if joint in two_force_link.joints
-        ),
-        None,
-    )
+    two_force_link = multibody.tree.two_force_link_of.get(joint)
     if two_force_link is not None:
         x, y, z = ca.vertsplit(actions[joint.name])
         force = Action((x, y, z))
@@ -441,15 +433,11 @@ def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, ca.SX])
         for c in rotations
         if c is not None
     ] + [orientation(joint)]
-    if joint.child.body is _branch(multibody, joint).far.body:
+    if joint.child.body is multibody.tree.branch_of[joint].far.body:
         for rotation in reversed(turned):
             force, moment = rotation.apply(force), rotation.apply(moment)
     child = functools.reduce(Rotation.then, turned)
     return Action(*supported(joint, Frame(), Frame(rotation=child), force, moment))
-
-
-def _branch(multibody: Multibody, joint: Joint) -> Branch:
-    return next(branch for branch in multibody.tree.branches if branch.joint is joint)
 
 
 def _on_child(
@@ -458,7 +446,7 @@ def _on_child(
     """Force and moment on a joint's child, from a mobility of the tree, in the axes of the
     mobility.
     """
-    action = _branch(multibody, joint).sign * actions[joint.name]
+    action = multibody.tree.branch_of[joint].sign * actions[joint.name]
     if multibody.mechanism.space:
         x, y, z, *about = ca.vertsplit(action)
         return (x, y, z), ((about[0], about[1], about[2]) if about else ZERO)

@@ -85,7 +85,7 @@ def template(scene: Scene) -> Template:
         found,
         content=found.content
         | {
-            "bars": [two_force_link.link.name for two_force_link in tree.two_force_links],
+            "bars": [one.link.name for one in tree.two_force_links],
             "unmeasured": unmeasured,
         },
     )

@@ -258,15 +258,11 @@ def _rolls(body: Multibody, want: Wanted) -> dict[Column, Expression]:
     """
     found: dict[Column, Any] = {}
     for two_force_link in body.tree.two_force_links:
-        beam = two_force_link.link.beam
-        if (
-            two_force_link.aimed
-            and beam is not None
-            and not beam.round
-            and two_force_link.link.name in want.sections
-        ):
-            part = across_link(two_force_link, body.frames[two_force_link.link.name].rotation.x)
-            found[Check("roll", two_force_link.link.name)] = dot(part, part)
+        link = two_force_link.link
+        turned = two_force_link.aimed and link.beam is not None and not link.beam.round
+        if turned and link.name in want.sections:
+            part = across_link(two_force_link, body.frames[link.name].rotation.x)
+            found[Check("roll", link.name)] = dot(part, part)
     return found
 
 
