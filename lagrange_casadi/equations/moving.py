@@ -64,14 +64,9 @@ class Moving:
             pushed(scene.needs_drives, scene.weights),
             want.own,
         )
-        laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
-        motion = laws.motion
-        values = list(mechanism.values(scene.assembly).values())
-        first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
-        start = Start(scene.span[0], first, values)
-        solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
+        laws, start, solved = solved_motion(scene, body)
         solved, deviations = count_revolutions(
-            body, solved, motion, scene.span, start, _seeing(body, want)
+            body, solved, laws.motion, scene.span, start, _seeing(body, want)
         )
         return cls(scene, want, body, laws, start, solved, deviations)
 
@@ -179,6 +174,16 @@ class Moving:
             if any(check in revolutions for revolutions in loop_angles.values())
         }
         return columns | dict(motions.items()) | _unmeasured_angles(body, motions), loop_angles
+
+
+def solved_motion(scene: Scene, body: Multibody) -> tuple[Laws, Start, kinematics.Kinematics]:
+    """The laws of a scene's driven coordinates, where its motion starts, and its loops solved."""
+    laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
+    values = list(scene.mechanism.values(scene.assembly).values())
+    first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
+    start = Start(scene.span[0], first, values)
+    posture = reference_posture(scene.mechanism) | dict(scene.posture)
+    return laws, start, kinematics.solve(body, posture, start)
 
 
 def instant_inputs(mechanism: Mechanism, solved: kinematics.Kinematics) -> dict[str, Expression]:

@@ -13,17 +13,14 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ..arithmetic.scalars import column, graph
+from ..arithmetic.scalars import column, entries, graph
 from ..base.quantities import Output
 from ..declare.scene import Scene, Wanted
-from ..declare.spatial import reference_posture
-from . import kinematics
 from .assembly import assemble
 from .checks import Column
 from .derive import assembled
-from .kinematics import Start
 from .model_data import ModelData
-from .moving import instant_inputs
+from .moving import instant_inputs, solved_motion
 from .program import Program
 from .tree import span
 
@@ -48,23 +45,17 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
     mechanism = scene.mechanism
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
     body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())
-    driven = tuple(c.name for c in body.coordinates if c.driven)
-    laws = scene.prescribed.only(driven)
-    values = list(mechanism.values(scene.assembly).values())
-    first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
-    start = Start(scene.span[0], first, values)
-    solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
+    laws, _, solved = solved_motion(scene, body)
+    driven = laws.joints
     energy = ca.substitute(
         ca.SX(body.kinetic), column(body.velocities.symbols), column(body.velocities.graphs)
     )
     still = body.mobility_rates
     energy = solved.evaluate(ca.substitute(energy, still, ca.SX.zeros(still.numel())))
-    user_outputs = {
-        c.name: solved.driven_rate[k] for k, c in enumerate(c for c in body.coordinates if c.driven)
-    }
+    given = dict(zip(driven, entries(solved.driven_rate), strict=True))
     rates = [
-        user_outputs[name]
-        if name in user_outputs
+        given[name]
+        if name in given
         else solved.evaluate(body.motion_along(*mechanism.coordinates[name])[1])
         for name in drives
     ]
