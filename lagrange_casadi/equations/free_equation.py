@@ -23,7 +23,6 @@ from ..base.symbolic import Graphs, symbolic
 from ..declare.scene import Scene
 from ..declare.torques import Law, torque_of
 from ..errors import DeclarationError
-from .checks import Check
 from .derive import compiled_for
 from .program import Program
 from .reflected_inertia import reflected_inertia
@@ -161,8 +160,6 @@ def _loops(program: Program) -> ca.Function | None:
 def _sine(program: Program, out: ca.SX) -> ca.SX:
     """The least of the loops' sines: a closed form has its square, an iterated loop a volume."""
     found = ca.SX(1.0)
-    for k, check in enumerate(program.columns):
-        if isinstance(check, Check) and check.kind == "closure":
-            iterated = program.iterates(str(check.part))
-            found = ca.fmin(found, ca.fabs(out[k]) if iterated else ca.sqrt(out[k]))
+    for name, k in program.checks("closure").items():
+        found = ca.fmin(found, ca.fabs(out[k]) if program.iterates(name) else ca.sqrt(out[k]))
     return found
