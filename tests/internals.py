@@ -132,7 +132,7 @@ from lagrange_casadi.equations.integrability import Course, no_rates
 from lagrange_casadi.equations.kinematics import describe_coordinate
 from lagrange_casadi.equations.linear import LinearSystem
 from lagrange_casadi.equations.model_data import template
-from lagrange_casadi.equations.multibody import Turned, place_along
+from lagrange_casadi.equations.multibody import Turned, motion_along
 from lagrange_casadi.equations.program import Program
 from lagrange_casadi.equations.reciprocals import differentiable, share_reciprocals
 from lagrange_casadi.equations.released_loops import rank_of

@@ -13,8 +13,8 @@ import numpy.typing as npt
 from ..base.arrays import Array, Json
 from ..base.quantities import Output
 from ..declare.description import Description
+from ..instants.beyond_equilibrium import held_outputs
 from ..instants.derivatives import derivatives
-from ..instants.held import held_outputs
 from ..instants.ordering import error_of, ordered
 from ..instants.solution import Solution
 from ..instants.statistics import Extreme

@@ -43,8 +43,7 @@ from ..errors import (
     UnknownNameError,
     one_line,
 )
-from ..instants.elasticity import Elasticity
-from ..instants.held import ENDS, Holding, held_outputs
+from ..instants.beyond_equilibrium import ENDS, Elasticity, Holding, held_outputs
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
 from ..verification.certificate import COARSE, TOLERANCE, blur, certify
