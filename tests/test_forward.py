@@ -572,6 +572,7 @@ def arm():
             lambda: free(rotor(), drive=forward.Law(lambda t, a: t)),
             "cannot be made as an expression",
         ),
+        (lambda: free(rotor(0.0), drive=1.0), "nothing that 'O' moves has inertia; expected"),
         (lambda: free(rotor(), start=(0.0,)), r"start: expected \(coordinate, rate\)"),
         (
             lambda: free(rotor(), drive=forward.power(9.0), start=(0.0, 0.0)),

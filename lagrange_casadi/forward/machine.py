@@ -158,7 +158,7 @@ class Machine:
     def begin(self, t: float, angle: float) -> None:
         """Follow the loops from the scene's own start to an angle.
 
-        Raises :class:`.DeclarationError` if they do not close there.
+        Raises :class:`.DeclarationError` if they do not close there, or nothing has inertia.
         """
         first = self.law(self.equation.program.data.span[0])[0]
         steps = 1 + int(abs(angle - first) / _APART)
@@ -166,6 +166,11 @@ class Machine:
             raise DeclarationError(
                 f"start: the loops of '{self.name}' do not close at {angle:.6g}; expected another"
                 " coordinate"
+            )
+        if self.at(t, angle, SLOW)[ROW["inertia"]] == 0.0:
+            raise DeclarationError(
+                f"free machine '{self.name}': nothing that '{self.equation.joint}' moves has"
+                " inertia; expected masses or inertias, or inertia="
             )
 
     def at(self, t: float, angle: float, speed: float) -> Array:
