@@ -618,7 +618,7 @@ def test_the_command_finds_the_flywheel_of_a_press(tmp_path, capsys, monkeypatch
     monkeypatch.chdir(tmp_path)
     command = ["free", str(CASES / "punch_press"), "--drive", "induction=8,0.2,157.08"]
     command += ["--geared", "25", "--fluctuation", "0.1", "--plot", "cycle.png"]
-    assert main([*command, "--want", "effort", "--want", "motion"]) == 0
+    assert main([*command, "--want", "effort"]) == 0
     said = capsys.readouterr().out
     assert "fluctuation 0.1\n" in said
     assert "kg m^2 by the exact cycle" in said

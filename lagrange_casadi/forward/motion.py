@@ -112,6 +112,11 @@ class FreeMotion:
         )
 
     @property
+    def unit(self) -> str:
+        """Unit of the drive's coordinate: rad or m."""
+        return "m" if self.scene.mechanism.coordinates[self.joint][1].kind == "slide" else "rad"
+
+    @property
     def ended(self) -> Event | None:
         """The event that ended the run before its time."""
         last = self.events[-1] if self.events else None
