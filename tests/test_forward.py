@@ -11,7 +11,16 @@ import pytest
 from conftest import CASES
 from scipy.integrate import solve_ivp
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, flywheel, forward, free, load_case
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    flywheel,
+    forward,
+    free,
+    load_case,
+    table,
+)
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError
 from lagrange_casadi.forward import machine as machine_module
@@ -246,6 +255,24 @@ def test_a_steady_cycle_repeats_and_its_powers_are_in_balance():
     )
     assert other.speed.max() < cycle.largest * (1.0 + 1e-6)
     assert other.speed[20:].min() > cycle.least * 0.95
+
+
+def test_corners_of_a_force_cost_no_energy():
+    """A block between two springs that begin with a corner: the potential is exact."""
+    places, forces = [-1.0, -0.3, 0.0, 0.2, 1.0], [400.0, 30.0, 0.0, 0.0, -900.0]
+    m = Mechanism("buffers")
+    block = m.point_mass("block", 2.0)
+    guide = m.prismatic("guide", m.ground, block, axis=(1, 0))
+    m.force("buffer", block, x=table(m.coordinate(guide), places, forces))
+    found = free(Scene(m, {"guide": polynomial(0.1, 9.0)}, t=(0.0, 20.0, 401)), wanted=["effort"])
+    at = np.concatenate([places, found.angle])
+    order = np.argsort(at)
+    force = np.interp(at[order], places, forces)
+    steps = np.diff(at[order]) * (force[1:] + force[:-1]) / 2.0
+    work = np.empty(at.size)
+    work[order] = np.concatenate([[0.0], np.cumsum(steps)])
+    energy = found.speed**2 - work[len(places) :]  # half of two kilograms
+    assert np.ptp(energy) < 1e-9 * np.abs(energy).max()
 
 
 def test_friction_stops_a_block_where_it_must_and_holds_it():

@@ -19,10 +19,8 @@ from .cycle import Goal, finished, sought, swing
 from .machine import Machine, Start
 from .motion import ACCURACY, FreeMotion, begun_at, follow
 
-_EVEN, _ROUGH = 1e-4, 1e-7
-"""Fluctuation of the machine whose speed is the first guess of that with a flywheel; and relative
-error of a step that is small enough for a guess.
-"""
+_EVEN = 1e-4
+"""Fluctuation of the machine whose speed is the first guess of that with a flywheel."""
 
 
 @public
@@ -166,12 +164,11 @@ def flywheel(
     machine = _machine(scene, drive, load, 0.0, parameters, accuracy)
     begin = _turning(machine, start)
     span, mean = math.copysign(cycle, begin.speed), None if drive is not None else begin.speed
-    rough = max(accuracy, _ROUGH)
-    energy, _ = swing(machine, begin, span, rough)
+    energy, _ = swing(machine, begin, span, accuracy)
     if mean is None:  # the speed at which the motor turns a machine that is nearly even
         machine.added[1] = energy / (_EVEN * begin.speed**2)
-        begin = sought(machine, begin, Goal(span), rough).begin
-        energy, _ = swing(machine, begin, span, rough)
+        begin = sought(machine, begin, Goal(span), accuracy).begin
+        energy, _ = swing(machine, begin, span, accuracy)
     machine.added[1] = energy / (fluctuation * begin.speed**2)
     turn = sought(machine, begin, Goal(span, mean, fluctuation), accuracy)
     motion = finished(scene, machine, turn, count, wanted, accuracy)
