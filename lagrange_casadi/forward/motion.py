@@ -83,9 +83,9 @@ class FreeMotion:
     scene's own loads, springs, weights and frictions ``work_taken``; ``kinetic`` is the kinetic
     energy [J], that of the flywheel's ``inertia`` [kg m^2 or kg] too. ``energy`` is what is missing
     in their balance, over the largest of them: a residual of the certificate of ``solution``, which
-    has all forces. ``scene`` is the scene with this motion. ``events`` are what happened on the
-    way; ``ended`` is the one that ended the run early, or None. ``cycle`` has the numbers of a
-    steady cycle, where one was asked for.
+    has all forces. ``unit`` is that of the angle. ``scene`` is the scene with this motion.
+    ``events`` are what happened on the way; ``ended`` is the one that ended the run early, or None.
+    ``cycle`` has the numbers of a steady cycle, if one was asked for.
     """
 
     joint: str
@@ -104,6 +104,7 @@ class FreeMotion:
     events: tuple[Event, ...]
     scene: Scene
     solution: Solution
+    unit: str
     cycle: Cycle | None = None
 
     def __repr__(self) -> str:
@@ -111,11 +112,6 @@ class FreeMotion:
             f"<FreeMotion of {self.solution.case}: {self.t.size} instants from {self.t[0]:.5g} to"
             f" {self.t[-1]:.5g} s, speed from {self.speed.min():.5g} to {self.speed.max():.5g}>"
         )
-
-    @property
-    def unit(self) -> str:
-        """Unit of the drive's coordinate: rad or m."""
-        return "m" if self.scene.mechanism.coordinates[self.joint][1].kind == "slide" else "rad"
 
     @property
     def ended(self) -> Event | None:
@@ -201,6 +197,7 @@ def follow(
         events=tuple(events),
         scene=moved,
         solution=solution,
+        unit="m" if machine.equation.slides else "rad",
     )
     turning = np.abs(rows[ROW["inertia"]]) * np.maximum(np.abs(found.acceleration), SLOW)
     return replace(found, solution=_certified(found, float(turning.max())))
