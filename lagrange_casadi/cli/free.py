@@ -111,7 +111,7 @@ def _numbers(what: str, text: str, many: int) -> list[float]:
 
 def _lines(found: FreeMotion) -> Iterator[str]:
     solution, cycle = found.solution, found.cycle
-    unit, speed = (solution.unit(f"motion:{found.joint}{of}") for of in ("", "_rate"))
+    unit, speed = found.unit, f"{found.unit}/s"
     yield (
         f"{solution.case}: {found.t.size} instants from {found.t[0]:.6g} to {found.t[-1]:.6g} s,"
         f" {found.joint} at first {found.angle[0]:.6g}, at last {found.angle[-1]:.6g} {unit}, speed"

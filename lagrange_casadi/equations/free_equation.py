@@ -20,6 +20,7 @@ import casadi as ca
 from ..arithmetic.scalars import graph
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
+from ..declare.parts import Friction
 from ..declare.scene import Scene
 from ..declare.torques import Law, torque_of
 from ..errors import DeclarationError
@@ -44,11 +45,15 @@ the acceleration by the speed, by an added torque and by the flywheel's inertia.
 least of all loops' sines of the transmission angle.
 """
 
+_SLIP = 5e-10
+"""Residual of friction's laws that is too large: half of what a solution may have."""
+
 
 @dataclass(frozen=True, eq=False)
 class FreeEquation(Graphs):
     """The equation of motion of a machine: ``state(t, angle, speed, z, added, p)``, a row for
-    each of :data:`COLUMNS`, and ``loops(z, t, angle, p)``, Newton's correction of z and its size.
+    each of :data:`COLUMNS` and a margin from a jam for each of ``jams``, joints whose frictions
+    depend on each other; and ``loops(z, t, angle, p)``, Newton's correction of z and its size.
 
     ``added`` are a torque and the flywheel's inertia on the drive's ``joint``. ``timed`` says
     whether anything depends on the time, ``slides`` whether the coordinate is a length.
@@ -58,6 +63,7 @@ class FreeEquation(Graphs):
     joint: str
     state: ca.Function
     loops: ca.Function | None
+    jams: tuple[str, ...]
     timed: bool
     slides: bool
 
@@ -89,23 +95,26 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     inputs = [acceleration, t, d, rate, z, added, p]
     newton = ca.Function("newton", inputs, [missing, slope])
     there = ca.Function(
-        "there", inputs, [effort, slope, ca.jacobian(missing, rate), _sine(program, out)]
+        "there",
+        inputs,
+        [effort, slope, ca.jacobian(missing, rate), _sine(program, out), _margins(program, out)],
     )
     found = ca.SX(0)
     for _ in range(1 if affine else STEPS):
         gap, by = newton(found, *inputs[1:])
         found = found - gap / by
-    reached, by, by_rate, sine = there(found, *inputs[1:])
+    reached, by, by_rate, sine, margins = there(found, *inputs[1:])
     inertia, change = _inertia(scene, program, values)
     taken = (reached - inertia * found - change * rate**2 / 2.0) * rate
     rows = [found, reached, pushed + added[0], resisting, taken, inertia * rate**2 / 2.0, -by]
-    rows += [-by_rate / by, -1.0 / by, found / by, sine]
+    rows += [-by_rate / by, -1.0 / by, found / by, sine, margins]
     all_rows = ca.vertcat(*rows)
     given = {"t": t, "angle": d, "speed": rate, "z": z, "added": added, "p": p}
     state = graph("state", given, out=all_rows)
     slides = scene.mechanism.coordinates[joint][1].kind == "slide"
     timed = bool(ca.depends_on(all_rows, t))
-    return FreeEquation(program, joint, state, _loops(program), timed, slides)
+    jams = tuple(_joints(scene, names) for names in program.checks("jam"))
+    return FreeEquation(program, joint, state, _loops(program), jams, timed, slides)
 
 
 def one_drive(scene: Scene) -> str:
@@ -163,3 +172,25 @@ def _sine(program: Program, out: ca.SX) -> ca.SX:
     for name, k in program.checks("closure").items():
         found = ca.fmin(found, ca.fabs(out[k]) if program.iterates(name) else ca.sqrt(out[k]))
     return found
+
+
+def _margins(program: Program, out: ca.SX) -> ca.SX:
+    """Distances from a jam, a row for each block of frictions that depend on each other: the least
+    pivot (:mod:`.friction`), or less if the residual of their laws is too large.
+    """
+    slips = program.checks("slip")
+    margins = [
+        ca.fmin(out[k], 1.0 - out[slips[names]] / _SLIP)
+        for names, k in program.checks("jam").items()
+    ]
+    return ca.densify(ca.vertcat(ca.SX(0, 1), *margins))
+
+
+def _joints(scene: Scene, frictions: str) -> str:
+    """The joints of frictions, in words, by the names of these."""
+    loads = scene.mechanism.loads
+    found = {name: loads.get(name) for name in frictions.split(", ")}
+    return ", ".join(
+        f"'{load.joint.name if isinstance(load, Friction) else name}'"
+        for name, load in found.items()
+    )

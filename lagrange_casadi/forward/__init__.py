@@ -9,7 +9,8 @@ from ..declare.torques import (
     torque,
     torque_curve,
 )
-from .motion import Cycle, Event, FreeMotion
+from .machine import Event
+from .motion import Cycle, FreeMotion
 from .plot import plot_cycle
 from .running import Flywheel
 

@@ -1,9 +1,9 @@
 """The steady cycle of a machine, and the flywheel that keeps its speed even.
 
-Over the angle the speed obeys dw/dphi = a(phi, w)/w. A cycle is steady where the speed at its end
-is that at its start: Newton's method finds it, with the exact derivative of the end by the start,
+Over the angle the speed obeys dw/dphi = a(phi, w)/w. A cycle is steady if the speed at its end is
+that at its start: Newton's method finds it, with the exact derivative of the end by the start,
 which is integrated beside the speed. So are the derivatives by the drive's torque and by the
-flywheel's inertia, where these are sought too: the torque that keeps a mean speed, the inertia that
+flywheel's inertia, if these are sought too: the torque that keeps a mean speed, the inertia that
 keeps a fluctuation.
 """
 
@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -20,16 +21,19 @@ from ..base.arrays import Array
 from ..declare.even_points import checked
 from ..declare.scene import Scene
 from ..errors import DeclarationError, LagrangeCasadiError
-from .machine import ROW, Machine
-from .motion import ACCURACY, Cycle, FreeMotion, Start, follow
+from .machine import ROW, SLOW, Machine, Start
+from .motion import ACCURACY, Cycle, FreeMotion, follow, why_lost
 
-_STEPS, _TRIES, _FASTER = 25, 12, 1.4
-_SAME, _FLAT = 1e-6, 1e-9
-_SLOWEST = 1e-2
-"""Share of the speed at the start below which a machine is said not to get round."""
+_STEPS, _TRIES, _FASTER, _SLOWER = 25, 12, 1.4, 0.3
+_SAME = 1e-6
+_SLOWEST = 1e-4
+"""Share of the speed at the start below which a machine is said to stall."""
 
 _DONE = 1e-10
 """Relative residual at which a cycle is steady."""
+
+_FLAT = 1e-12
+"""Change of energy with the speed, beside the kinetic energy, that is none."""
 
 _SPEED, _TIME, _BY, _TIME_BY = 0, 1, slice(2, 5), slice(5, 8)
 """States over the angle: the speed, the time, and their derivatives by the speed at the start, the
@@ -37,10 +41,44 @@ added torque and the flywheel's inertia.
 """
 
 
+@dataclass(frozen=True, eq=False)
+class Turn:
+    """A cycle of a signed angle ``span`` [rad] from a state on: the states at its end, and at its
+    least and its largest speed by size.
+    """
+
+    begin: Start
+    span: float
+    end: Array
+    least: Array
+    largest: Array
+
+    @property
+    def period(self) -> float:
+        """Time of the cycle [s]."""
+        return float(self.end[_TIME])
+
+    @property
+    def speed(self) -> float:
+        """Mean speed [rad/s]."""
+        return self.span / self.period
+
+
+@dataclass(frozen=True)
+class Stall:
+    """A machine that comes to rest within a cycle: where it began, the ``angle`` [rad] at which it
+    rests, and the ``time`` until then [s].
+    """
+
+    begin: Start
+    angle: float
+    time: float
+
+
 @dataclass(frozen=True)
 class Goal:
-    """A cycle of a signed angle [rad] that is sought: one that is steady, with a ``mean`` speed or
-    a ``fluctuation`` where they are numbers.
+    """A steady cycle that is sought, of a signed angle ``span`` [rad]: with a ``mean`` speed
+    [rad/s] and a ``fluctuation``, if they are numbers.
     """
 
     span: float
@@ -48,140 +86,131 @@ class Goal:
     fluctuation: float | None = None
 
     @property
-    def unknowns(self) -> list[int]:
-        """Numbers of what is sought: the speed at the start, the torque, the inertia."""
-        return [0, *([1] if self.mean is not None else []), *([2] if self.fluctuation else [])]
+    def unknown(self) -> list[bool]:
+        """Marks of what is sought among the speed at the start, the torque and the inertia."""
+        return [True, self.mean is not None, self.fluctuation is not None]
+
+    def residuals(self, turn: Turn) -> tuple[Array, Array]:
+        """Relative residuals of what is sought, and their slopes by the speed at the start, the
+        torque and the inertia. The first is the energy that a cycle adds, which does not depend on
+        the speed if nothing does.
+        """
+        begin, end = np.array([turn.begin.speed, 0.0, 0.0]), turn.end
+        rows = [(end[_SPEED] ** 2 - begin[0] ** 2) / (2.0 * begin[0] ** 2)]
+        slopes = [(end[_SPEED] * end[_BY] - begin) / begin[0] ** 2]
+        if self.mean is not None:
+            wanted = self.span / self.mean
+            rows.append(end[_TIME] / wanted - 1.0)
+            slopes.append(end[_TIME_BY] / wanted)
+        if self.fluctuation is not None:
+            swing = (turn.largest - turn.least) / self.span
+            rows.append(swing[_SPEED] * end[_TIME] - self.fluctuation)
+            slopes.append(swing[_BY] * end[_TIME] + swing[_SPEED] * end[_TIME_BY])
+        return np.array(rows), np.array(slopes)
 
 
-@dataclass(frozen=True)
-class Found:
-    """A steady cycle: the state at its start, what was added, its time and its extreme speeds."""
+def sought(machine: Machine, begin: Start, goal: Goal, accuracy: float) -> Turn:
+    """Find a steady cycle near a state by Newton's method; the torque and the inertia that it needs
+    are then those that are ``added`` to the machine.
 
-    angle: float
-    speed: float
-    torque: float
-    inertia: float
-    period: float
-    span: float
-    least: float
-    largest: float
-
-
-@dataclass(frozen=True, eq=False)
-class _Turn:
-    """States at the end of a cycle, and at its least and its largest speed."""
-
-    end: Array
-    least: Array
-    largest: Array
-
-
-def sought(machine: Machine, begin: Start, goal: Goal, accuracy: float) -> Found:
-    """Find a cycle by Newton's method.
-
-    Raises :class:`.LagrangeCasadiError` where there is none.
+    Raises :class:`.LagrangeCasadiError` if there is none.
     """
     _check_repeats(machine, begin, goal.span)
-    name, speed = machine.name, begin.speed
     if goal.mean is not None:
         machine.added[0] += swing(machine, begin, goal.span, accuracy)[1]
-    turn = None
-    for _ in range(_TRIES):  # to a speed with which it gets round at all
-        turn = _turned(machine, Start(begin.angle, speed), goal.span, accuracy)
-        if turn is not None:
-            break
-        speed *= _FASTER
-    if turn is None:
-        raise LagrangeCasadiError(
-            f"machine '{name}' stalls: it does not complete a turn from {begin.angle:.6g} rad, at"
-            f" initial speeds from {begin.speed:.6g} to {speed:.6g} rad/s"
-        )
-    signs, close = set[float](), False
-    for number in range(_STEPS):
-        residuals, slopes = _residuals(turn, speed, goal)
-        signs.add(math.copysign(1.0, residuals[0]))
-        if number == 0 and goal.mean is None and abs(slopes[0, 0] * speed) < _FLAT:
+    turn = _at_speeds(machine, begin, goal.span, accuracy, _FASTER)
+    if isinstance(turn, Stall):
+        raise _stalled(machine, turn)
+    turns, rough = [turn], max(1.0, accuracy / ACCURACY)
+    for _ in range(_STEPS):
+        speed = turn.begin.speed
+        rows, slopes = goal.residuals(turn)
+        step = np.zeros(3)
+        step[goal.unknown] = -np.linalg.lstsq(slopes[:, goal.unknown], rows)[0]
+        if goal.mean is None and abs(slopes[0, 0] * speed) < _FLAT * rough:
             raise LagrangeCasadiError(
-                f"machine '{name}' has no steady cycle: nothing in it depends on the speed, so each"
-                " turn adds as much energy as the one before"
+                f"machine '{machine.name}' has no steady cycle: nothing in it depends on the speed,"
+                " so each turn adds as much energy as the one before"
             )
-        step = np.asarray(-np.linalg.lstsq(slopes, residuals)[0], float)
-        before, close = close, np.abs(residuals).max() < _DONE * max(1.0, accuracy / ACCURACY)
-        if before and close and abs(step[0]) < _SAME * abs(speed):  # one more step than it takes
-            least, largest = sorted((turn.least[_SPEED], turn.largest[_SPEED]), key=abs)
-            return Found(
-                *(begin.angle, speed, float(machine.added[0]), float(machine.added[1])),
-                *(float(abs(turn.end[_TIME])), goal.span, float(least), float(largest)),
-            )
-        step *= min(1.0, abs(speed / (2.0 * step[0])) if step[0] else 1.0)
-        turn, speed = _moved(machine, begin.angle, speed, step, goal, accuracy)
-    why = {
-        -1.0: "the machine slows down each turn, and stalls",
-        1.0: "the machine gains speed each turn",
-    }
-    raise LagrangeCasadiError(
-        f"machine '{name}': no steady cycle was found near {begin.speed:.6g} rad/s; "
-        + (why[signs.pop()] if len(signs) == 1 else f"after {_STEPS} steps")
-        + f", {speed:.6g} rad/s at the start of the last one"
+        if np.abs(rows).max() < _DONE * rough and abs(step[0]) < _SAME * abs(speed):
+            return turn
+        step *= min(1.0, abs(speed / (2.0 * step[0]))) if step[0] else 1.0
+        before, found = np.array([speed, *machine.added]), None
+        for _ in range(_TRIES):  # as much of the step as lets the machine get round
+            now = before + step
+            machine.added[:] = now[1:]
+            if now[2] >= 0.0:
+                found = _turned(machine, Start(begin.angle, float(now[0])), goal.span, accuracy)
+                if isinstance(found, Turn):
+                    break
+            step /= 2.0
+        if not isinstance(found, Turn):
+            raise _none(machine, goal, turns, found, accuracy)
+        turns.append(turn := found)
+    raise _none(machine, goal, turns, None, accuracy)
+
+
+def _at_speeds(
+    machine: Machine, begin: Start, span: float, accuracy: float, factor: float
+) -> Turn | Stall:
+    """The first cycle with a higher speed at its start, or the first stall with a lower one."""
+    for k in range(_TRIES):
+        start = Start(begin.angle, begin.speed * factor**k)
+        found = _turned(machine, start, span, accuracy)
+        if isinstance(found, Turn) == (factor > 1.0):
+            break
+    return found
+
+
+def _none(
+    machine: Machine, goal: Goal, turns: Sequence[Turn], stall: Stall | None, accuracy: float
+) -> LagrangeCasadiError:
+    """The reason why no steady cycle was found, by the ``turns`` and a ``stall`` on the way."""
+    last, name = turns[-1], machine.name
+    swing = last.largest[_SPEED] - last.least[_SPEED]
+    if goal.fluctuation is not None and swing / last.speed < goal.fluctuation:
+        return LagrangeCasadiError(
+            f"machine '{name}' needs no flywheel: it fluctuates by less than {goal.fluctuation:g}"
+            " without one"
+        )
+    gains = [turn.end[_SPEED] ** 2 - turn.begin.speed**2 for turn in turns]
+    slows = max(gains) <= 0.0
+    if slows and stall is None:
+        found = _at_speeds(machine, last.begin, goal.span, accuracy, _SLOWER)
+        stall = found if isinstance(found, Stall) else None
+    if stall is not None:
+        return _stalled(machine, stall, ", because it loses speed each turn" if slows else "")
+    return LagrangeCasadiError(
+        f"machine '{name}': no steady cycle was found near {turns[0].begin.speed:.6g} rad/s; "
+        + ("the machine gains speed each turn" if min(gains) > 0.0 else f"after {_STEPS} steps")
+        + f", {last.begin.speed:.6g} rad/s at the start of the last one"
         + ("" if goal.fluctuation is None else f", a flywheel of {machine.added[1]:.6g} kg m^2")
     )
 
 
-def _moved(
-    machine: Machine, angle: float, speed: float, step: Array, goal: Goal, accuracy: float
-) -> tuple[_Turn, float]:
-    """Take a step, or as much of it as lets the machine get round."""
-    before = np.array([speed, *machine.added])
-    whole = np.zeros(3)
-    whole[goal.unknowns] = step
-    share = 1.0
-    for _ in range(_TRIES):
-        now = before + share * whole
-        if now[0] * speed > 0.04 * speed**2 and now[2] >= 0.0:
-            machine.added[:] = now[1:]
-            turn = _turned(machine, Start(angle, float(now[0])), goal.span, accuracy)
-            if turn is not None:
-                return turn, float(now[0])
-        share /= 2.0
-    if goal.fluctuation is not None and before[2] + whole[2] < 0.0:
-        raise LagrangeCasadiError(
-            f"machine '{machine.name}' needs no flywheel: it fluctuates by less than"
-            f" {goal.fluctuation:g} without one"
-        )
-    raise LagrangeCasadiError(
-        f"machine '{machine.name}' stalls: below {speed:.6g} rad/s at {angle:.6g} rad it does"
-        " not complete a turn, and above that speed it slows down"
+def _stalled(machine: Machine, stall: Stall, cause: str = "") -> LagrangeCasadiError:
+    """The error for a machine that stalls."""
+    begin, way = stall.begin, math.copysign(SLOW, stall.begin.speed)
+    rows = machine.at(0.0, stall.angle, way)
+    drive = float(rows[ROW["drive"]])
+    need = drive - float(rows[ROW["inertia"]] * rows[ROW["acceleration"]])
+    return LagrangeCasadiError(
+        f"machine '{machine.name}' stalls{cause}: from {begin.speed:.6g} rad/s at"
+        f" {machine.equation.joint} = {begin.angle:.6g} rad it comes to rest at {stall.angle:.6g}"
+        f" rad, after {stall.time:.6g} s; there the drive gives {drive:.6g} N m, and {need:.6g} N m"
+        " resist; expected a drive with more torque, more inertia, or a higher speed at the start"
     )
 
 
-def _residuals(turn: _Turn, speed: float, goal: Goal) -> tuple[Array, Array]:
-    """Relative residuals of what is sought, and their slopes: the first is the energy that a cycle
-    adds, which does not depend on the speed where nothing does.
-    """
-    end = turn.end
-    rows = [(end[_SPEED] ** 2 - speed**2) / (2.0 * speed**2)]
-    slopes = [(end[_SPEED] * end[_BY] - np.array([speed, 0.0, 0.0])) / speed**2]
-    if goal.mean is not None:
-        wanted = goal.span / goal.mean
-        rows.append(end[_TIME] / wanted - 1.0)
-        slopes.append(end[_TIME_BY] / wanted)
-    if goal.fluctuation is not None:
-        swing = (turn.largest - turn.least) / abs(goal.span)
-        rows.append(swing[_SPEED] * end[_TIME] - goal.fluctuation)
-        slopes.append(swing[_BY] * end[_TIME] + swing[_SPEED] * end[_TIME_BY])
-    return np.array(rows), np.array(slopes)[:, goal.unknowns]
-
-
-def _turned(machine: Machine, begin: Start, span: float, accuracy: float) -> _Turn | None:
-    """Go round once; None where the machine does not."""
-    if not machine.begin(0.0, begin.angle):
-        return None
+def _turned(machine: Machine, begin: Start, span: float, accuracy: float) -> Turn | Stall:
+    """Go round once; or the stall before the machine is round."""
+    machine.begin(0.0, begin.angle)
     a, by = ROW["acceleration"], [ROW[f"by_{name}"] for name in ("speed", "drive", "inertia")]
 
     def rates(angle: float, y: Array) -> Array:
         speed = y[_SPEED]
         found = np.full(8, np.nan)
-        if not speed / begin.speed > _SLOWEST:
+        if not speed * begin.speed > 0.0:
             return found
         rows = machine.at(0.0, angle, speed)
         found[_SPEED], found[_TIME] = rows[a] / speed, 1.0 / speed
@@ -194,70 +223,81 @@ def _turned(machine: Machine, begin: Start, span: float, accuracy: float) -> _Tu
     def even(angle: float, y: Array) -> float:
         return float(machine.at(0.0, angle, float(y[_SPEED]))[a])
 
+    def stall(_angle: float, y: Array) -> float:
+        return float(y[_SPEED] / begin.speed) - _SLOWEST
+
+    def blocked(angle: float, y: Array) -> float:
+        return machine.margin(0.0, angle, float(y[_SPEED]))
+
+    vars(stall).update(terminal=True)
+    vars(blocked).update(terminal=True)
     state = np.zeros(8)
     state[_SPEED], state[_BY] = begin.speed, (1.0, 0.0, 0.0)
-    states = _over(rates, (begin.angle, begin.angle + span), state, accuracy, even)
-    if states is None:
-        return None
-    order = np.argsort(states[:, _SPEED])
-    return _Turn(states[1], states[order[0]], states[order[-1]])
+    ends = begin.angle, begin.angle + span
+    run = _over(rates, ends, state, accuracy, [even, stall, blocked])
+    angle, (speed, t) = float(run.t[-1]), run.y[:2, -1]
+    if run.t_events[1].size:  # from there evenly slower
+        slower = float(machine.at(0.0, angle, speed)[a])
+        return Stall(begin, angle - speed**2 / (2.0 * slower), float(t - speed / slower))
+    if run.status != 0:
+        raise LagrangeCasadiError(
+            f"machine '{machine.name}' has no steady cycle: {why_lost(machine, t, angle, speed)}"
+        )
+    extremes = np.concatenate([run.y[:, [0, -1]].T, np.reshape(run.y_events[0], (-1, state.size))])
+    order = np.argsort(np.abs(extremes[:, _SPEED]))
+    return Turn(begin, span, run.y[:, -1], extremes[order[0]], extremes[order[-1]])
 
 
 def swing(machine: Machine, begin: Start, span: float, accuracy: float) -> tuple[float, float]:
-    """The largest swing of energy [J] of a machine that turns evenly under an even torque, and that
-    torque [N m].
+    """The largest swing of energy [J] of a machine that turns evenly, with an even torque beside
+    that of its drive; and that torque [N m].
 
-    Raises :class:`.LagrangeCasadiError` where it cannot turn evenly.
+    Raises :class:`.LagrangeCasadiError` if it cannot turn evenly.
     """
-    effort, load = ROW["effort"], ROW["load"]
+    effort, load, drive = ROW["effort"], ROW["load"], ROW["drive"]
 
     def over(mean: float) -> Array:
         def rates(angle: float, _y: Array) -> list[float]:
             rows = machine.at(0.0, angle, begin.speed)
-            return [float(rows[effort] + rows[load]) - mean]
+            return [float(rows[effort] + rows[load] - rows[drive]) - mean]
 
         machine.begin(0.0, begin.angle)
         ends = begin.angle, begin.angle + span
-        energies = _over(rates, ends, np.zeros(1), accuracy, lambda x, y: rates(x, y)[0])
-        if energies is None:
+        run = _over(rates, ends, np.zeros(1), accuracy, [lambda x, y: rates(x, y)[0]])
+        if run.status != 0:
             raise LagrangeCasadiError(
                 f"machine '{machine.name}': the torque at the constant speed"
                 f" {begin.speed:.6g} rad/s is not finite over the whole turn"
             )
-        return energies
+        return np.append(run.y[0, [-1, 0]], run.y_events[0])
 
     with machine.evenly(begin.angle, begin.speed):
-        mean = float(over(0.0)[1, 0]) / span
+        mean = float(over(0.0)[0]) / span
         return float(np.ptp(over(mean))), mean
 
 
 def _over(
     rates: Callable[[float, Array], Sequence[float] | Array],
-    span: tuple[float, float],
+    ends: tuple[float, float],
     state: Array,
     accuracy: float,
-    even: Callable[[float, Array], float],
-) -> Array | None:
-    """States over the angle, one a row: at the start, at the end, and where ``even`` is zero; None
-    where the machine does not come to the end.
-    """
+    events: Sequence[Callable[[float, Array], float]],
+) -> Any:
+    """SciPy's result of an integration over the angle."""
     from scipy.integrate import solve_ivp
 
     with np.errstate(invalid="ignore"):
-        run = solve_ivp(
-            *(rates, span, state),
+        return solve_ivp(
+            *(rates, ends, state),
             method="DOP853",
             rtol=max(accuracy, 2.3e-14),
             atol=accuracy * 1e-3,
-            events=even,
+            events=events,
         )
-    if run.status != 0:
-        return None
-    return np.concatenate([run.y[:, [0, -1]].T, np.reshape(run.y_events[0], (-1, state.size))])
 
 
 def _check_repeats(machine: Machine, begin: Start, span: float) -> None:
-    """Raise :class:`.DeclarationError` where the machine is another one after a cycle."""
+    """Raise :class:`.DeclarationError` if the machine is another one after a cycle."""
     machine.begin(0.0, begin.angle)
     first, last = (
         machine.at(0.0, begin.angle + share * span, begin.speed).copy() for share in (0.0, 1.0)
@@ -275,27 +315,26 @@ def _check_repeats(machine: Machine, begin: Start, span: float) -> None:
 def finished(
     scene: Scene,
     machine: Machine,
-    found: Found,
+    turn: Turn,
     count: int,
     wanted: Outputs | None,
     accuracy: float,
 ) -> FreeMotion:
-    """Follow a cycle in time, with all forces."""
-    even = checked("count", (0.0, found.period, count))
-    machine.added[:] = found.torque, found.inertia
-    motion = follow(scene, machine, Start(found.angle, found.speed), even, wanted, accuracy)
+    """Follow a steady cycle in time, with all forces."""
+    even = checked("count", (0.0, turn.period, count))
+    motion = follow(scene, machine, turn.begin, even, wanted, accuracy)
     lost = [
         array
         for name, array in motion.solution.series.items()
         if name.startswith("friction:") and name.endswith(":loss")
     ]
     gave, took, taken = (
-        float(work[-1]) / found.period
+        float(work[-1]) / turn.period
         for work in (motion.work_drive, motion.work_load, motion.work_taken)
     )
     cycle = Cycle(
-        *(found.period, found.span / found.period, found.least, found.largest, found.torque),
-        *(gave, took, taken),
+        *(turn.period, turn.speed, float(turn.least[_SPEED]), float(turn.largest[_SPEED])),
+        *(float(machine.added[0]), gave, took, taken),
         lost=sum(float(np.mean((one[1:] + one[:-1]) / 2.0)) for one in lost),
     )
     return replace(motion, cycle=cycle)

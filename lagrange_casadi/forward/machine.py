@@ -15,6 +15,7 @@ from ..base.arrays import Array
 from ..codegen import find_compiler, load_batch
 from ..codegen.emit import newton_rule
 from ..equations.free_equation import COLUMNS, FreeEquation
+from ..errors import DeclarationError
 from ..instants.backends import begun
 
 ROW = {name: k for k, name in enumerate(COLUMNS)}
@@ -24,6 +25,40 @@ _EVEN = 1e9
 
 _APART = 0.05
 """Steps by which loops are followed to a start [rad or m]."""
+
+SLOW = 1e-9
+"""Rate of a machine that is nearly at rest, at which friction has its direction."""
+
+_DEAD, _NEAR = 1e-4, 0.05
+"""Sine of a loop's transmission angle at which the loop is at a dead centre; and that, or margin
+from a jam, below which a run that cannot go on is at one.
+"""
+
+
+@dataclass(frozen=True)
+class Event:
+    """An event of a free machine at time ``t`` [s], at an ``angle`` [rad or m] and a ``speed``
+    [rad/s or m/s]: it is at ``rest``, and turns back or goes on; it is ``held`` at rest, or at a
+    ``dead centre``, or friction in ``joints`` makes it ``jam``, each of which ends the run.
+    """
+
+    kind: str
+    t: float
+    angle: float
+    speed: float
+    joints: str = ""
+
+    def __str__(self) -> str:
+        where = f" of {self.joints}" if self.joints else ""
+        return f"{self.kind}{where} at t = {self.t:.6g} s, coordinate {self.angle:.6g}"
+
+
+@dataclass(frozen=True)
+class Start:
+    """State in which a machine is let go: coordinate and rate of its drive."""
+
+    angle: float
+    speed: float
 
 
 @dataclass(eq=False)
@@ -120,11 +155,23 @@ class Machine:
         finally:
             self.added[:] = before
 
-    def begin(self, t: float, angle: float) -> bool:
-        """Follow the loops from the scene's own start to an angle; return whether they close."""
+    def begin(self, t: float, angle: float) -> None:
+        """Follow the loops from the scene's own start to an angle.
+
+        Raises :class:`.DeclarationError` if they do not close there, or nothing has inertia.
+        """
         first = self.law(self.equation.program.data.span[0])[0]
         steps = 1 + int(abs(angle - first) / _APART)
-        return all(self._close(t, x) for x in np.linspace(first, angle, steps + 1)[1:])
+        if not all(self._close(t, x) for x in np.linspace(first, angle, steps + 1)[1:]):
+            raise DeclarationError(
+                f"start: the loops of '{self.name}' do not close at {angle:.6g}; expected another"
+                " coordinate"
+            )
+        if self.at(t, angle, SLOW)[ROW["inertia"]] == 0.0:
+            raise DeclarationError(
+                f"free machine '{self.name}': nothing that '{self.equation.joint}' moves has"
+                " inertia; expected masses or inertias, or inertia="
+            )
 
     def at(self, t: float, angle: float, speed: float) -> Array:
         """Rows :data:`COLUMNS` of a state; no number where loops do not close there."""
@@ -135,6 +182,21 @@ class Machine:
             return np.full(len(COLUMNS), np.nan)
         given["z"][:] = self.z
         return self.state()
+
+    def margin(self, t: float, angle: float, speed: float) -> float:
+        """Distance of a state from a dead centre and from a jam: zero at one of them."""
+        rows = self.at(t, angle, speed)
+        sine = float(rows[ROW["sine"]]) - _DEAD
+        return min([sine, *rows[len(COLUMNS) :]]) if math.isfinite(sine) else 1.0
+
+    def obstacle(self, t: float, angle: float, speed: float) -> Event | None:
+        """The dead centre or the jam that a state is near, if any."""
+        rows = self.at(t, angle, speed)
+        jams = zip(rows[len(COLUMNS) :], self.equation.jams, strict=False)
+        near, joints = min([(rows[ROW["sine"]], ""), *jams])
+        if near >= _NEAR:
+            return None
+        return Event("jam" if joints else "dead centre", t, angle, speed, joints)
 
     def _close(self, t: float, angle: float) -> bool:
         if self.loops is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -24,7 +25,7 @@ from ..instants.solution import Solution
 from ..studies.request import Request
 from ..studies.solving import solve
 from ..verification.certificate import failure
-from .machine import ROW, Machine
+from .machine import ROW, SLOW, Event, Machine, Start
 
 ACCURACY = 1e-12
 """Relative error of a step of integration."""
@@ -36,31 +37,10 @@ _MOST_EVALUATIONS, _LOOKED = 4_000_000, 200_000
 _LEAST = 1e-9
 """Share of the whole time by which a run must go on after a stop."""
 
-DEAD, _NEAR = 1e-4, 0.05
-"""Sine of a loop's transmission angle at which the loop is at a dead centre; and that below which a
-run that cannot go on is at one.
-"""
+_NOTHING = 1e-300
+"""Rate that is zero."""
 
 _RATES = [ROW[name] for name in ("acceleration", "drive", "load", "taken")]
-
-_SLOW = 1e-9
-"""Rate at which friction has its direction, and of a machine that is nearly at rest."""
-
-
-@dataclass(frozen=True)
-class Event:
-    """An event of a free machine at time ``t`` [s], at an ``angle`` [rad or m] and a ``speed``
-    [rad/s or m/s]: it is at ``rest``, and turns back or goes on; it is ``held`` at rest by
-    friction, or at a ``dead centre``, which ends the run.
-    """
-
-    kind: str
-    t: float
-    angle: float
-    speed: float
-
-    def __str__(self) -> str:
-        return f"{self.kind} at t = {self.t:.6g} s, coordinate {self.angle:.6g}"
 
 
 @public
@@ -103,9 +83,9 @@ class FreeMotion:
     scene's own loads, springs, weights and frictions ``work_taken``; ``kinetic`` is the kinetic
     energy [J], that of the flywheel's ``inertia`` [kg m^2 or kg] too. ``energy`` is what is missing
     in their balance, over the largest of them: a residual of the certificate of ``solution``, which
-    has all forces. ``scene`` is the scene with this motion. ``events`` are what happened on the
-    way; ``ended`` is the one that ended the run early, or None. ``cycle`` has the numbers of a
-    steady cycle, where one was asked for.
+    has all forces. ``unit`` is that of the angle. ``scene`` is the scene with this motion.
+    ``events`` are what happened on the way; ``ended`` is the one that ended the run early, or None.
+    ``cycle`` has the numbers of a steady cycle, if one was asked for.
     """
 
     joint: str
@@ -124,6 +104,7 @@ class FreeMotion:
     events: tuple[Event, ...]
     scene: Scene
     solution: Solution
+    unit: str
     cycle: Cycle | None = None
 
     def __repr__(self) -> str:
@@ -136,7 +117,7 @@ class FreeMotion:
     def ended(self) -> Event | None:
         """The event that ended the run before its time."""
         last = self.events[-1] if self.events else None
-        return last if last is not None and last.kind in ("held", "dead centre") else None
+        return last if last is not None and last.kind != "rest" else None
 
     @property
     def resisting(self) -> Array:
@@ -151,16 +132,9 @@ class FreeMotion:
         """Residual of the balance of energy, (t,)."""
         works = (self.work_drive, self.work_load, self.work_taken)
         missing = self.kinetic - self.kinetic[0] - works[0] + works[1] + works[2]
-        largest = max(float(np.abs(energy).max()) for energy in (self.kinetic, *works))
+        still = float(np.abs(self.reflected).max() + self.inertia) * SLOW**2
+        largest = max(still, *(float(np.abs(energy).max()) for energy in (self.kinetic, *works)))
         return np.asarray(np.abs(missing) / (largest or 1.0))
-
-
-@dataclass(frozen=True)
-class Start:
-    """State in which a machine is let go: coordinate and rate of its drive."""
-
-    angle: float
-    speed: float
 
 
 def begun_at(machine: Machine, start: Sequence[float] | None, t: float) -> Start:
@@ -188,11 +162,7 @@ def follow(
     times = points(even)
     if times.size < 2:
         raise DeclarationError("t: a free machine needs two instants or more")
-    if not machine.begin(float(times[0]), start.angle):
-        raise DeclarationError(
-            f"start: the loops of '{machine.name}' do not close at {start.angle:.6g};"
-            " expected another coordinate"
-        )
+    machine.begin(float(times[0]), start.angle)
     y, events = _integrated(machine, start, times, accuracy)
     times = times[: y.shape[1]]
     if times.size < 2:
@@ -204,9 +174,9 @@ def follow(
     ways = np.append(y[1, 1:], y[1, -1])  # at rest, where something depends on that, the next one
     rows = np.empty((len(ROW), times.size))
     for i, (now, angle, speed) in enumerate(zip(times, y[0], y[1], strict=True)):
-        rows[:, i] = machine.at(now, angle, speed)
+        rows[:, i] = machine.at(now, angle, speed)[: len(ROW)]
         if not math.isfinite(rows[ROW["acceleration"], i]):
-            rows[:, i] = machine.at(now, angle, math.copysign(_SLOW, ways[i]))
+            rows[:, i] = machine.at(now, angle, math.copysign(SLOW, ways[i]))[: len(ROW)]
     flywheel = float(machine.added[1])
     law = hermite(times, y[0], y[1], rows[ROW["acceleration"]])
     moved = replace(
@@ -227,9 +197,10 @@ def follow(
         events=tuple(events),
         scene=moved,
         solution=solution,
+        unit="m" if machine.equation.slides else "rad",
     )
-    turning = rows[ROW["inertia"]] * rows[ROW["acceleration"]]
-    return replace(found, solution=_certified(found, float(np.abs(turning).max())))
+    turning = np.abs(rows[ROW["inertia"]]) * np.maximum(np.abs(found.acceleration), SLOW)
+    return replace(found, solution=_certified(found, float(turning.max())))
 
 
 def _certified(found: FreeMotion, turning: float) -> Solution:
@@ -318,6 +289,7 @@ def _integrated(
     from scipy.integrate import solve_ivp
 
     t, end = float(times[0]), float(times[-1])
+    machine.evaluations = 0
     first = machine.at(t, start.angle, start.speed).copy()
     for name in ("drive", "load"):
         if not math.isfinite(first[ROW[name]]):
@@ -325,22 +297,26 @@ def _integrated(
                 f"free machine '{machine.name}': the law of its {name} is not finite at the start,"
                 f" at the rate {start.speed:g}; expected another start"
             )
-    first = machine.at(t, start.angle, start.speed or _SLOW).copy()
+    first = machine.at(t, start.angle, start.speed or SLOW).copy()
     energy = abs(first[ROW["kinetic"]]) + machine.added[1] * start.speed**2 / 2.0
     energy = max(energy, *(abs(first[ROW[name]]) for name in ("drive", "load", "inertia")), 1e-12)
     scales = accuracy * np.array([1.0, max(abs(start.speed), 1.0), energy, energy, energy])
     state = np.array([start.angle, start.speed, 0.0, 0.0, 0.0])
-    done, events = [state[:, None]], list[Event]()
+    done, events, back = [state[:, None]], list[Event](), 0.0
     while True:
         way = math.copysign(1.0, state[1]) if state[1] else _first_way(machine, t, float(state[0]))
+        way = back or way
         if way == 0.0:
             events.append(Event("held", t, float(state[0]), 0.0))
+            break
+        if machine.margin(t, float(state[0]), float(state[1]) or way * SLOW) <= 0.0:
+            events.append(why_lost(machine, t, float(state[0]), float(state[1]) or way * SLOW))
             break
         ends, last = (float(times[0]), end), (t, float(state[0]), float(state[1]))
         rates = _Rates(machine, way, ends, last)
         run = solve_ivp(
             *(rates, (t, end), state),
-            method="DOP853",
+            method=_careful(),
             rtol=max(accuracy, 2.3e-14),
             atol=scales,
             t_eval=times[(times > t) & (times <= end)],
@@ -348,24 +324,39 @@ def _integrated(
             first_step=(end - t) * 1e-6,
         )
         done.append(np.reshape(run.y, (state.size, -1)))  # SciPy's is a list where it is empty
-        if run.status == -1:
-            events.append(_why_lost(machine, *rates.last))
-            break
         if run.status == 0:
             break
-        (rests, dead), (states, dead_states) = run.t_events, run.y_events
-        if dead.size:
-            at = dead_states[0]
-            events.append(Event("dead centre", float(dead[0]), float(at[0]), float(at[1])))
+        (rests, blocks), (states, blocked) = run.t_events, run.y_events
+        if run.status == -1 or blocks.size:
+            at = (float(blocks[0]), *blocked[0][:2].tolist()) if blocks.size else rates.last
+            events.append(why_lost(machine, *at))
             break
         before, t, state = t, float(rests[0]), states[0] * (1.0, 0.0, 1.0, 1.0, 1.0)
         if t - before < _LEAST * (end - times[0]):
+            if not back:  # a torque may begin right after
+                back = -way
+                continue
             events.append(Event("held", t, float(state[0]), 0.0))
             break
+        back = 0.0
         events.append(Event("rest", t, float(state[0]), 0.0))
         if t >= end:
             break
     return np.concatenate(done, axis=1), events
+
+
+def _careful() -> Any:
+    """SciPy's DOP853, with the plain fifth-order estimate of a step's error: its own one is smaller
+    by the ratio of two estimates, and passes more steps over jumps and corners of a load.
+    """
+    from scipy.integrate import DOP853
+
+    class Careful(DOP853):  # type: ignore[misc]
+        def _estimate_error_norm(self, K: Array, h: float, scale: Array) -> float:  # noqa: N803
+            errors = K.T @ self.E5 / scale
+            return float(abs(h) * np.linalg.norm(errors) / math.sqrt(errors.size))
+
+    return Careful
 
 
 @dataclass
@@ -392,48 +383,47 @@ class _Rates:
                     " or of a load is stiff, or switches back and forth, there, or the time is too"
                     " long for the accuracy"
                 )
-        slow = self.way * speed < _SLOW
-        a, drive, load, taken = machine.at(t, angle, self.way * _SLOW if slow else speed)[_RATES]
+        slow = self.way * speed < SLOW
+        a, drive, load, taken = machine.at(t, angle, self.way * SLOW if slow else speed)[_RATES]
         if math.isfinite(a):
             self.last = t, angle, speed
         return [speed, a, drive * speed, load * speed, taken]
 
 
 def _watched(machine: Machine, way: float) -> list[Callable[[float, Array], float]]:
-    """Functions of the state that are zero at rest, and at a dead centre, for a machine that moves
-    one ``way``.
+    """Functions of the state that are zero at rest, and at a dead centre or a jam, for a machine
+    that moves one ``way``.
     """
 
-    def rest(_t: float, y: Array) -> float:
-        return float(y[1])
+    def rest(_t: float, y: Array) -> float:  # of nothing that is at rest and stays so
+        return float(y[1]) + way * _NOTHING
 
-    def dead(t: float, y: Array) -> float:
-        sine = float(machine.at(t, float(y[0]), float(y[1]) or way * _SLOW)[ROW["sine"]])
-        return sine - DEAD if math.isfinite(sine) else 1.0
+    def blocked(t: float, y: Array) -> float:
+        return machine.margin(t, float(y[0]), float(y[1]) or way * SLOW)
 
     vars(rest).update(terminal=True, direction=-way)
-    vars(dead).update(terminal=True)
-    return [rest, dead]
+    vars(blocked).update(terminal=True)
+    return [rest, blocked]
 
 
 def _first_way(machine: Machine, t: float, angle: float) -> float:
     """The way in which a machine at rest begins to move: 1 or -1, or 0 where friction holds it."""
     ahead, back = (
-        float(machine.at(t, angle, way * _SLOW)[ROW["acceleration"]]) for way in (1.0, -1.0)
+        float(machine.at(t, angle, way * SLOW)[ROW["acceleration"]]) for way in (1.0, -1.0)
     )
     if ahead > 0.0 or ahead == back == 0.0:
         return 1.0
     return -1.0 if back < 0.0 else 0.0
 
 
-def _why_lost(machine: Machine, t: float, angle: float, speed: float) -> Event:
+def why_lost(machine: Machine, t: float, angle: float, speed: float) -> Event:
     """The event at which the integrator can go no further.
 
-    Raises :class:`.LagrangeCasadiError` where it is no dead centre.
+    Raises :class:`.LagrangeCasadiError` if it is no dead centre and no jam.
     """
+    if (found := machine.obstacle(t, angle, speed)) is not None:
+        return found
     rows = machine.at(t, angle, speed)
-    if not rows[ROW["sine"]] >= _NEAR:
-        return Event("dead centre", t, angle, speed)
     raise LagrangeCasadiError(
         f"free machine '{machine.name}': its motion cannot be followed beyond t = {t:.6g} s,"
         f" coordinate {angle:.6g}, rate {speed:.6g}: acceleration"

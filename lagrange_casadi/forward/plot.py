@@ -42,8 +42,7 @@ def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
     check_picture(path)
     from matplotlib.figure import Figure
 
-    solution = motion.solution
-    angle = solution.unit(f"motion:{motion.joint}") == "rad"
+    angle = motion.unit == "rad"
     x = np.degrees(motion.angle) if angle else motion.angle
     resisting = motion.resisting
     mean = float(np.sum((resisting[1:] + resisting[:-1]) / 2.0 * np.diff(motion.angle)))

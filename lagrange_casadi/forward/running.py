@@ -16,8 +16,11 @@ from ..declare.torques import Law, law_of
 from ..equations.free_equation import free_equation
 from ..errors import DeclarationError
 from .cycle import Goal, finished, sought, swing
-from .machine import Machine
-from .motion import ACCURACY, FreeMotion, Start, begun_at, follow
+from .machine import Machine, Start
+from .motion import ACCURACY, FreeMotion, begun_at, follow
+
+_EVEN = 1e-4
+"""Fluctuation of the machine whose speed is the first guess of that with a flywheel."""
 
 
 @public
@@ -28,8 +31,9 @@ class Flywheel:
     ``inertia`` [kg m^2] is exact: with it the steady cycle ``motion``, in which the machine's own
     inertia varies and the drive follows the speed, has that fluctuation. ``textbook`` is the
     inertia by the energy method, ``energy``/(fluctuation speed^2): the largest swing of ``energy``
-    [J] of the machine that turns evenly, at the mean speed and under an even torque (Norton,
-    *Design of Machinery*; Shigley, *Mechanical Engineering Design*: flywheels).
+    [J] of the machine that turns evenly, at the mean speed, under the torque that its drive has
+    there and an even one beside it (Norton, *Design of Machinery*; Shigley, *Mechanical Engineering
+    Design*: flywheels).
     """
 
     inertia: float
@@ -117,8 +121,8 @@ def free(
             )
         begin = _turning(machine, start)
         goal = Goal(math.copysign(cycle, begin.speed), None if drive is not None else begin.speed)
-        found = sought(machine, begin, goal, accuracy)
-        return finished(scene, machine, found, count, wanted, accuracy)
+        turn = sought(machine, begin, goal, accuracy)
+        return finished(scene, machine, turn, count, wanted, accuracy)
     even = even_of(scene.timing(scene.t if t is None else t), machine.values)
     return follow(scene, machine, begun_at(machine, start, even[0]), even, wanted, accuracy)
 
@@ -160,17 +164,16 @@ def flywheel(
     machine = _machine(scene, drive, load, 0.0, parameters, accuracy)
     begin = _turning(machine, start)
     span, mean = math.copysign(cycle, begin.speed), None if drive is not None else begin.speed
-    speed = begin.speed
-    if mean is None:
-        with machine.evenly(begin.angle, begin.speed):
-            speed = sought(machine, begin, Goal(span), accuracy).speed
-    begin = Start(begin.angle, speed)
-    machine.added[1] = swing(machine, begin, span, accuracy)[0] / (fluctuation * speed**2)
-    found = sought(machine, begin, Goal(span, mean, fluctuation), accuracy)
-    motion = finished(scene, machine, found, count, wanted, accuracy)
-    speed = found.span / found.period
-    energy, _ = swing(machine, Start(begin.angle, speed), span, accuracy)
-    return Flywheel(found.inertia, energy / (fluctuation * speed**2), energy, motion)
+    energy, _ = swing(machine, begin, span, accuracy)
+    if mean is None:  # the speed at which the motor turns a machine that is nearly even
+        machine.added[1] = energy / (_EVEN * begin.speed**2)
+        begin = sought(machine, begin, Goal(span), accuracy).begin
+        energy, _ = swing(machine, begin, span, accuracy)
+    machine.added[1] = energy / (fluctuation * begin.speed**2)
+    turn = sought(machine, begin, Goal(span, mean, fluctuation), accuracy)
+    motion = finished(scene, machine, turn, count, wanted, accuracy)
+    energy, _ = swing(machine, Start(begin.angle, turn.speed), span, accuracy)
+    return Flywheel(motion.inertia, energy / (fluctuation * turn.speed**2), energy, motion)
 
 
 def _machine(

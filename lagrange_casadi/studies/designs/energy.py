@@ -15,7 +15,7 @@ R. L. Norton, *Design of Machinery*; J. E. Shigley, *Mechanical Engineering Desi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import casadi as ca
 import numpy as np
@@ -41,10 +41,13 @@ _ROUNDS, _MORE = 30, 64
 
 @dataclass(frozen=True, eq=False)
 class DriveEnergy:
-    """The energy of a ``drive``'s effort in designs by an ``engine``."""
+    """The energy of a ``drive``'s effort in designs by an ``engine``. The design that was sampled
+    last is kept, by its parameters: a search asks for the value and for its derivatives.
+    """
 
     engine: DesignEngine
     drive: Output
+    kept: dict[bytes, _Nodes | None] = field(default_factory=dict, init=False, repr=False)
 
     def fluctuation(self, p: Array) -> float:
         """Return the fluctuation of energy [J] of a design (parameters,), NaN if it has none."""
@@ -89,7 +92,14 @@ class DriveEnergy:
         return instants
 
     def _nodes(self, p: Array) -> _Nodes | None:
-        """Sample a design; None without a result."""
+        """Samples of a design; None without a result."""
+        if (key := p.tobytes()) not in self.kept:
+            nodes = self._nodes_of(p)
+            self.kept.clear()
+            self.kept[key] = nodes
+        return self.kept[key]
+
+    def _nodes_of(self, p: Array) -> _Nodes | None:
         engine, instants = self.engine, self._instants(p)
         path = instants if engine.program.newton is not None else instants[:0]
         t = np.linspace(instants[0], instants[-1], 4 * (-(-(instants.size - 1) // 4)) + 1)
