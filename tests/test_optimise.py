@@ -23,10 +23,8 @@ def balanced():
     equal.
     """
     m = Mechanism("balanced")
-    weight, reach = (
-        m.parameter("weight", 1.0, "kg", low=0.0),
-        m.parameter("reach", 0.2, "m", low=0.0),
-    )
+    weight = m.parameter("weight", 1.0, "kg", low=0.0)
+    reach = m.parameter("reach", 0.2, "m", low=0.0)
     arm, tail = m.link("arm", length=0.5, mass=2.0), m.link("tail", length=reach, mass=1e-9)
     m.revolute("O", m.ground, arm)
     m.weld("rear", arm.base, tail, angle=math.pi)
