@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from commands import command
 from internals import (
     CRITERIA,
     EvaluationMethod,
@@ -38,7 +39,7 @@ from lagrange_casadi import (
     optimise,
     sweep,
 )
-from lagrange_casadi.cli import main, program
+from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError, NoDesignError
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety
@@ -417,22 +418,7 @@ def test_fatigue_is_open_alike_in_solutions_and_sweeps(names, tmp_path, capsys, 
         "from test_sweep_strength import without\n"
         f"def scene():\n    return without(*{names!r})\n"
     )
-    assert (
-        main(
-            [
-                "sweep",
-                "case.py",
-                "--backend",
-                "vm",
-                "--grid",
-                "r=0.1:0.11:2",
-                "--want",
-                "safety:rod",
-                "--quiet",
-            ]
-        )
-        == 0
-    )
+    assert command("sweep case.py --backend vm --grid r=0.1:0.11:2 --want safety:rod --quiet") == 0
     assert capsys.readouterr().out.count(
         f"note: no factor against fatigue of 'rod' is kept: {why}"
     ) == len(names[:1])
