@@ -185,18 +185,6 @@ def test_a_stop_leaves_the_best_so_far():
     assert found.objective <= seen[0]
 
 
-def test_limits_that_hold_nowhere_are_told():
-    found = optimise(
-        case("slider_crank"),
-        minimise="peak:effort:O",
-        over={"l": (0.2, 0.3)},
-        subject_to=["peak:section:rod:bending <= 0.01"],
-        starts=1,
-    )
-    assert not found.feasible
-    assert found.limits[0].value > 0.3
-
-
 @pytest.mark.parametrize(
     ("words", "error", "said"),
     [
