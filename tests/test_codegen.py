@@ -169,7 +169,7 @@ def test_a_changed_parameter_derives_and_compiles_nothing(fresh_cache):
 
 
 def test_several_builds_at_once(fresh_cache):
-    source, found = codegen.emit(derive(slider_crank())), codegen.find_compiler()
+    source, found = codegen.emit(derive(slider_crank(["effort"]))), codegen.find_compiler()
     with ThreadPoolExecutor(8) as pool:
         libraries = list(pool.map(lambda _: codegen.load(source, found), range(8)))
     assert len(libraries) == 8
@@ -184,17 +184,17 @@ def test_several_builds_at_once(fresh_cache):
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("seal", [b"", bytes(range(128, 192))])
 def test_a_damaged_seal_is_as_a_damaged_library(fresh_cache, seal):
-    evaluate(slider_crank(), backend="c")
+    evaluate(slider_crank(["effort"]), backend="c")
     (path,) = fresh_cache.glob("*.sha256")
     whole = path.read_bytes()
     path.write_bytes(seal)
     with pytest.warns(UserWarning, match="was damaged and is built again"):
-        evaluate(slider_crank(), backend="c")
+        evaluate(slider_crank(["effort"]), backend="c")
     assert path.read_bytes() == whole
 
 
 def test_a_damaged_library_is_built_again_and_said(fresh_cache):
-    evaluate(slider_crank(), backend="c")
+    evaluate(slider_crank(["effort"]), backend="c")
     (path,) = fresh_cache.glob("*.so")
     whole = path.read_bytes()
     path.unlink()  # it is mapped into this process
@@ -202,7 +202,7 @@ def test_a_damaged_library_is_built_again_and_said(fresh_cache):
     with pytest.warns(
         UserWarning, match=r"the cached library .*\.so was damaged and is built again"
     ):
-        evaluate(slider_crank(), backend="c")
+        evaluate(slider_crank(["effort"]), backend="c")
     assert path.read_bytes() == whole
 
 
@@ -216,7 +216,7 @@ def test_a_failing_compiler_is_quoted_and_its_message_kept(tmp_path, fresh_cache
         CompilerError,
         match=r"fake-cc failed with status 3: x\.c:1: error: no \(whole message in .*\.log\)",
     ):
-        evaluate(slider_crank(), backend="c")
+        evaluate(slider_crank(["effort"]), backend="c")
     assert [path.read_text() for path in fresh_cache.glob("*.log")] == ["x.c:1: error: no\n"]
     assert not list(fresh_cache.glob("*.so"))
 
@@ -230,7 +230,7 @@ def test_cc_that_does_not_run_is_an_error(monkeypatch):
 def test_cc_may_hold_words(monkeypatch):
     monkeypatch.setenv("CC", f"{shutil.which('cc') or shutil.which('gcc')} -pipe")
     assert codegen.find_compiler().command[1:] == ("-pipe",)
-    assert evaluate(slider_crank(), backend="c").provenance.backend == "c"
+    assert evaluate(slider_crank(["effort"]), backend="c").provenance.backend == "c"
 
 
 @pytest.fixture
@@ -244,16 +244,16 @@ def _no_compiler(monkeypatch):
 @pytest.mark.usefixtures("_no_compiler")
 def test_without_a_compiler_the_virtual_machine_serves_and_says_so():
     with pytest.warns(UserWarning, match=r"no C or C\+\+ compiler found"):
-        solution = evaluate(slider_crank())
+        solution = evaluate(slider_crank(["effort"]))
     assert solution.provenance.backend == "vm"
     for backend, needs in (("c", "C"), ("lanes", r"C\+\+")):
         with pytest.raises(CompilerError, match=f"backend '{backend}' needs a {needs} compiler"):
-            evaluate(slider_crank(), backend=backend)
+            evaluate(slider_crank(["effort"]), backend=backend)
     with pytest.raises(
         CompilerError,
         match=r"precision 'single' needs a compiler: none of c\+\+, .*, ziglang found",
     ):
-        evaluate(slider_crank(), precision="single")
+        evaluate(slider_crank(["effort"]), precision="single")
 
 
 def test_a_failing_cxx_compiler_is_said_and_c_serves(tmp_path, fresh_cache, monkeypatch):
@@ -266,13 +266,13 @@ def test_a_failing_cxx_compiler_is_said_and_c_serves(tmp_path, fresh_cache, monk
     with pytest.warns(
         UserWarning, match=r"fake-cc failed with status 3: x\.cpp:1: error: no .*; using scalar C"
     ):
-        assert evaluate(slider_crank()).provenance.backend == "c"
+        assert evaluate(slider_crank(["effort"])).provenance.backend == "c"
     with pytest.raises(CompilerError, match="fake-cc failed with status 3"):
-        evaluate(slider_crank(), backend="lanes")
+        evaluate(slider_crank(["effort"]), backend="lanes")
 
 
 def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     with pytest.warns(UserWarning, match=r"cannot write into the cache folder .*; nothing is kept"):
-        assert evaluate(slider_crank(), backend="c").provenance.backend == "c"
+        assert evaluate(slider_crank(["effort"]), backend="c").provenance.backend == "c"
