@@ -25,6 +25,7 @@ TOLERANCE = 1e-9
 """Of the peak. A method that misses by more has done other work, and its time is not reported."""
 
 _SAMPLE = 7
+_REST = 1e-3
 _ROUND, _ROUNDS, _PATIENCE = 2e-3, 9, 20.0
 _SHARED_ROUND, _SHARED_ROUNDS = 2e-4, 300
 """On a machine that others use, the least of many short samples is what nobody disturbed."""
@@ -176,8 +177,9 @@ def _times(works: dict[str, Work], shared: bool) -> dict[str, list[float]]:
         if number >= 3 and time.perf_counter() - start > _PATIENCE:
             break
         for name, work in works.items():
-            if repeats[name] > 1:
-                work()  # so that no method pays for what the one before it left in the caches
+            # No method pays for threads, or for caches, as the one before it left them.
+            time.sleep(_REST)
+            work()
             times[name].append(_sample(work, repeats[name]))
     return times
 

@@ -112,6 +112,7 @@ _EXPORTED = "from benchmarks.exported import report; print(report('{0}'))"
 _SWEPT = "from benchmarks.sweeps import report; print(report({0}, {1}, {2}))"
 _OPTIMUM = "from benchmarks.optimum import report; print(report(5))"
 _GRADIENTS = "from benchmarks.gradients import report; print(report(20))"
+_PEAKS = "from benchmarks.peaks import report; print(report(200))"
 _STEADY = "from benchmarks.steady import report; print(report(5))"
 _IDENTIFY = "from benchmarks.identification import report; print(report(3))"
 _LARGE = "from benchmarks.large import report; print(report({0}))"
@@ -155,6 +156,8 @@ PROGRAMS = (
         repeat=1, reports=True),
     Program("optimum", "the least peak torque of the slider-crank under a limit, two parameters",
         _OPTIMUM, repeat=1, reports=True),
+    Program("peaks", "peaks of 200 designs of the slider-crank, beside their outputs over time",
+        _PEAKS, repeat=1, reports=True),
     Program("gradients", "the gradient of all peaks by all parameters, of the peaks alone",
         _GRADIENTS, repeat=1, reports=True),
     Program("steady", "the steady cycle of the punch press, of an evaluation of it",
@@ -266,6 +269,8 @@ COMPARISONS = (
                ("arm x cores", "arm", "arm c", "rnea x cores", "rnea", "pinocchio native",
                    "dynibo"), "rnea", "ns/instant",
                    t=10_000),
+    Comparison("arm-1", "efforts of that arm, 1 instant by a call from Python", "arm_efforts",
+               ("arm", "arm c", "rnea", "pinocchio native", "dynibo"), "rnea", "ns/instant", t=1),
     Comparison("arm-sections",
         "six section forces of its second link: the law and its grids, 32 ratios", "arm_sections",
                ("arm x cores", "arm", "arm c", "rnea x cores", "rnea"), "rnea", "ns/(t, xi)",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import matplotlib as mpl
 
 from .definitions import COMPARISONS, METHODS
 
-MARKERS = "osv^D<>Xph*8PHd1"
+MARKERS = "osv^D<>Xph*8PHd1234"
 PANELS = (
     (
         "grid-",
@@ -34,6 +35,14 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
     import matplotlib.pyplot as plt
 
     sizes = {c.name: c for c in COMPARISONS}
+    families = tuple(panel[0] for panel in PANELS)
+    drawn = {row["method"] for row in rows if row["name"].startswith(families) and "ns" in row}
+    looks = {
+        method: {"marker": marker, "color": mpl.colormaps["tab20"](number), "markersize": 4}
+        for number, (method, marker) in enumerate(
+            zip((name for name in METHODS if name in drawn), itertools.cycle(MARKERS), strict=False)
+        )
+    }
     panels = [
         panel
         for panel in PANELS
@@ -47,19 +56,13 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
         axis = figure.add_subplot(down, across, place)
         found = [row for row in rows if row["name"].startswith(family) and "ns" in row]
         for method in dict.fromkeys(row["method"] for row in found):
-            number = list(METHODS).index(method)
-            looks = {
-                "marker": MARKERS[number],
-                "color": mpl.colormaps["tab20"](number),
-                "markersize": 4,
-            }
             points = [
                 (getattr(sizes[row["name"]], size), row["ns"])
                 for row in found
                 if row["method"] == method
             ]
             style = "-" if method in ("lanes x cores", "lanes", "c", "vm") else "--"
-            axis.loglog(*zip(*points, strict=True), style, label=method, **looks)
+            axis.loglog(*zip(*points, strict=True), style, label=method, **looks[method])
         axis.set_xlabel(along)
         axis.set_ylabel(up)
         axis.grid(alpha=0.3, which="both")

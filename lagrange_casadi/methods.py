@@ -32,8 +32,8 @@ METHODS: dict[str, str] = {
     "Sweep.report": "report.of_sweep:write_sweep_report",
     "figures.default_figures": "figures:default_figures",
     "figures.draw": "figures:draw",
-    "optimise.dask": "cluster.searches:searching",
-    "sweep.dask": "cluster.sweeps:Cluster",
+    "optimise.dask": "cluster.dask_workers:Cluster",
+    "sweep.dask": "cluster.dask_workers:Cluster",
 }
 """Module and function of each method, by its name."""
 

@@ -17,7 +17,8 @@ def assembly(points, parts, joints, motions, gravity=(0.0, -9.81, 0.0), span=(0.
 
     ``points`` are markers of the ground: a place, or a place and a rotation by rows. ``parts`` are
     (mass, centre, principal moments, markers) and where they are, by name; ``joints`` (kind, marker
-    I, marker J) and numbers, by name; ``motions`` (kind, joint, expression) by name.
+    I, marker J) and numbers, by name; ``motions`` (kind, joint, expression) by name, a general
+    motion (kind, marker I, marker J, place, turns).
     """
     lines = ["OndselSolver", "Assembly"]
 
@@ -69,8 +70,18 @@ def assembly(points, parts, joints, motions, gravity=(0.0, -9.81, 0.0), span=(0.
         for key, value in told:
             put(4, key, f"\t{value!r}")
     put(2, "Motions")
-    for name, (kind, joint, law) in motions.items():
+    for name, (kind, *told) in motions.items():
         put(3, kind)
+        if kind == "GeneralMotion":
+            one, other, place, turns = told
+            put(
+                4, "Name", f"\t{name}", "MarkerI", f"\t/Press/{one}", "MarkerJ", f"\t/Press/{other}"
+            )
+            for k, law in enumerate((*place, *turns)):
+                put(4, f"rIJI{k + 1}" if k < 3 else f"angIJJ{k - 2}", f"\t{law}")
+            put(4, "RotationOrder", "\t1\t2\t3")
+            continue
+        joint, law = told
         put(4, "Name", f"\t{name}", "MotionJoint", f"\t/Press/{joint}")
         put(4, "RotationZ" if kind == "RotationalMotion" else "TranslationZ", f"\t{law}")
     put(2, "GeneralConstraintSets")

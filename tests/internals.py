@@ -50,8 +50,8 @@ from lagrange_casadi.cli.report import peak_line, shown
 from lagrange_casadi.cli.report import readable as report_readable
 from lagrange_casadi.cli.run import slope_lines
 from lagrange_casadi.cli.strength_lines import not_evaluated_lines, strength_lines
-from lagrange_casadi.cluster import sweeps
-from lagrange_casadi.cluster.sweeps import Cluster
+from lagrange_casadi.cluster import dask_workers
+from lagrange_casadi.cluster.dask_workers import Cluster
 from lagrange_casadi.codegen import compiler, find_compiler, library, printer, programs
 from lagrange_casadi.codegen.calls import Call
 from lagrange_casadi.codegen.compiler import FLAGS, LANES_PLACE
@@ -81,7 +81,7 @@ from lagrange_casadi.declare.joints import Joint
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.laws import Laws
 from lagrange_casadi.declare.limits import END
-from lagrange_casadi.declare.lowest import lowest
+from lagrange_casadi.declare.motion import Scaled
 from lagrange_casadi.declare.motion_inverse import Missed, MotionInverse
 from lagrange_casadi.declare.parts import (
     Force,
@@ -94,7 +94,7 @@ from lagrange_casadi.declare.parts import (
     Spring,
     Torque,
 )
-from lagrange_casadi.declare.powers import powers
+from lagrange_casadi.declare.polynomials import lowest, powers
 from lagrange_casadi.declare.recordings import _read
 from lagrange_casadi.declare.rest_laws import (
     LAWS,
@@ -106,7 +106,6 @@ from lagrange_casadi.declare.rest_laws import (
     trapezoid_within,
 )
 from lagrange_casadi.declare.revolutions import note
-from lagrange_casadi.declare.scaled import Scaled
 from lagrange_casadi.declare.scene import Wanted, outputs
 from lagrange_casadi.declare.spatial import reference_posture
 from lagrange_casadi.declare.stated import Stated
@@ -133,9 +132,10 @@ from lagrange_casadi.equations.integrability import Course, no_rates
 from lagrange_casadi.equations.kinematics import describe_coordinate
 from lagrange_casadi.equations.linear import LinearSystem
 from lagrange_casadi.equations.model_data import template
-from lagrange_casadi.equations.multibody import Turned, place_along
+from lagrange_casadi.equations.multibody import Turned, motion_along
 from lagrange_casadi.equations.program import Program
 from lagrange_casadi.equations.reciprocals import differentiable, share_reciprocals
+from lagrange_casadi.equations.released_loops import rank_of
 from lagrange_casadi.equations.revolutions import depends_on_turns
 from lagrange_casadi.equations.section_function import SIDES, SectionInputs, section
 from lagrange_casadi.equations.spherical import axes_of as spherical_axes_of
@@ -309,13 +309,12 @@ from lagrange_casadi.studies.sweep.blocks import Queue, chunk_of, slabs
 from lagrange_casadi.studies.sweep.checking import check_sweep, progress
 from lagrange_casadi.studies.sweep.chunks import FILTERS, deflated, encoded, fletcher32
 from lagrange_casadi.studies.sweep.columns import Column as ColumnsColumn
-from lagrange_casadi.studies.sweep.columns import Harvest
+from lagrange_casadi.studies.sweep.columns import Task
 from lagrange_casadi.studies.sweep.default_figures import default_plots
-from lagrange_casadi.studies.sweep.instant_axis import InstantAxis
 from lagrange_casadi.studies.sweep.listing import Listed as ListingListed
 from lagrange_casadi.studies.sweep.notes import resting_note, turning_note
 from lagrange_casadi.studies.sweep.parts import Folder
-from lagrange_casadi.studies.sweep.plan import Plan, Task, difference, signature
+from lagrange_casadi.studies.sweep.plan import Plan, difference
 from lagrange_casadi.studies.sweep.plots import Along as PlotsAlong
 from lagrange_casadi.studies.sweep.plots import Front, Peaks, Scatter, draw_sweep
 from lagrange_casadi.studies.sweep.scale import Scale as ScaleScale

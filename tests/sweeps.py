@@ -12,7 +12,7 @@ from pathlib import Path
 
 import mechanisms
 import numpy as np
-from internals import Outcome, Provenance, plan, sweep
+from internals import DesignEngine, Outcome, Provenance, sweep
 
 from lagrange_casadi.version import __version__
 
@@ -83,7 +83,7 @@ class Formula:
 def use(monkeypatch, **keywords):
     """Let sweeps use one :class:`Formula`, which is given back."""
     engine = Formula(**keywords)
-    monkeypatch.setattr(plan, "compiled", engine.of)
+    monkeypatch.setattr(DesignEngine, "compiled", engine.of)
     return engine
 
 

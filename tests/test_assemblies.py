@@ -260,6 +260,111 @@ def test_a_body_that_ties_alone_hold_is_free_but_for_them(solved):
     assert np.allclose(one.effort("O"), other.effort("O"), rtol=1e-10)
 
 
+PENDULUM = (
+    {"G": (0.0, 0.0, 0.0)},
+    {
+        "upper": (0.5, (0.1, 0.0, 0.0), SLENDER, {"O": (0.0, 0.0, 0.0), "A": (0.2, 0.0, 0.0)}),
+        "lower": (0.8, (0.2, 0.0, 0.0), SLENDER, {"A": (0.0, 0.0, 0.0)}, (0.2, 0.0, 0.0)),
+    },
+    {"O": ("RevoluteJoint", "G", "upper/O"), "A": ("RevoluteJoint", "upper/A", "lower/A")},
+    {"one": ("RotationalMotion", "O", "2*time"), "two": ("RotationalMotion", "A", "time^2")},
+)
+
+
+def pendulum(solved, **lower):
+    """Efforts at O and A, if the lower part, its marker or its place are other ones."""
+    points, parts, joints, motions = PENDULUM
+    mass, centre, moments, marks, place = parts["lower"]
+    marks = {"A": lower.get("mark", marks["A"])}
+    own = (mass, centre, moments, marks, *lower.get("place", (place,)))
+    solution = solved(points, parts | {"lower": own}, joints, motions, count=7)
+    return np.array([solution.effort(name) for name in joints])
+
+
+def test_axes_of_markers_may_point_against_each_other(solved):
+    """OndselSolver holds axes at right angles: z of one marker may be opposite to the other's."""
+    there, back = pendulum(solved), pendulum(solved, mark=((0.0, 0.0, 0.0), turned("x", 180)))
+    assert np.allclose(back, there, rtol=1e-12, atol=1e-14)
+    points, parts, joints, motions = PENDULUM
+    guides = {"straight": ("TranslationalJoint", "upper/A", "lower/A")}
+    slide = {"one": motions["one"], "two": ("TranslationalMotion", "straight", "0.1*time^2")}
+    one = solved(points, parts, {"O": joints["O"]} | guides, slide, count=5)
+    lower = (*parts["lower"][:3], {"A": ((0.0, 0.0, 0.0), turned("z", 180))}, parts["lower"][4])
+    other = (points, parts | {"lower": lower}, {"O": joints["O"]} | guides, slide)
+    assert np.allclose(solved(*other, count=5).effort("O"), one.effort("O"), rtol=1e-12, atol=1e-14)
+
+
+def test_a_part_whose_joints_are_all_open_is_moved(solved, tmp_path):
+    """A drawing that is not assembled: the part keeps its angle, and a comment says so."""
+    there = pendulum(solved)
+    assert np.allclose(pendulum(solved, place=((0.5, 0.3, -0.2),)), there, rtol=1e-12, atol=1e-14)
+    assert "# body 'lower' is moved so that joint 'A' is closed" in case_of(tmp_path / "press.asmt")
+    tilted = (0.5, 0.3, -0.2), turned("x", 40)
+    assert np.allclose(pendulum(solved, place=tilted), there, rtol=1e-12, atol=1e-14)
+
+
+def test_a_loop_that_is_open_at_the_ground(solved):
+    """The last joint's marker J is on the ground, 1 cm off: the loop closes in another posture."""
+    points, parts, joints, motions = FOUR_BAR
+    moved = points | {"Marker1": (2.01, 0.0, 0.0)}
+    posture = solved(moved, parts, joints, motions, count=5)
+    other = {**joints, "C": ("RevoluteJoint", "Marker1", "Part3/Marker2")}
+    assert posture.certified
+    assert np.allclose(
+        posture.effort("O"), solved(moved, parts, other, motions, count=5).effort("O"), rtol=1e-10
+    )
+
+
+def test_long_names_of_ties(solved):
+    """The lines of a case are broken where they are long, and are the same Python."""
+    long = "wheel_with_a_name_that_does_not_fit_into_one_line_of_the_case_with_all_its_arguments"
+    points, parts, joints, motions, gravity = wheels(
+        "3*time", ("GearJoint", f"{long}/M", "two/M", ("radiusI", 0.1), ("radiusJ", 0.2))
+    )
+    parts = {long: parts["one"], "two": parts["two"]}
+    joints |= {"O": ("RevoluteJoint", "A", f"{long}/M")}
+    assert solved(points, parts, joints, motions, gravity, count=3).certified
+
+
+def test_parallel_axes_are_an_angle_of_zero(solved):
+    """The cosine of no angle has no slope: one equation is two."""
+    points, parts, joints, motions = PENDULUM
+    joints = {"O": joints["O"], "A": ("SphericalJoint", "upper/A", "lower/A")}
+    angle = {"flat": ("AngleJoint", "G", "lower/A", ("theIzJz", 0.0))}
+    motions = {"one": motions["one"]}
+    one = solved(points, parts, joints | angle, motions, count=3)
+    parallel = {"flat": ("ParallelAxesJoint", "G", "lower/A")}
+    other = solved(points, parts, joints | parallel, motions, count=3)
+    assert np.allclose(one.effort("O"), other.effort("O"), rtol=1e-12)
+
+
+def test_a_general_motion(solved):
+    """Of the mass's marker: the force is mass times acceleration, less the weight."""
+    part = (2.0, (0.1, 0.2, 0.3), (0.01, 0.02, 0.03), {})
+    place = ("0.1 + 0.2*sin(3*time)", "0.2", '"a line"<n>0.3 +<n>time^2')
+    motion = ("GeneralMotion", "G", "box/MassMarker", place, ("0", "0", "0.5*time^2"))
+    solution = solved({"G": (0.0, 0.0, 0.0)}, {"box": part}, {}, {"fly": motion}, count=7)
+    along = -2.0 * 1.8 * np.sin(3 * solution.t)
+    assert np.allclose(solution.effort("fly:slide_1"), along, rtol=1e-12, atol=1e-12)
+    assert np.allclose(solution.effort("fly:slide_2"), 2.0 * 9.81, rtol=1e-12)
+    assert np.allclose(solution.effort("fly:slide_3"), 2.0 * 2.0, rtol=1e-12)
+    assert np.allclose(solution.effort("fly:turn_3"), 0.03, rtol=1e-12)
+
+
+def test_joints_without_a_name_and_a_drawing_without_a_duration(tmp_path):
+    told = [("\t\t\t\t\tA\n", "\t\t\t\t\t\n"), ("\t\t\t\t\tB\n", "\t\t\t\t\t\n")]
+    told += [("\t\t\t1.0\n\t\thout", "\t\t\t0.0\n\t\thout")]
+    allow = "\t\tMotions\n\t\t\tAllowRotation\n\t\t\t\tName\n\t\t\t\t\tFree\n"
+    told += [("\t\tMotions\n", allow)]
+    path = tmp_path / "press.asmt"
+    path.write_text(refusal(FOUR_BAR, *told))
+    text = case_of(path)
+    assert len(re.findall(r'"RevoluteJoint_\d+"', text)) == 2
+    assert "t=(0.0, 1.0, 101)" in text
+    assert re.search(r"# AllowRotation of line \d+ is ignored\.", text)
+    assert evaluate(read(path), t=(0.0, 1.0, 3)).certified
+
+
 def refusal(told, *replaced):
     text = assembly(*told)
     for old, new in replaced:
@@ -280,8 +385,8 @@ MISUSE = {
         "unknown marker '/Press/Part9/M'",
     ),
     "unknown motion": (
-        ("RotationalMotion", "GeneralMotion"),
-        "GeneralMotion drive: is not supported",
+        ("RotationalMotion", "CyclicMotion"),
+        "CyclicMotion drive: is not supported; valid: RotationalMotion, TranslationalMotion, Gen",
     ),
     "motion of none": (
         ("/Press/O\n", "/Press/Z\n"),
@@ -323,6 +428,14 @@ def test_markers_that_a_drawing_has_rounded(tmp_path):
     path.write_text(refusal(FOUR_BAR, ("2.0\t0.0\t0.0", "2.00000001\t0.0\t0.0")))
     assert "joint 'C': its two frames differ by 1.0e-08 m" in case_of(path).replace("\n#  ", "")
     assert evaluate(read(path), t=(0.0, 1.0, 3)).certified
+
+
+def test_axes_that_a_drawing_has_rounded(tmp_path):
+    """Off by 5e-7, as numbers of six digits are: set at right angles, and said."""
+    path = tmp_path / "press.asmt"
+    path.write_text(refusal(FOUR_BAR, ("0.0\t1.0\t0.0", "0.0\t1.0\t5e-07")))
+    text = case_of(path).replace("\n#  ", "")
+    assert re.search(r"off right angles by 2\.5e-07 \(at line \d+, RotationMatrix\) or less", text)
 
 
 def test_the_press_is_the_one_by_hand():

@@ -9,8 +9,8 @@ import sys
 
 import numpy as np
 import pytest
-from internals import Plan, Request, designs_of, signature
-from internals import sweeps as cluster
+from internals import Plan, Request, designs_of
+from internals import dask_workers as cluster
 
 from lagrange_casadi import load_case
 from lagrange_casadi.errors import ClusterError
@@ -20,9 +20,9 @@ pytestmark = pytest.mark.usefixtures("released")
 
 ELSEWHERE = """
 import pickle, sys
-from lagrange_casadi.cluster import sweeps
+from lagrange_casadi.cluster import dask_workers
 sent, task, told, p = pickle.loads(sys.stdin.buffer.read())
-sys.stdout.buffer.write(pickle.dumps(sweeps._evaluate(sent, task, told, p, 3)))
+sys.stdout.buffer.write(pickle.dumps(dask_workers._evaluate(sent, task, told, p, 3)))
 """
 
 
@@ -48,11 +48,11 @@ def test_a_worker_needs_no_file_of_the_case(tmp_path):
         "histories",
     )
     shutil.rmtree(tmp_path / "here")
-    told, p = signature(plan.program, plan.task, plan.harvest.engine.provenance), plan.block(0, 2)
-    sent = pickle.dumps((plan.program, plan.harvest.whole))
+    told, p = plan.harvest.signature, plan.block(0, 2)
+    sent = pickle.dumps((plan.harvest.engine.program, plan.harvest.whole))
     away = {
         "cwd": tmp_path,
-        "input": pickle.dumps((sent, plan.task, told, p)),
+        "input": pickle.dumps((sent, plan.harvest.task, told, p)),
         "capture_output": True,
         "timeout": 60,
     }
@@ -65,21 +65,21 @@ def asked(scene):
     """A plan of the paper's mechanism, what is sent of it, and what it is told by."""
     request = Request(t=(0.0, 0.08, 9), wanted=["effort"])
     plan = Plan.of(scene, designs_of({"l": [0.2, 0.3]}), request)
-    told = signature(plan.program, plan.task, plan.harvest.engine.provenance)
-    return plan, pickle.dumps((plan.program, plan.harvest.whole)), told
+    told = plan.harvest.signature
+    return plan, pickle.dumps((plan.harvest.engine.program, plan.harvest.whole)), told
 
 
 def test_a_worker_that_would_give_other_numbers_is_refused(slider_crank):
     """What runs on a worker, here with what another version would have told it."""
     plan, sent, told = asked(slider_crank.scene)
     p = np.array([[0.1, 0.2, 0.1, 0.1, 0.1]])
-    assert cluster._evaluate(sent, plan.task, told, p, 3) == plan.harvest.chunks(p, 3)
+    assert cluster._evaluate(sent, plan.harvest.task, told, p, 3) == plan.harvest.chunks(p, 3)
     other = told | {"versions": told["versions"] | {"casadi": "3.7.0"}}
     with pytest.raises(
         ClusterError,
         match=r"than this machine: versions casadi was 3\.7\.0 and is .* on the worker",
     ):
-        cluster._evaluate(sent, plan.task, other, p, 3)
+        cluster._evaluate(sent, plan.harvest.task, other, p, 3)
 
 
 def test_what_fails_on_a_worker_is_one_line(slider_crank):
@@ -88,4 +88,4 @@ def test_what_fails_on_a_worker_is_one_line(slider_crank):
         ClusterError,
         match=r"a worker failed: designs: expected an array of shape \(n, 5\), got \(1, 4\)",
     ):
-        cluster._evaluate(sent, plan.task, told, np.zeros((1, 4)), 1)
+        cluster._evaluate(sent, plan.harvest.task, told, np.zeros((1, 4)), 1)

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from internals import FLAGS, CycleTable, cycle_table
+from internals import FLAGS, CycleTable, compiler, cycle_table
 from tables import case, made, some_motion, worst_gap
 
 from lagrange_casadi import codegen
@@ -20,7 +20,7 @@ from lagrange_casadi.errors import DeclarationError
 def read(table, motion, out, compiled, monkeypatch):
     with monkeypatch.context() as patch:
         if not compiled:
-            patch.setattr(cycle_table, "find_compiler", lambda: None)
+            patch.setattr(compiler, "find_compiler", lambda: None)
         cycle_table._compiled.cache_clear()
         table.evaluate(*motion, out)
     cycle_table._compiled.cache_clear()

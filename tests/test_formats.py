@@ -9,8 +9,17 @@ import pytest
 from internals import MOVES, LawError, case_of, json_model, python
 from internals import laws_parsed as parsed
 
-from lagrange_casadi import errors, evaluate, load_case, read, save_model
+from lagrange_casadi import (
+    Scene,
+    SpatialMechanism,
+    errors,
+    evaluate,
+    load_case,
+    read,
+    save_model,
+)
 from lagrange_casadi.cli import main
+from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -49,6 +58,43 @@ def test_a_rod_keeps_its_sections(tmp_path):
     assert np.allclose(solution.effort("hinge"), effort, rtol=1e-13, atol=1e-13)
     axial = 2.0 * 0.25 * rate**2 - 2.0 * 9.81 * np.sin(angle)
     assert np.allclose(solution.section("arm").axial[:, 0], axial, rtol=1e-13, atol=1e-13)
+
+
+@pytest.mark.parametrize("kind", ["spherical", "free", "universal"])
+def test_turns_about_several_axes_are_counted_from_zero(kind, tmp_path):
+    """At the start the body is turned about each axis: three turns have no difference."""
+    m = SpatialMechanism("turned")
+    body = m.link(
+        "body", length=0.4, mass=2.0, centre=(0.2, 0.01, 0.02), inertia=(0.02, 0.03, 0.04)
+    )
+    axes = {"axis": (0, 0, 1), "second": (0, 1, 0)} if kind == "universal" else {}
+    getattr(m, kind)("joint", m.ground, body, **axes)
+    laws = {
+        name: harmonic(0.1 + 0.2 * k, 0.3, 0.7, 0.3 * k) for k, name in enumerate(m.coordinates)
+    }
+    scene = Scene(m, laws, t=(0.0, 1.0, 5))
+    save_model(scene, tmp_path / "model.json")
+    there, back = efforts(scene), efforts(read(tmp_path / "model.json"))
+    assert np.abs(back - there).max() < 1e-12 * np.abs(there).max()
+    told = json.loads((tmp_path / "model.json").read_text())
+    name, _ = told["motions"].popitem()  # which then rests where it is at the start
+    start = float(evaluate(scene, t=(0.0, 0.0, 1)).motion(name).value[0])
+    there = efforts(Scene(m, laws | {name: polynomial(start)}, t=(0.0, 1.0, 5)))
+    back = efforts(read(write(tmp_path, told)))
+    assert np.abs(back - there).max() < 1e-12 * np.abs(there).max()
+
+
+def test_the_legs_of_a_platform_move_as_they_did(tmp_path):
+    """The platform's pose has six motions, and is turned about all axes at the start."""
+    scene = load_case("stewart_gough").scene
+    save_model(scene, tmp_path / "model.json")
+    there, back = (
+        evaluate(one, t=(*scene.span, 3), wanted=["motion"])
+        for one in (scene, read(tmp_path / "model.json"))
+    )
+    for leg in ("P0", "P3"):
+        rate = there.motion(leg).rate
+        assert np.abs(back.motion(leg).rate - rate).max() < 1e-12 * np.abs(rate).max()
 
 
 def test_what_new_writes_gives_the_numbers_of_read(tmp_path, monkeypatch, capfd):
@@ -143,6 +189,22 @@ MISUSE = {
         "motion of 'hinge': '__import__('os')' is not supported; valid: numbers, pi, t",
     ),
 }
+
+
+OF_SHAPE = ("another schema", "unknown key", "no joints", "negative mass", "not a number")
+OF_SHAPE = (*OF_SHAPE, "unknown joint", "no kind")
+
+
+def test_the_schema_accepts_what_the_reader_does(tmp_path):
+    """And refuses what is wrong in its shape; what no mechanism is, the reader alone sees."""
+    jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is not installed")
+    schema = json.loads(Path("docs/model.schema.json").read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    valid = jsonschema.Draft202012Validator(schema).is_valid
+    save_model(load_case("delta").scene, tmp_path / "model.json")
+    assert valid(json.loads((tmp_path / "model.json").read_text()))
+    assert valid(ARM)
+    assert [what for what in OF_SHAPE if valid(MISUSE[what][0])] == []
 
 
 @pytest.mark.parametrize("what", MISUSE)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from internals import FORCES, NumericDensity, PointLoad, SectionLaw, grids
+from internals import FORCES, NumericDensity, PointLoad, SectionLaw, compiler, grids
 from mechanisms import slider_crank
 
 from lagrange_casadi import evaluate, load, save
@@ -167,7 +167,7 @@ def test_what_is_largest_of_two_as_large_and_of_nothing(worth, monkeypatch):
 
 
 def test_without_a_compiler_numpy_fills(monkeypatch):
-    monkeypatch.setattr(grids, "find_compiler", lambda: None)
+    monkeypatch.setattr(compiler, "find_compiler", lambda: None)
     grids._compiled.cache_clear()
     law, xi = loaded_law(400), np.linspace(0, 1, 401)
     plain = law.on_grid("bending", xi)

@@ -358,6 +358,37 @@ def test_consistent_parameters_are_those_of_some_body():
     )
 
 
+def test_a_thin_rod_is_a_body_that_can_be():
+    """Its moment about its own axis is none; Wensing's matrix has no extent across it."""
+    m = SpatialMechanism("boom")
+    mass = m.parameter("mass", 1.0, "kg", low=0.0)
+    moments = (0.0, 0.03 * mass, 0.03 * mass)
+    rod = m.link("rod", length=0.6, mass=mass, centre=(0.3, 0, 0), inertia=moments)
+    m.revolute("tilt", m.ground, rod, axis=(0, 1, 0))
+    scene = Scene(m, {"tilt": swinging(0.1, 0.4, 0.2)}, t=(0, 2, 101))
+    given = noisy(scene, {"mass": 1.4}, ("effort:tilt",), 0.1)
+    free, safe = identify(scene, given), identify(scene, given, consistent=True)
+    assert not free.impossible
+    assert safe.values["mass"] == pytest.approx(free.values["mass"], rel=1e-6)
+
+
+def test_consistent_parameters_are_the_least_squares_among_possible_ones():
+    """With a moment of inertia that is measured too small, the others are those for the least."""
+    scene, names = two_links(), ("effort:A", "effort:B")
+    some, other = (record(scene, ARM | {"J2": inertia}, *names) for inertia in (0.1, 0.16))
+    efforts = {n: some.columns[n] - (other.columns[n] - some.columns[n]) / 3 for n in names}
+    given = Measurements(some.t, {**some.columns, **efforts}, dict.fromkeys(names, 0.1))
+    known = {"m2": 1.7, "h2": 0.4}
+    assert identify(scene, given, ["J2"], parameters=ARM).values["J2"] == pytest.approx(0.08)
+    safe = identify(scene, given, ["h1", "J1", "J2"], parameters=known, consistent=True)
+    least = 0.4**2 / 1.7
+    held = identify(scene, given, ["h1", "J1"], parameters=known | {"J2": least})
+    assert safe.values["J2"] == pytest.approx(least, rel=1e-4)
+    assert not safe.impossible
+    for name in ("h1", "J1"):
+        assert safe.values[name] == pytest.approx(held.values[name], rel=1e-4)
+
+
 def test_strain_gauges_tell_a_spring():
     """A gauge on a cantilevered rocker: strain = axial / EA - bending c / EI."""
     from lagrange_casadi import beams
@@ -409,6 +440,68 @@ def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
     path.write_text("\n".join([lines[0], "0,1,x,3"]))
     with pytest.raises(DeclarationError, match=r"line 2: expected a number, got 'x'"):
         read_measurements(path, counts_per_turn=4096)
+
+
+def test_a_file_of_a_logger_is_read_as_it_is(tmp_path):
+    """Its angle begins again after each turn, and it has columns that no one needs."""
+    path, t = tmp_path / "log.csv", np.arange(60) * 0.01
+    counts = np.round(np.linspace(300.0, 900.0, 60)) % 400
+    rows = zip(t, counts, 0.0 * t + 21.0, 0.0 * t, np.cos(t), strict=True)
+    heads = "clock [s],position [counts],temperature [C],A [deg],effort:A [N m]"
+    path.write_text("\n".join([heads, *(",".join(f"{x:.6g}" for x in row) for row in rows)]))
+    given = read_measurements(path, names={"t": "clock", "A": "position"}, counts_per_turn=400)
+    away = given.columns["A"] - np.linspace(1.5 * np.pi, 4.5 * np.pi, 60)
+    assert np.abs(away).max() <= np.pi / 400 + 1e-9
+    assert given.quantities(["A"]) == ("effort:A",)
+    motion = given.motion(["A"])  # at constant speed, as far as counts tell
+    assert not motion.acceleration.any()
+    assert motion.rate == pytest.approx(3.0 * np.pi / 0.59, rel=1e-2)
+    assert given.cutoff("A") == 0.0
+
+
+def test_heads_and_units_of_a_file_may_stand_in_two_lines(tmp_path):
+    path = tmp_path / "log.csv"
+    rows = [f"{k},{k},{10 * k}" for k in range(9)]
+    path.write_text("\n".join(["t,A,effort:A", "ms,deg,(N m)", *rows]))
+    given = read_measurements(path, noise={"A": 1.0})
+    assert given.t[3] == pytest.approx(0.003)
+    assert given.columns["A"][3] == pytest.approx(np.radians(3.0))
+    assert given.units == {"t": "ms", "A": "deg", "effort:A": "N m"}
+    path.write_text("\n".join(rows))
+    with pytest.raises(DeclarationError, match=r"line 1: expected names of columns, .* got '0'"):
+        read_measurements(path)
+    path.write_text("\n".join(["time,A,effort:A", *rows]))
+    with pytest.raises(UnknownNameError, match="unknown column of times 't'"):
+        read_measurements(path)
+    with pytest.raises(DeclarationError, match="noise of 'A': expected a number that is not neg"):
+        read_measurements(path, noise={"A": -1.0}, time="time")
+
+
+def test_a_drive_at_rest_and_a_wrong_sign_are_said():
+    scene = two_links()
+    given = record(scene, ARM, "effort:A")
+    columns = {name: given.columns[name] for name in ("A", "effort:A")}
+    columns |= {"B": np.full(given.t.size, 0.8), "index": given.t}
+    rest = identify(scene, Measurements(given.t, columns, {"B": 1e-3}))
+    assert "B is a straight line within its noise" in rest.notes
+    assert "columns that are not used: index" in rest.notes
+    assert rest.unexcited
+    assert not any("J2" in note for note in rest.notes if note.startswith("nothing"))
+    turned = Measurements(given.t, dict(given.columns) | {"effort:A": -given.columns["effort:A"]})
+    assert identify(scene, turned).opposite["effort:A"] < -0.9
+    assert not rest.opposite
+
+
+def test_a_measured_rate_does_not_keep_a_coordinate_from_being_smoothed():
+    scene = two_links()
+    given = record(scene, ARM, "effort:A")
+    rough = given.columns["A"] + 1e-3 * np.random.default_rng(0).standard_normal(given.t.size)
+    smoothed = Measurements(given.t, dict(given.columns) | {"A": rough}, {"A": 1e-3})
+    motion = smoothed.motion(["A", "B"])
+    off = motion.d[:, 0] - given.columns["A"]
+    assert np.sqrt(np.mean(off**2)) < 7e-4
+    np.testing.assert_array_equal(motion.rate[:, 0], given.columns["A_rate"])
+    np.testing.assert_array_equal(motion.d[:, 1], given.columns["B"])
 
 
 def test_a_unit_of_another_quantity_is_refused(tmp_path):
@@ -482,6 +575,10 @@ def test_what_cannot_be_is_refused_by_name():
         identify(scene, Measurements(given.t, {**given.columns, "effort:C": given.t}))
     with pytest.raises(DeclarationError, match="nothing that is measured depends"):
         identify(scene, given, ["m1"])
+    for place in ("1.5", "e", "-0.1"):
+        name = f"section:l1:bending@{place}"
+        with pytest.raises(DeclarationError, match=r"place xi/l from 0 to 1|measured quantity"):
+            identify(scene, Measurements(given.t, {**given.columns, name: given.t}))
     with pytest.raises(UnknownNameError, match="column of a drive 'B'"):
         identify(scene, Measurements(given.t, {"A": given.columns["A"], "effort:A": given.t}))
     for bad, words in (

@@ -5,7 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from internals import Laws, motion
+from internals import Laws, laws, motion
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.errors import DeclarationError
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.quick
 
 
 def at(law, t):
-    f = motion.motion_function({"J": law}, ca.SX(0, 1))
+    f = laws.motion_function({"J": law}, ca.SX(0, 1))
     return [float(x) for x in f(t, [])]
 
 

@@ -6,7 +6,7 @@ import casadi as ca
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from internals import Frame, Rotation, Turned, place_along
+from internals import Frame, Rotation, Turned, motion_along
 
 from lagrange_casadi import Mechanism
 
@@ -25,7 +25,7 @@ def test_an_angle_counts_turns(parent, child):
         for name, symbol in zip("ab", symbols, strict=True)
     }
     joint = m.revolute("J", a.tip, b)
-    function = ca.Function("angle", symbols, [place_along(joint, joint.axes[0], frames, ())])
+    function = ca.Function("angle", symbols, [motion_along(joint, joint.axes[0], frames, ())[0]])
     one, two = ((math.cos(angle), math.sin(angle), angle) for angle in (parent, child))
     assert float(function(one, two)) == child - parent
 

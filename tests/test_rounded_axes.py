@@ -4,6 +4,7 @@ its axes were moved.
 
 import numpy as np
 import pytest
+from internals import rank_of
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate
 from lagrange_casadi.errors import DeclarationError, MobilityError
@@ -126,3 +127,10 @@ def test_a_second_axis_that_is_off_by_more_is_refused():
         m.universal(
             "C", m.ground, m.link("rod", length=0.3, mass=0.5), axis=(1, 0, 0), second=(2e-6, 1, 0)
         )
+
+
+def test_what_turns_a_loop_with_its_gap_has_no_slope():
+    """A turntable: the loop on it misses by 5e-14 m, which it turns into another direction."""
+    slopes = np.array([[0.0, 0.5, 0.5, 0.3], [0.0, -0.6, 0.0, -0.6], [5e-14, 0.0, 0.0, 0.0]])
+    assert rank_of(slopes) == 2
+    assert rank_of(slopes + np.eye(3, 4, -2) * 1e-6) == 3  # a small mechanism has small slopes

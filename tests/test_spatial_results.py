@@ -10,18 +10,17 @@ from internals import (
     SPACE,
     DesignEngine,
     EvaluationMethod,
-    Harvest,
-    InstantAxis,
     MechanismDrawing,
     SectionMaps,
     Status,
+    Task,
     check,
     default_figures,
 )
 from internals import seal_seal as seal
 from spatial_scenes import beams
 
-from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, motion, refine, save
+from lagrange_casadi import Scene, SpatialMechanism, derive, evaluate, load, motion, refine, save
 
 LINKS = ("beam", "taper", "bead")
 
@@ -98,9 +97,11 @@ def test_a_changed_resultant_is_found(solution, tmp_path):
 
 
 def test_a_sweep_keeps_peaks_along_links(scene, solution):
-    engine, timing, xi = DesignEngine.of(scene), scene.timing(None), np.linspace(0, 1, 7)
-    data = engine.program.data
-    harvest = Harvest(engine, engine.program, "histories", InstantAxis.of(data, timing), xi)
+    task, xi = (
+        Task(scene.timing(None), (0, 1, 7), "histories", EvaluationMethod()),
+        np.linspace(0, 1, 7),
+    )
+    harvest = task.harvest(derive(scene))
     found = dict(
         zip(
             (column.name for column in harvest.columns),

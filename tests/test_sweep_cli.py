@@ -14,7 +14,7 @@ import sweeps
 from commands import command, words
 from internals import Folder, Sweep
 from internals import columns as kept
-from internals import sweeps as cluster
+from internals import dask_workers as cluster
 from sweeps import ASKED, CASE
 
 from lagrange_casadi.cli import progress

@@ -14,7 +14,7 @@ import time
 import pytest
 import sweeps
 from internals import Cluster, columns, sweep
-from internals import sweeps as cluster
+from internals import dask_workers as cluster
 
 from lagrange_casadi import Case, load_case, optimise
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError

@@ -112,8 +112,8 @@ PROGRAM = """
     sys.path.insert(0, {tests!r})
     import sweeps
     from lagrange_casadi.errors import LagrangeCasadiError
-    from lagrange_casadi.studies.sweep import plan, sweep
-    plan.compiled = sweeps.Formula(pause={pause}).of
+    from lagrange_casadi.studies.sweep import sweep
+    sweeps.DesignEngine.compiled = sweeps.Formula(pause={pause}).of
     # Python would leave bytecode cut off for others.
     sys.dont_write_bytecode = True
     resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))

@@ -96,8 +96,14 @@ class Chain:
         return tuple(np.asfortranarray(x) for x in (configuration, rate, acceleration))  # type: ignore[return-value]
 
     def work(self, q: Array, v: Array, a: Array, threads: int = 1) -> Work:
-        """What works out all efforts, (efforts, n), by one ``rneaInParallel``."""
-        moved, pool = self.columns(q, v, a), pin.ModelPool(self.model, threads)
+        """What works out all efforts, (efforts, n), by one ``rneaInParallel``, or one ``rnea`` for
+        one instant.
+        """
+        moved = self.columns(q, v, a)
+        if q.shape[1] == 1:
+            data, single = self.model.createData(), [column[:, 0] for column in moved]
+            return lambda: pin.rnea(self.model, data, *single)[:, None]
+        pool = pin.ModelPool(self.model, threads)
         out = np.zeros((self.model.nv, q.shape[1]), order="F")
 
         def call() -> Array:

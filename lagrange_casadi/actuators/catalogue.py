@@ -132,16 +132,6 @@ def _motor(
         raise DeclarationError(
             f"{row.where}: expected knee_speed <= max_speed, and {knee[1]} <= {needed[3]}"
         )
-    turning = numbers.get(knee[0]), numbers.get(knee[1])
-    return Motor(
-        cells["name"],
-        stall,
-        rated,
-        rated_speed,
-        peak,
-        most,
-        inertia,
-        *turning,
-        numbers.get(_LASTS, math.inf),
-        linear=linear,
-    )
+    limits = numbers.get(knee[0]), numbers.get(knee[1]), numbers.get(_LASTS, math.inf)
+    main = stall, rated, rated_speed, peak, most, inertia
+    return Motor(cells["name"], *main, *limits, linear=linear)

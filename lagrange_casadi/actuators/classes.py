@@ -46,15 +46,8 @@ class MotorClass:
         rest = self.stall * rated
         diameter = (2.0 * rest / (math.pi * self.shear * self.slender)) ** (1.0 / 3.0)
         inertia = math.pi / 32.0 * _STEEL * self.slender * diameter**5
-        return Motor(
-            f"class {name} {power / 1e3:g} kW",
-            rest,
-            rated,
-            speed,
-            self.peak * rest,
-            self.top * speed,
-            inertia,
-        )
+        peak, top = self.peak * rest, self.top * speed
+        return Motor(f"class {name} {power / 1e3:g} kW", rest, rated, speed, peak, top, inertia)
 
 
 CLASSES = {

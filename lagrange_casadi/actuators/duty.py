@@ -13,7 +13,7 @@ import numpy as np
 from ..arguments import Finite, public
 from ..base.arrays import Array
 from ..errors import DeclarationError, UnknownNameError
-from ..instants.held import Holding
+from ..instants.beyond_equilibrium import Holding
 from ..instants.solution import Solution
 from ..renamed import renamed
 

@@ -71,10 +71,8 @@ def inertia_at(
         raise DeclarationError(
             f"inertia at '{joint}': with {why} no drive can move alone while the others are at rest"
         )
-    times, p = (
-        instants_of(scene.prescribed, scene.timing(t, over), values).t,
-        np.array(list(values.values())),
-    )
+    times = instants_of(scene.prescribed, scene.timing(t, over), values).t
+    p = np.array(list(values.values()))
     found, _ = run(reflected.program, times, p, _VM)
     refuse(reflected.program, found, times, p, _VM)
     return _alone(reflected, np.asarray(found.out, float), reflected.drives.index(joint))

@@ -69,13 +69,8 @@ class Motor:
         """
         if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
             return np.full(np.shape(speed), self.peak_torque)
-        return np.asarray(
-            np.interp(
-                np.abs(speed),
-                [self.knee_speed, self.max_speed],
-                [self.peak_torque, self.end_torque],
-            )
-        )
+        speeds, torques = (self.knee_speed, self.max_speed), (self.peak_torque, self.end_torque)
+        return np.asarray(np.interp(np.abs(speed), speeds, torques))
 
     @property
     def rated_power(self) -> float:

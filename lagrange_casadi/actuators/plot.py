@@ -66,10 +66,8 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
             color="#2e7d4f",
             label=f"{motor.name}, continuous",
         )
-        limit, ends = (
-            np.append(motor.short_time_torque(speeds), 0.0),
-            np.append(speeds, motor.max_speed),
-        )
+        limit = np.append(motor.short_time_torque(speeds), 0.0)
+        ends = np.append(speeds, motor.max_speed)
         axes.plot(per_minute * ends, limit, color="#b3541e", label=f"{motor.name}, peak")
     speed, pull = ("speed [m/s]", "force [N]") if duty.linear else ("speed [1/min]", "torque [N m]")
     axes.set(xlabel=speed, ylabel=pull, xlim=(0, None), ylim=(0, None))

@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 
 from ..base.arrays import Operand
-from .interpret import Arithmetic, interpret
+from .interpret import Arithmetic, codes, interpret
 from .lookups import Lookup
 from .scalars import applied
 
@@ -25,19 +25,8 @@ _WIDER = 2.0**-40
 """Relative widening of each bound."""
 
 _TURN = 2.0 * math.pi
-_RISING = {
-    ca.OP_SQRT,
-    ca.OP_LOG,
-    ca.OP_LOG1P,
-    ca.OP_EXP,
-    ca.OP_EXPM1,
-    ca.OP_SINH,
-    ca.OP_TANH,
-    ca.OP_ASIN,
-    ca.OP_ATAN,
-}
-_RISING |= {ca.OP_ASINH, ca.OP_ACOSH, ca.OP_ATANH, ca.OP_ERF}
-_STEPS = {ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN, ca.OP_FMIN, ca.OP_FMAX, ca.OP_ASSIGN, ca.OP_TWICE}
+_RISING = codes("sqrt log log1p exp expm1 sinh tanh asin atan asinh acosh atanh erf")
+_STEPS = codes("floor ceil sign fmin fmax assign twice")
 """Operations that rise with their operands, and round nothing."""
 
 

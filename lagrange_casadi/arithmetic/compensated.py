@@ -21,7 +21,7 @@ import numpy as np
 
 from ..base.arrays import Expression, Operand
 from ..base.vocabulary import Precision
-from .interpret import Arithmetic
+from .interpret import Arithmetic, codes
 from .lookups import Lookup
 from .scalars import added, as_expression, less, product
 
@@ -110,7 +110,7 @@ class Pairs:
             ca.OP_ASSIGN: lambda x: x,
             ca.OP_CALL: self._looked_up,
         }
-        return {code: self._once(code) for code in _UNARY + _BINARY} | rules
+        return {code: self._once(code) for code in _UNARY | _BINARY} | rules
 
     def constant(self, value: float) -> Pair:
         """A double, in as many parts as it takes."""
@@ -143,10 +143,8 @@ class Pairs:
 
     def negate(self, x: Pair) -> Pair:
         """-x."""
-        low, number = (
-            (None if x.low is None else self._negative(x.low)),
-            (None if x.number is None else -x.number),
-        )
+        low = None if x.low is None else self._negative(x.low)
+        number = None if x.number is None else -x.number
         return Pair(self._negative(x.high), low, number)
 
     def multiply(self, x: Pair, y: Pair) -> Pair:
@@ -331,22 +329,5 @@ def _zero_unless(where: ca.SX, x: ca.SX) -> ca.SX:
     return ca.SX.binary(ca.OP_IF_ELSE_ZERO, where, x)
 
 
-_UNARY = (
-    *(
-        ca.OP_EXP,
-        ca.OP_LOG,
-        ca.OP_ASIN,
-        ca.OP_ACOS,
-        ca.OP_ATAN,
-        ca.OP_SINH,
-        ca.OP_COSH,
-        ca.OP_TANH,
-        ca.OP_ASINH,
-        ca.OP_ACOSH,
-    ),
-    *(ca.OP_ATANH, ca.OP_LOG1P, ca.OP_EXPM1, ca.OP_ERF, ca.OP_SIGN, ca.OP_NOT),
-)
-_BINARY = (
-    *(ca.OP_POW, ca.OP_CONSTPOW, ca.OP_ATAN2, ca.OP_HYPOT),
-    *(ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR),
-)
+_UNARY = codes("exp log asin acos atan sinh cosh tanh asinh acosh atanh log1p expm1 erf sign not")
+_BINARY = codes("pow constpow atan2 hypot lt le eq ne and or")

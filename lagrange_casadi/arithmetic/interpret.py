@@ -237,6 +237,11 @@ def _filled(sparsity: ca.Sparsity, nonzeros: Iterable[Expression]) -> ca.SX:
     return ca.SX(sparsity, column(nonzeros))
 
 
+def codes(names: str) -> dict[int, str]:
+    """Operations by CasADi's ``OP_`` codes, from their ``names``, as "sin atan2"."""
+    return {getattr(ca, f"OP_{name.upper()}"): name for name in names.split()}
+
+
 def operation_name(operation: int) -> str:
     """Return CasADi's name of an operation."""
     return next(
@@ -315,8 +320,8 @@ _FUNCTIONS: dict[int, Callable[..., Any]] = {
     ca.OP_ERF: np.vectorize(math.erf),
 }
 _FUNCTIONS |= {
-    getattr(ca, f"OP_{name.upper()}"): getattr(np, name)
-    for name in ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log1p", "expm1"]
+    code: getattr(np, name)
+    for code, name in codes("sin cos tan sinh cosh tanh exp log log1p expm1").items()
 }
 ROUNDINGS: Mapping[int, float] = dict.fromkeys(_ROUNDED, 1.0) | dict.fromkeys(_FUNCTIONS, 2.0)
 """Largest number of roundings in the result of an operation: two for functions such as a sine, for

@@ -1,4 +1,4 @@
-"""Sums, differences and products of numbers and expressions, and columns of them.
+"""Sums, differences and products of numbers and expressions, columns of them, and functions.
 
 CasADi's operators first ask of each operand which of all kinds it is. That takes ten times as long
 as to write the operation down. Here there are two kinds alone: numbers, and expressions of scalars
@@ -7,7 +7,7 @@ as to write the operation down. Here there are two kinds alone: numbers, and exp
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import casadi as ca
 
@@ -57,6 +57,19 @@ def as_expression(value: Expression) -> ca.SX:
 def column(parts: Iterable[Expression]) -> ca.SX:
     """Parts one below the other; an empty column where there are none."""
     return ca.vertcat(_SX(0, 1), *parts)
+
+
+def graph(name: str, given: Mapping[str, ca.SX], **found: Expression) -> ca.Function:
+    """A function of symbols that are ``given``, with what is ``found`` of them as dense results,
+    both by name. What stands in it twice is computed once.
+    """
+    results = [ca.densify(as_expression(value)) for value in found.values()]
+    return ca.Function(name, [*given.values()], results, [*given], [*found], {"cse": True})
+
+
+def inputs_of(function: ca.Function) -> dict[str, ca.SX]:
+    """Symbols for the inputs of a function, by its names for them."""
+    return dict(zip(function.name_in(), function.sx_in(), strict=True))
 
 
 def entries(whole: Expression) -> list[ca.SX]:

@@ -1,4 +1,6 @@
-"""Types of values: arrays, expressions, what may be either, and what JSON holds."""
+"""Types of values: arrays, expressions, what may be either, and what JSON holds; and arrays over
+time, cut.
+"""
 
 from __future__ import annotations
 
@@ -21,6 +23,23 @@ Operand: TypeAlias = Any
 
 Json: TypeAlias = str | float | Sequence["Json"] | Mapping[str, "Json"] | None
 """A value that JSON holds."""
+
+
+Instants: TypeAlias = slice | npt.NDArray[np.generic]
+"""Some of the instants: a slice, their numbers, or True and False."""
+
+
+def during(value: Operand, instants: Instants) -> Operand:
+    """A value at some of the instants: all arrays over time that it is, or that its mappings and
+    rows hold, or that it cuts by a method of this name. Anything else stays.
+    """
+    if isinstance(value, np.ndarray):
+        return value[instants]
+    if isinstance(value, Mapping):
+        return {key: during(one, instants) for key, one in value.items()}
+    if isinstance(value, tuple | list):
+        return tuple(during(one, instants) for one in value)
+    return value.during(instants) if hasattr(value, "during") else value
 
 
 def spread(size: int, most: int) -> npt.NDArray[np.intp]:

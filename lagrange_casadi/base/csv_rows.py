@@ -5,10 +5,11 @@ on which it stands.
 from __future__ import annotations
 
 import csv
+import io
 import math
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 
@@ -126,6 +127,13 @@ def read_rows(
         raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
     if not first:
         raise DeclarationError(f"{path}: it has no rows; expected {expected}")
+
+
+def csv_text(rows: Iterable[Sequence[object]]) -> str:
+    """Rows as text, with commas and points; numbers have every digit they have."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
 
 
 def _cells(where: str, line: str, delimiter: str) -> tuple[str, ...]:

@@ -79,10 +79,8 @@ class Manifest:
                 if path.is_file() and not path.is_symlink()
             }
         same = {name: found[name] for name in sorted(found) if found[name] in known[name]}
-        foreign, touched = (
-            sorted(present - known.keys()),
-            sorted(present & known.keys() - same.keys()),
-        )
+        foreign = sorted(present - known.keys())
+        touched = sorted(present & known.keys() - same.keys())
         refused = f"cannot {self.does} {folder}:"
         for name in foreign:
             if name in files or name == self.name:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from ..errors import check_kind
-from .tables import PLANE, SPACE, Quantity, Table, table_of
+from .tables import PLANE, SPACE, Quantity, Table
 
 Value = TypeVar("Value")
 
@@ -22,25 +22,10 @@ FORCES = PLANE.forces
 """The section forces of planar mechanisms."""
 
 
-def law_members(space: bool) -> tuple[str, ...]:
-    """The coefficients of a link's section law."""
-    return table_of(space).law
-
-
-def load_point_members(space: bool) -> tuple[str, ...]:
-    """Members of a load point of a link in files."""
-    return table_of(space).load_point
-
-
 def force_members(space: bool, *, moment: bool = True) -> tuple[str, ...]:
     """The components of a force, and of its moment where it has one."""
     forces, moments = (("fx", "fy", "fz"), ("mx", "my", "mz")) if space else (("fx", "fy"), ("mz",))
     return (*forces, *moments) if moment else forces
-
-
-def local_members(*, moment: bool = True) -> tuple[str, ...]:
-    """The components of a reaction in space on the joint's own axes."""
-    return ("fu", "fv", "fw", "mu", "mv", "mw") if moment else ("fu", "fv", "fw")
 
 
 AVERAGED = ("effort", "friction", "output")

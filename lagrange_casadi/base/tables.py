@@ -43,19 +43,23 @@ FORCE, MOMENT, LENGTH, ANGLE = "N", "N m", "m", "rad"
 class Quantity:
     """One kind of output.
 
-    ``axes`` is ``("t",)`` or ``("t", "xi")``. ``unit`` holds ``{q}`` where it depends on whether
-    the joint's coordinate is an angle (rad) or a slide (m), and ``{Q}`` where it depends on the
-    effort that works on it (N m or N). A multiplier's unit is that of power over its own
-    equation's: the file says ``1`` where the equation's unit is the user's affair. An output of the
-    user's own has the unit that it was declared with.
+    ``unit`` holds ``{q}`` where it depends on whether the joint's coordinate is an angle (rad) or a
+    slide (m), and ``{Q}`` where it depends on the effort that works on it (N m or N). A
+    multiplier's unit is that of power over its own equation's: the file says ``1`` where the
+    equation's unit is the user's affair. An output of the user's own has the unit that it was
+    declared with.
     """
 
     group: str
     member: str
-    axes: tuple[str, ...]
     unit: str
     long_name: str
     sign: str = ""
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """``("t",)``, or of section forces ``("t", "xi")``."""
+        return ("t", "xi") if self.group == "section" else ("t",)
 
     def unit_for(self, kind: str) -> str:
         """The unit for a coordinate of the given kind, ``"angle"`` or ``"slide"``."""
@@ -79,244 +83,146 @@ _BY_HAND = f"{ON_INBOARD}, by the right hand about"
 _ABOUT = "moment of the joint about its point on the child"
 _COORDINATE_OF = "coordinate of the joint: child against parent"
 _RATES = (
-    Quantity("motion", "rate", ("t",), "{q}/s", "rate of the joint's coordinate"),
-    Quantity("motion", "acceleration", ("t",), "{q}/s^2", "acceleration of the joint's coordinate"),
+    Quantity("motion", "rate", "{q}/s", "rate of the joint's coordinate"),
+    Quantity("motion", "acceleration", "{q}/s^2", "acceleration of the joint's coordinate"),
 )
 _PLACE = (
-    Quantity("pose", "x", ("t",), LENGTH, "place of the base, x"),
-    Quantity("pose", "y", ("t",), LENGTH, "place of the base, y"),
+    Quantity("pose", "x", LENGTH, "place of the base, x"),
+    Quantity("pose", "y", LENGTH, "place of the base, y"),
 )
-_EFFORT = Quantity("effort", "", ("t",), "{Q}", "effort of the drive", _ALONG)
+_EFFORT = Quantity("effort", "", "{Q}", "effort of the drive", _ALONG)
 _HOLDING = (
     Quantity(
         "holding",
         "least",
-        ("t",),
         "{Q}",
         "least effort that holds the mechanism while joints with friction rest",
         _ALONG,
     ),
-    Quantity("holding", "largest", ("t",), "{Q}", "largest effort that holds it there", _ALONG),
+    Quantity("holding", "largest", "{Q}", "largest effort that holds it there", _ALONG),
 )
 _REACTION = (
-    Quantity("reaction", "fx", ("t",), FORCE, "reaction of the joint, x", _ON_CHILD),
-    Quantity("reaction", "fy", ("t",), FORCE, "reaction of the joint, y", _ON_CHILD),
+    Quantity("reaction", "fx", FORCE, "reaction of the joint, x", _ON_CHILD),
+    Quantity("reaction", "fy", FORCE, "reaction of the joint, y", _ON_CHILD),
 )
-_MULTIPLIER = Quantity(
-    "multiplier", "", ("t",), "1", "multiplier of a constraint or a non-holonomic row"
-)
+_MULTIPLIER = Quantity("multiplier", "", "1", "multiplier of a constraint or a non-holonomic row")
 _LOAD = (
-    Quantity("load", "fx", ("t",), FORCE, "applied force, x", _ON_FIRST),
-    Quantity("load", "fy", ("t",), FORCE, "applied force, y", _ON_FIRST),
+    Quantity("load", "fx", FORCE, "applied force, x", _ON_FIRST),
+    Quantity("load", "fy", FORCE, "applied force, y", _ON_FIRST),
 )
 _FRICTION = (
     Quantity(
-        "friction",
-        "along",
-        ("t",),
-        "{Q}",
-        "friction along the joint's coordinate, on the child",
-        _ALONG,
+        "friction", "along", "{Q}", "friction along the joint's coordinate, on the child", _ALONG
     ),
     Quantity(
         "friction",
         "loss",
-        ("t",),
         "W",
         "power that friction takes from the mechanism",
         "positive where it brakes",
     ),
 )
+_RESIDUALS = {
+    "balance": "Newton-Euler balance of all bodies, over the largest force of the cycle",
+    "power": "balance of power, over the largest force times speed of the cycle",
+    "closure": "gaps of joints and residuals of user-defined equations, over the length of all"
+    " links",
+    "friction": "residual of the friction laws, over the largest friction of the cycle",
+    "ends": "section forces at the base less the forces that act there, over the largest force of"
+    " the cycle",
+    "elasticity": "distance of the strain energy from its minimum, as a cosine",
+    "energy": "error of the energy balance of a free machine, relative to its largest energy",
+    "drive": "effort of a free machine less that of its drive, over the largest torque",
+    "condition": "condition of the loops: 1/sin(transmission angle), or 2/volume",
+}
+"""Meanings of the residuals of a certificate."""
+
 _OTHERS = (
     *_FRICTION,
-    Quantity("output", "", ("t",), "1", "user-defined output"),
+    Quantity("output", "", "1", "user-defined output"),
     Quantity(
         "stress",
         "von_mises",
-        ("t",),
         "Pa",
         "von Mises' stress, the largest along the link",
         "never negative",
     ),
     Quantity(
-        "utilisation",
-        "yield",
-        ("t",),
-        "1",
-        "one over the factor of safety against yielding, by von Mises",
+        "utilisation", "yield", "1", "one over the factor of safety against yielding, by von Mises"
     ),
-    Quantity(
-        "utilisation", "buckling", ("t",), "1", "one over the factor of safety against buckling"
-    ),
+    Quantity("utilisation", "buckling", "1", "one over the factor of safety against buckling"),
     Quantity(
         "deflection",
         "across",
-        ("t",),
         LENGTH,
         "deflection across the link, the largest along it",
         "never negative",
     ),
-    Quantity(
-        "certificate",
-        "balance",
-        ("t",),
-        "1",
-        "Newton-Euler balance of all bodies, over the largest force of the cycle",
-    ),
-    Quantity(
-        "certificate",
-        "power",
-        ("t",),
-        "1",
-        "balance of power, over the largest force times speed of the cycle",
-    ),
-    Quantity(
-        "certificate",
-        "closure",
-        ("t",),
-        "1",
-        "gaps of joints and residuals of user-defined equations, over the length of all links",
-    ),
-    Quantity(
-        "certificate",
-        "friction",
-        ("t",),
-        "1",
-        "residual of the friction laws, over the largest friction of the cycle",
-    ),
-    Quantity(
-        "certificate",
-        "ends",
-        ("t",),
-        "1",
-        "section forces at the base less the forces that act there, over the largest force of the"
-        " cycle",
-    ),
-    Quantity(
-        "certificate",
-        "elasticity",
-        ("t",),
-        "1",
-        "distance of the strain energy from its minimum, as a cosine",
-    ),
-    Quantity(
-        "certificate",
-        "energy",
-        ("t",),
-        "1",
-        "error of the energy balance of a free machine, relative to its largest energy",
-    ),
-    Quantity(
-        "certificate",
-        "drive",
-        ("t",),
-        "1",
-        "effort of a free machine less that of its drive, over the largest torque",
-    ),
-    Quantity(
-        "certificate",
-        "condition",
-        ("t",),
-        "1",
-        "condition of the loops: 1/sin(transmission angle), or 2/volume",
-    ),
+    *(Quantity("certificate", name, "1", meaning) for name, meaning in _RESIDUALS.items()),
     Quantity(
         "section",
         "axial",
-        ("t", "xi"),
         FORCE,
         "axial force",
         f"tension is positive: {ON_INBOARD}, along the axis",
     ),
 )
-_AXIAL_LAW = (
-    Quantity("law", "n0", ("t",), FORCE, "axial force at the tip"),
-    Quantity(
-        "law",
-        "n1",
-        ("t",),
-        "m/s^2",
-        "axial force for a unit of the mass mu0 from the section to the tip",
-    ),
-    Quantity(
-        "law",
-        "n2",
-        ("t",),
-        "1/s^2",
-        "axial force for a unit of the first moment mu1 from the section to the tip",
-    ),
-)
-_LOAD_POINT_N = Quantity(
-    "station", "n", ("t",), FORCE, "force on the link at a load point, along the axis"
-)
-_LOAD_POINT = Quantity("station", "station", ("t",), "1", "position of the load point, ratio xi/l")
+_LOAD_POINT_N = Quantity("station", "n", FORCE, "force on the link at a load point, along the axis")
+_LOAD_POINT = Quantity("station", "station", "1", "position of the load point, ratio xi/l")
 _DISTRIBUTED = (
     Quantity(
-        "spread",
-        "width",
-        ("t",),
-        "1",
-        "on how much of the link the load along it acts, as a ratio to l",
+        "spread", "width", "1", "on how much of the link the load along it acts, as a ratio to l"
     ),
-    Quantity("spread", "end", ("t",), "1", "where the load along the link ends, ratio xi/l"),
+    Quantity("spread", "end", "1", "where the load along the link ends, ratio xi/l"),
 )
 
 
 def _spread(member: str, direction: str) -> Quantity:
     meaning = f"load along the link {direction}: coefficient of a power of (end - xi/l)/width"
-    return Quantity("spread", member, ("t",), "N/m", meaning)
+    return Quantity("spread", member, "N/m", meaning)
 
 
 _DISTRIBUTED_N = _spread("qn", "in the direction of the axis")
 _COUPLE = "couple of the slices' rotary inertia, {}: coefficient of a power of (end - xi/l)/width"
-_COUPLES = tuple(Quantity("spread", f"c{x}", ("t",), FORCE, _COUPLE.format(x)) for x in "xyz")
+_COUPLES = tuple(Quantity("spread", f"c{x}", FORCE, _COUPLE.format(x)) for x in "xyz")
 
 
-def _shear_law(prefix: str, force: str) -> tuple[Quantity, ...]:
+def _law(prefix: str, force: str) -> tuple[Quantity, ...]:
+    unit_of = f"{force} for a unit of the"
+    rest = "from the section to the tip"
     return (
-        Quantity("law", f"{prefix}0", ("t",), FORCE, f"{force} at the tip"),
-        Quantity(
-            "law",
-            f"{prefix}1",
-            ("t",),
-            "m/s^2",
-            f"{force} for a unit of the mass mu0 from the section to the tip",
-        ),
-        Quantity(
-            "law",
-            f"{prefix}2",
-            ("t",),
-            "1/s^2",
-            f"{force} for a unit of the first moment mu1 from the section to the tip",
-        ),
+        Quantity("law", f"{prefix}0", FORCE, f"{force} at the tip"),
+        Quantity("law", f"{prefix}1", "m/s^2", f"{unit_of} mass mu0 {rest}"),
+        Quantity("law", f"{prefix}2", "1/s^2", f"{unit_of} first moment mu1 {rest}"),
     )
 
 
+_AXIAL_LAW = _law("n", "axial force")
+
 QUANTITIES = (
-    Quantity("motion", "", ("t",), "{q}", _COORDINATE_OF, "counter-clockwise, or along the axis"),
+    Quantity("motion", "", "{q}", _COORDINATE_OF, "counter-clockwise, or along the axis"),
     *_RATES,
     *_PLACE,
-    Quantity("pose", "angle", ("t",), ANGLE, "direction of the axis, continuous in time",
+    Quantity("pose", "angle", ANGLE, "direction of the axis, continuous in time",
         "counter-clockwise from x"),
     _EFFORT,
     *_HOLDING,
     *_REACTION,
-    Quantity("reaction", "mz", ("t",), MOMENT, _ABOUT, _ON_CHILD),
+    Quantity("reaction", "mz", MOMENT, _ABOUT, _ON_CHILD),
     _MULTIPLIER,
     *_LOAD,
-    Quantity("load", "mz", ("t",), MOMENT, "applied torque", _ON_FIRST),
+    Quantity("load", "mz", MOMENT, "applied torque", _ON_FIRST),
     *_OTHERS,
-    Quantity("section", "shear", ("t", "xi"), FORCE, "shear force",
+    Quantity("section", "shear", FORCE, "shear force",
         f"{ON_INBOARD}, 90 deg counter-clockwise of the axis"),
-    Quantity("section", "bending", ("t", "xi"), MOMENT, "bending moment",
-        f"{ON_INBOARD}, counter-clockwise"),
+    Quantity("section", "bending", MOMENT, "bending moment", f"{ON_INBOARD}, counter-clockwise"),
     *_AXIAL_LAW,
-    *_shear_law("f", "shear force"),
-    Quantity("law", "m0", ("t",), MOMENT, "bending moment at the tip"),
+    *_law("f", "shear force"),
+    Quantity("law", "m0", MOMENT, "bending moment at the tip"),
     _LOAD_POINT_N,
-    Quantity("station", "f", ("t",), FORCE,
+    Quantity("station", "f", FORCE,
         "force on the link at a load point, 90 deg counter-clockwise of the axis"),
-    Quantity("station", "m", ("t",), MOMENT, "moment on the link at a load point"),
+    Quantity("station", "m", MOMENT, "moment on the link at a load point"),
     _LOAD_POINT,
     *_DISTRIBUTED,
     _DISTRIBUTED_N,
@@ -324,53 +230,45 @@ QUANTITIES = (
 )  # fmt: skip
 
 SPATIAL_QUANTITIES = (
-    Quantity("motion", "", ("t",), "{q}", _COORDINATE_OF,
-        "by the right hand about, or along, the axis"),
+    Quantity("motion", "", "{q}", _COORDINATE_OF, "by the right hand about, or along, the axis"),
     *_RATES,
     *_PLACE,
-    Quantity("pose", "z", ("t",), LENGTH, "place of the base, z"),
-    *(Quantity("pose", f"{axis}{of}", ("t",), "1",
+    Quantity("pose", "z", LENGTH, "place of the base, z"),
+    *(Quantity("pose", f"{axis}{of}", "1",
         f"direction of the body's axis {axis}, {of}") for axis in "xyz" for of in "xyz"),
     _EFFORT,
     *_HOLDING,
     *_REACTION,
-    Quantity("reaction", "fz", ("t",), FORCE, "reaction of the joint, z", _ON_CHILD),
-    *(Quantity("reaction", f"m{x}", ("t",), MOMENT, f"{_ABOUT}, {x}", _ON_CHILD) for x in "xyz"),
-    *(Quantity("reaction", f"f{u}", ("t",), FORCE, f"reaction along the joint's own axis {u}",
+    Quantity("reaction", "fz", FORCE, "reaction of the joint, z", _ON_CHILD),
+    *(Quantity("reaction", f"m{x}", MOMENT, f"{_ABOUT}, {x}", _ON_CHILD) for x in "xyz"),
+    *(Quantity("reaction", f"f{u}", FORCE, f"reaction along the joint's own axis {u}",
         _ON_CHILD) for u in "uvw"),
-    *(Quantity("reaction", f"m{u}", ("t",), MOMENT, f"{_ABOUT}, about its own axis {u}",
+    *(Quantity("reaction", f"m{u}", MOMENT, f"{_ABOUT}, about its own axis {u}",
         _ON_CHILD) for u in "uvw"),
     _MULTIPLIER,
     *_LOAD,
-    Quantity("load", "fz", ("t",), FORCE, "applied force, z", _ON_FIRST),
-    *(Quantity("load", f"m{x}", ("t",), MOMENT, f"applied torque, {x}", _ON_FIRST) for x in "xyz"),
+    Quantity("load", "fz", FORCE, "applied force, z", _ON_FIRST),
+    *(Quantity("load", f"m{x}", MOMENT, f"applied torque, {x}", _ON_FIRST) for x in "xyz"),
     *_OTHERS,
-    Quantity("section", "shear_y", ("t", "xi"), FORCE, "shear force, y",
-        f"{ON_INBOARD}, along the link's y"),
-    Quantity("section", "shear_z", ("t", "xi"), FORCE, "shear force, z",
-        f"{ON_INBOARD}, along the link's z"),
-    Quantity("section", "torsion", ("t", "xi"), MOMENT, "torsional moment", f"{_BY_HAND} the axis"),
-    Quantity("section", "bending_y", ("t", "xi"), MOMENT, "bending moment, y", f"{_BY_HAND} its y"),
-    Quantity("section", "bending_z", ("t", "xi"), MOMENT, "bending moment, z", f"{_BY_HAND} its z"),
-    Quantity("section", "shear", ("t", "xi"), FORCE, "resultant shear force", "never negative"),
-    Quantity("section", "bending", ("t", "xi"), MOMENT, "resultant bending moment",
-        "never negative"),
+    Quantity("section", "shear_y", FORCE, "shear force, y", f"{ON_INBOARD}, along the link's y"),
+    Quantity("section", "shear_z", FORCE, "shear force, z", f"{ON_INBOARD}, along the link's z"),
+    Quantity("section", "torsion", MOMENT, "torsional moment", f"{_BY_HAND} the axis"),
+    Quantity("section", "bending_y", MOMENT, "bending moment, y", f"{_BY_HAND} its y"),
+    Quantity("section", "bending_z", MOMENT, "bending moment, z", f"{_BY_HAND} its z"),
+    Quantity("section", "shear", FORCE, "resultant shear force", "never negative"),
+    Quantity("section", "bending", MOMENT, "resultant bending moment", "never negative"),
     *_AXIAL_LAW,
-    *_shear_law("fy", "shear force, y,"),
-    Quantity("law", "mz0", ("t",), MOMENT, "bending moment at the tip, z"),
-    *_shear_law("fz", "shear force, z,"),
-    Quantity("law", "my0", ("t",), MOMENT, "bending moment at the tip, y"),
-    Quantity("law", "mx0", ("t",), MOMENT, "torsional moment at the tip"),
+    *_law("fy", "shear force, y,"),
+    Quantity("law", "mz0", MOMENT, "bending moment at the tip, z"),
+    *_law("fz", "shear force, z,"),
+    Quantity("law", "my0", MOMENT, "bending moment at the tip, y"),
+    Quantity("law", "mx0", MOMENT, "torsional moment at the tip"),
     _LOAD_POINT_N,
-    Quantity("station", "fy", ("t",), FORCE,
-        "force on the link at a load point, along the link's y"),
-    Quantity("station", "fz", ("t",), FORCE,
-        "force on the link at a load point, along the link's z"),
-    Quantity("station", "mx", ("t",), MOMENT, "moment on the link at a load point, about the axis"),
-    Quantity("station", "my", ("t",), MOMENT,
-        "moment on the link at a load point, about the link's y"),
-    Quantity("station", "mz", ("t",), MOMENT,
-        "moment on the link at a load point, about the link's z"),
+    Quantity("station", "fy", FORCE, "force on the link at a load point, along the link's y"),
+    Quantity("station", "fz", FORCE, "force on the link at a load point, along the link's z"),
+    Quantity("station", "mx", MOMENT, "moment on the link at a load point, about the axis"),
+    Quantity("station", "my", MOMENT, "moment on the link at a load point, about the link's y"),
+    Quantity("station", "mz", MOMENT, "moment on the link at a load point, about the link's z"),
     _LOAD_POINT,
     *_DISTRIBUTED,
     _DISTRIBUTED_N,
@@ -379,10 +277,10 @@ SPATIAL_QUANTITIES = (
     *_COUPLES,
 )  # fmt: skip
 
-RESULTANT = Quantity("reaction", "resultant", ("t",), FORCE, "resultant of the joint's reaction")
+RESULTANT = Quantity("reaction", "resultant", FORCE, "resultant of the joint's reaction")
 """The size of a reaction's force: it follows from the reaction, and is no series of its own."""
 
-MOMENT_RESULTANT = Quantity("reaction", "moment", ("t",), MOMENT, "resultant of the joint's moment")
+MOMENT_RESULTANT = Quantity("reaction", "moment", MOMENT, "resultant of the joint's moment")
 """The size of a reaction's moment in space, likewise."""
 
 

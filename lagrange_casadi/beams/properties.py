@@ -10,7 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array, Operand
+from ..base.arrays import Operand
 
 POISSON = 0.3
 """Poisson's ratio in the coefficients of shear: from 0 to 0.5 they change by a twentieth."""
@@ -104,13 +104,11 @@ def smaller(a: Operand, b: Operand) -> Operand:
     return ca.fmin(a, b) if symbolic(a, b) else np.minimum(a, b)
 
 
-def chosen(a: Operand, b: float, first: Operand, second: float) -> Array:
+def chosen(a: Operand, b: float, first: Operand, second: float) -> Operand:
     """``first`` where a is b or more, else ``second``."""
-    return (
-        ca.if_else(a >= b, first, second)
-        if symbolic(a, b, first, second)
-        else np.where(a >= b, first, second)
-    )
+    if symbolic(a, b, first, second):
+        return ca.if_else(a >= b, first, second)
+    return np.where(a >= b, first, second)
 
 
 def exponential(x: Operand) -> Operand:

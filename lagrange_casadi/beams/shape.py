@@ -15,7 +15,7 @@ from typing import Any
 from ..arguments import Symbolic, public
 from ..base.arrays import Expression, Operand
 from ..base.units import number
-from ..errors import DeclarationError, NumberError, check_kind
+from ..errors import DeclarationError, NumberError
 from ..renamed import renamed
 from . import solid, walls
 from .properties import Fibre, Properties
@@ -478,29 +478,18 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
     DeclarationError
         For ratios that fall or do not reach from 0 to 1, and for shapes that do not fit together.
     """
-    for given in (ratios, shapes):
-        check_kind("along", given, "ratios, and as many cross-sections", Sequence)
-    try:
-        places = [float(ratio) for ratio in ratios]
-    except (TypeError, ValueError):
-        raise DeclarationError(f"along: expected numbers for ratios, got {ratios!r}") from None
-    if len(places) != len(shapes) or len(places) < 2:
+    if len(ratios) != len(shapes) or len(ratios) < 2:
         raise DeclarationError(
-            f"along: expected as many shapes as ratios, two or more, got {len(places)} and"
+            f"along: expected as many shapes as ratios, two or more, got {len(ratios)} and"
             f" {len(shapes)}"
         )
-    if any(not isinstance(shape, Shape) for shape in shapes):
-        raise DeclarationError(
-            "along: expected cross-sections, got"
-            f" {next(s for s in shapes if not isinstance(s, Shape))!r}"
-        )
-    if (places[0], places[-1]) != (0.0, 1.0) or any(b < a for a, b in itertools.pairwise(places)):
+    if (ratios[0], ratios[-1]) != (0.0, 1.0) or any(b < a for a, b in itertools.pairwise(ratios)):
         raise DeclarationError(
             "along: ratios must rise from 0 to 1, got"
-            f" {', '.join(f'{place:g}' for place in places)}"
+            f" {', '.join(f'{ratio:g}' for ratio in ratios)}"
         )
     breaks, cells = [0.0], []
-    for (a, first), (b, last) in itertools.pairwise(zip(places, shapes, strict=True)):
+    for (a, first), (b, last) in itertools.pairwise(zip(ratios, shapes, strict=True)):
         if a == b:
             continue
         if (first.kind, list(first.dimensions)) != (last.kind, list(last.dimensions)):
@@ -556,8 +545,6 @@ def stepped(steps: Sequence[float], shapes: Sequence[Shape]) -> Course:
     DeclarationError
         For numbers that do not fit each other.
     """
-    for given in (steps, shapes):
-        check_kind("stepped", given, "a row of steps, and one cross-section more", Sequence)
     if len(shapes) != len(steps) + 1:
         raise DeclarationError(
             f"stepped: expected one step fewer than shapes, got {len(steps)} steps and"
@@ -568,20 +555,6 @@ def stepped(steps: Sequence[float], shapes: Sequence[Shape]) -> Course:
         [x for pair in itertools.pairwise(ends) for x in pair],
         [shape for shape in shapes for _ in range(2)],
     )
-
-
-def course_of(what: str, shape: object) -> Course:
-    """A shape as one that is constant along the link.
-
-    Raises :class:`.DeclarationError` for what is none.
-    """
-    if isinstance(shape, Shape):
-        return Course((0.0, 1.0), ((shape, shape),))
-    if not isinstance(shape, Course):
-        raise DeclarationError(
-            f"{what}: expected a cross-section of lagrange_casadi.beams, got {shape!r}"
-        )
-    return shape
 
 
 def between(first: Shape, last: Shape, share: Operand) -> Shape:

@@ -10,7 +10,7 @@ are Cowper's (*The shear coefficient in Timoshenko's beam theory*, J. Appl. Mech
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import cos, pi, sin
 from typing import Any
 
@@ -24,6 +24,8 @@ _FIFTH, _CATALAN = 1.0045237627951398, 0.9159655941772190
 """The sum of 1/n^5 over odd n, 31 zeta(5)/32; and that of 1/n^2 with signs by turns."""
 
 _ODD = range(1, 25, 2)
+
+_Corner = tuple[Operand, Operand]
 
 
 def rectangle(height: float, width: float) -> Properties:
@@ -137,16 +139,12 @@ def _edge(
 ) -> Fibre:
     """A fibre on the edge of an oval, where shear stresses lie along the edge."""
     aside = -most * s * c
-    return Fibre(
-        f"{angle} deg",
-        y,
-        z,
-        (most * s * s, aside / slope, torsion[0]),
-        (aside * slope, most * c * c, torsion[1]),
-    )
+    along_y = (most * s * s, aside / slope, torsion[0])
+    along_z = (aside * slope, most * c * c, torsion[1])
+    return Fibre(f"{angle} deg", y, z, along_y, along_z)
 
 
-def polygon(places: Sequence[tuple[Operand, Operand]]) -> Properties:
+def polygon(places: Sequence[_Corner]) -> Properties:
     """Any polygon without holes, by its corners counter-clockwise, y to the right and z up; about
     its own centroid.
 
@@ -159,27 +157,13 @@ def polygon(places: Sequence[tuple[Operand, Operand]]) -> Properties:
     moved = [(y - y0, z - z0) for y, z in places]
     pairs = list(zip(moved, [*moved[1:], moved[0]], strict=True))
     crosses = [a[0] * b[1] - b[0] * a[1] for a, b in pairs]
-    iz = (
-        sum(
-            w * (a[0] ** 2 + a[0] * b[0] + b[0] ** 2)
-            for w, (a, b) in zip(crosses, pairs, strict=True)
-        )
-        / 12
-    )
-    iy = (
-        sum(
-            w * (a[1] ** 2 + a[1] * b[1] + b[1] ** 2)
-            for w, (a, b) in zip(crosses, pairs, strict=True)
-        )
-        / 12
-    )
-    iyz = (
-        sum(
-            w * (a[0] * b[1] + 2 * a[0] * a[1] + 2 * b[0] * b[1] + b[0] * a[1])
-            for w, (a, b) in zip(crosses, pairs, strict=True)
-        )
-        / 24
-    )
+
+    def integral(term: Callable[[_Corner, _Corner], Operand]) -> Operand:
+        return sum(w * term(a, b) for w, (a, b) in zip(crosses, pairs, strict=True))
+
+    iz = integral(lambda a, b: a[0] ** 2 + a[0] * b[0] + b[0] ** 2) / 12
+    iy = integral(lambda a, b: a[1] ** 2 + a[1] * b[1] + b[1] ** 2) / 12
+    iyz = integral(lambda a, b: a[0] * b[1] + 2 * a[0] * a[1] + 2 * b[0] * b[1] + b[0] * a[1]) / 24
     fibres = [Fibre(f"corner {k + 1}", y, z) for k, (y, z) in enumerate(moved)]
     shear = [
         _shear_at_centroid([(p[k], p[1 - k]) for p in moved], i) for k, i in ((0, iz), (1, iy))

@@ -31,33 +31,15 @@ def i_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
     in_middle = at_flange + web * hw**2 / 8
     fibres = _corners(h / 2, b / 2)
     for i, j in itertools.product(_SIGNS, repeat=2):
+        up, side = _side(i, "y"), _side(j, "z")
         along = (i * j * b * (h - flange) / (4 * iz), b**2 / (8 * iy), i * flange / torsion)
-        fibres.append(
-            Fibre(
-                f"flange {_side(i, 'y')} at the web {_side(j, 'z')}",
-                i * h / 2,
-                j * web / 2,
-                along_z=along,
-            )
-        )
-        twist = -j * web / torsion
-        fibres.append(
-            Fibre(
-                f"web {_side(i, 'y')} {_side(j, 'z')}",
-                i * hw / 2,
-                j * web / 2,
-                (at_flange / (iz * web), 0.0, twist),
-            )
-        )
+        name = f"flange {up} at the web {side}"
+        fibres.append(Fibre(name, i * h / 2, j * web / 2, along_z=along))
+        down = (at_flange / (iz * web), 0.0, -j * web / torsion)
+        fibres.append(Fibre(f"web {up} {side}", i * hw / 2, j * web / 2, down))
     for j in _SIGNS:
-        fibres.append(
-            Fibre(
-                f"middle of the web {_side(j, 'z')}",
-                0.0,
-                j * web / 2,
-                (in_middle / (iz * web), 0.0, -j * web / torsion),
-            )
-        )
+        down = (in_middle / (iz * web), 0.0, -j * web / torsion)
+        fibres.append(Fibre(f"middle of the web {_side(j, 'z')}", 0.0, j * web / 2, down))
     shear = (h - flange) * web, 5 / 3 * b * flange
     return Properties(
         area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1]
@@ -88,26 +70,12 @@ def t_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
         along = (j * b * middle / (2 * iz), b**2 / (8 * iy), flange / torsion)
         fibres.append(Fibre(f"flange at the web {side}", top, j * web / 2, along_z=along))
         twist = -j * web / torsion
-        fibres.append(
-            Fibre(
-                f"web at the flange {side}",
-                hw - low,
-                j * web / 2,
-                (at_flange / (iz * web), 0.0, twist),
-            )
-        )
+        down = (at_flange / (iz * web), 0.0, twist)
+        fibres.append(Fibre(f"web at the flange {side}", hw - low, j * web / 2, down))
         fibres.append(Fibre(f"web {side}", neutral, j * web / 2, (inside / (iz * web), 0.0, twist)))
     shear = height * web, 5 / 6 * b * flange
-    return Properties(
-        area,
-        iy,
-        iz,
-        tuple(fibres),
-        torsion=torsion,
-        shear_y=shear[0],
-        shear_z=shear[1],
-        centre_y=middle,
-    )
+    stiff = {"torsion": torsion, "shear_y": shear[0], "shear_z": shear[1]}
+    return Properties(area, iy, iz, tuple(fibres), **stiff, centre_y=middle)
 
 
 def c_section(height: Operand, width: Operand, web: Operand, flange: Operand) -> Properties:
@@ -146,16 +114,8 @@ def c_section(height: Operand, width: Operand, web: Operand, flange: Operand) ->
             Fibre(f"{face} of the web, middle", 0.0, z, (in_middle / (iz * web), 0.0, twist))
         )
     shear = high * web, 5 / 3 * b * flange
-    return Properties(
-        area,
-        iy,
-        iz,
-        tuple(fibres),
-        torsion=torsion,
-        shear_y=shear[0],
-        shear_z=shear[1],
-        centre_z=centre,
-    )
+    stiff = {"torsion": torsion, "shear_y": shear[0], "shear_z": shear[1]}
+    return Properties(area, iy, iz, tuple(fibres), **stiff, centre_z=centre)
 
 
 def box(height: Operand, width: Operand, web: Operand, flange: Operand) -> Properties:
@@ -185,14 +145,8 @@ def box(height: Operand, width: Operand, web: Operand, flange: Operand) -> Prope
             Fibre(f"web {_side(s, 'z')}", 0.0, s * b / 2, (deep, 0.0, -s / (2 * inside * web)))
         )
         deep = (web_first + flange * bi**2 / 4) / (2 * iy * flange)
-        fibres.append(
-            Fibre(
-                f"flange {_side(s, 'y')}",
-                s * h / 2,
-                0.0,
-                along_z=(0.0, deep, s / (2 * inside * flange)),
-            )
-        )
+        along = (0.0, deep, s / (2 * inside * flange))
+        fibres.append(Fibre(f"flange {_side(s, 'y')}", s * h / 2, 0.0, along_z=along))
     shear = 2 * high * web, 2 * wide * flange
     return Properties(
         area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1]

@@ -4,7 +4,6 @@ animated SVG or glTF.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -12,18 +11,14 @@ import click
 from ..animation import Film, check_ending, write_animation
 from ..base.publish import check_writable
 from ..case import load_case
-from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene, kinds
-from ..declare.times import Over
 from ..errors import CertificateError
 from ..store.runs import load
 from ..store.untrusted import reported_as
 from ..studies.evaluate import evaluate
 from ..verification.certificate import failure
 from .echo import echo
-from .options import parameters
-
-_FILES = (".h5", ".hdf5")
+from .options import HDF5, asked
 
 
 def animate(
@@ -35,13 +30,11 @@ def animate(
     width: int,
     rate: float,
     seconds: float,
-    settings: Sequence[tuple[str, float | str]],
-    t: EvenPoints | None,
-    over: Over | None,
+    **options: object,
 ) -> None:
     """See :func:`.commands.animate`."""
-    file = target.suffix in _FILES
-    if file and (settings or t or over):
+    file = target.suffix in HDF5
+    if file and any(options.values()):
         raise click.UsageError("--set, --t and --over go with a case, not with a file")
     film = Film(width, rate, seconds, forces, section, not no_names)
     if file:
@@ -58,9 +51,7 @@ def animate(
         out = out or Path(f"{case.name}.gif")
         check_writable(out)
         scene = case.scene
-        solution = evaluate(
-            scene, parameters=parameters(settings), t=t, over=over, wanted=_wanted(scene, film)
-        )
+        solution = evaluate(scene, wanted=_wanted(scene, film), **asked(options))
         write_animation(solution, out, film)
     echo(f"wrote {out}")
     if solution.failed:

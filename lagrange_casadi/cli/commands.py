@@ -5,7 +5,6 @@ What a command does is imported when it is run.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
@@ -207,13 +206,7 @@ def plot(**given: Any) -> None:
     kind=setting,
 )
 @click.option("--case", type=CASE, help="For a sweep: show the mechanism of this case in motion.")
-def report(
-    targets: tuple[Path, ...],
-    out: Path | None,
-    beside: tuple[tuple[str, float | str], ...],
-    case: Path | None,
-    **given: Any,
-) -> None:
+def report(**given: Any) -> None:
     """Write a page for browsers about FILE.h5 or CASE, or about two of them side by side.
 
     It is one file, which needs no network and no Python. The mechanism moves with its forces drawn
@@ -224,9 +217,9 @@ def report(
         # What is imported takes a second or more.
         check_installed("ziglang", "a live report", "live")
         say_step(1, "loading the program")
-    from .report_page import Asked, report
+    from .report_page import report
 
-    report(targets, out, beside, case, Asked(**given))
+    report(**given)
 
 
 @command()

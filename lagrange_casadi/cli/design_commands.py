@@ -40,6 +40,7 @@ from .options import (
     place,
     ratios,
     resumable,
+    separated,
     settings_by,
     several,
     share,
@@ -104,7 +105,7 @@ from .options import (
     "--dask", str, "ADDRESS", "Evaluate on the cluster of this Dask scheduler, as tcp://HOST:8786."
 )
 @resumable("sweep")
-@flag("--yes", "Allow more than 10^9 designs.")
+@flag("--yes", "Allow more than 10^9 designs.", into="many")
 @flag("--quiet", "Show no progress.")
 @file("--out", "Write the sweep to this HDF5 file; default: <case>_sweep.h5 here.")
 def sweep(**given: Any) -> None:
@@ -144,7 +145,7 @@ def best(**given: Any) -> None:
 
     Peaks are compared by their size, whatever their sign.
     """
-    from .best import best
+    from .table import best
 
     best(**given)
 
@@ -188,7 +189,7 @@ def table(**given: Any) -> None:
     "--subject-to",
     "'TERM<=NUMBER'",
     "Keep within this limit, in SI units, as 'peak:effort:O<=12'; repeatable.",
-    into="limits",
+    into="subject_to",
 )
 @value("--starts", int, "NUMBER", "Start from this number of designs.", default=4)
 @value("--screen", int, "NUMBER", "Choose the starts among this number of designs.", default=256)
@@ -427,7 +428,10 @@ def trade(**given: Any) -> None:
 @click.argument("case", type=CASE)
 @click.argument("data", metavar="DATA.csv", type=PATH)
 @several(
-    "--unknown", "NAME", "Find this parameter; repeatable. Default: all parameters of the case."
+    "--unknown",
+    "NAME",
+    "Find these parameters, with commas between; repeatable. Default: all of the case.",
+    callback=separated,
 )
 @settings_by("Set a known parameter, or the first value of an unknown one, as l=0.25; repeatable.")
 @several(

@@ -15,16 +15,14 @@ from ..actuators import Choice, Duty, Motor, duty_of, inertia_at, plot_duty, rea
 from ..actuators.duty import slides
 from ..base.arrays import Array
 from ..case import load_case
-from ..declare.even_points import EvenPoints
 from ..declare.scene import kinds
-from ..declare.times import Over
 from ..errors import CertificateError, NoDesignError, UnknownNameError
 from ..instants.solution import Solution
 from ..shapes.pictures import check_picture
 from ..studies.evaluate import evaluate
 from ..verification.certificate import failure, summary
 from .echo import echo
-from .options import parameters
+from .options import asked
 
 _BAR = 40
 _FORCES = ("reaction", "multiplier", "load", "friction")
@@ -39,10 +37,8 @@ def drive_command(
     lead: float | None,
     efficiency: float,
     inertia: float,
-    settings: Sequence[tuple[str, float | str]],
-    t: EvenPoints | None,
-    over: Over | None,
     plot: Path | None,
+    **options: object,
 ) -> None:
     """See :func:`.commands.drive`."""
     if lead is not None and not 0.0 < lead < math.inf:
@@ -65,9 +61,9 @@ def drive_command(
                 f"--plot: expected one drive, by --drive; there are {', '.join(chosen)}"
             )
         check_picture(plot)
-    given = parameters(settings)
+    given = asked(options)
     wanted = ["effort", "motion", *(kind for kind in kinds(scene.outputs) if kind in _FORCES)]
-    solution = evaluate(scene, parameters=given, t=t, over=over, wanted=wanted)
+    solution = evaluate(scene, wanted=wanted, **given)
     lines = [
         (
             f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to"
@@ -76,7 +72,7 @@ def drive_command(
     ]
     failed: list[str] = []
     for name in chosen:
-        carried = inertia_at(scene, name, parameters=given, t=t, over=over)
+        carried = inertia_at(scene, name, **given)
         load = duty_of(solution, name, linear=slides(solution, name), carried=carried)
         lines += _load_lines(load)
         found: Duty | Choice = load

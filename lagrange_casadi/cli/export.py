@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
 from pathlib import Path
 
 import click
 
-from ..base.vocabulary import Precision
 from ..case import load_case
 from ..exports import export as write
 from .echo import echo
-from .options import parameters
+from .options import asked
 
 
 def export(
@@ -20,27 +18,19 @@ def export(
     out: Path | None,
     model: Path | None,
     name: str | None,
-    settings: Sequence[tuple[str, float | str]],
-    want: Sequence[str],
-    precision: Precision,
-    newton: int | None,
-    table: float | None,
-    largest: int | None,
     fmu: bool,
     fmu_by: str | None,
-    control: bool,
-    structured_text: bool,
-    wasm: bool,
-    force: bool,
+    **options: object,
 ) -> None:
     """See :func:`.commands.export`."""
     if fmu_by and not fmu:
         raise click.UsageError("--fmu-by goes with --fmu")
     loaded = load_case(case)
+    given = asked(options)
     if model is not None:
         from ..formats import save_model
 
-        save_model(loaded.scene, model, parameters(settings))
+        save_model(loaded.scene, model, given["parameters"])
         echo(f"wrote {model}")
     if out is None:
         if model is None:
@@ -50,17 +40,8 @@ def export(
         loaded.scene,
         out,
         name=name or loaded.name,
-        parameters=parameters(settings),
-        wanted=want or None,
-        precision=precision,
-        newton=newton,
-        table=table,
-        largest=largest,
-        force=force,
         fmu=(fmu_by or True) if fmu else False,
-        wasm=wasm,
-        control=control,
-        structured_text=structured_text,
+        **given,
     )
     for original, called in made.mapped.items():
         echo(f"{original} is called {called} in C")
@@ -71,11 +52,11 @@ def export(
     )
     if fmu:
         echo(f"wrote {out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation")
-    if control:
+    if given["control"]:
         echo(f"wrote {out / f'{p}_control.hpp'}: for controllers in C++, with {p}_control_test.cpp")
-    if structured_text:
+    if given["structured_text"]:
         echo(f"wrote {out / f'{p}.st'}: structured text of IEC 61131-3, with its test")
-    if wasm:
+    if given["wasm"]:
         echo(f"wrote {out / f'{p}.wasm'} and {p}.js: README.wasm.md says how a web page uses them")
     echo(
         f"try it: cd {shlex.quote(str(out))} && cmake -B build && cmake --build build && ctest"

@@ -19,7 +19,7 @@ _MACHINE = (
     "threads",
     "workers",
     "dask",
-    "yes",
+    "many",
     "quiet",
     "untrusted",
     "time_limit",

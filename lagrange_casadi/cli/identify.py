@@ -88,7 +88,8 @@ def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:
     for title, compared in (("record", found.comparison), ("validation", second)):
         if compared is not None:
             for name, share in compared.relative.items():
+                unit = "" if compared.units[name] == "1" else f" {compared.units[name]}"
                 yield (
-                    f"  {title}: {name} differs by {compared.residual[name]:.4g}"
-                    f" {compared.units[name]} rms, {100 * share:.3g} % of measured"
+                    f"  {title}: {name} differs by {compared.residual[name]:.4g}{unit} rms,"
+                    f" {100 * share:.3g} % of measured"
                 )

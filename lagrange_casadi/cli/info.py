@@ -19,9 +19,10 @@ from ..store import runs as store
 from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import counted
 from ..studies.sweep.checking import progress, unfinished
-from ..studies.sweep.instant_axis import in_words
+from ..studies.sweep.meanings import in_words
 from ..studies.sweep.plan import Identity
 from .echo import echo
+from .options import HDF5
 from .report import Rows, asked_line
 from .strength_lines import not_evaluated_lines
 
@@ -29,7 +30,7 @@ from .strength_lines import not_evaluated_lines
 def info(target: Path, want: tuple[str, ...]) -> None:
     """See :func:`.commands.info`."""
     folder = unfinished(target)
-    if folder or target.suffix in (".h5", ".hdf5"):
+    if folder or target.suffix in HDF5:
         if want:
             raise click.UsageError("--want goes with a case, not with a file")
         if folder:

@@ -5,15 +5,11 @@ from __future__ import annotations
 import signal
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-import click
 from tqdm import tqdm
 
 from ..base.publish import check_writable, writing
-from ..base.vocabulary import Backend
 from ..case import load_case
-from ..declare.even_points import EvenPoints
 from ..errors import DeclarationError
 from ..figures.optimum import draw_front, draw_optimum
 from ..shapes.pictures import PICTURES
@@ -21,26 +17,16 @@ from ..studies.optimise import Front, Optimum
 from ..studies.optimise import optimise as search
 from .echo import echo
 from .optimum_lines import front_lines, optimum_lines
-from .options import parameters
+from .options import HDF5, asked, check_ending
 
 
 def optimise(
     case: Path,
     minimise: Sequence[str],
     bounds: Sequence[tuple[str, tuple[float, float]]],
-    limits: Sequence[str],
-    starts: int,
-    screen: int,
-    points: int,
-    transmission: float,
-    settings: Sequence[tuple[str, float | str]],
-    t: EvenPoints | None,
-    backend: Backend,
-    dask: str | None,
-    resume: bool,
-    force: bool,
     out: Path | None,
     figure: Path | None,
+    **options: object,
 ) -> int:
     """See :func:`.commands.optimise`."""
     over = dict(bounds)
@@ -51,13 +37,9 @@ def optimise(
         out or Path(f"{loaded.name}_optimum.h5"),
         figure or Path(f"{loaded.name}_optimum.png"),
     )
-    if out.suffix not in (".h5", ".hdf5"):
-        raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
+    check_ending("--out", out, HDF5)
     check_writable(out, hdf5=True)
-    if figure.suffix not in PICTURES:
-        raise click.UsageError(
-            f"--figure {figure}: expected a name that ends in {' or '.join(PICTURES)}"
-        )
+    check_ending("--figure", figure, PICTURES)
     check_writable(figure)
     with tqdm(desc="programs", leave=False, disable=None) as bar:
 
@@ -68,26 +50,12 @@ def optimise(
             )
             bar.update()
 
-        options: dict[str, Any] = {
-            "subject_to": limits,
-            "starts": starts,
-            "screen": screen,
-            "points": points,
-            "transmission": transmission,
-            "t": t,
-            "parameters": parameters(settings),
-            "backend": backend,
-            "dask": dask,
-            "out": out,
-            "resume": resume,
-            "force": force,
-            "progress": progress,
-        }
+        given = asked(options) | {"over": over, "out": out, "progress": progress}
         found: Optimum | Front
         if len(minimise) == 1:
-            found = search(loaded, minimise=minimise[0], over=over, **options)
+            found = search(loaded, minimise=minimise[0], **given)
         else:
-            found = search(loaded, minimise=list(minimise), over=over, **options)
+            found = search(loaded, minimise=list(minimise), **given)
     if found.stopped and hasattr(signal, "setitimer"):
         signal.setitimer(
             signal.ITIMER_REAL, 0.0

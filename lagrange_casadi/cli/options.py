@@ -6,7 +6,7 @@ import functools
 import math
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 EVEN_POINTS = "START:STOP:COUNT"
 OVER = "JOINT=START:STOP:COUNT"
 BOUNDS = "NAME=LEAST:LARGEST"
+HDF5 = (".h5", ".hdf5")
+"""Endings of the files of results."""
+
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 Number = TypeVar("Number")
@@ -173,6 +176,26 @@ def parameters(settings: Sequence[tuple[str, float | str]]) -> dict[str, Any]:
     return found
 
 
+def asked(options: Mapping[str, object]) -> dict[str, Any]:
+    """Options as a study takes them: ``settings`` as its ``parameters``, and ``want`` as what is
+    ``wanted``, None if nothing is named.
+    """
+    found: dict[str, Any] = dict(options)
+    if "settings" in found:
+        found["parameters"] = parameters(found.pop("settings"))
+    if "want" in found:
+        found["wanted"] = found.pop("want") or None
+    return found
+
+
+def check_ending(option: str, path: Path, endings: Collection[str]) -> None:
+    """Raise ``click.UsageError`` for the name of a file that has none of some endings."""
+    if path.suffix not in endings:
+        raise click.UsageError(
+            f"{option} {path}: expected a name that ends in {' or '.join(endings)}"
+        )
+
+
 def separated(
     _context: click.Context, _parameter: click.Parameter, words: Sequence[str]
 ) -> tuple[str, ...]:
@@ -285,11 +308,18 @@ def several(
     kind: Kind | None = None,
     into: str = "",
     required: bool = False,
+    callback: Callable[..., Any] | None = None,
 ) -> Option:
     """Values of an option that is repeatable, for the argument ``into``."""
     names = [name, into] if into else [name]
     return click.option(
-        *names, type=kind, multiple=True, required=required, metavar=metavar, help=says
+        *names,
+        type=kind,
+        multiple=True,
+        required=required,
+        callback=callback,
+        metavar=metavar,
+        help=says,
     )
 
 
@@ -300,9 +330,10 @@ def choice(name: str, words: Sequence[str], default: str, says: str) -> Option:
     )
 
 
-def flag(name: str, says: str) -> Option:
-    """A switch."""
-    return click.option(name, is_flag=True, help=says)
+def flag(name: str, says: str, *, into: str = "") -> Option:
+    """A switch, for the argument ``into``."""
+    names = [name, into] if into else [name]
+    return click.option(*names, is_flag=True, help=says)
 
 
 def file(name: str, says: str, *, metavar: str | None = None, required: bool = False) -> Option:
@@ -375,7 +406,7 @@ def wanted(
 def table_file(says: str) -> Option:
     """Place of a table, ``csv``, and the marks in it."""
 
-    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+    def decorate(command: Callable[..., object]) -> Callable[..., None]:
         @click.option(
             "--csv",
             type=PATH,
@@ -388,7 +419,7 @@ def table_file(says: str) -> Option:
             help="With --csv: write commas in numbers, and semicolons between cells.",
         )
         @functools.wraps(command)
-        def with_table(csv: Path | None, decimal_comma: bool, **given: Any) -> None:
+        def with_table(csv: Path | None, decimal_comma: bool, **given: object) -> None:
             if decimal_comma and csv is None:
                 raise click.UsageError("--decimal-comma goes with --csv FILE.csv")
             from ..base.table_file import TableFile

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
 from ..base.publish import check_writable
-from ..case import Case, load_case, reference
+from ..case import load_case, reference
 from ..codegen.compiler import statements
-from ..declare.even_points import EvenPoints
-from ..declare.times import Over
 from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, one_line
 from ..instants.solution import Solution
 from ..portable.wasm import check_zig
@@ -28,25 +25,10 @@ from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import grouped
 from ..verification.certificate import failure
 from .echo import echo, say_step
-from .options import parameters
+from .options import HDF5, asked, parameters
 from .strength_lines import not_evaluated_lines
 
-_FILES = (".h5", ".hdf5")
 _UNSHOWN = "cannot be shown"
-
-
-@dataclass(frozen=True)
-class Asked:
-    """Options that go with a case: parameters, instants, outputs, and whether the page is live."""
-
-    settings: Sequence[tuple[str, float | str]]
-    t: EvenPoints | None
-    over: Over | None
-    want: Sequence[str]
-    live: bool
-
-    def __bool__(self) -> bool:
-        return bool(self.settings or self.t or self.over or self.want or self.live)
 
 
 def report(
@@ -54,12 +36,13 @@ def report(
     out: Path | None,
     beside: Sequence[tuple[str, float | str]],
     case: Path | None,
-    asked: Asked,
+    live: bool,
+    **options: object,
 ) -> None:
     """See :func:`.commands.report`."""
     target, *others = targets
-    file = target.suffix in _FILES
-    if asked and all(one.suffix in _FILES for one in targets):
+    file = target.suffix in HDF5
+    if (live or any(options.values())) and all(one.suffix in HDF5 for one in targets):
         raise click.UsageError(
             "--set, --t, --over, --want and --live go with a case, not with a file"
         )
@@ -67,8 +50,12 @@ def report(
         raise click.UsageError(f"--out {out}: expected a name that ends in {' or '.join(ENDINGS)}")
     if case and (others or not (file and is_sweep(target))):
         raise click.UsageError("--case goes with a sweep's file")
+    if len(others) > 1:
+        raise click.UsageError("expected one or two of FILE.h5 and CASE")
     if others or beside:
-        _of_two(targets, out, beside, asked)
+        if live:
+            raise click.UsageError("--live goes with one case, and not with --beside")
+        _of_two(targets, out, beside, options)
         return
     if file:
         out = out or Path(f"{target.stem}.html")
@@ -84,16 +71,18 @@ def report(
         scene = loaded.scene
         out = out or Path(f"{loaded.name}.html")
         check_writable(out)
-        wanted = with_motion(asked.want or scene.wanted)
-        given, timing = parameters(asked.settings), scene.timing(asked.t, asked.over)
-        engine = None
-        if asked.live:
+        given, engine = asked(options), None
+        given["wanted"] = with_motion(given["wanted"] or scene.wanted)
+        if live:
+            timing = scene.timing(given["t"], given["over"])
             say_step(2, f"deriving the equations of {loaded.name}")
-            engine = Live.of(scene, timing, wanted, run_of(reference(loaded, Path())), given)
+            command = run_of(reference(loaded, Path()))
+            engine = Live.of(scene, timing, given["wanted"], command, given["parameters"])
             size = grouped(statements(engine.source.code))
             say_step(3, f"compiling {size} statements for this machine and for the browser at once")
-        solution = _evaluated(loaded, asked, given)
-        if asked.live:
+        # What a live page computes anew is what equilibrium determines.
+        solution = evaluate(scene, elastic=False if live else None, **given)
+        if live:
             say_step(4, f"writing {out}")
         write_report(solution, out, engine)
     _announce(solution, out)
@@ -103,24 +92,23 @@ def _of_two(
     targets: Sequence[Path],
     out: Path | None,
     beside: Sequence[tuple[str, float | str]],
-    asked: Asked,
+    options: Mapping[str, object],
 ) -> None:
     """Write the page of two runs, or of a case and the design ``beside`` it."""
     first, *others = targets
-    if len(others) > 1:
-        raise click.UsageError("expected one or two of FILE.h5 and CASE")
-    if asked.live:
-        raise click.UsageError("--live goes with one case, and not with --beside")
-    if beside and (others or first.suffix in _FILES):
+    if beside and (others or first.suffix in HDF5):
         raise click.UsageError("--beside goes with one case")
     name = "_and_".join(one.stem for one in targets) if others else f"{first.stem}_beside"
     out = out or Path(f"{name}.html")
     check_writable(out)
     solutions: list[Solution] = []
     for target, more in zip((first, *(others or (first,))), ((), beside), strict=True):
-        if target.suffix not in _FILES:
-            given = parameters(asked.settings) | parameters(more)
-            solutions.append(_evaluated(load_case(target), asked, given))
+        if target.suffix not in HDF5:
+            scene = load_case(target).scene
+            given = asked(options)
+            given["wanted"] = with_motion(given["wanted"] or scene.wanted)
+            given["parameters"] |= parameters(more)
+            solutions.append(evaluate(scene, **given))
         elif is_sweep(target):
             raise click.UsageError(f"{target} is a sweep: its page cannot be combined with another")
         else:
@@ -138,19 +126,6 @@ def _of_two(
     for solution in solutions:
         if solution.failed:
             raise CertificateError(f"{failure(solution)}; {out} says so")
-
-
-def _evaluated(loaded: Case, asked: Asked, given: Mapping[str, float]) -> Solution:
-    """A case as a page shows it."""
-    return evaluate(
-        loaded.scene,
-        parameters=given,
-        t=asked.t,
-        over=asked.over,
-        wanted=with_motion(asked.want or loaded.scene.wanted),
-        # What a live page computes anew is what equilibrium determines.
-        elastic=False if asked.live else None,
-    )
 
 
 def _of_sweep(target: Path, out: Path, case: Path | None) -> None:

@@ -12,17 +12,17 @@ from pathlib import Path
 import click
 import numpy as np
 
+from ..base.arrays import Array
 from ..base.publish import check_writable
 from ..base.quantities import AVERAGED, Output
 from ..base.streams import is_standard_output
 from ..base.table_file import TableFile
-from ..base.vocabulary import Backend, Precision
+from ..base.vocabulary import Backend
 from ..case import load_case
 from ..declare import revolutions
 from ..declare.description import beams_of, fitted_of, kinds_of_described, pieces_of, values_of
-from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
-from ..declare.times import Over, Timing
+from ..declare.times import Timing
 from ..declare.wanted_names import among
 from ..elastic.vibration import vibration
 from ..errors import CertificateError, DeclarationError
@@ -39,9 +39,8 @@ from ..studies.sensitivities import Changes, sensitivities
 from ..verification.certificate import failure, summary
 from .drawing import draw_with_progress
 from .echo import echo
-from .options import parameters
+from .options import HDF5, asked, check_ending
 from .report import Rows, card, ratio
-from .rows import rows_of
 from .strength_lines import evaluated, not_evaluated_lines, strength_cards, strength_lines, worst
 
 _SCREEN = 39
@@ -49,20 +48,12 @@ _SCREEN = 39
 _FEWEST = 8
 """Rows of the table, however much else there is to say."""
 
+_BLOCK = 1024
+
 
 def run(
     case: Path,
-    settings: Sequence[tuple[str, float | str]],
-    t: EvenPoints | None,
-    over: Over | None,
-    xi: EvenPoints | None,
     want: Sequence[str],
-    backend: Backend,
-    precision: Precision,
-    newton: int | None,
-    table: float | None,
-    flags: str,
-    threads: int | None,
     out: Path | None,
     figures: Path | None,
     no_figures: bool,
@@ -73,43 +64,34 @@ def run(
     elastic: bool,
     no_certificate: bool,
     verbose: bool,
+    **options: object,
 ) -> None:
     """See :func:`.commands.run`."""
     if figures and no_figures:
         raise click.UsageError("--figures and --no-figures exclude each other")
     if svg and no_figures:
         raise click.UsageError("--svg and --no-figures exclude each other")
-    if out and out.suffix not in (".h5", ".hdf5"):
-        raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
+    if out:
+        check_ending("--out", out, HDF5)
     loaded = load_case(case)
     scene = loaded.scene
     out = out or Path(f"{loaded.name}.h5")
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
     _check_places(out, folder, csv)
+    given = asked(options)
     solution = evaluate(
         scene,
-        parameters=parameters(settings),
-        t=t,
-        over=over,
-        xi=xi,
         wanted=want or None,
-        backend=backend,
-        precision=precision,
-        newton=newton,
-        table=table,
-        flags=flags,
-        threads=threads,
         certificate=not no_certificate,
         elastic=(scene.elastic or True) if elastic else None,
+        **given,
     )
     usual = Path(f"{loaded.name}_figures") if out == Path(f"{loaded.name}.h5") else None
     place = folder or usual
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
     heads = columns(solution) if csv else {}
     written = (
-        csv.written([TIME, *heads], rows_of([solution.t, *heads.values()]))
-        if csv
-        else nullcontext()
+        csv.written([TIME, *heads], _rows([solution.t, *heads.values()])) if csv else nullcontext()
     )
     with written, MANIFEST.filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
@@ -117,22 +99,22 @@ def run(
             drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures), grids=_grids(solution, grids, want))
     say = partial(echo, err=csv is not None and is_standard_output(csv.path))
-    asked = want or scene.wanted
+    wanted = want or scene.wanted
     names = [*forces(solution), *resultants(solution)] if refine_peaks else ()
     rows = Rows.of(solution, refine(scene, solution, names) if names else (), want, verbose)
     strength = scene if refine_peaks else None
     head = [_head(solution, refine_peaks if rows.rows else None), *rows.cards()]
     if want or verbose:
-        details = [*strength_lines(solution, asked, strength), *elastic_lines(solution, asked)]
+        details = [*strength_lines(solution, wanted, strength), *elastic_lines(solution, wanted)]
     else:
-        head += elastic_card(solution, asked)
-        head += strength_cards(solution, asked, strength)
+        head += elastic_card(solution, wanted)
+        head += strength_cards(solution, wanted, strength)
         details = []
-    rest = [*slope_lines(solution, scene, backend), *details, *rows.notes()]
-    rest += _notes(scene, solution, scene.timing(t, over))
+    rest = [*slope_lines(solution, scene, given["backend"]), *details, *rows.notes()]
+    rest += _notes(scene, solution, scene.timing(given["t"], given["over"]))
     if folder and not loaded.figures:
         parts = [*beams_of(solution.description), *fitted_of(solution.description)]
-        rest += not_evaluated_lines(solution, among("safety", parts, asked))
+        rest += not_evaluated_lines(solution, among("safety", parts, wanted))
     if not no_certificate:
         rest.append(summary(solution.certificate))
     rest += replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn)
@@ -146,6 +128,12 @@ def run(
         say(line)
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")
+
+
+def _rows(columns: Sequence[Array]) -> Iterator[list[float]]:
+    """The rows of columns of one length."""
+    for start in range(0, columns[0].size, _BLOCK):
+        yield from np.column_stack([column[start : start + _BLOCK] for column in columns]).tolist()
 
 
 def _grids(solution: Solution, grids: bool | None, want: Sequence[str]) -> bool | list[str] | None:

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import click
 
 from ..beams.profiles import read_profiles
 from ..case import load_case
-from ..declare.even_points import EvenPoints
-from ..declare.times import Over
 from ..studies.sizing import Sized, size
 from .echo import echo
-from .options import parameters
+from .options import asked
 from .strength_lines import evaluated, safety_lines
 
 
@@ -25,9 +24,7 @@ def size_command(
     links: Sequence[str],
     criterion: str,
     yielding: str,
-    settings: Sequence[tuple[str, float | str]],
-    t: EvenPoints | None,
-    over: Over | None,
+    **options: object,
 ) -> None:
     """See :func:`.commands.size`."""
     loaded = load_case(case)
@@ -42,12 +39,10 @@ def size_command(
         table,
         safety=safety,
         links=links or None,
-        parameters=parameters(settings),
-        t=t,
-        over=over,
+        deflection=deflection,
         criterion=criterion,
         yield_criterion=yielding,
-        deflection=deflection,
+        **asked(options),
     )
     stiff = (
         "" if deflection is None else f", and a deflection of at most {deflection:g} of its length"
@@ -59,16 +54,10 @@ def size_command(
     for sized in found.links:
         for line in _lines(sized):
             echo(line)
+    safety_of = partial(found.solution.safety, criterion=criterion, yield_criterion=yielding)
     for name, why in found.left.items():
         echo(f"{name}: not sized: {why}")
-        for line in evaluated(
-            name,
-            lambda link: list(
-                safety_lines(
-                    found.solution.safety(link, criterion=criterion, yield_criterion=yielding)
-                )
-            ),
-        ):
+        for line in evaluated(name, lambda link: list(safety_lines(safety_of(link)))):
             echo(line)
     solution = found.solution
     verdict = "holds" if solution.certified else "fails" if solution.failed else "not computed"

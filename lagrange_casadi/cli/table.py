@@ -1,25 +1,47 @@
-"""``lagrange-casadi table``: the designs of a sweep as rows."""
+"""``lagrange-casadi best`` and ``table``: the designs of a sweep as rows."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
 
 from ..base.streams import is_standard_output
-from ..base.table_file import TableFile
+from ..base.table_file import TableFile, head
 from ..errors import NoDesignError
 from ..studies.sweep import Sweep, chosen
-from ..studies.sweep.axes import counted, grouped
+from ..studies.sweep import best as find
+from ..studies.sweep.axes import DESIGN, counted, grouped
 from ..studies.sweep.best import conditions_in, counts, missed, with_errors
-from ..studies.sweep.instant_axis import in_words
-from ..studies.sweep.meanings import STATUS
+from ..studies.sweep.meanings import STATUS, in_words
 from .echo import echo
-from .rows import heads_of, show
+from .options import asked
 
 _WIDE = 6
 _LISTED = 6
+_WIDTH = 10
+
+
+def best(file: Path, where: Sequence[str], csv: TableFile | None, **options: object) -> None:
+    """See :func:`.commands.best`."""
+    if csv:
+        csv.check()
+    sweep = Sweep.open(file)
+    found = find(sweep, where=where, **asked(options))
+    if not found:
+        satisfied, with_result = (grouped(count) for count in counts(sweep, where))
+        raise NoDesignError(
+            f"{file}: no design has a result and meets the conditions: of {counted(sweep.size)},"
+            f" {satisfied} meet them, {with_result} of these with a result{missed(sweep, where)}"
+        )
+    names, piped = list(found[0].values), csv is not None and is_standard_output(csv.path)
+    if not piped:
+        _show(sweep, names, [(design.number, list(design.values.values())) for design in found])
+    if csv:
+        rows = ([design.number, *design.values.values()] for design in found)
+        csv.write([DESIGN, *_heads_of(sweep, names)], rows)
+        echo(f"wrote {csv.path}: {counted(len(found))}", err=piped)
 
 
 def table(
@@ -47,9 +69,9 @@ def table(
         raise NoDesignError(f"{file}: no {what} meets the conditions{missed(sweep, where, along)}")
     found = chain([first], found)
     if csv:
-        count = csv.write(heads_of(sweep, names), (values for _, values in found))
+        count = csv.write(_heads_of(sweep, names), (values for _, values in found))
         echo(f"wrote {csv.path}: {counted(count, what)}", err=is_standard_output(csv.path))
-    elif show(sweep, names, islice(found, min(rows, sys.maxsize))) == rows:
+    elif _show(sweep, names, islice(found, min(rows, sys.maxsize))) == rows:
         satisfied, with_result = counts(sweep, where, along)
         if satisfied > rows:
             what = counted(satisfied, what) + (" that meet the conditions" if where else "")
@@ -97,3 +119,30 @@ def _mention_others(sweep: Sweep, shown: Sequence[str]) -> None:
             f" {', '.join(names[:_LISTED])}{more}",
             err=True,
         )
+
+
+def _show(sweep: Sweep, names: Sequence[str], rows: Iterable[tuple[int, Sequence[float]]]) -> int:
+    """Print rows below a head of names and units, each with its design's number; how many there
+    were.
+    """
+    heads = ["design", *_heads_of(sweep, names)]
+    widths = [max(len(head), _WIDTH) for head in heads]
+    echo("  ".join(head.rjust(width) for head, width in zip(heads, widths, strict=True)))
+    count = 0
+    for number, values in rows:
+        cells = [
+            str(number),
+            *(_cell(sweep, name, value) for name, value in zip(names, values, strict=True)),
+        ]
+        echo("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
+        count += 1
+    return count
+
+
+def _heads_of(sweep: Sweep, names: Sequence[str]) -> list[str]:
+    """The heads of columns of a sweep."""
+    return [head(name, sweep.unit(name)) for name in names]
+
+
+def _cell(sweep: Sweep, name: str, value: float) -> str:
+    return sweep.statuses.get(int(value), (str(value), ""))[0] if name == STATUS else f"{value:.6g}"

@@ -9,15 +9,12 @@ from dataclasses import fields
 from pathlib import Path
 
 from ..base.table_file import Cell, TableFile
-from ..base.vocabulary import Backend
 from ..case import load_case
-from ..declare.even_points import EvenPoints
-from ..declare.times import Over
 from ..errors import DeclarationError
 from ..studies.tolerances import Spreads
-from ..studies.tolerances import tolerances as distributed_loads_of
+from ..studies.tolerances import tolerances as spreads
 from .echo import echo
-from .options import parameters
+from .options import asked
 
 _FEW = 3
 """Parameters that are named for each peak."""
@@ -26,13 +23,8 @@ _FEW = 3
 def tolerances(
     case: Path,
     within: Sequence[tuple[str, str]],
-    settings: Sequence[tuple[str, float | str]],
-    t: EvenPoints | None,
-    over: Over | None,
-    want: Sequence[str],
-    samples: int,
-    backend: Backend,
     csv: TableFile | None,
+    **options: object,
 ) -> None:
     """See :func:`.commands.tolerances`."""
     widths = dict(within)
@@ -40,17 +32,7 @@ def tolerances(
         raise DeclarationError("tolerance: a parameter is listed twice")
     if csv:
         csv.check()
-    loaded = load_case(case)
-    found = distributed_loads_of(
-        loaded.scene,
-        widths,
-        parameters=parameters(settings),
-        wanted=want or None,
-        t=t,
-        over=over,
-        samples=samples,
-        backend=backend,
-    )
+    found = spreads(load_case(case).scene, widths, **asked(options))
     _print(found)
     if csv:
         csv.write(*_rows(found))

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
 from pathlib import Path
 
-import click
 from tqdm import tqdm
 
 from ..base.publish import check_writable, writing
 from ..case import load_case
-from ..declare.even_points import EvenPoints
-from ..declare.times import Over
 from ..errors import DeclarationError
 from ..figures.trade_plot import draw_trade
 from ..instants.evaluation_method import EvaluationMethod
@@ -21,18 +17,15 @@ from ..shapes.pictures import PICTURES
 from ..studies.trade import METHODS, Trade
 from ..studies.trade import trade as measure
 from .echo import echo
-from .options import parameters
+from .options import asked, check_ending
 
 
 def trade(
     case: Path,
-    settings: Sequence[tuple[str, float | str]],
-    t: EvenPoints | None,
-    over: Over | None,
-    want: Sequence[str],
     accuracy: float | None,
     out: Path | None,
     figure: Path | None,
+    **options: object,
 ) -> None:
     """See :func:`.commands.trade`."""
     if accuracy is not None and not 0.0 < accuracy < math.inf:
@@ -43,10 +36,7 @@ def trade(
         figure or Path(f"{loaded.name}_trade.png"),
     )
     for option, target, endings in (("--out", out, (".json",)), ("--figure", figure, PICTURES)):
-        if target.suffix not in endings:
-            raise click.UsageError(
-                f"{option} {target}: expected a name that ends in {' or '.join(endings)}"
-            )
+        check_ending(option, target, endings)
         check_writable(target)
     with tqdm(total=len(METHODS), desc="methods", leave=False, disable=None) as bar:
 
@@ -54,14 +44,7 @@ def trade(
             bar.set_postfix_str(method.options)
             bar.update()
 
-        found = measure(
-            loaded.scene,
-            parameters=parameters(settings),
-            t=t,
-            over=over,
-            wanted=want or None,
-            progress=progress,
-        )
+        found = measure(loaded.scene, progress=progress, **asked(options))
     with writing(out, figure) as (numbers, picture):
         numbers.write(f"{json.dumps(found.as_dict(), indent=1)}\n".encode())
         draw_trade(found, picture, figure.suffix)

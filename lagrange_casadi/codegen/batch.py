@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from .calls import Call
-from .compiler import WIDE, Compiler, broken, loaded, packed, start
+from .compiler import WIDE, Compiler, entry_of, loaded, packed, start
 from .printer import print_functions
 
 if TYPE_CHECKING:
@@ -136,7 +136,4 @@ def load_batch(
     """Build that, or take it from the cache, and load it. Raises :class:`CompilerError`."""
     source = packed(emit_batch(function), compiler)
     library, call = loaded(source, compiler, tuple(extra)), _call(function)
-    try:
-        return BatchLibrary(call, call.declare(getattr(library, _ENTRY)))
-    except AttributeError as error:
-        raise broken(compiler, error) from None
+    return BatchLibrary(call, call.declare(entry_of(library, _ENTRY, compiler)))

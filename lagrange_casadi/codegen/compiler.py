@@ -19,17 +19,20 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from ..base import cache
 from ..base.vocabulary import Precision
 from ..errors import CompilerError, lacking, warn
 from . import programs
+
+if TYPE_CHECKING:
+    from _ctypes import CFuncPtr
 
 Language = Literal["c", "c++"]
 
@@ -243,13 +246,15 @@ def start(precision: Precision) -> str:
     return (_SINGLE if precision == "single" else "") + _START
 
 
+def written(*names: str) -> str:
+    """C that is written by hand: files of this folder, one after another."""
+    folder = resources.files(__package__)
+    return "\n".join(folder.joinpath(name).read_text() for name in names)
+
+
 def packed(text: str, compiler: Compiler) -> str:
     """An emitted file as a compiler takes it: for C++ with packs before it."""
-    if compiler.language == "c":
-        return text
-    return text.replace(
-        LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1
-    )
+    return text if compiler.language == "c" else text.replace(LANES_PLACE, written("lanes.h"), 1)
 
 
 def loaded(
@@ -287,6 +292,27 @@ def loaded(
             return ctypes.CDLL(str(fresh))
         except OSError as error:
             raise broken(compiler, error) from None
+
+
+def loaded_or_none(source: str, options: tuple[str, ...], instead: str) -> ctypes.CDLL | None:
+    """The shared library of a source in C, for which there is a replacement; None where there is no
+    compiler, and with a warning, which says what is done ``instead``, where it refuses the source.
+    """
+    try:
+        compiler = find_compiler()
+        return None if compiler is None else loaded(source, compiler, options)
+    except CompilerError as error:
+        warn(f"{error}; {instead}: same values")
+        return None
+
+
+def entry_of(library: ctypes.CDLL, name: str, compiler: Compiler) -> CFuncPtr:
+    """A function of a library. Raises :class:`CompilerError` where it lacks it."""
+    try:
+        found: CFuncPtr = getattr(library, name)
+    except AttributeError as error:
+        raise broken(compiler, error) from None
+    return found
 
 
 def broken(compiler: Compiler, error: Exception) -> CompilerError:
@@ -349,6 +375,31 @@ def _compile(
         raise CompilerError(f"{complaint(compiler, run)}{where}")
     library.with_suffix(".sha256").write_text(cache.digest(library.read_bytes()))
     return library
+
+
+def built(
+    compiler: Compiler,
+    command: Sequence[str],
+    files: Mapping[str, str],
+    result: str,
+    check: Callable[[Path], None] = lambda path: None,
+) -> bytes:
+    """Compile ``files`` in a folder of their own, so that no path gets into the ``result``; what it
+    holds is returned, once ``check`` has seen it.
+
+    Raises :class:`CompilerError`.
+    """
+    with cache.working_folder() as work:
+        try:
+            for file, text in files.items():
+                (work / file).write_text(text, encoding="utf-8")
+            run = compiled(command, work)
+            if run.returncode == 0:
+                check(work / result)
+                return (work / result).read_bytes()
+        except OSError as error:
+            raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
+    raise CompilerError(complaint(compiler, run))
 
 
 def compiled(

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from importlib import resources
 
 import casadi as ca
 
@@ -19,7 +18,7 @@ from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..equations.program import Program
 from .calls import Call
-from .compiler import WIDE, start
+from .compiler import WIDE, start, written
 from .printer import defined, function_name, literal, print_functions
 from .reduction import Reduction, reduced
 from .stages import Stages, plain
@@ -92,18 +91,16 @@ def emit(
         + WIDE
         + print_functions(wide, precision, prefix="scene", packs=True)
         + defined("SCENE", macros)
-        + resources.files(__package__).joinpath("scene.c").read_text()
+        + written("scene.c")
     )
     return text if reduction is None else text + reduced(program, reduction, precision)
 
 
 def _sizes(program: Program, stages: Stages, reduction: Reduction | None) -> dict[str, object]:
     columns, watched = len(program.columns), len(reduction.watches) if reduction else 0
-    nt, nc, nd = (
-        stages.drive.size1_in(0),
-        stages.drive.size1_out(0),
-        program.instant.size1_in("d"),
-    )
+    nt = stages.drive.size1_in(0)
+    nc = stages.drive.size1_out(0)
+    nd = program.instant.size1_in("d")
     return {
         "NT": nt,
         "NP": program.instant.size1_in("p"),

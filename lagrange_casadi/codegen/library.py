@@ -15,7 +15,7 @@ from ..arithmetic.compensated import DTYPES
 from ..base.threads import in_threads
 from ..base.vocabulary import Precision
 from ..peak_search.intervals import Listed
-from .compiler import Compiler, broken, loaded, packed, statements
+from .compiler import Compiler, entry_of, loaded, packed, statements
 from .emit import EVALUATE, FOLLOW, INSTANTS
 from .reduction import CALL, DESIGNS, Reduction
 from .search import Search, Tables, load_search
@@ -284,13 +284,12 @@ def load(
     """
     library = loaded(packed(source, compiler), compiler, extra)
     some = (ctypes.c_longlong, ctypes.c_longlong)
-    try:
-        entries = (
-            {name: INSTANTS.declare(getattr(library, name), *some) for name in (FOLLOW, EVALUATE)}
-            if designs is None
-            else {DESIGNS: CALL.declare(getattr(library, DESIGNS))}
-        )
-    except AttributeError as error:
-        raise broken(compiler, error) from None
+    names = (FOLLOW, EVALUATE) if designs is None else (DESIGNS,)
+    entries = {name: entry_of(library, name, compiler) for name in names}
+    for entry in entries.values():
+        if designs is None:
+            INSTANTS.declare(entry, *some)
+        else:
+            CALL.declare(entry)
     flags = (*compiler.flags(source), *extra)
     return Library(entries, flags, statements(source), steps, designs)

@@ -8,13 +8,13 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 from ..base.arrays import Expression
 from ..base.tables import SPACE
 from ..declare.density import shifted
-from ..peak_search.polynomials import interpolation
+from ..peak_search.fits import interpolation
+from .compiler import written
 
 
 @dataclass(frozen=True)
@@ -216,11 +216,8 @@ def turning(links: Sequence[Along]) -> str:
     degrees = sorted({degree for link in links for degree in link.degrees})
     if not degrees:
         return ""
-    text = f"#define DESIGNS_DEGREE {degrees[-1]}\n"
     files = ["turning.c", *(["sections_in_space.c"] if any(link.space for link in links) else [])]
-    text += "".join(
-        "\n" + resources.files(__package__).joinpath(name).read_text() for name in files
-    )
+    text = f"#define DESIGNS_DEGREE {degrees[-1]}\n\n{written(*files)}"
     for degree in degrees:
         nodes, weights = interpolation(degree)
         for name, values in (("nodes_at", nodes), ("weights", weights.ravel())):

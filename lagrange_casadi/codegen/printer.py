@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.interpret import INFIX, Step, operation_name, steps
+from ..arithmetic.interpret import INFIX, Step, codes, operation_name, steps
 from ..arithmetic.lookups import Lookup
 from ..base.vocabulary import Precision
 from ..errors import DeclarationError, SizeError
@@ -193,41 +193,8 @@ def _same(step: Step) -> bool:
 
 _LIBRARY = {
     ca.OP_CONSTPOW: "pow",
-    **{
-        getattr(ca, f"OP_{name.upper()}"): name
-        for name in (
-            *(
-                "pow",
-                "atan2",
-                "hypot",
-                "fmin",
-                "fmax",
-                "fmod",
-                "remainder",
-                "copysign",
-                "sqrt",
-                "fabs",
-                "floor",
-                "ceil",
-                "erf",
-            ),
-            *(
-                "sin",
-                "cos",
-                "tan",
-                "asin",
-                "acos",
-                "atan",
-                "sinh",
-                "cosh",
-                "tanh",
-                "asinh",
-                "acosh",
-                "atanh",
-            ),
-            *("exp", "log", "log1p", "expm1"),
-        )
-    },
+    **codes("pow atan2 hypot fmin fmax fmod remainder copysign sqrt fabs floor ceil erf"),
+    **codes("sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log log1p expm1"),
 }
 """Operations that are functions of C's library."""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from ..equations.status import NEAR, outside
 from ..peak_search.intervals import TOPS
 from ..peak_search.sharpness import Watch
 from .calls import Call
+from .compiler import written
 from .link_curves import Along, along, turning
 from .printer import defined, function_name, print_functions
 from .search import BASE, OFF, TIP, Tables, interface
@@ -134,10 +134,12 @@ def reduced(program: Program, reduction: Reduction, precision: Precision) -> str
         + CALL.text("double" if precision == "double" else "float")
         + defined("DESIGNS", _macros(program, reduction, precision))
         + _tables(program, reduction)
-        + _source("sections.c")
+        + "\n"
+        + written("sections.c")
         + turning(reduction.links)
         + _curves(reduction)
-        + _source("designs.c")
+        + "\n"
+        + written("designs.c")
     )
 
 
@@ -188,30 +190,18 @@ def _tables(program: Program, reduction: Reduction) -> str:
     breaks = [
         _table("lanes_real", f"designs_breaks{k}", map(_real, ratios)) for k, ratios in others
     ]
-    return "".join(
-        (
-            _table("int", "designs_checked", columns),
-            _table(
-                "int",
-                "designs_kind",
-                (f"DESIGNS_IS_{kind}" if kind in CHECKS else -1 for kind in kinds),
-            ),
-            _table("int", "designs_sized", beside),
-            _table("int", "designs_status", map(int, statuses)),
-            _table("int", "designs_effort", reduction.efforts or (0,)),
-            _table(
-                "int",
-                "designs_doubted",
-                [check for check, _ in reduction.indeterminate_checks] or (0,),
-            ),
-            _table(
-                "int",
-                "designs_doubtful",
-                [quantity for _, quantity in reduction.indeterminate_checks] or (0,),
-            ),
-            *breaks,
-        )
-    )
+    shown_by, indeterminate = zip(*(reduction.indeterminate_checks or [(0, 0)]), strict=True)
+    tables: dict[str, Iterable[float | str]] = {
+        "checked": columns,
+        "kind": (f"DESIGNS_IS_{kind}" if kind in CHECKS else -1 for kind in kinds),
+        "sized": beside,
+        "status": map(int, statuses),
+        "effort": reduction.efforts or (0,),
+        "doubted": shown_by,
+        "doubtful": indeterminate,
+    }
+    lines = [_table("int", f"designs_{name}", values) for name, values in tables.items()]
+    return "".join([*lines, *breaks])
 
 
 def _table(kind: str, name: str, values: Iterable[float | str]) -> str:
@@ -239,7 +229,3 @@ static void designs_curves(const casadi_real* y, const casadi_real* matter, unsi
   (void) matter; (void) need; (void) place;
 {"".join(lines)}}}
 """
-
-
-def _source(name: str) -> str:
-    return "\n" + resources.files(__package__).joinpath(name).read_text()

@@ -14,7 +14,6 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy as np
@@ -29,7 +28,7 @@ from ..peak_search.between import Flags
 from ..peak_search.intervals import TOPS, Curves, CurveSource, Listed, Peaks, Samples
 from ..peak_search.sharpness import Kind, Watch
 from .calls import Call
-from .compiler import Compiler, broken, loaded, packed, start
+from .compiler import Compiler, entry_of, loaded, packed, start, written
 from .printer import defined
 
 FUNCTION = "lagrange_casadi_search"
@@ -136,9 +135,7 @@ def source(precision: Precision) -> str:
     """The C of the search."""
     text = start(precision) + _PRELUDE + interface(precision)
     text += defined("SEARCH", _macros(precision))
-    return text + "".join(
-        "\n" + resources.files(__package__).joinpath(name).read_text() for name in _FILES
-    )
+    return f"{text}\n{written(*_FILES)}"
 
 
 _PRELUDE = """\
@@ -309,11 +306,9 @@ class Search:
         hidden = np.zeros((2, rows.shape[1]), np.int8)
         hidden[0, : n - 1] = hiding
         asked = _Asked(source, along)
-        found, located, begin = (
-            np.empty((3, quantities)),
-            np.zeros(quantities, np.int8),
-            rows.ctypes.data + _LINE * rows.itemsize,
-        )
+        found = np.empty((3, quantities))
+        located = np.zeros(quantities, np.int8)
+        begin = rows.ctypes.data + _LINE * rows.itemsize
         tops = np.empty((quantities, TOPS, 4)) if listed else None
         error = np.empty(quantities) if sampled else None
         most = np.fmax.reduce(np.abs(values), axis=1, initial=0.0)
@@ -398,11 +393,7 @@ def load_search(
     Raises :class:`CompilerError`.
     """
     library = loaded(packed(source(precision), compiler), compiler, extra, _LEVEL)
-    try:
-        return Search(
-            CALL.declare(getattr(library, FUNCTION)),
-            CALL.declare(getattr(library, _CAPACITY)),
-            precision,
-        )
-    except AttributeError as error:
-        raise broken(compiler, error) from None
+    entry, room = (
+        CALL.declare(entry_of(library, name, compiler)) for name in (FUNCTION, _CAPACITY)
+    )
+    return Search(entry, room, precision)

@@ -24,9 +24,16 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.compensated import Pair, Pairs
-from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.interpret import (
+    REMAINDERS,
+    Arithmetic,
+    codes,
+    followable,
+    interpret,
+    numpy_arithmetic,
+)
 from ..arithmetic.lookups import Lookup
-from ..arithmetic.scalars import applied, column, entries
+from ..arithmetic.scalars import applied, column, entries, graph
 from ..base.arrays import Array, Expression, Operand
 from ..base.symbolic import Graphs, symbolic
 from ..base.vocabulary import Precision
@@ -83,10 +90,8 @@ def compensated(program: Program, precision: Precision) -> Stages:
     Raises :class:`DeclarationError` for a graph that cannot be followed.
     """
     pairs, single = Pairs(precision), precision == "single"
-    time, parameters = (
-        ca.SX.sym("t", 2 if single else 1),
-        ca.SX.sym("p", program.instant.size1_in("p"), 2 if single else 1),
-    )
+    time = ca.SX.sym("t", 2 if single else 1)
+    parameters = ca.SX.sym("p", program.instant.size1_in("p"), 2 if single else 1)
     t_pair, *p_pairs = (
         Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters))
     )
@@ -128,28 +133,25 @@ def controlled(
     Where parameters are ``fixed``, pairs have all the digits of these numbers, as of other
     constants. Raises :class:`DeclarationError` for a graph that cannot be followed in pairs.
     """
-    names = ["moment", "p"]
     if precision == "double":
         stages, p = plain(program), program.instant.sx_in("p")
         moment = ca.SX.sym("moment", stages.instant.size1_in(0))
         return Controlled(
             program.laws.motion,
-            ca.Function("count", [moment, p], [moment], names, ["counted"]),
-            *_others(stages),
+            graph("count", {"moment": moment, "p": p}, counted=moment),
+            stages.loops,
+            stages.instant,
+            stages.precision,
         )
     pairs, rows = Pairs(precision), 1 + len(program.driven)
     moment, p = ca.SX.sym("moment", rows, 2), program.instant.sx_in("p")
     t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
     known = [Pair(x) for x in entries(p)] if fixed is None else [pairs.constant(x) for x in fixed]
     handed, loops, instant = _counted(program, pairs, t, driven, known)
-    count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
+    count = graph("count", {"moment": ca.vec(moment), "p": p}, counted=handed)
     return Controlled(
         _paired_law(program.laws.motion, pairs, p, known), count, loops, instant, precision
     )
-
-
-def _others(stages: Stages) -> tuple[ca.Function | None, ca.Function, Precision]:
-    return stages.loops, stages.instant, stages.precision
 
 
 def _rest(pair: Pair) -> ca.SX:
@@ -323,11 +325,8 @@ class _Counting:
         return self.symbols[key][0]
 
 
-_PHASES = {ca.OP_SIN, ca.OP_COS, ca.OP_TAN}
-_FOLLOWED = {
-    *(ca.OP_ADD, ca.OP_SUB, ca.OP_NEG, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV),
-    *(ca.OP_INV, ca.OP_SQRT, ca.OP_FABS, ca.OP_FLOOR, ca.OP_CEIL),
-}
+_PHASES = {*codes("sin cos tan")}
+_FOLLOWED = codes("add sub neg mul sq twice div inv sqrt fabs floor ceil")
 
 
 def _counted(
@@ -366,15 +365,8 @@ def _counted(
         for outputs in found
     ]
     counted, handed = counting.handed()
-    names = ["counted", "d_rate", "d_acceleration", "z", "p"]
-    instant = ca.Function(
-        "instant",
-        [counted, rate, acceleration, z, symbols],
-        results[-1],
-        names,
-        ["out"],
-        {"cse": True},
-    )
+    given = {"counted": counted, "d_rate": rate, "d_acceleration": acceleration}
+    instant = graph("instant", given | {"z": z, "p": symbols}, out=results[-1][0])
     loops = (
         ca.Function("loops", [z, counted, symbols], results[0], {"cse": True})
         if program.newton

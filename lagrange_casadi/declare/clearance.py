@@ -13,11 +13,13 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from ..arithmetic.boxes import boxed
 from ..base.arrays import Array
 from ..base.symbolic import symbolic_property
-from .limits_beside import Flags
+
+Flags = npt.NDArray[np.bool_]
 
 _STRETCHES = 64
 """Number of parts of a path whose bounds as a whole do not suffice."""

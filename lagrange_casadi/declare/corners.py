@@ -17,8 +17,9 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from ..base.symbolic import Graphs, symbolic
 from .kinks import Smooth
+from .laws import law_expression
 from .mechanism import Mechanism
-from .motion import smooth_laws
+from .motion import Motion
 from .parts import Constraint
 from .scene import Scene
 
@@ -52,7 +53,7 @@ class Corners(Graphs):
         found = {
             name: smooth_constraint(m, constraint) for name, constraint in m.constraints.items()
         }
-        laws = smooth_laws(scene.laws, m.symbols)
+        laws = _smooth_laws(scene.laws, m.symbols)
         cams = [name for name, constraint in m.constraints.items() if constraint.lift is not None]
         return cls(
             laws, {name: smooth for name, smooth in found.items() if smooth is not None}, cams
@@ -154,3 +155,17 @@ def _broken_constraint(smooth: Smooth, paths: Array, p: Array) -> npt.NDArray[np
     paths, p = paths[which], p[which]
     found = smooth.broken(paths, p) | smooth.isolates(paths, p, between=True)
     return np.asarray(found[number.ravel()], bool)
+
+
+def _smooth_laws(laws: Mapping[str, Motion], parameters: ca.SX) -> dict[str, Smooth]:
+    """Check that laws have no kinks in time, by the joint's name.
+
+    Moves go on smoothly by their making, wherever parameters allow them.
+    """
+    t = ca.SX.sym("t")
+    looked_at = {joint: law for joint, law in laws.items() if not (law.knots or law.stretches)}
+    found = {
+        joint: Smooth.of(law_expression(joint, law, t, parameters), t, parameters)
+        for joint, law in looked_at.items()
+    }
+    return {joint: smooth for joint, smooth in found.items() if smooth is not None}

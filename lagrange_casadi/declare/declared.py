@@ -119,18 +119,13 @@ class Declared:
         """
         known, stated = tuple(map(float, p)), stated or Stated((), (), ())
         space = in_space(description)
-        loads = description["loads"].items()
         return cls(
             gravity=_triple(description["gravity"]),
             bodies={name: _body(body, space) for name, body in description["bodies"].items()},
             joints={
-                name: (_joint if space else _planar_joint)(name, joint)
-                for name, joint in description["joints"].items()
+                name: _joint(name, joint, space) for name, joint in description["joints"].items()
             },
-            loads={
-                name: LoadNumbers(tuple(map(_place, load["points"])), *_friction(load))
-                for name, load in loads
-            },
+            loads={name: _load(load) for name, load in description["loads"].items()},
             drives=tuple(drives_of(description)),
             driven=tuple(motions_of(description)),
             beside={
@@ -205,43 +200,31 @@ def _body(entry: Description, space: bool) -> BodyNumbers:
     return BodyNumbers(length, mass, (middle * length, 0.0, 0.0), inertia)
 
 
-def _joint(_: str, entry: Description) -> JointNumbers:
-    axes = zip(entry["coordinates"].items(), entry["axes"], strict=True)
+def _joint(name: str, entry: Description, space: bool) -> JointNumbers:
+    """A joint; of the plane, one whose child turns about z."""
+    slides, axes = entry["kind"] in ("prismatic", "slot"), []
+    if space:
+        coordinates = zip(entry["coordinates"].items(), entry["axes"], strict=True)
+        axes = [AxisNumbers(name, kind, tuple(one)) for (name, kind), one in coordinates]
+        triad, turned = _rows(entry["triad"]), _rows(entry["turned"])
+    else:
+        (x, y), c, s = entry["axis"], math.cos(entry["angle"]), math.sin(entry["angle"])
+        triad = ((x, y, 0.0), (-y, x, 0.0), _Z) if slides else (_Z, _X, _Y)
+        turned = (c, s, 0.0), (-s, c, 0.0), _Z
+        if entry["coordinate"]:
+            axes = [AxisNumbers(name, entry["coordinate"], triad[0])]
     return JointNumbers(
-        kind=entry["kind"],
-        parent=_place(entry["parent"]),
-        child=_place(entry["child"]),
-        axes=tuple(AxisNumbers(name, kind, tuple(direction)) for (name, kind), direction in axes),
-        triad=_rows(entry["triad"]),
-        turned=_rows(entry["turned"]),
-        pitch=entry["pitch"],
+        entry["kind"],
+        _place(entry["parent"]),
+        _place(entry["child"]),
+        tuple(axes),
+        triad,
+        turned,
+        pitch=entry.get("pitch", 0.0),
+        free=not space and entry["kind"] == "slot",
     )
 
 
-def _planar_joint(name: str, entry: Description) -> JointNumbers:
-    """A joint of the plane: what turns does so about z."""
-    x, y = entry["axis"]
-    slides = entry["kind"] in ("prismatic", "slot")
-    c, s = math.cos(entry["angle"]), math.sin(entry["angle"])
-    axis = (
-        [AxisNumbers(name, entry["coordinate"], (x, y, 0.0) if slides else _Z)]
-        if entry["coordinate"]
-        else []
-    )
-    return JointNumbers(
-        kind=entry["kind"],
-        parent=_place(entry["parent"]),
-        child=_place(entry["child"]),
-        axes=tuple(axis),
-        triad=((x, y, 0.0), (-y, x, 0.0), _Z) if slides else (_Z, _X, _Y),
-        turned=((c, s, 0.0), (-s, c, 0.0), _Z),
-        free=entry["kind"] == "slot",
-    )
-
-
-def _friction(entry: Description) -> tuple[()] | tuple[str, dict[str, float]]:
-    return (
-        (entry["friction"]["coordinate"], entry["friction"]["numbers"])
-        if "friction" in entry
-        else ()
-    )
+def _load(entry: Description) -> LoadNumbers:
+    friction, points = entry.get("friction", {}), tuple(map(_place, entry["points"]))
+    return LoadNumbers(points, friction.get("coordinate", ""), friction.get("numbers"))

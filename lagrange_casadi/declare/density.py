@@ -375,12 +375,8 @@ def along(curve: Curve) -> Density:
     Raises
     ------
     DeclarationError
-        If it is not a curve, is periodic, or does not reach from 0 to 1.
+        If it is periodic, or does not reach from 0 to 1.
     """
-    if not isinstance(curve, Curve):
-        raise DeclarationError(
-            f"density along: expected a curve of lagrange_casadi.curve, got {curve!r}"
-        )
     if curve.periodic or (curve.low, curve.high) != (0.0, 1.0):
         raise DeclarationError(
             "density along: the curve must reach from 0 to 1, and must not be periodic, got"

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import functools
 import marshal
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -102,9 +102,9 @@ def shape_of(value: Any) -> dict[str, Any]:
         "losses": [str],
         "beside": {str: _VECTOR},
         "rounded": {str: [float]},
+        "snapped": {str: [float]},
+        "unturned": [str],
     }
-    optional["snapped"] = {str: [float]}
-    optional["unturned"] = [str]
     return shape | {
         name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value
     }
@@ -287,33 +287,6 @@ class Template(Graphs):
         found: Description = _with(content, lambda place: numbers[place])
         return found
 
-    @classmethod
-    def of(
-        cls, mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None = None
-    ) -> Template:
-        """The template of what :func:`describe` gives."""
-        content, asked = numbered(mechanism, driven)
-        if mechanism.outputs:
-            content["outputs"] = {name: output.unit for name, output in mechanism.outputs.items()}
-        if mechanism.rounded:
-            content["rounded"] = {name: list(by) for name, by in mechanism.rounded.items()}
-        if mechanism.snapped:
-            content["snapped"] = {name: list(by) for name, by in mechanism.snapped.items()}
-        if drives is not None:
-            content |= {
-                "drives": list(drives),
-                "motions": {name: _kind(mechanism, name) for name in driven},
-            }
-        return cls.over(content, asked, mechanism.symbols)
-
-    @classmethod
-    def over(cls, content: Description, asked: Sequence[Expression], symbols: ca.SX) -> Template:
-        """The template whose numbers are expressions of the parameters' symbols, in the order of
-        its places.
-        """
-        numbers = ca.densify(column(ca.SX(expression) for expression in asked))
-        return cls(content, ca.Function("numbers", [symbols], [numbers], ["p"], ["numbers"]))
-
 
 def _places(
     content: Json | Place, path: tuple[str | int, ...] = ()
@@ -361,7 +334,13 @@ def template_of(
     mechanism: Mechanism, driven: tuple[str, ...], drives: tuple[str, ...] | None
 ) -> Template:
     """The template of what :func:`describe` gives, made once."""
-    return Template.of(mechanism, driven, drives)
+    content, asked = _numbered(mechanism, driven)
+    if drives is not None:
+        motions = {name: _kind(mechanism, name) for name in driven}
+        content |= {"drives": list(drives), "motions": motions}
+    numbers = ca.densify(column(ca.SX(expression) for expression in asked))
+    function = ca.Function("numbers", [mechanism.symbols], [numbers], ["p"], ["numbers"])
+    return Template(content, function)
 
 
 def _lies_by_default(joint: Joint) -> bool:
@@ -390,8 +369,8 @@ def motions_of(description: Description) -> dict[str, str]:
 
 
 @symbolic
-def numbered(
-    mechanism: Mechanism, driven: Collection[str] = ()
+def _numbered(
+    mechanism: Mechanism, driven: Collection[str]
 ) -> tuple[Description, list[Expression]]:
     """A description with places in the place of its numbers, and the expressions of the parameters
     that stand at these places.
@@ -405,12 +384,6 @@ def numbered(
         asked.append(expression)
         return Place(len(asked) - 1)
 
-    return _described(mechanism, driven, number), asked
-
-
-def _described(
-    mechanism: Mechanism, driven: Collection[str], number: Callable[[Expression], Expression]
-) -> Description:
     def place(point: Point) -> Description:
         found = {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
         return found | {"z": number(point.z)} if mechanism.space else found
@@ -514,8 +487,11 @@ def _described(
         ("losses", lossy),
         ("beside", beside),
         ("unturned", unturned),
+        ("outputs", {name: output.unit for name, output in mechanism.outputs.items()}),
+        ("rounded", {name: list(by) for name, by in mechanism.rounded.items()}),
+        ("snapped", {name: list(by) for name, by in mechanism.snapped.items()}),
     )
-    return {
+    content: Description = {
         "name": mechanism.name,
         "parameters": parameters,
         "gravity": vector(mechanism.gravity[: 3 if mechanism.space else 2]),
@@ -524,4 +500,5 @@ def _described(
         "loads": loads,
         "rows": {name: row.replaces for name, row in mechanism.rows.items()},
         "constraints": list(mechanism.constraints),
-    } | {name: found for name, found in optional if found}
+    }
+    return content | {name: found for name, found in optional if found}, asked

@@ -4,7 +4,6 @@ beam.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Literal
 
 from ..arguments import public
@@ -51,7 +50,7 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
     2 if an end is free. These are the theoretical numbers (Timoshenko and Gere, *Theory of Elastic
     Stability*, section 2.4).
     """
-    if not (isinstance(description, Mapping) and {"bodies", "joints"} <= {*description}):
+    if not {"bodies", "joints"} <= {*description}:
         raise DeclarationError(
             f"effective_lengths: expected the description of a solution, got {shown(description)}"
         )

@@ -3,7 +3,7 @@ mass, that guide them.
 
 The point of a path is pinned to a guide that slides along the ground's x and y; a body whose pose
 is given is turned on it. The guide bears nothing: no effort is at its joints, and what holds it
-there are the drives (:mod:`.drives`). So everything that solves loops of joints serves here too.
+there are the drives of the scene. So everything that solves loops of joints serves here too.
 """
 
 from __future__ import annotations
@@ -136,20 +136,13 @@ def guided(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]
             if rotates
             else PointMass(f"{name}.y", 0.0)
         )
-        along = Joint(
-            f"{name}.x",
-            "prismatic",
-            Point(mechanism.ground, 0.0, 0.0),
-            Point(beside, 0.0, 0.0),
-            (1.0, 0.0),
-        )
-        across = Joint(
-            f"{name}.y", "prismatic", Point(beside, 0.0, 0.0), Point(guide, 0.0, 0.0), (0.0, 1.0)
-        )
+        ground, middle, end = (Point(one, 0.0, 0.0) for one in (mechanism.ground, beside, guide))
+        along = Joint(f"{name}.x", "prismatic", ground, middle, (1.0, 0.0))
+        across = Joint(f"{name}.y", "prismatic", middle, end, (0.0, 1.0))
         if rotates:
-            held = Joint(f"{name}.angle", "revolute", Point(guide, 0.0, 0.0), point)
+            held = Joint(f"{name}.angle", "revolute", end, point)
         else:
-            held = Joint(name, "revolute", point, Point(guide, 0.0, 0.0))
+            held = Joint(name, "revolute", point, end)
         found.bodies |= {part.name: part for part in (beside, guide)}
         found.joints |= {joint.name: joint for joint in (along, across, held)}
     return found

@@ -168,21 +168,12 @@ class Joint:
         return self._axes(turns=body.oriented)
 
     def _axes(self, *, turns: bool) -> tuple[Axis, ...]:
-        named = [
-            freedom
-            for freedom in self.freedoms
-            if freedom.name is not None and (turns or freedom.move == "slide")
-        ]
-        return tuple(
-            Axis(
-                freedom.name or "",
-                f"{self.name}:{freedom.name}" if freedom.name else self.name,
-                freedom.move,
-                self.triad[freedom.direction],
-                self.pitch,
-            )
-            for freedom in named
-        )
+        found = []
+        for name, move, direction in self.freedoms:
+            if name is not None and (turns or move == "slide"):
+                coordinate = f"{self.name}:{name}" if name else self.name
+                found.append(Axis(name, coordinate, move, self.triad[direction], self.pitch))
+        return tuple(found)
 
     @property
     def slides(self) -> bool:

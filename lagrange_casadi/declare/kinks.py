@@ -23,12 +23,12 @@ import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
+from ..arithmetic.scalars import entries
 from ..base.arrays import Array, Expression
 from ..base.symbolic import symbolic_property
 from ..errors import DeclarationError
-from .clearance import Clearance
-from .limits_beside import Flags, Side, between, vanishes
-from .steps import Steps, called, sides_of
+from .clearance import Clearance, Flags
+from .steps import Side, Steps, between, called, sides_of, vanishes
 
 _SAME, _FAINT = 1e-6, 1e-9
 """Relative size of a jump that is rounding: of the value or slope there, and of the largest along
@@ -84,11 +84,7 @@ class Smooth:
         a kink.
         """
         expression = ca.SX(expression)
-        symbols = (
-            [symbol for symbol in ca.vertsplit(moving) if ca.depends_on(expression, symbol)]
-            if moving.numel()
-            else []
-        )
+        symbols = [symbol for symbol in entries(moving) if ca.depends_on(expression, symbol)]
         if not symbols:
             return None
         x, direction = ca.vertcat(*symbols), ca.SX.sym("way", len(symbols))
@@ -104,24 +100,16 @@ class Smooth:
             return None
         rows, (_, whole, crossing) = ca.vertcat(*found.values()), zip(*found, strict=True)
         slopes = ca.vertcat(expression, ca.gradient(expression, x))
+        turns = ca.densify(ca.jtimes(rows, x, direction))
+        uses = [ca.depends_on(expression, symbol) for symbol in entries(fixed)]
         return cls(
             tuple(symbols),
             ca.Function("marks", [x, fixed], [ca.densify(rows)], {"cse": True}),
-            ca.Function(
-                "turns",
-                [x, fixed, direction],
-                [ca.densify(ca.jtimes(rows, x, direction))],
-                {"cse": True},
-            ),
+            ca.Function("turns", [x, fixed, direction], [turns], {"cse": True}),
             ca.Function("slopes", [x, fixed], [ca.densify(slopes)], {"cse": True}),
             np.array(whole),
             np.array(crossing),
-            np.array(
-                [ca.depends_on(expression, symbol) for symbol in ca.vertsplit(fixed)]
-                if fixed.numel()
-                else [],
-                bool,
-            ),
+            np.array(uses, bool),
         )
 
     def kink(self, path: Array, values: Sequence[float]) -> Kink | None:
@@ -183,10 +171,8 @@ class Smooth:
         count, _, n = paths.shape
         if n < 2 or not count:
             return
-        flat, fixed = (
-            np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1),
-            np.repeat(p.T, n, axis=1),
-        )
+        flat = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1)
+        fixed = np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
             marks = called(self.marks, flat, fixed).reshape(-1, count, n)
             passed, touched, _ = self._places(Steps.of(paths, p), marks)

@@ -79,18 +79,6 @@ def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, f
     return [fault for name, value in values.items() if (fault := parameters[name].fault(value))]
 
 
-def margins(point: Point, precision: Precision) -> list[Expression]:
-    """Distances of a fixed point from both ends of its link, if that has sections: neither must be
-    negative.
-    """
-    if not (
-        isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None
-    ):
-        return []
-    slack = END[precision] * point.body.length
-    return [point.x + slack, (point.body.length - point.x) + slack]
-
-
 def on_link(point: Point, number: Callable[[Expression], float]) -> tuple[Point, float]:
     """A point; or where the rounding of a drawing put it beyond an end of a link that has sections,
     the end; and how far it was.
@@ -159,8 +147,6 @@ def values_note(values: Mapping[str, float], default: bool = False) -> str:
     listed = [f"{name} = {value:.6g}" for name, value in values.items()]
     if len(listed) > _LISTED:
         listed = [*listed[:_LISTED], f"{len(listed) - _LISTED} more"]
-    return (
-        f"; with the {'default ' if default else ''}parameters {', '.join(listed)}"
-        if listed
-        else ""
-    )
+    if listed:
+        return f"; with the {'default ' if default else ''}parameters {', '.join(listed)}"
+    return ""

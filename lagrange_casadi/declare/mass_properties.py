@@ -1,14 +1,25 @@
-"""Declarations of a link's mass: even, by a density, by a beam, or by mass, centre and inertia."""
+"""Declarations of a link's mass: even, by a density, by a beam, or by mass, centre and inertia; and
+the masses of parts as expressions of the parameters.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import casadi as ca
 
 from ..beams.beam import Beam
 from ..errors import DeclarationError
 from .density import Density, Slices, uniform
-from .parts import Expression, RigidMass
+from .parts import Expression, Link, PointMass, RigidMass
+
+if TYPE_CHECKING:
+    from .mechanism import Mechanism
+
+ALL = "all"
+"""Name of the mass of everything that moves."""
 
 
 def mass_properties_of(
@@ -102,8 +113,24 @@ def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[float]]
 
 def inertias(mass_properties: RigidMass) -> list[Expression]:
     """The numbers of its moments of inertia."""
-    return (
-        [entry for row in mass_properties.inertia for entry in row]
-        if isinstance(mass_properties.inertia, tuple)
-        else [mass_properties.inertia]
-    )
+    if isinstance(mass_properties.inertia, tuple):
+        return [entry for row in mass_properties.inertia for entry in row]
+    return [mass_properties.inertia]
+
+
+def masses_of(mechanism: Mechanism) -> ca.SX:
+    """The masses of its links and point masses, in their order, and last that of all of them [kg],
+    in a column.
+    """
+    masses = [_mass(body) for body in mechanism.moving]
+    return ca.densify(ca.vertcat(*masses, sum(masses)))
+
+
+def _mass(body: Link | PointMass) -> ca.SX:
+    if isinstance(body, PointMass):
+        return ca.SX(body.mass)
+    assert isinstance(body, Link)
+    if isinstance(body.mass, Density):
+        return ca.SX(body.mass.tails(0.0, body.length)[0])
+    assert isinstance(body.mass, RigidMass)
+    return ca.SX(body.mass.mass)

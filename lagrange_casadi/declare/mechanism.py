@@ -9,7 +9,7 @@ depends on the parameters' values by :meth:`Mechanism.values`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -25,10 +25,9 @@ from ..renamed import renamed
 from .density import Density
 from .expressions import bound, check_line, check_name, unit_vector, value_of
 from .fitted import Fitted
-from .friction import friction
 from .joints import Axis, Joint, JointKind
 from .limits import check_connected, parameter_values
-from .line_loads import Between, LoadDensity, line_load
+from .loads import Between, LoadDensity, friction, line_load
 from .mass_properties import beam_of, mass_properties_of
 from .measures import Measures
 from .ownership import Ownership
@@ -237,12 +236,9 @@ class Mechanism(Graphs):
         mass_properties = mass_properties_of(
             what, mass, density, centre, inertia, checked, beam=beam
         )
-        return cast(
-            Link,
-            self.bodies.setdefault(
-                name, Link(name, checked(f"{what}: length", length, "m"), mass_properties, beam)
-            ),
-        )
+        length = checked(f"{what}: length", length, "m")
+        self.bodies[name] = link = Link(name, length, mass_properties, beam)
+        return link
 
     def point_mass(self, name: str, mass: Expression) -> PointMass:
         """Declare a body without extent.
@@ -267,8 +263,9 @@ class Mechanism(Graphs):
             If the name is taken.
         """
         self.ownership.free("point mass", name, self.bodies)
-        body = PointMass(name, self.ownership.expression(f"point mass '{name}': mass", mass, "kg"))
-        return cast(PointMass, self.bodies.setdefault(name, body))
+        mass = self.ownership.expression(f"point mass '{name}': mass", mass, "kg")
+        self.bodies[name] = body = PointMass(name, mass)
+        return body
 
     def revolute(self, name: str, parent: Body | Point, child: Body | Point) -> Joint:
         """Declare a pin: a point of ``child`` coincides with a point of ``parent``.
@@ -414,18 +411,9 @@ class Mechanism(Graphs):
         DeclarationError
             If the name is taken, or a joint has no coordinate or several.
         """
-        numbers = (
-            ("ratio", ratio, "1"),
-            (
-                "offset",
-                offset,
-                "m" if self.ownership.moving_joint(second)[1].kind == "slide" else "rad",
-            ),
-        )
-        ratio, offset = (
-            self.ownership.expression(f"gear '{name}': {word}", value, of)
-            for word, value, of in numbers
-        )
+        unit = "m" if self.ownership.moving_joint(second)[1].kind == "slide" else "rad"
+        ratio = self.ownership.expression(f"gear '{name}': ratio", ratio)
+        offset = self.ownership.expression(f"gear '{name}': offset", offset, unit)
         return self.constraint(
             name, self.coordinate(second) - ratio * self.coordinate(first) - offset
         )
@@ -479,8 +467,8 @@ class Mechanism(Graphs):
         expression : casadi.SX
             The left side, linear in rates and velocities.
         replaces : Joint
-            A driven joint. Its motion is prescribed and must satisfy the constraint; the multiplier
-            of the constraint takes the place of its effort.
+            A driven joint, in space one of one coordinate. Its motion is prescribed and must
+            satisfy the constraint; the multiplier of the constraint takes the place of its effort.
 
         Returns
         -------
@@ -502,13 +490,19 @@ class Mechanism(Graphs):
             )
         if ca.depends_on(ca.jacobian(expression, rates), rates):
             raise DeclarationError(f"{what} must be linear in the rates")
-        found = Row(name, expression, self.ownership.joint(replaces).name)
+        joint = self.ownership.joint(replaces)
+        if self.space and joint.coordinate is None:
+            found = ", ".join(axis.coordinate for axis in joint.axes) or "none"
+            raise DeclarationError(
+                f"{what}: expected a joint of one coordinate, those of joint '{joint.name}' are"
+                f" {found}; use a chain of joints of one coordinate each"
+            )
         for other in self.rows.values():
-            if other.replaces == found.replaces:
+            if other.replaces == joint.name:
                 raise DeclarationError(
-                    f"{what}: '{other.name}' already replaces the drive of joint '{found.replaces}'"
+                    f"{what}: '{other.name}' already replaces the drive of joint '{joint.name}'"
                 )
-        return self.rows.setdefault(name, found)
+        return self.rows.setdefault(name, Row(name, expression, joint.name))
 
     def force(
         self,
@@ -542,6 +536,11 @@ class Mechanism(Graphs):
         DeclarationError
             If the point is of the ground, or ``turning`` is asked of a point mass.
         """
+        return self._force(name, point, (x, y), turning)
+
+    def _force(
+        self, name: str, point: Body | Point, components: Sequence[Expression], turning: bool
+    ) -> Force:
         place = self._load_point(name, point)
         if turning and not place.body.oriented:
             raise DeclarationError(
@@ -553,8 +552,9 @@ class Mechanism(Graphs):
                 f"load '{name}': a force on the ground has no effect; expected a point of a link"
                 " or a point mass"
             )
-        load = Force(name, place, self._load(name, x), self._load(name, y), turning)
-        return cast(Force, self.loads.setdefault(name, load))
+        x, y, *z = (self._load(name, component) for component in components)
+        self.loads[name] = load = Force(name, place, x, y, turning, *z)
+        return load
 
     def torque(
         self,
@@ -587,18 +587,27 @@ class Mechanism(Graphs):
         DeclarationError
             If one of the bodies is a point mass.
         """
-        ends = (
-            self._load_point(name, point),
-            self._load_point(name, self.ground if against is None else against),
-        )
-        for end in ends:
+        return self._torque(name, point, value, against)
+
+    def _torque(
+        self,
+        name: str,
+        point: Body | Point,
+        value: Expression,
+        against: Body | Point | None,
+        across: Sequence[Expression] = (0.0, 0.0),
+        turning: bool = False,
+    ) -> Torque:
+        first = self._load_point(name, point)
+        second = self._load_point(name, self.ground if against is None else against)
+        for end in (first, second):
             if not end.body.oriented:
                 raise DeclarationError(
                     f"load '{name}': point mass '{end.body.name}' cannot take a torque; expected a"
                     " link"
                 )
-        load = Torque(name, ends[0], self._load(name, value), ends[1])
-        self.loads[name] = load
+        z, x, y = (self._load(name, component) for component in (value, *across))
+        self.loads[name] = load = Torque(name, first, z, second, (x, y), turning)
         return load
 
     def line_load(
@@ -638,12 +647,8 @@ class Mechanism(Graphs):
             If the body is not a link, the distances do not increase, or a function is not a
             polynomial of degree 7 at most.
         """
-        return cast(
-            LineLoad,
-            self.loads.setdefault(
-                name, line_load(self.ownership, name, link, (x, y), between, turning)
-            ),
-        )
+        self.loads[name] = load = line_load(self.ownership, name, link, (x, y), between, turning)
+        return load
 
     def spring(
         self,
@@ -682,12 +687,9 @@ class Mechanism(Graphs):
             If the name is taken.
         """
         ends = self._load_point(name, first), self._load_point(name, second)
-        numbers = [
-            self._load(name, stiffness),
-            self._load(name, length, "m"),
-            self._load(name, damping),
-        ]
-        return cast(Spring, self.loads.setdefault(name, Spring(name, *ends, *numbers)))
+        stiffness, length = self._load(name, stiffness), self._load(name, length, "m")
+        self.loads[name] = load = Spring(name, *ends, stiffness, length, self._load(name, damping))
+        return load
 
     def damper(
         self, name: str, first: Body | Point, second: Body | Point, *, damping: Expression
@@ -750,11 +752,8 @@ class Mechanism(Graphs):
             raise DeclarationError(
                 f"load '{name}': joint '{joint.name}' has no angle for a torsion spring"
             )
-        k, free, c = (
-            self._load(name, stiffness),
-            self._load(name, angle, "rad"),
-            self._load(name, damping),
-        )
+        k, free = self._load(name, stiffness), self._load(name, angle, "rad")
+        c = self._load(name, damping)
         return self._turn_back(
             name, joint, -(k * (self.coordinate(joint) - free)) - c * self.rate(joint)
         )
@@ -812,10 +811,8 @@ class Mechanism(Graphs):
         """
         numbers = {"mu": mu, "radius": radius, "length": length, "viscous": viscous}
         numbers |= {"static": static, "stribeck": stribeck, "smooth": smooth}
-        return cast(
-            Friction,
-            self.loads.setdefault(name, friction(self.ownership, name, joint, along, numbers)),
-        )
+        self.loads[name] = load = friction(self.ownership, name, joint, along, numbers)
+        return load
 
     def output(self, name: str, expression: Expression, *, unit: str = "1") -> UserOutput:
         """Declare an additional output ``output:NAME`` with a unit.
@@ -986,8 +983,13 @@ class Mechanism(Graphs):
         Raises
         ------
         DeclarationError
-            If the body is not a link.
+            If the body is not a link, and in space, where a link has no single angle.
         """
+        if self.space:
+            raise DeclarationError(
+                "direction: a link in space has no single angle; use place() of its points, or"
+                " coordinate()"
+            )
         if not isinstance(body := self.ownership.point("direction", link).body, Link):
             raise DeclarationError(f"direction: expected a link, got '{body.name}'")
         return self.measures.link(body).places[0]
@@ -1006,11 +1008,8 @@ class Mechanism(Graphs):
             If a scene has been made.
         """
         self.ownership.refuse_frozen("set gravity")
-        self.gravity = (
-            self.ownership.expression("gravity", x),
-            self.ownership.expression("gravity", y),
-            0.0,
-        )
+        x, y = (self.ownership.expression("gravity", component) for component in (x, y))
+        self.gravity = x, y, 0.0
 
     def freeze(self) -> None:
         """Check the whole mechanism and end the declaration.

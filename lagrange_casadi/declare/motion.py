@@ -6,27 +6,25 @@ symbol t; rates come by automatic differentiation.
 
 from __future__ import annotations
 
-import functools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from ..arguments import fitting, public
-from ..arithmetic.scalars import column, entries
-from ..base.symbolic import symbolic
 from ..errors import DeclarationError, shown
 from ..renamed import renamed
 from .curves import curve, rows
-from .ends import beyond_ends
-from .expressions import coordinates, expressed, scalar, symbols_of
-from .kinks import Smooth
+from .expressions import coordinates, scalar, symbols_of
 from .parts import Expression
-from .scaled import Scaled
 from .stretches import Stretch
 from .validity import Demand
+
+_POINTS, _SAME = 8, 1e-11
+"""Number of values of the parameters for which rows are compared, and their relative rounding."""
 
 
 @renamed
@@ -158,8 +156,6 @@ def expression(law: Callable[[ca.SX], Expression]) -> Motion:
     DeclarationError
         If ``law`` is not a function.
     """
-    if not callable(law):
-        raise DeclarationError(f"expression: expected a function of the symbol t, got {law!r}")
     return Motion(law)
 
 
@@ -208,77 +204,43 @@ def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion
     return Motion(graph, span=(t[0], t[-1]), knots=tuple(t), unit=unit)
 
 
-@symbolic
-def motion_function(laws: Mapping[str, Motion], parameters: ca.SX) -> ca.Function:
-    """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws, by the
-    joint's name.
-
-    Raises :class:`DeclarationError` for a law that is not a scalar expression of t and parameters.
+@dataclass(frozen=True, eq=False)
+class Scaled:
+    """A row that is shift + scale n_i; where it holds no parameters, the ``numbers`` themselves,
+    with no shift and no scale.
     """
-    t = ca.SX.sym("t")
-    rows = [_derivatives(_scalar(joint, law, t, parameters), t) for joint, law in laws.items()]
-    stacked = [column(row[order] for row in rows) for order in range(3)]
-    return ca.Function(
-        "motion",
-        [t, parameters],
-        stacked,
-        ["t", "p"],
-        ["d", "d_rate", "d_acceleration"],
-        {"cse": True},
-    )
 
+    numbers: Sequence[float]
+    scale: Any = None
+    shift: Any = None
 
-def smooth_laws(laws: Mapping[str, Motion], parameters: ca.SX) -> dict[str, Smooth]:
-    """Check that laws have no kinks in time, by the joint's name.
+    @classmethod
+    def of(cls, what: str, row: ca.SX | Sequence[Expression]) -> Scaled:
+        """A row of numbers or of expressions in parameters.
 
-    Moves go on smoothly by their making, wherever parameters allow them.
-    """
-    t = ca.SX.sym("t")
-    looked_at = {joint: law for joint, law in laws.items() if not (law.knots or law.stretches)}
-    found = {
-        joint: Smooth.of(_scalar(joint, law, t, parameters), t, parameters)
-        for joint, law in looked_at.items()
-    }
-    return {joint: smooth for joint, smooth in found.items() if smooth is not None}
-
-
-@symbolic
-def ends_function(laws: Mapping[str, Motion], parameters: ca.SX) -> ca.Function | None:
-    """The CasADi function ``beyond(t, p)``: how far what the laws put into curves is beyond their
-    ends, a row a joint of the laws.
-
-    Below zero where it is between them; None where no law has a curve with ends.
-    """
-    t = ca.SX.sym("t")
-    found = [
-        [] if law.knots else beyond_ends(_scalar(joint, law, t, parameters))
-        for joint, law in laws.items()
-    ]
-    if not any(found):
-        return None
-    rows = [functools.reduce(ca.fmax, far, ca.SX(-1.0)) for far in found]
-    return ca.Function(
-        "beyond",
-        [t, parameters],
-        [ca.densify(ca.vertcat(*rows))],
-        ["t", "p"],
-        ["beyond"],
-        {"cse": True},
-    )
-
-
-def _scalar(joint: str, law: Motion, t: ca.SX, parameters: ca.SX) -> Expression:
-    what = f"the motion of joint '{joint}'"
-    value = expressed(what, law.graph, [t], "the time t")
-    if isinstance(value, float) and math.isnan(value):
-        raise DeclarationError(
-            f"{what} is not a number; use CasADi's functions, as casadi.sin in place of math.sin"
-        )
-    symbols = [t, *entries(parameters)]
-    return scalar(what, value, symbols, "parameter")
-
-
-def _derivatives(value: ca.SX, t: ca.SX) -> list[ca.SX]:
-    value = ca.SX(value)
-    rate = ca.densify(ca.jacobian(value, t))
-    return [ca.densify(value), rate, ca.densify(ca.jacobian(rate, t))]
+        Raises :class:`DeclarationError`, naming ``what``, for expressions that are not one scale
+        times numbers, plus one shift.
+        """
+        if not isinstance(row, ca.SX) and (
+            isinstance(row, str) or not hasattr(row, "__len__") or not getattr(row, "shape", (1,))
+        ):
+            raise DeclarationError(f"{what}: expected a row of numbers, got {row!r}")
+        entries = ca.vertsplit(ca.vec(row)) if isinstance(row, ca.SX) else row
+        if not any(isinstance(entry, ca.SX) and not entry.is_constant() for entry in entries):
+            return cls([float(entry) for entry in entries] if isinstance(row, ca.SX) else row)
+        column = ca.vertcat(*entries)
+        symbols = ca.symvar(column)
+        drawn = np.random.default_rng(0).uniform(0.5, 1.5, (len(symbols), _POINTS))
+        with np.errstate(all="ignore"):
+            values = ca.Function("row", [ca.vertcat(*symbols)], [ca.densify(column)])(drawn).full()
+            off = values - values[0]
+            last = int(np.argmax(np.abs(off[:, 0])))
+            numbers = off[:, 0] / off[last, 0]
+            alike = np.abs(off - numbers[:, None] * off[last]) <= _SAME * np.abs(values).max(axis=0)
+        if not alike.all():
+            raise DeclarationError(
+                f"{what}: parameters may only scale and shift all of them together; expected"
+                " NUMBERS*(expression) + (expression), or a motion.expression of"
+                " lagrange_casadi.curve(times, values)"
+            )
+        return cls(numbers.tolist(), column[last] - column[0], column[0])

@@ -170,13 +170,8 @@ class MotionInverse:
         there = np.flatnonzero(passage.missed == Missed.REACHED)
         for k in range(0, there.size, size):
             some = there[k : k + size]
-            found[some] = self._between(
-                passage.first[some],
-                passage.last[some],
-                passage.sense[some, None],
-                targets[some],
-                p[some],
-            )
+            first, last, sense = passage.first[some], passage.last[some], passage.sense[some, None]
+            found[some] = self._between(first, last, sense, targets[some], p[some])
         return found
 
     def _steady(self, start: Array, stop: Array, sense: Array, p: Array) -> Passage:
@@ -195,12 +190,8 @@ class MotionInverse:
     def _followed(
         self, start: Array, stop: Array, sense: Array, p: Array, around: Array, samples: int
     ) -> Passage:
-        ends, missed, t, d = (
-            [],
-            np.zeros(len(p), np.int8),
-            np.full(len(p), np.nan),
-            np.full(len(p), np.nan),
-        )
+        ends, missed = [], np.zeros(len(p), np.int8)
+        t, d = np.full((2, len(p)), np.nan)
         for target in (start, stop):
             end, why, at, there = self._reached(target, np.abs(stop - start), sense, p, around)
             ends.append(end)
@@ -244,10 +235,8 @@ class MotionInverse:
             if not going.size:
                 break
             with np.errstate(over="ignore"):
-                now, was = (
-                    np.clip(here[going] + onward[going] * step[going], low, high),
-                    here[going],
-                )
+                now = np.clip(here[going] + onward[going] * step[going], low, high)
+                was = here[going]
             found, speed, bent = (row[:, 0] for row in self.at(now[:, None], p[going]))
             ahead = onward[going] * sense[going]
             passed = ahead * (found - target[going]) >= 0.0
@@ -256,10 +245,8 @@ class MotionInverse:
             )
             lost = ~np.isfinite(found) | ~np.isfinite(now)
             ended = ~passed & (now == was)
-            before[going], after[going] = (
-                np.where(passed, was, before[going]),
-                np.where(passed, now, after[going]),
-            )
+            before[going] = np.where(passed, was, before[going])
+            after[going] = np.where(passed, now, after[going])
             there[going] = passed & ~lost
             if turned.any():
                 some = turned & ~lost
@@ -272,10 +259,8 @@ class MotionInverse:
             # A target at which the motion rests is met where it comes to rest.
             reached = (turned & near) | ((ended | lost) & stays)
             place = np.where(turned, visited[going], was)
-            before[going], after[going] = (
-                np.where(reached, place, before[going]),
-                np.where(reached, place, after[going]),
-            )
+            before[going] = np.where(reached, place, before[going])
+            after[going] = np.where(reached, place, after[going])
             there[going] |= reached
             why = np.where(
                 lost,
@@ -350,14 +335,10 @@ class MotionInverse:
             d, rate, _ = (row[:, 0] for row in self.at(now[going, None], p[rows[going]]))
             miss = sign[going] * (d - aim[going])
             better = np.abs(miss) < least[going]
-            best[going], least[going] = (
-                np.where(better, now[going], best[going]),
-                np.where(better, np.abs(miss), least[going]),
-            )
-            low[going], high[going] = (
-                np.where(miss <= 0.0, now[going], low[going]),
-                np.where(miss >= 0.0, now[going], high[going]),
-            )
+            best[going] = np.where(better, now[going], best[going])
+            least[going] = np.where(better, np.abs(miss), least[going])
+            low[going] = np.where(miss <= 0.0, now[going], low[going])
+            high[going] = np.where(miss >= 0.0, now[going], high[going])
             with np.errstate(all="ignore"):
                 new = now[going] - miss / (sign[going] * rate)
             halve = ~((new >= low[going]) & (new <= high[going])) | (trial >= _NEWTON)

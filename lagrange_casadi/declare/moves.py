@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -180,8 +180,8 @@ def moves(
         place = after
     times = _filled(each, [row[2] for row in found], period, demands)
     for number, (part, time) in enumerate(zip(each, times, strict=True)):
-        what = f"{_what(part, number)}: its time"
-        demands.add(Demand(time, True, _not_positive(what, time, " s")))
+        words = f"{_what(part, number)}: its time must be positive, got {{got}} s"
+        demands.add(Demand.saying(time, True, words))
     first = _expression("moves: begin", begin, "s")
     total = _Sum(first)
     seams = [first, *(total.then(time) for time in times)]
@@ -375,15 +375,8 @@ def _timed(
         raise DeclarationError(f"{what}: expected a time, or limits of speed, acceleration or jerk")
     size = ca.fabs(ca.SX(by))
     if limits.given and part.time is None:
-        demands.add(
-            Demand(
-                size,
-                True,
-                lambda _: (
-                    f"{what}: its distance is zero, so limits give no duration; expected a dwell"
-                ),
-            )
-        )
+        words = f"{what}: its distance is zero, so limits give no duration; expected a dwell"
+        demands.add(Demand.saying(size, True, words))
     given = frozenset(limits.given)
     named = part.law if part.law is not None else "polynomial_345"
     standard_law = part.law is None or part.law in ("trapezoid", "s_curve")
@@ -409,10 +402,8 @@ def _timed(
         broken = ", ".join(
             f"{name} {readable(number(limit))}" for name, limit in limits.given.items()
         )
-        asked, needed = (
-            f"{readable(abs(number(by)))} in {readable(number(time))} s",
-            f"{number(least):.6g} s or more",
-        )
+        asked = f"{readable(abs(number(by)))} in {readable(number(time))} s"
+        needed = f"{number(least):.6g} s or more"
         return (
             f"{what}: {asked} by the law {law.name} breaks its limits ({broken}): it takes {needed}"
         )
@@ -425,7 +416,8 @@ def _limits(what: str, limits: Limits, demands: _Demanded) -> Limits:
     found: dict[str, Expression] = {}
     for name, value in limits.given.items():
         found[name] = demands.coordinate(f"{what}: {name}", value, _PER[name])
-        demands.add(Demand(found[name], True, _not_positive(f"{what}: {name}", found[name])))
+        words = f"{what}: {name} must be positive, got {{got}}"
+        demands.add(Demand.saying(found[name], True, words))
     return Limits(**found)
 
 
@@ -454,34 +446,24 @@ def _filled(
     if not lacking:
         gap = ca.fabs(ca.SX(whole) - total)
         demands.add(
-            Demand(
+            Demand.saying(
                 _FORGIVEN * ca.fabs(ca.SX(whole)) - gap,
                 False,
-                lambda n: (
-                    f"moves: the times add up to {readable(n(total))} s, but the period is"
-                    f" {readable(n(whole))} s"
-                ),
+                "moves: the times add up to {total} s, but the period is {whole} s",
+                total=total,
+                whole=whole,
             )
         )
         return given
     remaining = _Sum(whole).then(
         *(-time if isinstance(time, ca.SX) else float(-time) for time in given)
     )
-    demands.add(
-        Demand(
-            remaining,
-            True,
-            lambda n: (
-                f"moves: no time is left for the part without one: the others take"
-                f" {readable(n(total))} s of the period of {readable(n(whole))} s"
-            ),
-        )
+    words = (
+        "moves: no time is left for the part without one: the others take {total} s of the period"
+        " of {whole} s"
     )
+    demands.add(Demand.saying(remaining, True, words, total=total, whole=whole))
     return [remaining if time is None else time for time in known]
-
-
-def _not_positive(what: str, value: Expression, unit: str = "") -> Callable[[Evaluator], str]:
-    return lambda number: f"{what} must be positive, got {readable(number(value))}{unit}"
 
 
 def _demand_closure(
@@ -489,17 +471,10 @@ def _demand_closure(
 ) -> None:
     gap = ca.fabs(ca.SX(end) - start - advance)
     size = ca.fabs(ca.SX(start)) + ca.fabs(ca.SX(end)) + ca.fabs(ca.SX(advance))
-
-    def refusal(number: Evaluator) -> str:
-        beyond = (
-            ""
-            if isinstance(advance, float) and advance == 0.0
-            else f", {readable(number(advance))} beyond it"
-        )
-        return (
-            "moves: a cyclic motion must end where it starts, at"
-            f" {readable(number(start))}{beyond}, but it ends at {readable(number(end))}; expected"
-            f" a move back, or advance={readable(number(end) - number(start))}"
-        )
-
-    demands.add(Demand(_FORGIVEN * size - gap, False, refusal))
+    aside = "" if isinstance(advance, float) and advance == 0.0 else ", {advance} beyond it"
+    words = (
+        f"moves: a cyclic motion must end where it starts, at {{start}}{aside}, but it ends at"
+        " {end}; expected a move back, or advance={climb}"
+    )
+    numbers = {"start": start, "advance": advance, "end": end, "climb": end - start}
+    demands.add(Demand.saying(_FORGIVEN * size - gap, False, words, **numbers))

@@ -50,10 +50,8 @@ def notes(
                 " all their rates are not evaluated; choose other instants, or another axis and"
                 " second"
             )
-        body, directions = (
-            description["bodies"].get(joint["parent"]["body"], {}),
-            _along(name, joint),
-        )
+        body = description["bodies"].get(joint["parent"]["body"], {})
+        directions = _along(name, joint)
         if not directions or "density" not in body:
             continue
         ratio = outputs.get(Output("station", joint["parent"]["body"], "station", name))
@@ -169,11 +167,9 @@ def _along(name: str, joint: Description) -> dict[Output, float]:
     it does not slide.
     """
     if "coordinates" not in joint:
-        return (
-            {Output("motion", name): joint["axis"][0]}
-            if joint["kind"] in ("prismatic", "slot")
-            else {}
-        )
+        if joint["kind"] in ("prismatic", "slot"):
+            return {Output("motion", name): joint["axis"][0]}
+        return {}
     each = zip(joint["coordinates"].items(), joint["axes"], strict=True)
     found = {
         Output("motion", own): axis[0] * (1.0 if kind == "slide" else joint["pitch"])

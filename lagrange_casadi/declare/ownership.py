@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from ..errors import DeclarationError
 from .expressions import check_name, scalar
@@ -16,10 +16,7 @@ from .parts import (
     Body,
     Constraint,
     Expression,
-    Force,
-    Friction,
     Ground,
-    LineLoad,
     Link,
     Load,
     Parameter,
@@ -27,29 +24,22 @@ from .parts import (
     Point,
     PointMass,
     Row,
-    Spring,
-    Torque,
 )
 from .results import UserOutput
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
 
-_WORDS: dict[type[object], str] = {
+_WORDS: dict[type[object], str] = dict.fromkeys(get_args(Load), "a load") | {
     Constraint: "a constraint",
-    Force: "a load",
-    Friction: "a load",
     Ground: "the ground",
     Joint: "a joint",
-    LineLoad: "a load",
     Link: "a link",
     UserOutput: "an output",
     Parameter: "a parameter",
     Path: "a path",
     PointMass: "a point mass",
     Row: "a non-holonomic constraint",
-    Spring: "a load",
-    Torque: "a load",
 }
 
 Part = Parameter | Body | Joint | Load | Constraint | Row | UserOutput | Path
@@ -66,13 +56,10 @@ class Ownership:
 
     def point(self, what: str, place: Body | Point) -> Point:
         """A point of a body: of a link its base, of any other its origin."""
-        point = (
-            place.base
-            if isinstance(place, Link)
-            else Point(place, 0.0, 0.0)
-            if isinstance(place, Body)
-            else place
-        )
+        if isinstance(place, Body):
+            point = place.base if isinstance(place, Link) else Point(place, 0.0, 0.0)
+        else:
+            point = place
         if not isinstance(point, Point):
             raise DeclarationError(
                 f"{what}: expected a link, a point mass, the ground or a point of one, got"

@@ -318,7 +318,7 @@ class Friction:
     joint: Joint
     axis: Axis
     symbol: ca.SX
-    mu: Expression
+    mu: Expression = 0.0
     radius: Expression | None = None
     length: Expression | None = None
     viscous: Expression = 0.0

@@ -287,7 +287,10 @@ def _motion(recording: Recording, law: _Fit, second: float) -> Motion:
     """The motion through a recording; ``second`` is the unit of the file's time in s."""
     name, cyclic = recording.name, law.periodic or law.period is not None
     for what, setting in (("period", law.period), ("advance", law.advance)):
-        _finite(f"{name}: {what}", 0.0 if setting is None else setting)
+        try:
+            number(0.0 if setting is None else setting)
+        except NumberError as error:
+            raise DeclarationError(f"{name}: {what}: {error}") from None
     (ahead,), unit_in = coordinates(f"{name}: offset", [(law.offset, "")])
     each = zip(("ratio", "offset", "stretch"), (law.ratio, ahead, law.stretch), strict=True)
     scales = [scalar(f"{name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
@@ -301,14 +304,6 @@ def _motion(recording: Recording, law: _Fit, second: float) -> Motion:
         unit_in = "m" if recording.unit in UNITS["m"] else "" if recording.unit == "rad" else "rad"
     noise = _noise(recording, law.smoothing)
     return _law(recording, noise, law.points, cyclic, law.advance, scales, unit_in)
-
-
-def _finite(what: str, value: object) -> None:
-    """Raise :class:`DeclarationError` for what is no finite number."""
-    try:
-        number(value)
-    except NumberError as error:
-        raise DeclarationError(f"{what}: {error}") from None
 
 
 def _is_meant(cell: str) -> bool:

@@ -66,11 +66,9 @@ def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
             f"drive '{joint}' makes {least:.3g} to {most:.3g} turns, not the same in every design;"
             f" {asked}"
         )
-    return (
-        f"drive '{joint}' makes {least:.3g} of a revolution; {asked}"
-        if least < 1.0 - _WHOLE
-        else ""
-    )
+    if least < 1.0 - _WHOLE:
+        return f"drive '{joint}' makes {least:.3g} of a revolution; {asked}"
+    return ""
 
 
 def _goes_round(

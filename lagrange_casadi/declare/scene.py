@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Any, NoReturn
 
@@ -16,9 +16,7 @@ from ..base.vocabulary import Precision
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
 from ..methods import method
 from ..renamed import renamed
-from .compliant import Elastic, compliant_links
 from .density import Density
-from .drives import weighed
 from .even_points import EvenPoints, checked_ratios
 from .guiding import guided, laws_of
 from .laws import Laws
@@ -26,7 +24,13 @@ from .limits import no_sections, parameters_note
 from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Expression, Friction, Parameter
-from .posture import rough_posture
+from .scene_arguments import (
+    Elastic,
+    compliant_links,
+    links_with_beams,
+    rough_posture,
+    weighed,
+)
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
 from .times import Over, Times, Timing, span_of
@@ -95,7 +99,7 @@ class Wanted:
             if chosen & {"output", f"output:{name}"}
         )
         chosen |= {asked.wanted for output in user_outputs for asked in output.made_of}
-        beams = _made_of_something(mechanism)
+        beams = links_with_beams(mechanism)
         chosen |= {f"section:{link}" for kind in STRENGTH for link in among(kind, beams, names)}
         if fitted := among("safety", mechanism.fitted, names):
             chosen |= {"motion", *(f"reaction:{joint}" for joint in fitted)}
@@ -124,31 +128,19 @@ class Wanted:
 
 def outputs(mechanism: Mechanism) -> list[str]:
     """Every output that can be wanted of a mechanism."""
-    reactions = [f"reaction:{joint}" for joint in mechanism.joints]
-    multipliers = [f"multiplier:{name}" for name in (*mechanism.constraints, *mechanism.rows)]
-    loads = [f"load:{name}" for name in mechanism.loads]
-    frictions = [
-        f"friction:{name}" for name, load in mechanism.loads.items() if isinstance(load, Friction)
+    links, loads = mechanism.links.items(), mechanism.loads.items()
+    parts: list[tuple[str, Iterable[str]]] = [
+        ("reaction", mechanism.joints),
+        ("multiplier", (*mechanism.constraints, *mechanism.rows)),
+        ("load", mechanism.loads),
+        ("friction", [name for name, load in loads if isinstance(load, Friction)]),
+        ("section", [name for name, link in links if isinstance(link.mass, Density)]),
+        ("output", mechanism.outputs),
+        *((kind, links_with_beams(mechanism)) for kind in STRENGTH),
+        ("safety", mechanism.fitted),
+        (SENSITIVITY, mechanism.parameters),
     ]
-    sections = [
-        f"section:{name}"
-        for name, link in mechanism.links.items()
-        if isinstance(link.mass, Density)
-    ]
-    user_outputs = [f"output:{name}" for name in mechanism.outputs]
-    strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
-    strength += [f"safety:{joint}" for joint in mechanism.fitted]
-    slopes = [f"{SENSITIVITY}:{name}" for name in mechanism.parameters]
-    named = [
-        *reactions,
-        *multipliers,
-        *loads,
-        *frictions,
-        *sections,
-        *user_outputs,
-        *strength,
-        *slopes,
-    ]
+    named = (f"{kind}:{part}" for kind, each in parts for part in each)
     return ["all", "effort", "motion", *named]
 
 
@@ -167,15 +159,6 @@ def _check_material(mechanism: Mechanism, name: str) -> None:
         "deflection": ("elasticity",),
     }
     beam.material.needs(f"output '{name}'", *needs.get(kind, ()))
-
-
-def _made_of_something(mechanism: Mechanism) -> list[str]:
-    """The links that have sections and a beam."""
-    return [
-        name
-        for name, link in mechanism.links.items()
-        if isinstance(link.mass, Density) and link.beam is not None
-    ]
 
 
 def kinds(names: Sequence[str]) -> list[str]:
@@ -199,7 +182,7 @@ def _refuse_output(mechanism: Mechanism, name: str) -> None:
     if kind in STRENGTH and part in mechanism.links:
         raise DeclarationError(
             f"output '{name}': link '{part}' has no beam=; links with a beam:"
-            f" {', '.join(_made_of_something(mechanism)) or 'none'}"
+            f" {', '.join(links_with_beams(mechanism)) or 'none'}"
         )
     if kind == "section" and part in mechanism.bodies:
         why = no_sections(part, link=part in mechanism.links, links=mechanism.links)
@@ -278,14 +261,12 @@ class Scene(Graphs):
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
             raise DeclarationError(f"scene: expected a Mechanism, got {self.mechanism!r}")
-        for what, mapping in (
-            ("motion", self.motion),
-            ("posture", self.posture),
-            ("assembly", self.assembly),
-        ):
+        put = partial(object.__setattr__, self)
+        for what in ("motion", "posture", "assembly"):
+            mapping = getattr(self, what)
             if not isinstance(mapping, Mapping):
                 raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
-            object.__setattr__(self, what, MappingProxyType(dict(mapping)))
+            put(what, MappingProxyType(dict(mapping)))
         coordinates = self.mechanism.coordinates
         guides = [name for name in self.laws if name not in coordinates]
         if guides and self.drives is None:
@@ -293,9 +274,7 @@ class Scene(Graphs):
                 f"motion of '{guides[0].partition('.')[0]}': a guided point or pose has no effort;"
                 " list the joints that drive it in drives="
             )
-        object.__setattr__(
-            self, "posture", MappingProxyType(rough_posture(self.mechanism, self.posture))
-        )
+        put("posture", MappingProxyType(rough_posture(self.mechanism, self.posture)))
         for row in self.mechanism.rows.values():
             if row.replaces not in self.motion:
                 raise DeclarationError(
@@ -303,17 +282,14 @@ class Scene(Graphs):
                     f" '{row.replaces}', which has no motion"
                 )
         if self.drives is not None:
-            object.__setattr__(
-                self,
-                "drives",
-                MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)),
-            )
-        object.__setattr__(self, "elastic", compliant_links(self.mechanism, self.elastic))
+            weights = weighed(self.mechanism, self.drives, self.needs_drives)
+            put("drives", MappingProxyType(weights))
+        put("elastic", compliant_links(self.mechanism, self.elastic))
         refuse_late(self.mechanism)
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
         checked_ratios(self.xi)
-        object.__setattr__(self, "rounding", within("rounding", self.rounding, 0.0, 1e-3))
+        put("rounding", within("rounding", self.rounding, 0.0, 1e-3))
         timing = self.timing()
         try:
             self.mechanism.values()
@@ -321,9 +297,7 @@ class Scene(Graphs):
             raise ParameterError(f"{error}{parameters_note(self.mechanism, {})}") from None
         numbers = self.mechanism.values(self.assembly)
         self.checked(numbers)
-        object.__setattr__(
-            self, "assembly", MappingProxyType({name: numbers[name] for name in self.assembly})
-        )
+        put("assembly", MappingProxyType({name: numbers[name] for name in self.assembly}))
         if not timing.shared:
             self.span  # noqa: B018 - it refuses what has no instants
 
@@ -360,11 +334,9 @@ class Scene(Graphs):
         return self.drives if isinstance(self.drives, Mapping) else None
 
     def __repr__(self) -> str:
-        (start, stop), motion, wanted = (
-            self.t[:2],
-            ", ".join(self.motion) or "nothing",
-            ", ".join(self.wanted),
-        )
+        start, stop = self.t[:2]
+        motion = ", ".join(self.motion) or "nothing"
+        wanted = ", ".join(self.wanted)
         asked = (
             f"from {start} to {stop} s"
             if self.over is None
@@ -547,10 +519,8 @@ class Scene(Graphs):
         ParameterConstraints
             The conditions.
         """
-        parts, moved = (
-            demands(self.mechanism, precision),
-            [demand for law in self.laws.values() for demand in law.parameter_constraints],
-        )
+        parts = demands(self.mechanism, precision)
+        moved = [demand for law in self.laws.values() for demand in law.parameter_constraints]
         return ParameterConstraints(parts.symbols, (*parts.each, *moved)) if moved else parts
 
     @public

@@ -7,13 +7,14 @@ second moment J_ij that adds J_ij e_i x e_j'' to H'.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..arguments import public
 from ..base.arrays import Operand
 from ..errors import DeclarationError, shown
+from ..geometry.vectors import ZERO, Vector, cross, minus, times
 from .density import Density
 from .mass_properties import second_moments
 from .parts import Expression, Link, Point, PointMass
@@ -74,28 +75,19 @@ def shaking(
         raise DeclarationError(
             f"shaking: expected a place ({', '.join(axes)}) for about, got {about!r}"
         )
-    centre = [mechanism.ownership.expression("shaking: about", x, "m") for x in about] or [
-        0.0
-    ] * len(axes)
-    force, moment = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+    centre = _spatial(mechanism.ownership.expression("shaking: about", x, "m") for x in about)
+    force, moment = ZERO, ZERO
     for body in mechanism.moving:
         points, moments = _mass_properties(mechanism, body)
         for mass, point in points:
-            place, acceleration = _spatial(mechanism, point)
-            arm = [x - c for x, c in zip(place, [*centre, 0.0], strict=False)]
-            force = [f - mass * a for f, a in zip(force, acceleration, strict=True)]
-            moment = [
-                total - mass * part
-                for total, part in zip(moment, _cross(arm, acceleration), strict=True)
-            ]
-        for inertia, (start, end), (other_start, other_end) in moments:
-            (a, _), (b, _) = _spatial(mechanism, start), _spatial(mechanism, end)
-            (_, c), (_, d) = _spatial(mechanism, other_start), _spatial(mechanism, other_end)
-            turned = _cross(
-                [y - x for x, y in zip(a, b, strict=True)],
-                [y - x for x, y in zip(c, d, strict=True)],
-            )
-            moment = [total - inertia * part for total, part in zip(moment, turned, strict=True)]
+            place = _spatial(mechanism.place(point))
+            acceleration = _spatial(mechanism.results.acceleration(point))
+            force = minus(force, times(mass, acceleration))
+            moment = minus(moment, times(mass, cross(minus(place, centre), acceleration)))
+        for inertia, axis, other in moments:
+            a, b = (_spatial(mechanism.place(end)) for end in axis)
+            c, d = (_spatial(mechanism.results.acceleration(end)) for end in other)
+            moment = minus(moment, times(inertia, cross(minus(b, a), minus(d, c))))
     bodies = tuple(body.name for body in mechanism.moving)
     named = {f"f{axis}": (value, "N") for axis, value in zip(axes, force, strict=False)}
     named |= {
@@ -160,11 +152,7 @@ def _mass_properties(
     ]
 
 
-def _spatial(mechanism: Mechanism, point: Point) -> tuple[list[Expression], list[Expression]]:
-    """Place and acceleration of a point, three components each."""
-    pad = [0.0] * (3 - len(mechanism.measures.components))
-    return [*mechanism.place(point), *pad], [*mechanism.results.acceleration(point), *pad]
-
-
-def _cross(a: Sequence[Expression], b: Sequence[Expression]) -> list[Expression]:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+def _spatial(components: Iterable[Expression]) -> Vector:
+    """Three components of as many as there are; others are zero."""
+    x, y, z, *_ = (*components, 0.0, 0.0, 0.0)
+    return x, y, z

@@ -16,7 +16,7 @@ from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
 from .joints import IN_SPACE, Joint, JointKind, Triad
-from .line_loads import Between, LoadDensity, line_load
+from .loads import Between, LoadDensity, line_load
 from .mass_properties import beam_of, mass_properties_of
 from .measures import Measures
 from .mechanism import Mechanism
@@ -29,7 +29,6 @@ from .parts import (
     Link,
     Point,
     PointMass,
-    Row,
     Torque,
     Vector,
 )
@@ -151,28 +150,18 @@ class SpatialMechanism(Mechanism):
         def rigid(
             centre: Expression, inertia: Expression
         ) -> tuple[Vector, tuple[Vector, Vector, Vector]]:
-            place, moments = (
-                self._vector(f"{what}: centre", centre, "m"),
-                tensor(what, inertia, self.ownership.expression),
-            )
-            return (
-                (place, moments)
-                if reference is None
-                else (reference.local(place), rotated(moments, reference))
-            )
+            place = self._vector(f"{what}: centre", centre, "m")
+            moments = tensor(what, inertia, self.ownership.expression)
+            if reference is None:
+                return place, moments
+            return reference.local(place), rotated(moments, reference)
 
         beam = beam_of(what, beam, self.ownership.expression)
         mass_properties = mass_properties_of(
             what, mass, density, centre, inertia, self.ownership.expression, rigid, beam
         )
-        link = Link(
-            name,
-            self.ownership.expression(f"{what}: length", length, "m"),
-            mass_properties,
-            beam,
-            beside=aside,
-        )
-        self.bodies[name] = link
+        length = self.ownership.expression(f"{what}: length", length, "m")
+        self.bodies[name] = link = Link(name, length, mass_properties, beam, beside=aside)
         if reference is not None:
             self.references[name] = reference
         return link
@@ -508,10 +497,7 @@ class SpatialMechanism(Mechanism):
         -------
         Force
         """
-        load = super().force(name, point, x=x, y=y, turning=turning)
-        found = Force(name, load.point, load.x, load.y, turning, self._load(name, z))
-        self.loads[name] = found
-        return found
+        return self._force(name, point, (x, y, z), turning)
 
     def torque(  # type: ignore[override]
         self,
@@ -543,34 +529,7 @@ class SpatialMechanism(Mechanism):
         -------
         Torque
         """
-        load = super().torque(name, point, z, against=against)
-        across = (self._load(name, x), self._load(name, y))
-        found = Torque(name, load.point, load.value, load.against, across, turning)
-        self.loads[name] = found
-        return found
-
-    def nonholonomic(self, name: str, expression: Expression, *, replaces: Joint) -> Row:
-        """Declare a non-holonomic constraint, as in a plane.
-
-        Parameters
-        ----------
-        name, expression
-            As of :meth:`.Mechanism.nonholonomic`.
-        replaces : Joint
-            A driven joint of one coordinate.
-
-        Returns
-        -------
-        Row
-        """
-        if self.ownership.joint(replaces).coordinate is None:
-            found = ", ".join(axis.coordinate for axis in replaces.axes) or "none"
-            raise DeclarationError(
-                f"non-holonomic constraint '{name}': expected a joint of one coordinate, those of"
-                f" joint '{replaces.name}' are {found}; use a chain of joints of one coordinate"
-                " each"
-            )
-        return super().nonholonomic(name, expression, replaces=replaces)
+        return self._torque(name, point, z, against, (x, y), turning)
 
     def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
         assert joint.turned is not None
@@ -617,28 +576,6 @@ class SpatialMechanism(Mechanism):
         self.ownership.refuse_frozen("set gravity")
         self.gravity = self._vector("gravity", (x, y, z))
 
-    def direction(self, link: Link) -> Expression:
-        """Refuse: a link in space has no single angle.
-
-        Parameters
-        ----------
-        link : Link
-            Any link.
-
-        Returns
-        -------
-        Never
-
-        Raises
-        ------
-        DeclarationError
-            Always; it names what to use in its place.
-        """
-        raise DeclarationError(
-            "direction: a link in space has no single angle; use place() of its points, or"
-            " coordinate()"
-        )
-
     def _spatial(
         self,
         name: str,
@@ -674,19 +611,10 @@ class SpatialMechanism(Mechanism):
             )
         if not start.body.oriented or not end.body.oriented:
             kind = "spherical" if kind == "revolute" else kind
-        joint = Joint(
-            name,
-            kind,
-            start,
-            end,
-            (1.0, 0.0, 0.0),
-            0.0,
-            directions,
-            zero,
-            pitch,
-            turn_given=placed or bool(turned),
+        given = placed or bool(turned)
+        self.joints[name] = joint = Joint(
+            name, kind, start, end, (1.0, 0.0, 0.0), 0.0, directions, zero, pitch, given
         )
-        self.joints[name] = joint
         if placed:
             self.hard.add(name)
         return joint

@@ -159,11 +159,8 @@ class EquationGraph(Graphs):
         transmission: Transmission | None,
     ) -> EquationGraph:
         places, rates = _columns(found)
-        accelerations, t, p = (
-            ca.SX.sym("accelerations", len(found)),
-            mechanism.time,
-            mechanism.symbols,
-        )
+        accelerations = ca.SX.sym("accelerations", len(found))
+        t, p = mechanism.time, mechanism.symbols
         moving, speed = ca.vertcat(places, rates, t), ca.vertcat(rates, accelerations, 1)
         changes = [expression]
         for _ in range(0 if row else 2):

@@ -120,24 +120,15 @@ def _jumps(stretches: Sequence[Stretch], number: Evaluator, *, cyclic: bool) -> 
         for share, bent, sharpened in () if law is None or not by else _places(law, number):
             jump = bent * by / time**2, sharpened * by / time**3
             inner.append((number(stretch.start) + share * time, f"within '{stretch.name}'", jump))
-    seams = [
-        (
-            number(after.start),
-            f"from '{before.name}' to '{after.name}'",
-            _change(ends[k], begins[k + 1]),
-        )
-        for k, (before, after) in enumerate(itertools.pairwise(stretches))
-    ]
+    seams = []
+    for k, (before, after) in enumerate(itertools.pairwise(stretches)):
+        where = f"from '{before.name}' to '{after.name}'"
+        seams.append((number(after.start), where, _change(ends[k], begins[k + 1])))
     opening = _change(ends[-1] if cyclic else rest, begins[0])
     seams.append((number(stretches[0].start), f"where '{stretches[0].name}' begins", opening))
     if not cyclic:
-        seams.append(
-            (
-                number(stretches[-1].stop),
-                f"where '{stretches[-1].name}' ends",
-                _change(ends[-1], rest),
-            )
-        )
+        last = stretches[-1]
+        seams.append((number(last.stop), f"where '{last.name}' ends", _change(ends[-1], rest)))
     every = sorted([*seams, *inner])
     sizes = [max((abs(jump[k]) for *_, jump in every), default=0.0) for k in (0, 1)]
     found = []

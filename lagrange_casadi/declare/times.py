@@ -137,11 +137,9 @@ class Timing:
         start, stop, around = (
             _text(bound, symbols) if isinstance(bound, str) else bound for bound in bounds
         )
-        return (
-            [start, stop, self.count, self.joint, around]
-            if self.joint
-            else [start, stop, self.count]
-        )
+        if self.joint:
+            return [start, stop, self.count, self.joint, around]
+        return [start, stop, self.count]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -267,10 +265,8 @@ def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Passage:
     if why is Missed.REACHED:
         return passage
     joint, shown = timing.joint, functools.partial(_shown, timing)
-    asked, where = (
-        f"from {shown(start[0])} to {shown(stop[0])}",
-        f"t = {passage.t[0]:.6g} s, at {shown(passage.d[0])}",
-    )
+    asked = f"from {shown(start[0])} to {shown(stop[0])}"
+    where = f"t = {passage.t[0]:.6g} s, at {shown(passage.d[0])}"
     said = {
         Missed.STANDS_STILL: f"is at rest and does not go {asked}",
         Missed.OTHER_WAY: (

@@ -213,10 +213,6 @@ def expression(law: Callable[[Expression, Expression, Expression], Expression]) 
     DeclarationError
         If it is not a function.
     """
-    if not callable(law):
-        raise DeclarationError(
-            f"expression: expected a function of t, angle and speed, got {law!r}"
-        )
     return Law(law)
 
 

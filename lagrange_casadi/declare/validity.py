@@ -24,8 +24,7 @@ from .density import Density, Slices
 from .directions import RIGHT, not_right
 from .ends import BEYOND, beyond_ends
 from .joints import Joint
-from .limits import END, margins
-from .lowest import lowest
+from .limits import END
 from .mass_properties import inertias, second_moments
 from .meshes import FITTING, Fit
 from .parts import (
@@ -34,10 +33,12 @@ from .parts import (
     Friction,
     LineLoad,
     Link,
+    Point,
     PointMass,
     RigidMass,
     Vector,
 )
+from .polynomials import lowest, product
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -55,6 +56,18 @@ class Demand:
     value: Expression
     positive: bool
     refusal: Callable[[Evaluator], str]
+
+    @classmethod
+    def saying(cls, value: Expression, positive: bool, words: str, **numbers: Expression) -> Demand:
+        """Make one that is refused in ``words``: in braces stand names of ``numbers``, and ``got``
+        for the value.
+        """
+        shown = {"got": value} | numbers
+
+        def refusal(number: Evaluator) -> str:
+            return words.format(**{name: readable(number(one)) for name, one in shown.items()})
+
+        return cls(value, positive, refusal)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,46 +169,29 @@ def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
 def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
     """The expressions in parameters of which parts are made, and what they are of."""
     for body in mechanism.moving:
-        mass_properties = body.mass
-        made = (
-            [
-                c
-                for of in (
-                    mass_properties,
-                    *(mass_properties.slices.each if mass_properties.slices else ()),
-                )
-                for cell in of.cells
-                for c in cell
-            ]
-            if isinstance(mass_properties, Density)
-            else (
-                [mass_properties.mass, *mass_properties.centre, *inertias(mass_properties)]
-                if isinstance(mass_properties, RigidMass)
-                else [mass_properties]
-            )
-        )
-        link = isinstance(body, Link)
-        beam = body.beam if isinstance(body, Link) else None
-        made += (
-            []
-            if beam is None
-            else [x for shape in beam.course.shapes() for x in shape.dimensions.values()]
-        )
-        numbers = [*([body.length] if isinstance(body, Link) else []), *made]
-        yield f"{'link' if link else 'point mass'} '{body.name}'", numbers
+        if isinstance(body, PointMass):
+            yield f"point mass '{body.name}'", [body.mass]
+            continue
+        numbers, mass = [body.length], body.mass
+        if isinstance(mass, RigidMass):
+            numbers += [mass.mass, *mass.centre, *inertias(mass)]
+        else:
+            densities = (mass, *(mass.slices.each if mass.slices else ()))
+            numbers += [c for density in densities for cell in density.cells for c in cell]
+        for shape in () if body.beam is None else body.beam.course.shapes():
+            numbers += shape.dimensions.values()
+        yield f"link '{body.name}'", numbers
     for joint in mechanism.joints.values():
         places = [number for point in (joint.parent, joint.child) for number in point.place]
         yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
     for load in mechanism.loads.values():
-        at_points = [number for point in load.points for number in point.place]
-        own = (
-            load.between
-            if isinstance(load, LineLoad)
-            else load.numbers.values()
-            if isinstance(load, Friction)
-            else at_points
-        )
-        yield f"load '{load.name}'", [*own]
+        if isinstance(load, LineLoad):
+            numbers = [*load.between]
+        elif isinstance(load, Friction):
+            numbers = [*load.numbers.values()]
+        else:
+            numbers = [number for point in load.points for number in point.place]
+        yield f"load '{load.name}'", numbers
     yield "gravity", [*mechanism.gravity]
 
 
@@ -203,8 +199,8 @@ def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
     """Conditions that arguments of curves are between the curves' ends."""
     symbolic = [expression for expression in expressions if isinstance(expression, ca.SX)]
     found = beyond_ends(ca.vertcat(*symbolic)) if symbolic else []
-    reason = f"{what}: the argument of its curve is outside the curve's range"
-    return [Demand(BEYOND["double"] - far, False, lambda _: reason) for far in found]
+    words = f"{what}: the argument of its curve is outside the curve's range"
+    return [Demand.saying(BEYOND["double"] - far, False, words) for far in found]
 
 
 def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
@@ -212,26 +208,17 @@ def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
     (start, end), link = load.between, load.link
     if load.whole:
         return []
-
-    def text(number: Evaluator) -> str:
-        return (
-            f"load '{load.name}': it acts between {readable(number(start))} and"
-            f" {readable(number(end))} m"
-        )
-
-    def beyond(number: Evaluator) -> str:
-        return (
-            f"{text(number)}, but link '{link.name}' is from 0 to {readable(number(link.length))} m"
-        )
-
-    margins = (
-        start + END[precision] * link.length,
-        (link.length - end) + END[precision] * link.length,
-    )
-    rising = Demand(
-        load.reach, True, lambda number: f"{text(number)}; expected an end greater than the start"
-    )
-    return [*(Demand(margin, False, beyond) for margin in margins), rising]
+    words = f"load '{load.name}': it acts between {{start}} and {{end}} m"
+    beyond = f"{words}, but link '{link.name}' is from 0 to {{length}} m"
+    rising = f"{words}; expected an end greater than the start"
+    slack, numbers = END[precision] * link.length, {"start": start, "end": end}
+    return [
+        *(
+            Demand.saying(margin, False, beyond, **numbers, length=link.length)
+            for margin in (start + slack, (link.length - end) + slack)
+        ),
+        Demand.saying(load.reach, True, rising, **numbers),
+    ]
 
 
 def _of_fit(name: str, fit: Fit, precision: Precision) -> Demand:
@@ -244,24 +231,19 @@ def _of_fit(name: str, fit: Fit, precision: Precision) -> Demand:
 
 def _of_friction(friction: Friction) -> Iterator[Demand]:
     """The numbers of a friction are not negative, and what it divides by is not zero."""
+    what = f"friction '{friction.name}'"
     for word, number in friction.numbers.items():
-        positive, value = word in POSITIVE, number
-        least = "positive" if positive else "at least 0"
-
-        def refusal(
-            evaluated: Evaluator, value: Expression = value, text: str = f"{word} must be {least}"
-        ) -> str:
-            return f"friction '{friction.name}': {text}, got {readable(evaluated(value))}"
-
         if isinstance(number, ca.SX):
-            yield Demand(number, positive, refusal)
+            positive = word in POSITIVE
+            least = "positive" if positive else "at least 0"
+            yield Demand.saying(number, positive, f"{what}: {word} must be {least}, got {{got}}")
     if friction.joint.kind == "screw" and friction.dry and friction.radius is not None:
         steep = (
-            f"friction '{friction.name}': mu times the lead per radian must be less than the"
-            " radius; otherwise no torque can drive the screw"
+            f"{what}: mu times the lead per radian must be less than the radius; otherwise no"
+            " torque can drive the screw"
         )
-        yield Demand(
-            friction.radius - friction.mu * ca.fabs(friction.joint.pitch), True, lambda _: steep
+        yield Demand.saying(
+            friction.radius - friction.mu * ca.fabs(friction.joint.pitch), True, steep
         )
 
 
@@ -272,13 +254,7 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
     if isinstance(body, Link):
         found += _of_beam(what, body)
         length = body.length
-        found.append(
-            Demand(
-                length,
-                True,
-                lambda n: f"{what}: length must be positive, got {readable(n(length))} m",
-            )
-        )
+        found.append(Demand.saying(length, True, f"{what}: length must be positive, got {{got}} m"))
         if isinstance(body.mass, Density):
             base, tip, _ = body.mass.ends(length)
             slices = _of_slices(what, body.mass.slices, precision) if body.mass.slices else []
@@ -286,24 +262,12 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
     mass_properties = body.mass
     mass = mass_properties.mass if isinstance(mass_properties, RigidMass) else mass_properties
     assert not isinstance(mass, Density)
-    found.append(
-        Demand(
-            mass, False, lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg"
-        )
-    )
+    found.append(Demand.saying(mass, False, f"{what}: mass must not be negative, got {{got}} kg"))
     if isinstance(mass_properties, RigidMass):
         if isinstance(mass_properties.inertia, tuple):
             return mass, [*found, *_of_inertia(what, mass_properties)]
-        inertia = mass_properties.inertia
-        found.append(
-            Demand(
-                inertia,
-                False,
-                lambda n: (
-                    f"{what}: inertia must not be negative, got {readable(n(inertia))} kg m^2"
-                ),
-            )
-        )
+        words = f"{what}: inertia must not be negative, got {{got}} kg m^2"
+        found.append(Demand.saying(mass_properties.inertia, False, words))
     return mass, found
 
 
@@ -311,17 +275,11 @@ def _of_beam(what: str, link: Link) -> list[Demand]:
     """Conditions on the dimensions of a cross-section; between two breaks they are linear, and so
     are the conditions.
     """
-
-    def demand(kind: str, value: Expression, words: str) -> Demand:
-        return Demand(
-            value,
-            True,
-            lambda n: f"{what}: {words} of its {kind} must be positive, got {readable(n(value))}",
-        )
-
     shapes = () if link.beam is None else link.beam.course.shapes()
     return [
-        demand(shape.kind, value, words)
+        Demand.saying(
+            value, True, f"{what}: {words} of its {shape.kind} must be positive, got {{got}}"
+        )
         for shape in shapes
         for value, words in shape.parameter_constraints()
     ]
@@ -334,20 +292,16 @@ def _of_inertia(what: str, mass_properties: RigidMass) -> list[Demand]:
     largest terms.
     """
     moments = [[ca.SX(entry) for entry in row] for row in second_moments(mass_properties.inertia)]
-    axes = "x, y and z"
-
-    def refusal(number: Evaluator) -> str:
-        x, y, z = (readable(number(mass_properties.inertia[k][k])) for k in range(3))
-        return (
-            f"{what}: impossible moments of inertia {x}, {y}, {z} kg m^2 about {axes}: each"
-            " principal moment must be at most the sum of the other two"
-        )
-
+    numbers = {axis: mass_properties.inertia[k][k] for k, axis in enumerate("xyz")}
+    words = (
+        f"{what}: impossible moments of inertia {{x}}, {{y}}, {{z}} kg m^2 about x, y and z: each"
+        " principal moment must be at most the sum of the other two"
+    )
     found = []
     for chosen in ((0,), (1,), (2,), (0, 1), (0, 2), (1, 2), (0, 1, 2)):
         minor = ca.vertcat(*(ca.horzcat(*(moments[i][j] for j in chosen)) for i in chosen))
         size = sum((ca.fabs(moments[i][i]) for i in range(3)), ca.SX(0)) ** len(chosen)
-        found.append(Demand(ca.det(minor) + END["double"] * size, False, refusal))
+        found.append(Demand.saying(ca.det(minor) + END["double"] * size, False, words, **numbers))
     return found
 
 
@@ -359,13 +313,7 @@ def _of_density(
     """
     if density.even:
         mass = density.cells[0][0] * (length if density.per_length else 1.0)
-        return [
-            Demand(
-                mass,
-                False,
-                lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg",
-            )
-        ]
+        return [Demand.saying(mass, False, f"{what}: mass must not be negative, got {{got}} kg")]
     spans = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
     places = [lowest(cell, a, b) for a, b, cell in spans]
     place, value = places[0]
@@ -391,36 +339,19 @@ def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
     """Conditions that second moments of slices belong to a mass: neither yy, nor zz, nor yy zz - yz
     yz is negative anywhere.
     """
-
-    def refusal(_: Evaluator) -> str:
-        return (
-            f"{what}: impossible second moments of slices: yy, zz and yy zz - yz yz must not be"
-            " negative anywhere along the link"
-        )
-
+    words = (
+        f"{what}: impossible second moments of slices: yy, zz and yy zz - yz yz must not be"
+        " negative anywhere along the link"
+    )
     found = []
     for start, stop in itertools.pairwise(slices.breaks):
         yy, zz, yz = (moment.cell_at((start + stop) / 2) for moment in slices.each)
-        product = [
-            a - b
-            for a, b in itertools.zip_longest(
-                _product(yy, zz), _product(yz, yz), fillvalue=ca.SX(0)
-            )
-        ]
-        for cell in (yy, zz, product) if any(not nil(c) for c in yz) else (yy, zz):
+        squares = product(yy, zz), product(yz, yz)
+        both = [a - b for a, b in itertools.zip_longest(*squares, fillvalue=ca.SX(0))]
+        for cell in (yy, zz, both) if any(not nil(c) for c in yz) else (yy, zz):
             size = sum(ca.fabs(ca.SX(c)) for c in cell)
-            found.append(
-                Demand(lowest(cell, start, stop)[1] + END[precision] * size, False, refusal)
-            )
-    return found
-
-
-def _product(first: Sequence[Expression], second: Sequence[Expression]) -> list[Expression]:
-    """The product of two polynomials."""
-    found = [ca.SX(0) for _ in range(len(first) + len(second) - 1)]
-    for j, a in enumerate(first):
-        for k, b in enumerate(second):
-            found[j + k] += a * b
+            least = lowest(cell, start, stop)[1] + END[precision] * size
+            found.append(Demand.saying(least, False, words))
     return found
 
 
@@ -455,18 +386,12 @@ def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
     """Conditions that directions in space that depend on parameters are not zero, and at right
     angles where two are given.
     """
-    what = f"joint '{joint.name}'"
-    between_axes = (
-        _of_pair(what, *joint.directions[:2], precision) if joint.directions is not None else []
-    )
-    return [
-        *between_axes,
-        *(
-            _of_pair(f"{what}: turned", *joint.turned, precision)
-            if joint.turned is not None
-            else []
-        ),
-    ]
+    what, found = f"joint '{joint.name}'", []
+    if joint.directions is not None:
+        found += _of_pair(what, *joint.directions[:2], precision)
+    if joint.turned is not None:
+        found += _of_pair(f"{what}: turned", *joint.turned, precision)
+    return found
 
 
 def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> list[Demand]:
@@ -474,10 +399,10 @@ def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> 
     if not isinstance(cosine, ca.SX) or cosine.is_constant():
         return []
     return [
-        Demand(
+        Demand.saying(
             dot(first, first) + dot(second, second),
             True,
-            lambda _: f"{what}: its axes must not be of length zero",
+            f"{what}: its axes must not be of length zero",
         ),
         Demand(
             max(RIGHT, END[precision]) - ca.fabs(cosine),
@@ -487,11 +412,15 @@ def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> 
     ]
 
 
-def _of_load_point(what: str, point: Any, precision: Precision, *, space: bool) -> list[Demand]:
+def _of_load_point(what: str, point: Point, precision: Precision, *, space: bool) -> list[Demand]:
+    """A fixed point is between both ends of its link, if that has sections."""
+    body = point.body
+    if point.end is not None or not (isinstance(body, Link) and isinstance(body.mass, Density)):
+        return []
     back = ", turned=[('z', '180 deg')]" if space else ", angle='180 deg'"
 
     def refusal(number: Evaluator) -> str:
-        x, length, link = number(point.x), number(point.body.length), point.body.name
+        x, length, link = number(point.x), number(body.length), body.name
         there = (
             f"its point at {readable(x, 0.0, length)} m is outside link '{link}', 0 to"
             f" {readable(length, x)} m"
@@ -506,4 +435,6 @@ def _of_load_point(what: str, point: Any, precision: Precision, *, space: bool) 
             " use tail.tip as the point"
         )
 
-    return [Demand(margin, False, refusal) for margin in margins(point, precision)]
+    slack = END[precision] * body.length
+    margins = point.x + slack, (body.length - point.x) + slack
+    return [Demand(margin, False, refusal) for margin in margins]

@@ -47,12 +47,6 @@ class Compliance:
         return found
 
 
-def sorted_edges(t: Array, marks: list[Array], fixed: list[float]) -> Array:
-    """Ratios (t, m) from 0 to 1 between which a link is smooth, in order at every instant."""
-    still = np.zeros_like(t)
-    return np.sort(np.stack([*marks, *(still + ratio for ratio in fixed)], axis=1), axis=1)
-
-
 @dataclass(frozen=True, eq=False)
 class Nodes:
     """Gauss's nodes along a link at every instant: ratios ``u``, weights [m], and the cell of the
@@ -63,34 +57,15 @@ class Nodes:
     weights: Array
     index: npt.NDArray[np.intp]
 
-    @classmethod
-    def between(cls, edges: Array, breaks: tuple[float, ...], count: int, length: float) -> Nodes:
-        """``count`` nodes between two edges each, of a link with
-        ``breaks`` of its cross-section.
-        """
-        x, w = np.polynomial.legendre.leggauss(count)
-        low, width = edges[:, :-1, None], np.diff(edges, axis=1)[:, :, None]
-        u = (low + width * (x + 1.0) / 2.0).reshape(len(edges), -1)
-        weights = (length * width * w / 2.0).reshape(len(edges), -1)
-        index = np.clip(
-            np.searchsorted(np.array(breaks[1:-1]), u, side="right"), 0, len(breaks) - 2
-        )
-        return cls(u, weights, index)
 
-
-def nodes(member: Member, more: int = 0) -> Nodes:
-    """Nodes that sum the product of a link's section forces with linear ones exactly; ``more`` than
-    that between two marks.
+def nodes(member: Member) -> Nodes:
+    """Nodes that sum the product of a link's section forces with linear ones exactly.
 
     Of a cross-section that changes it is summed as closely as polynomials give its properties, to
     1e-13.
     """
-    fixed = [0.0, 1.0, *(cell.high for cell in member.cells[:-1])]
-    changing = max(cell.degree for cell in member.cells)
-    count = (member.degree + 1 + (changing + 6 if changing else 0)) // 2 + 1 + more
-    return Nodes.between(
-        sorted_edges(member.t, member.marks, fixed),
-        member.beam.course.breaks,
-        count,
-        member.law.length,
-    )
+    x, w = np.polynomial.legendre.leggauss((member.strain_degree + 1) // 2 + 1)
+    low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
+    u = (low + width * (x + 1.0) / 2.0).reshape(member.t.size, -1)
+    weights = (member.law.length * width * w / 2.0).reshape(member.t.size, -1)
+    return Nodes(u, weights, member.index_at(u))

@@ -25,9 +25,9 @@ from ..errors import DeclarationError, UnknownNameError
 from ..instants.sizes import largest
 from ..instants.solution import Solution
 from ..instants.turning import stationary_points
-from ..peak_search.polynomials import interpolation
+from ..peak_search.fits import interpolation
 from ..strength.member import Member
-from .compliance import Compliance, sorted_edges
+from .compliance import Compliance
 
 Against = Literal["ends", "base"]
 
@@ -148,13 +148,11 @@ class Deflection:
                 sum(self.at(name, u) * rise for name, rise in zip(names, rises, strict=True))
             )
 
-        degree = (2 if space else 1) * (self._degree + 2)
+        edges, degree = self.member.edges, (2 if space else 1) * (self.member.strain_degree + 2)
         stationary = stationary_points(
-            slope, self._edges[:, :-1], self._edges[:, 1:], (0.0, 1.0), degree, signed=not space
+            slope, edges[:, :-1], edges[:, 1:], (0.0, 1.0), degree, signed=not space
         )
-        places = np.concatenate(
-            [self._edges, stationary.places.reshape(len(self._edges), -1)], axis=1
-        )
+        places = np.concatenate([edges, stationary.places.reshape(len(edges), -1)], axis=1)
         values = self.size(places)
         best = np.argmax(np.abs(values), axis=1)[:, None]
         return np.take_along_axis(values, best, 1)[:, 0], np.take_along_axis(places, best, 1)[:, 0]
@@ -168,27 +166,15 @@ class Deflection:
         return DeflectionPeak(float(values[i]), float(self.member.t[i]), float(places[i]))
 
     @cached_property
-    def _edges(self) -> Array:
-        fixed = [0.0, 1.0, *(cell.high for cell in self.member.cells[:-1])]
-        return sorted_edges(self.member.t, self.member.marks, fixed)
-
-    @property
-    def _degree(self) -> int:
-        changing = max(cell.degree for cell in self.member.cells)
-        return self.member.degree + (changing + 6 if changing else 0)
-
-    @cached_property
     def _strains(self) -> dict[str, Array]:
         """Polynomials of strains between two edges, coefficients (t, parts, n) of Chebyshev's: by
         the names of section forces.
         """
-        member, degree = self.member, self._degree
-        x, weights = interpolation(degree)
-        low, width = self._edges[:, :-1, None], np.diff(self._edges, axis=1)[:, :, None]
+        member = self.member
+        x, weights = interpolation(member.strain_degree)
+        low, width = member.edges[:, :-1, None], np.diff(member.edges, axis=1)[:, :, None]
         u = (low + width * (x + 1.0) / 2.0).reshape(member.t.size, -1)
-        breaks = np.array(member.beam.course.breaks)
-        index = np.clip(np.searchsorted(breaks[1:-1], u, side="right"), 0, len(breaks) - 2)
-        strains = self.compliance.strains(member.at(u), index, u).reshape(
+        strains = self.compliance.strains(member.at(u), member.index_at(u), u).reshape(
             len(member.forces), *width.shape[:2], -1
         )
         return dict(zip(member.forces, strains @ weights, strict=True))
@@ -209,7 +195,7 @@ class Deflection:
 
     def _sum(self, coefficients: Array) -> Array:
         """The integral from the base of polynomials between two edges."""
-        half = self.member.law.length * np.diff(self._edges, axis=1)[:, :, None] / 2.0
+        half = self.member.law.length * np.diff(self.member.edges, axis=1)[:, :, None] / 2.0
         found: Array = np.asarray(chebyshev.chebint(coefficients, lbnd=-1, axis=-1), float) * half
         ends = np.cumsum(found.sum(axis=-1), axis=1)
         found[:, 1:, 0] += ends[:, :-1]
@@ -229,10 +215,10 @@ class Deflection:
 
     def _valued(self, coefficients: Array, u: Array) -> Array:
         """Polynomials between two edges at ratios (t, ...)."""
-        places = u.reshape(len(u), -1)
-        index = np.sum(places[:, :, None] >= self._edges[:, None, 1:-1], axis=2)
-        low = np.take_along_axis(self._edges, index, 1)
-        width = np.take_along_axis(self._edges, index + 1, 1) - low
+        places, edges = u.reshape(len(u), -1), self.member.edges
+        index = np.sum(places[:, :, None] >= edges[:, None, 1:-1], axis=2)
+        low = np.take_along_axis(edges, index, 1)
+        width = np.take_along_axis(edges, index + 1, 1) - low
         x = (
             np.divide(2.0 * (places - low), width, out=np.zeros_like(places), where=width > 0.0)
             - 1.0

@@ -192,10 +192,9 @@ def _stiffness(compliance: Compliance, u: Array) -> Array:
     and z, (2, 2, n).
     """
     member = compliance.member
-    breaks = member.beam.course.breaks
-    index = np.clip(np.searchsorted(np.array(breaks[1:-1]), u, side="right"), 0, len(breaks) - 2)
+    index = member.index_at(u)
     found = np.empty((2 if member.space else 1,) * 2 + u.shape)
-    for cell in range(len(breaks) - 1):
+    for cell in range(len(member.beam.course.cells)):
         here = index == cell
         if here.any():
             p = member.cross.properties(cell, u[here])

@@ -29,8 +29,7 @@ from ..declare.meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot, minus, times
-from .courses import Numbers, along, courses_on, fits_of, length
-from .pitch import root
+from .courses import along, courses_on, fits_of, length, size
 from .ranges import positive, share
 
 
@@ -100,13 +99,8 @@ def belt(
     what, ownership = f"belt '{name}'", mechanism.ownership
     ownership.free("constraint", name, mechanism.constraints)
     ends = ownership.point(what, first), ownership.point(what, second)
-    one, two = courses_on(
-        mechanism,
-        what,
-        *ends,
-        None if carrier is None else ownership.point(what, carrier).body,
-        rack=False,
-    )
+    carrier = None if carrier is None else ownership.point(what, carrier).body
+    one, two = courses_on(mechanism, what, *ends, carrier, rack=False)
     if not isinstance(radii, (list, tuple)) or len(radii) != 2:
         raise DeclarationError(f"{what}: expected 2 radii, got {radii!r}")
     r1, r2 = (ownership.expression(f"{what}: radii", radius, "m") for radius in radii)
@@ -118,45 +112,34 @@ def belt(
         fits.append(
             Fit("preload must not be negative, got {got} N", tension, ca.fmax(tension, 0.0), 1.0)
         )
-    numbers, u, v, away = Numbers(mechanism), one.axis, two.axis, minus(two.place, one.place)
+    number = ownership.at_defaults
+    u, v, away = one.axis, two.axis, minus(two.place, one.place)
     assert u is not None
     assert v is not None
     beside, scale = dot(away, u), r1 + r2
-    if numbers.size(cross(u, v)) > FITTING or abs(numbers.of(beside)) > FITTING * numbers.of(scale):
+    if size(cross(u, v), number) > FITTING or abs(number(beside)) > FITTING * number(scale):
         raise DeclarationError(
             f"{what}: expected pulleys in one plane, which turn about parallel axes"
         )
     distance, reach = length(away), r1 + r2 if crossed else ca.fabs(ca.SX(r1 - r2))
-    if not numbers.of(distance) > numbers.of(reach):
+    if not number(distance) > number(reach):
         which = "the sum" if crossed else "the difference"
         raise DeclarationError(
-            f"{what}: its centres are {numbers.of(distance):.6g} m apart; expected more than"
-            f" {which} of its radii, {numbers.of(reach):.6g} m"
+            f"{what}: its centres are {number(distance):.6g} m apart; expected more than"
+            f" {which} of its radii, {number(reach):.6g} m"
         )
-    fits.append(
-        Fit(
-            "its pulleys are offset by {got} m along their axes; expected {meant} m",
-            beside,
-            0.0,
-            scale,
-        )
-    )
-    fits.append(
-        Fit(
-            "its centres are {got} m apart, too near for the radii",
-            distance,
-            ca.fmax(distance, reach),
-            scale,
-        )
-    )
+    words = "its pulleys are offset by {got} m along their axes; expected {meant} m"
+    fits.append(Fit(words, beside, 0.0, scale))
+    words = "its centres are {got} m apart, too near for the radii"
+    fits.append(Fit(words, distance, ca.fmax(distance, reach), scale))
     e = along(away, distance)
     # The sine of the angle between a strand and the line of the centres, where the strands lead
     # apart.
     lean = (-(r1 + r2) if crossed else r2 - r1) / distance
     across = times(-lean, cross(u, e))
-    both = times(root(1 - lean * lean), e)
+    both = times(ca.sqrt(1 - lean * lean), e)
     mesh = Mesh(*ends, one.carrier, one.place, away, Wrench(across, times(r1, u)), Wrench(both))
-    sense = 1 if (numbers.of(dot(u, v)) > 0.0) != crossed else -1
+    sense = 1 if (number(dot(u, v)) > 0.0) != crossed else -1
     other = -sense * r2
     ahead = ownership.expression(f"{what}: offset", offset, "m")
     loss = None

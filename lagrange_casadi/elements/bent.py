@@ -57,7 +57,7 @@ class Bent:
         DeclarationError
             If there is no such corner.
         """
-        if type(number) is not int or not 0 <= number < len(self.corners):
+        if not 0 <= number < len(self.corners):
             raise DeclarationError(
                 f"'{self.pieces[0].name}': there is no corner {number!r}, expected 0 to"
                 f" {len(self.corners) - 1}"
@@ -125,15 +125,9 @@ def bent_bar(
     for k, length in enumerate(lengths):
         piece_mass = per_length * length if mass is None else mass * (length / whole)
         pieces.append(mechanism.link(f"{name}_{k + 1}", length=length, mass=piece_mass))
-    for k in range(len(pieces) - 1):
-        _weld(
-            mechanism,
-            f"{name}_bend_{k + 1}",
-            pieces[k],
-            pieces[k + 1],
-            directions[k],
-            directions[k + 1],
-        )
+    joined = zip(itertools.pairwise(pieces), itertools.pairwise(directions), strict=True)
+    for k, (pair, ways) in enumerate(joined, 1):
+        _weld(mechanism, f"{name}_bend_{k}", *pair, *ways)
     return Bent(tuple(pieces), (pieces[0].base, *(piece.tip for piece in pieces)))
 
 
@@ -149,10 +143,6 @@ def _length(step: Sequence[Expression]) -> Expression:
     return math.hypot(*step)
 
 
-def _turn(y: Expression, x: Expression) -> Expression:
-    return ca.atan2(y, x) if isinstance(x, ca.SX) or isinstance(y, ca.SX) else math.atan2(y, x)
-
-
 def _weld(
     mechanism: Mechanism,
     name: str,
@@ -164,14 +154,14 @@ def _weld(
     """Weld a piece to the tip of the one before, at the angle between their ways."""
     if not isinstance(mechanism, SpatialMechanism):
         # By the sine and cosine of the angle between them, so that it is half a turn at most.
-        angle = _turn(
+        angle = ca.atan2(
             direction[0] * onward[1] - direction[1] * onward[0],
             direction[0] * onward[0] + direction[1] * onward[1],
         )
         mechanism.weld(name, first.tip, second, angle=angle)
         return
     (bearing, rise), (next_bearing, next_rise) = (
-        (_turn(y, x), _turn(z, _length([x, y]))) for x, y, z in (direction, onward)
+        (ca.atan2(y, x), ca.atan2(z, _length([x, y]))) for x, y, z in (direction, onward)
     )
     rotations: Any = [("y", rise), ("z", next_bearing - bearing), ("y", -next_rise)]
     mechanism.weld(name, first.tip, second, turned=rotations)

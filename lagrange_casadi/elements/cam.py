@@ -18,13 +18,13 @@ from typing import Any, cast
 import casadi as ca
 
 from ..arguments import Count, Elastic, public
-from ..base.arrays import Operand
 from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Expression, Link, Point
 from ..errors import DeclarationError
-from ..geometry.rotation import direction
+from ..geometry.rotation import Rotation
+from ..geometry.vectors import Vector, cross, dot, minus, plus, times
 from .cam_profile import CamProfile, profile_of
 from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
 
@@ -32,7 +32,7 @@ from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
 @dataclass(frozen=True, eq=False)
 class Design:
     """Position of the contact, by the symbol ``angle`` of the cam [rad], from the cam's centre in
-    ground axes, each (x, y).
+    ground axes.
 
     ``place`` is the follower's point, ``normal`` of length one from the cam to the follower,
     ``moment`` the arm of the contact about that point, ``contact`` where it touches, ``travel`` the
@@ -41,12 +41,12 @@ class Design:
     """
 
     angle: Any
-    place: tuple[Any, Any]
-    normal: tuple[Any, Any]
+    place: Vector
+    normal: Vector
     moment: Any
-    contact: tuple[Any, Any]
-    travel: tuple[Any, Any]
-    turned: tuple[Any, Any] | None
+    contact: Vector
+    travel: Vector
+    turned: Vector | None
     roller: Expression
 
 
@@ -93,12 +93,11 @@ class Cam:
             For another count, and if the follower cannot touch the cam.
         """
         design, x, values = self.design, self.design.angle, self.mechanism.values(parameters)
-        cosine = _dot(design.normal, design.travel)
-        angle = ca.atan2(ca.fabs(_cross(design.normal, design.travel)), cosine)
+        back = Rotation.by(-x)
         rows = [
-            *_turned(design.contact, -x),
-            *_turned(design.place, -x),
-            angle,
+            *back.apply(design.contact)[:2],
+            *back.apply(design.place)[:2],
+            pressure_angle(design),
             curvature(design),
             progress(design),
         ]
@@ -210,21 +209,28 @@ class Layout:
     side: int
 
     @property
-    def away(self) -> tuple[Expression, Operand]:
+    def away(self) -> Vector:
         """Vector from the cam's centre to the place on the ground at which the follower is
         guided.
         """
-        return (
-            self.follower.parent.x - self.cam.parent.x,
-            self.follower.parent.y - self.cam.parent.y,
-        )
+        return minus(self.follower.parent.place, self.cam.parent.place)
 
     @property
-    def arm(self) -> tuple[Operand, Operand]:
+    def arm(self) -> Vector:
         """Vector from the point at which the follower is guided to the one that touches, in the
         follower's axes.
         """
-        return self.held.x - self.follower.child.x, self.held.y - self.follower.child.y
+        return minus(self.held.place, self.follower.child.place)
+
+    @property
+    def offset(self) -> tuple[Expression, Vector, Vector]:
+        """Distance of a translating follower's line from the cam's centre, the direction across
+        the line in which it is, and the direction of the line.
+        """
+        x, y = self.follower.axis
+        aside = y, -x, 0.0
+        seat = plus(self.away, Rotation.by(self.follower.angle).apply(self.arm))
+        return dot(seat, aside), aside, (x, y, 0.0)
 
 
 def layout_of(
@@ -265,120 +271,83 @@ def _positive(what: str, radius: Expression) -> Expression:
     return radius
 
 
-def _turned(
-    vector: tuple[Expression, Expression], angle: Expression
-) -> tuple[Expression, Expression]:
-    c, s = direction(angle)
-    return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]
-
-
-def _sum(
-    a: tuple[Expression, Expression], b: tuple[Expression, Expression], by: Expression = 1.0
-) -> tuple[Expression, Expression]:
-    return a[0] + by * b[0], a[1] + by * b[1]
-
-
-def _dot(a: tuple[Expression, Expression], b: tuple[Expression, Expression]) -> Expression:
-    return a[0] * b[0] + a[1] * b[1]
-
-
-def _cross(a: tuple[Expression, Expression], b: tuple[Expression, Expression]) -> Expression:
-    return a[0] * b[1] - a[1] * b[0]
-
-
-def _pitch_normal(
-    x: Expression, place: tuple[Expression, Expression]
-) -> tuple[Expression, Expression]:
+def _pitch_normal(x: Expression, place: Vector) -> Vector:
     """The normal outward of the curve that a point makes on the cam."""
     # At right angles to how the point moves on the cam.
-    outward = place[0] - ca.jacobian(place[1], x), place[1] + ca.jacobian(place[0], x)
-    size = ca.sqrt(_dot(outward, outward))
-    return outward[0] / size, outward[1] / size
+    outward = place[0] - ca.jacobian(place[1], x), place[1] + ca.jacobian(place[0], x), 0.0
+    size = ca.sqrt(dot(outward, outward))
+    return outward[0] / size, outward[1] / size, 0.0
 
 
 def _translating(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
-    up = layout.follower.axis[0], layout.follower.axis[1]
-    aside = up[1], -up[0]
-    seat = _sum(layout.away, _turned(layout.arm, layout.follower.angle))
-    offset = _dot(seat, aside)
-    height = ca.sqrt((base + layout.roller) ** 2 - offset * offset) + rise
-    place = _sum((offset * aside[0], offset * aside[1]), up, height)
+    (offset, aside, up), roller = layout.offset, layout.roller
+    height = ca.sqrt((base + roller) ** 2 - offset * offset) + rise
+    place = plus(times(offset, aside), times(height, up))
     normal = _pitch_normal(x, place)
-    return Design(
-        x, place, normal, 0.0, _sum(place, normal, -layout.roller), up, None, layout.roller
-    )
+    return Design(x, place, normal, 0.0, plus(place, times(-roller, normal)), up, None, roller)
 
 
 def _translating_flat(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
-    up = layout.follower.axis[0], layout.follower.axis[1]
-    aside = up[1], -up[0]
-    offset = _dot(_sum(layout.away, _turned(layout.arm, layout.follower.angle)), aside)
-    place = _sum((offset * aside[0], offset * aside[1]), up, base + rise)
+    offset, aside, up = layout.offset
+    height = times(base + rise, up)
+    place = plus(times(offset, aside), height)
     # It touches beside the line through the cam's centre by the slope of the lift.
-    beside = ca.jacobian(rise, x)
-    contact = _sum((beside * aside[0], beside * aside[1]), up, base + rise)
-    moment = _cross(_sum(contact, place, -1.0), up)
-    return Design(
-        x, place, up, moment, contact, up, _turned((1.0, 0.0), layout.follower.angle), 0.0
-    )
+    contact = plus(times(ca.jacobian(rise, x), aside), height)
+    moment = cross(minus(contact, place), up)[2]
+    turned = Rotation.by(layout.follower.angle).x
+    return Design(x, place, up, moment, contact, up, turned, 0.0)
 
 
 def _swinging(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
-    away, arm = layout.away, layout.arm
-    length, distance, prime = (
-        ca.sqrt(ca.SX(_dot(arm, arm))),
-        ca.sqrt(ca.SX(_dot(away, away))),
-        base + layout.roller,
-    )
+    away, arm, roller = layout.away, layout.arm, layout.roller
+    length = ca.sqrt(ca.SX(dot(arm, arm)))
+    distance = ca.sqrt(ca.SX(dot(away, away)))
+    prime = base + roller
     along, across = _swung(
         layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance
     )
-    place = _sum(away, along, length)
+    place = plus(away, times(length, along))
     normal = _pitch_normal(x, place)
-    return Design(
-        x, place, normal, 0.0, _sum(place, normal, -layout.roller), across, None, layout.roller
-    )
+    return Design(x, place, normal, 0.0, plus(place, times(-roller, normal)), across, None, roller)
 
 
 def _swinging_flat(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
     away = layout.away
-    distance = ca.sqrt(ca.SX(_dot(away, away)))
+    distance = ca.sqrt(ca.SX(dot(away, away)))
     sine = base / distance
     along, normal = _swung(layout, rise, ca.sqrt(1.0 - sine * sine), distance)
     # The normal passes through the point at which both turn alike.
-    reach = -_dot(away, along) / (1.0 - layout.side * ca.jacobian(rise, x))
-    arm = reach * along[0], reach * along[1]
-    return Design(x, away, normal, _cross(arm, normal), _sum(away, arm), normal, along, 0.0)
+    arm = times(-dot(away, along) / (1.0 - layout.side * ca.jacobian(rise, x)), along)
+    return Design(x, away, normal, cross(arm, normal)[2], plus(away, arm), normal, along, 0.0)
 
 
 def _swung(
     layout: Layout, rise: Expression, cosine: Expression, distance: Expression
-) -> tuple[tuple[Expression, Expression], tuple[Expression, Expression]]:
+) -> tuple[Vector, Vector]:
     """The direction of the arm of a swinging follower, and that in which it swings away from the
     cam.
 
     On the base circle the arm is at an angle of this ``cosine`` to the line from its pin to the
     cam's centre.
     """
-    line = -layout.away[0] / distance, -layout.away[1] / distance
+    x, y = -layout.away[0] / distance, -layout.away[1] / distance
     sine = layout.side * ca.sqrt(1.0 - cosine * cosine)
-    least = cosine * line[0] - sine * line[1], sine * line[0] + cosine * line[1]
-    along = _turned(least, layout.side * rise)
-    return along, (-layout.side * along[1], layout.side * along[0])
+    least = cosine * x - sine * y, sine * x + cosine * y, 0.0
+    along = Rotation.by(layout.side * rise).apply(least)
+    return along, (-layout.side * along[1], layout.side * along[0], 0.0)
 
 
 def _contact(
     mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design, rise: Expression
 ) -> Constraint:
     """The equation of the contact, in places, so that its force acts where it is."""
-    centre = mechanism.place(cam.child)
-    place = _sum(mechanism.place(touched), centre, -1.0)
+    (x, y), (x0, y0) = mechanism.place(cam.child), mechanism.place(touched)
     turn = mechanism.coordinate(cam)
     here = _at(design, turn)
-    gap = _dot(here.normal, _sum(place, here.place, -1.0))
+    gap = dot(here.normal, plus((x0 - x, y0 - y, 0.0), times(-1.0, here.place)))
     if here.turned is not None:
         lean = mechanism.direction(cast(Link, touched.body))
-        gap = gap + here.moment * _cross(here.turned, (ca.cos(lean), ca.sin(lean)))
+        gap = gap + here.moment * cross(here.turned, (ca.cos(lean), ca.sin(lean), 0.0))[2]
     phi = mechanism.ownership.expression(f"cam '{name}'", gap, moving=True)
     return mechanism.constraints.setdefault(
         name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
@@ -391,16 +360,21 @@ def _at(design: Design, angle: Expression) -> Design:
     def put(value: Expression) -> Expression:
         return ca.substitute(value, design.angle, angle) if isinstance(value, ca.SX) else value
 
-    def both(pair: tuple[Expression, Expression]) -> tuple[Expression, Expression]:
-        return put(pair[0]), put(pair[1])
+    def each(vector: Vector) -> Vector:
+        x, y, z = map(put, vector)
+        return x, y, z
 
-    turned = None if design.turned is None else both(design.turned)
-    place, normal, contact, direction = map(
-        both, (design.place, design.normal, design.contact, design.travel)
+    turned = None if design.turned is None else each(design.turned)
+    place, normal, contact, travel = map(
+        each, (design.place, design.normal, design.contact, design.travel)
     )
-    return Design(
-        angle, place, normal, put(design.moment), contact, direction, turned, design.roller
-    )
+    return Design(angle, place, normal, put(design.moment), contact, travel, turned, design.roller)
+
+
+def pressure_angle(design: Design) -> Expression:
+    """The angle between the contact's force and the way of the follower [rad]."""
+    across = ca.fabs(cross(design.normal, design.travel)[2])
+    return ca.atan2(across, dot(design.normal, design.travel))
 
 
 def curvature(design: Design) -> Expression:
@@ -417,8 +391,8 @@ def progress(design: Design) -> Expression:
     it is not negative.
     """
     x, contact = design.angle, design.contact
-    moved = ca.jacobian(contact[0], x) + contact[1], ca.jacobian(contact[1], x) - contact[0]
-    return _cross(design.normal, moved)
+    moved = ca.jacobian(contact[0], x) + contact[1], ca.jacobian(contact[1], x) - contact[0], 0.0
+    return cross(design.normal, moved)[2]
 
 
 def _outputs(made: Cam, cam: Joint, width: Expression | None, stiffness: float) -> None:
@@ -426,13 +400,8 @@ def _outputs(made: Cam, cam: Joint, width: Expression | None, stiffness: float) 
     force = mechanism.results.multiplier(made.constraint)
     here, radius = _at(made.design, mechanism.coordinate(cam)), curvature(made.design)
     radius = ca.substitute(radius, made.design.angle, mechanism.coordinate(cam))
-    cosine = _dot(here.normal, here.travel)
     mechanism.output(f"{name}_force", force, unit="N")
-    mechanism.output(
-        f"{name}_pressure_angle",
-        ca.atan2(ca.fabs(_cross(here.normal, here.travel)), cosine),
-        unit="rad",
-    )
+    mechanism.output(f"{name}_pressure_angle", pressure_angle(here), unit="rad")
     mechanism.output(f"{name}_radius", radius, unit="m")
     if width is not None:
         roller = made.design.roller

@@ -59,12 +59,10 @@ class CamProfile:
     def undercut_summary(self) -> str:
         """Places of undercut, in words; empty if there are none."""
         found = np.degrees(self.angle[self.undercut])
-        return (
-            f"its profile is undercut at {found[0]:.4g} deg of the cam, and at {found.size} angles"
-            " in all"
-            if found.size
-            else ""
-        )
+        if not found.size:
+            return ""
+        where = f"{found[0]:.4g} deg of the cam, and at {found.size} angles in all"
+        return f"its profile is undercut at {where}"
 
     def save_csv(self, path: str | Path, decimal_comma: bool = False) -> None:
         """Write the profile as a table, a row for every angle.

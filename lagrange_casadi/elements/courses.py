@@ -13,6 +13,7 @@ from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import FITTING, Fit
 from ..declare.parts import Body, Expression, Point, Vector
+from ..declare.validity import Evaluator
 from ..errors import DeclarationError
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import cross, dot, minus, plus
@@ -46,28 +47,15 @@ class Course:
         return sum((sign * mechanism.coordinate(joint) for sign, joint in self.rotations), ca.SX(0))
 
 
-@dataclass(frozen=True, eq=False)
-class Numbers:
-    """A mechanism's expressions at its default parameters."""
-
-    mechanism: Mechanism
-
-    def of(self, value: Expression) -> float:
-        """One of them."""
-        defaults = {
-            name: parameter.default for name, parameter in self.mechanism.parameters.items()
-        }
-        return self.mechanism.number(value, defaults)
-
-    def size(self, vector: Vector) -> float:
-        """The length of a vector."""
-        return math.hypot(*map(self.of, vector))
-
-
 def length(vector: Vector) -> Expression:
     """The length of a vector: a number where it lies along an axis of numbers."""
     found = dot(vector, vector)
     return ca.sqrt(found) if isinstance(found, ca.SX) else float(found) ** 0.5
+
+
+def size(vector: Vector, number: Evaluator) -> float:
+    """The length of a vector as a number."""
+    return math.hypot(*map(number, vector))
 
 
 def along(vector: Vector, by: Expression) -> Vector:
@@ -147,8 +135,8 @@ def _courses(mechanism: Mechanism, point: Point) -> list[Course]:
 
 def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) -> Course | None:
     """A course seen from beyond a joint of its carrier; None where it does not stay on one axis."""
-    outward = joint.child.body is other
-    zero = _zero(joint)
+    outward, zero = joint.child.body is other, _zero(joint)
+    number = mechanism.ownership.at_defaults
     if joint.kind != "weld" and (
         not joint.axes or course.slides or (joint.kind == "prismatic" and course.axis is not None)
     ):
@@ -163,29 +151,22 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
     whole = (zero.inverse if outward else zero).then(course.seen)
     axis, place, shifted = course.axis, course.place, course.shifted
     if joint.kind == "weld":
-        return Course(
-            other,
-            seen(place),
-            axis and turn(axis),
-            course.rotations,
-            course.slides,
-            (*course.joints, joint),
-            shifted,
-            whole,
-        )
+        axis, joints = axis and turn(axis), (*course.joints, joint)
+        moved = course.rotations, course.slides
+        return Course(other, seen(place), axis, *moved, joints, shifted, whole)
     # The joint's axis is in its parent's axes, and the same in its child's, turned.
     direction = joint.axes[0].direction
     here = direction if outward else zero.resolve(direction)
     sign = -1 if outward else 1
     if axis is None:
         axis = here
-    elif Numbers(mechanism).size(cross(axis, here)) > FITTING:
+    elif size(cross(axis, here), number) > FITTING:
         return None
-    elif Numbers(mechanism).of(dot(axis, here)) < 0.0:
+    elif number(dot(axis, here)) < 0.0:
         sign = -sign
     if joint.kind == "revolute":
         off = cross(minus(place, (joint.parent if outward else joint.child).place), here)
-        if Numbers(mechanism).size(off) > FITTING * max(1.0, Numbers(mechanism).size(place)):
+        if size(off, number) > FITTING * max(1.0, size(place, number)):
             return None
         shifted = (*shifted, *off)
     rotations, joints = (*course.rotations, (sign, joint)), (*course.joints, joint)

@@ -81,10 +81,8 @@ def cylinder(
             f"{what}: only a mechanism in a plane has cylinders; in space declare two links and a"
             " prismatic joint"
         )
-    bore, rod = (
-        ownership.expression(f"{what}: bore", bore, "m"),
-        ownership.expression(f"{what}: rod", rod, "m"),
-    )
+    bore = ownership.expression(f"{what}: bore", bore, "m")
+    rod = ownership.expression(f"{what}: rod", rod, "m")
     back = ownership.expression(f"{what}: back_pressure", back_pressure)
     if not isinstance(bore, ca.SX) and not isinstance(rod, ca.SX) and not 0.0 <= rod < bore:
         raise DeclarationError(

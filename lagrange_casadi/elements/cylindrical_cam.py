@@ -185,7 +185,9 @@ def cylindrical_cam(
     constraint = _contact(mechanism, name, cam, held, design, rise)
     made = CylindricalCam(name, mechanism, constraint, design, cam)
     turn = mechanism.coordinate(cam)
-    cosine, across = (ca.substitute(ca.SX(value), x, turn) for value in _lean(design))
+    beside = cross(design.normal, design.travel)
+    lean = dot(design.normal, design.travel), ca.sqrt(ca.SX(dot(beside, beside)))
+    cosine, across = (ca.substitute(ca.SX(value), x, turn) for value in lean)
     mechanism.output(f"{name}_force", mechanism.results.multiplier(constraint), unit="N")
     mechanism.output(f"{name}_pressure_angle", ca.atan2(across, cosine), unit="rad")
     if width is not None:
@@ -208,11 +210,9 @@ def _carried(joint: Joint, angle: Expression) -> Rotation:
     """Rotation of the child of a joint on the ground, at an angle of the joint."""
     assert joint.turned is not None
     resting = Rotation.of(*joint.turned)
-    return (
-        resting
-        if joint.kind == "prismatic"
-        else Rotation.about(joint.triad[0], *direction(angle), angle).then(resting)
-    )
+    if joint.kind == "prismatic":
+        return resting
+    return Rotation.about(joint.triad[0], *direction(angle), angle).then(resting)
 
 
 def _groove(
@@ -336,12 +336,6 @@ def _contact(
     return mechanism.constraints.setdefault(
         name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
     )
-
-
-def _lean(design: Groove) -> tuple[Expression, Expression]:
-    """The cosine and the sine of the angle between the force and the way of the roller."""
-    across = cross(design.normal, design.travel)
-    return dot(design.normal, design.travel), ca.sqrt(ca.SX(dot(across, across)))
 
 
 def _unit(vector: Vector) -> Vector:

@@ -61,10 +61,8 @@ def held_by(
     in ``space``, and for a point of another body.
     """
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
-        kind, on_ground = (
-            mechanism.ownership.joint(joint).kind,
-            isinstance(joint.parent.body, Ground),
-        )
+        kind = mechanism.ownership.joint(joint).kind
+        on_ground = isinstance(joint.parent.body, Ground)
         if kind not in kinds or mechanism.space is not space or not on_ground:
             raise DeclarationError(
                 f"{what}: expected a {' or '.join(kinds)} joint whose parent is the ground, in"

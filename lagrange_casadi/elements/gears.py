@@ -32,7 +32,7 @@ from ..declare.meshes import Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot, minus, plus
-from .courses import Course, Numbers, along, courses_on, fits_of, length
+from .courses import Course, along, courses_on, fits_of, length
 from .pitch import Pitch, Teeth, pitch_of
 from .ranges import LEAST, at_least, positive, share, whole, within
 
@@ -135,19 +135,11 @@ def gears(
     if not many:
         raise DeclarationError(f"{what}: expected a second gear")
     found = [courses_on(mechanism, what, centre, one, carrier) for one in many]
-    numbers, fits, lossy = Numbers(mechanism), [], efficiency is not None or mu is not None
-    toothing, more = _teeth(
-        what,
-        mechanism,
-        found[0],
-        teeth,
-        module,
-        radii,
-        (pressure_angle, helix_angle),
-        hand == "right",
-    )
+    fits, lossy = [], efficiency is not None or mu is not None
+    angles, right = (pressure_angle, helix_angle), hand == "right"
+    toothing, more = _teeth(what, mechanism, found[0], teeth, module, radii, angles, right)
     fits += more
-    pitches = [pitch_of(what, numbers, *pair, toothing) for pair in found]
+    pitches = [pitch_of(what, ownership.at_defaults, *pair, toothing) for pair in found]
     meshes = []
     for pair, pitch, point in zip(found, pitches, many, strict=True):
         if pitch.kind == "crossed" and (teeth is None or radii is None):
@@ -222,8 +214,7 @@ def _teeth(
             raise DeclarationError(f"{what}: expected module= and teeth=, or radii=")
         size = ownership.expression(f"{what}: module", module, "m")
         fits += positive(what, "module", size)
-        cosine = ca.cos(helix) if isinstance(helix, ca.SX) else math.cos(helix)
-        r = [size * value / (2 * cosine) for value in z]
+        r = [size * value / (2 * ca.cos(helix)) for value in z]
     else:
         r = each("radii", radii, "m")
         for value in r:
@@ -265,11 +256,9 @@ def braking_of(pitch: Pitch) -> Wrench:
     or a force against sliding.
     """
     direction = along(pitch.relative, length(pitch.relative))
-    return (
-        Wrench(direction, cross(pitch.arm, direction))
-        if pitch.kind == "crossed"
-        else Wrench(couple=direction)
-    )
+    if pitch.kind == "crossed":
+        return Wrench(direction, cross(pitch.arm, direction))
+    return Wrench(couple=direction)
 
 
 def loss_of(
@@ -290,14 +279,8 @@ def loss_of(
         value = ownership.expression(f"{what}: mu", mu)
         fits = at_least(what, "mu must not be negative", value, 0.0, value)
         # The force at right angles to the teeth, of that along the pitch circle.
-        cosine = (
-            ca.cos(teeth.pressure)
-            if isinstance(teeth.pressure, ca.SX)
-            else math.cos(teeth.pressure)
-        )
-        return Loss(
-            f"{name}:loss", value * length(pitch.force) / cosine, 0.0, first.rotations
-        ), fits
+        arm = value * length(pitch.force) / ca.cos(teeth.pressure)
+        return Loss(f"{name}:loss", arm, 0.0, first.rotations), fits
     value = ownership.expression(f"{what}: efficiency", efficiency)
     fits = share(what, value)
     q, radius = length(pitch.relative), teeth.radii[0]

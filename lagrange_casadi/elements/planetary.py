@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from ..arguments import public
 from ..declare.joints import Joint
@@ -90,11 +91,7 @@ def planetary(
         raise DeclarationError(
             f"{what}: only a mechanism in a plane has it; in space declare planets, pins and gears"
         )
-    if (
-        not isinstance(teeth, (list, tuple))
-        or len(teeth) != 3
-        or any(type(count) is not int or count < 1 for count in teeth)
-    ):
+    if len(teeth) != 3 or min(teeth) < 1:
         raise DeclarationError(
             f"{what}: teeth must be three whole numbers, of sun, planets and ring, got {teeth!r}"
         )
@@ -104,7 +101,7 @@ def planetary(
             f"{what}: its ring has {of_ring} teeth; expected {of_sun + 2 * of_planet}, those of the"
             " sun and twice those of a planet"
         )
-    if type(planets) is not int or planets < 1 or (of_sun + of_ring) % planets:
+    if planets < 1 or (of_sun + of_ring) % planets:
         raise DeclarationError(
             f"{what}: {planets!r} planets cannot be evenly spaced; expected a number that divides"
             f" {of_sun + of_ring}, the teeth of sun and ring together"
@@ -117,38 +114,29 @@ def planetary(
     size = ownership.expression(f"{what}: module", module, "m")
     positive(what, "module", size)
     middle, centres = ownership.point(what, carrier), size * (of_sun + of_planet) / 2
+    made: dict[str, Any] = {"mass": mass, "width": width, "teeth": of_planet}
     found, pins = [], []
     for k in range(planets):
         angle = math.tau * k / planets
         # So turned that teeth are drawn in gaps where sun and carrier are at zero.
         turned = angle + math.pi - (math.pi - of_sun * angle) / of_planet
         radius = size * of_planet / 2
-        planet = wheel(
-            mechanism,
-            f"{name}_planet_{k + 1}",
-            radius=radius,
-            mass=mass,
-            width=width,
-            teeth=of_planet,
-            turned=turned,
-        )
+        planet = wheel(mechanism, f"{name}_planet_{k + 1}", radius=radius, turned=turned, **made)
         spot = Point(
             middle.body, middle.x + centres * math.cos(angle), middle.y + centres * math.sin(angle)
         )
         found.append(planet)
         pins.append(mechanism.revolute(f"{name}_pin_{k + 1}", spot, planet))
-    body = middle.body
     options = {
         "module": size,
         "pressure_angle": pressure_angle,
         "efficiency": efficiency,
-        "carrier": body,
+        "carrier": middle.body,
     }
     inner = gears(mechanism, f"{name}_sun", sun, found, teeth=(of_sun, of_planet), **options)
+    meshing = {"teeth": (of_planet, of_ring), **options}
     outer = tuple(
-        gears(
-            mechanism, f"{name}_ring_{k + 1}", planet, ring, teeth=(of_planet, of_ring), **options
-        )
-        for k, planet in enumerate(found)
+        gears(mechanism, f"{name}_ring_{k}", planet, ring, **meshing)
+        for k, planet in enumerate(found, 1)
     )
     return Planetary(tuple(found), tuple(pins), inner, outer, centres)

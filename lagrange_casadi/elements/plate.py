@@ -7,7 +7,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import casadi as ca
 
@@ -44,7 +43,7 @@ class Plate:
         DeclarationError
             If there is no such corner.
         """
-        if type(number) is not int or not 0 <= number < len(self.corners):
+        if not 0 <= number < len(self.corners):
             raise DeclarationError(
                 f"'{self.link.name}': there is no corner {number!r}, expected 0 to"
                 f" {len(self.corners) - 1}"
@@ -99,7 +98,7 @@ def plate(
     DeclarationError
         For fewer than three corners, edges that cross, a polygon without area, and in space.
     """
-    what = f"plate '{name}'"
+    what, checked = f"plate '{name}'", mechanism.ownership.expression
     if mechanism.space:
         raise DeclarationError(
             f"{what}: only a mechanism in a plane has plates; in space declare a link with mass,"
@@ -111,24 +110,18 @@ def plate(
     for k, corner in enumerate(corners):
         if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != 2:
             raise DeclarationError(f"{what}: corner {k}: expected (x, y), got {corner!r}")
-        places.append(
-            tuple(
-                mechanism.ownership.expression(f"{what}: corner {k}", number, "m")
-                for number in corner
-            )
-        )
+        x, y = (checked(f"{what}: corner {k}", number, "m") for number in corner)
+        places.append((x, y))
     if (mass is None) == (per_area is None):
         raise DeclarationError(f"{what}: expected mass= or per_area=")
     _refuse_crossing(what, places)
     area, x, y, second = area_of(places)
     if isinstance(area, float) and area == 0.0:
         raise DeclarationError(f"{what}: its corners lie on a line")
-    plate_mass: Any = (
-        mechanism.ownership.expression(what, mass, "kg")
-        if per_area is None
-        else mechanism.ownership.expression(what, per_area)
-    )
-    whole = plate_mass if per_area is None else ca.fabs(ca.SX(area)) * plate_mass
+    if per_area is None:
+        whole = checked(what, mass, "kg")
+    else:
+        whole = ca.fabs(ca.SX(area)) * checked(what, per_area)
     farthest = ca.SX(0)
     for corner in places:
         farthest = ca.fmax(farthest, ca.sqrt(ca.SX(corner[0]) ** 2 + ca.SX(corner[1]) ** 2))

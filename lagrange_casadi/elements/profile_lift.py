@@ -147,15 +147,10 @@ def profile_lift(
     def number(expression: Expression) -> float:
         return float(mechanism.number(expression, values))
 
-    away, arm = (np.array([number(x) for x in pair]) for pair in (layout.away, layout.arm))
-    at, normal = _normals(
-        what,
-        (
-            read_profile(points)
-            if isinstance(points, (str, os.PathLike))
-            else np.asarray(points, float)
-        ),
-    )
+    away, arm = (np.array([number(x) for x in pair[:2]]) for pair in (layout.away, layout.arm))
+    if isinstance(points, (str, os.PathLike)):
+        points = read_profile(points)
+    at, normal = _normals(what, np.asarray(points, float))
     radius = number(layout.roller)
     if follower.kind == "prismatic":
         up = np.array([number(x) for x in follower.axis[:2]])

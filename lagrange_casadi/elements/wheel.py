@@ -62,10 +62,8 @@ def wheel(
     what, ownership = f"wheel '{name}'", mechanism.ownership
     if (mass is None) == (width is None):
         raise DeclarationError(f"{what}: expected mass=, or width= and density=")
-    outer, inner = (
-        ownership.expression(f"{what}: radius", radius, "m"),
-        ownership.expression(f"{what}: bore", bore, "m"),
-    )
+    outer = ownership.expression(f"{what}: radius", radius, "m")
+    inner = ownership.expression(f"{what}: bore", bore, "m")
     if isinstance(outer, float) and isinstance(inner, float) and not 0.0 <= inner < outer:
         raise DeclarationError(
             f"{what}: its bore must be smaller than its radius, got {inner:g} m in {outer:g} m"

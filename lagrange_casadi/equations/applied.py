@@ -19,27 +19,20 @@ from .pressing import way_of
 
 def applied_by(load: Load, resting: Grown) -> list[Applied]:
     """A load as forces and couples at points, by the state."""
-    if isinstance(load, Force):
-        force = _vector(resting, load.components)
+    if isinstance(load, Force | Torque):
+        acts = _vector(resting, load.components)
         if load.turning:
-            force = resting.frames[load.point.body.name].rotation.apply(force)
-        return [Applied(load.name, load.point, force)]
-    if isinstance(load, Torque):
-        couple = _vector(resting, load.components)
-        if load.turning:
-            couple = resting.frames[load.point.body.name].rotation.apply(couple)
-        ends = ((load.point, couple), (load.against, times(-1, couple)))
-        return [Applied(load.name, point, couple=value) for point, value in ends]
+            acts = resting.frames[load.point.body.name].rotation.apply(acts)
+        if isinstance(load, Force):
+            return [Applied(load.name, load.point, acts)]
+        return _both(load.name, load.point, load.against, couple=acts)
     if isinstance(load, LineLoad):
         return [_along(load, resting)]
     if isinstance(load, Friction) and load.every_way:
         couple = times(load.symbol, way_of(load.joint, resting))
-        return [
-            Applied(load.name, load.joint.child, couple=couple),
-            Applied(load.name, load.joint.parent, couple=times(-1, couple)),
-        ]
+        return _both(load.name, load.joint.child, load.joint.parent, couple=couple)
     if isinstance(load, Friction):
-        return [*_along_coordinate(resting, load.name, load.joint, load.axis, load.symbol)]
+        return _along_coordinate(resting, load.name, load.joint, load.axis, load.symbol)
     assert isinstance(load, Spring)
     at = resting.at_state
     first, second = (resting.frames[point.body.name] for point in (load.first, load.second))
@@ -49,10 +42,15 @@ def applied_by(load: Load, resting: Grown) -> list[Applied]:
     rate = dot(apart, closing) / distance
     tension = at(load.stiffness) * (distance - at(load.length)) + at(load.damping) * rate
     x, y, z = (tension * component / distance for component in apart)
-    return [
-        Applied(load.name, load.first, (x, y, z)),
-        Applied(load.name, load.second, times(-1, (x, y, z))),
-    ]
+    return _both(load.name, load.first, load.second, (x, y, z))
+
+
+def _both(
+    name: str, first: Point, second: Point, force: Vector = ZERO, couple: Vector = ZERO
+) -> list[Applied]:
+    """An action at a point of a body, and the opposite one at a point of another body."""
+    opposite = (ZERO if acts is ZERO else times(-1, acts) for acts in (force, couple))
+    return [Applied(name, first, force, couple), Applied(name, second, *opposite)]
 
 
 def held_by(
@@ -174,7 +172,7 @@ def _along(load: LineLoad, resting: Grown) -> Applied:
 
 def _along_coordinate(
     resting: Grown, name: str, joint: Joint, axis: Axis, force: Expression
-) -> Iterator[Applied]:
+) -> list[Applied]:
     """Action on its bodies of a force that works along a joint's coordinate."""
     parent, child = resting.ends(joint)
     along = times(force, resting.along(joint, axis))
@@ -182,9 +180,6 @@ def _along_coordinate(
     if joint.slides:
         x, y, z = carried(joint, parent, child)
         under = Point(joint.parent.body, x, y, z=z)
-    for point, force in ((joint.child, along), (under, times(-1, along))):
-        yield (
-            Applied(name, point, couple=force)
-            if axis.kind == "angle"
-            else Applied(name, point, force)
-        )
+    if axis.kind == "angle":
+        return _both(name, joint.child, under, couple=along)
+    return _both(name, joint.child, under, along)

@@ -76,23 +76,12 @@ def assemble(
         _loop_equations(joint.name, joint, *loop_residuals(joint, *resting.ends(joint)))
         for joint in tree.closing
     ]
-    loops += [
-        _loop_equations(
-            two_force_link.link.name, None, *map(ca.SX, resting.span(two_force_link, displace=()))
-        )
-        for two_force_link in tree.two_force_links
-    ]
-    loops[len(tree.closing) :] = [
-        replace(loop, two_force_link=two_force_link)
-        for loop, two_force_link in zip(
-            loops[len(tree.closing) :], tree.two_force_links, strict=True
-        )
-    ]
     for two_force_link in tree.two_force_links:
-        accelerated.span(
-            two_force_link,
-            displace=[joint.name for joint in two_force_link.joints if joint.name in reactions],
-        )
+        residuals = map(ca.SX, resting.span(two_force_link, displace=()))
+        equations = _loop_equations(two_force_link.link.name, None, *residuals)
+        loops.append(replace(equations, two_force_link=two_force_link))
+        released = [joint.name for joint in two_force_link.joints if joint.name in reactions]
+        accelerated.span(two_force_link, displace=released)
     for constraint in mechanism.constraints.values():
         residual = resting.counted(constraint.phi)
         rate = change(residual, resting.coordinates, mechanism.time)
@@ -139,9 +128,8 @@ def assemble(
     kinetic = sum(energies, ca.SX(0))
     work(accelerated, (*applied, *held), loops, velocities)
     # Where a joint with three turns closes a loop, its angles are not measured.
-    unmeasured = [joint for joint in tree.closing if joint.turns > 2] + [
-        joint for two_force_link in tree.two_force_links for joint in two_force_link.joints
-    ]
+    unmeasured = [joint for joint in tree.closing if joint.turns > 2]
+    unmeasured += tree.two_force_link_of
     sphericals = [c.name for c in resting.coordinates if c.spherical is not None]
     outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in user_outputs}
     efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
@@ -187,14 +175,10 @@ def _refuse_unmeasured(
     """Raise :class:`DeclarationError` for a drive along a turn that has no angle."""
     if axis.kind != "angle" or joint not in unmeasured:
         return
-    two_force_links = [
-        two_force_link.link.name
-        for two_force_link in tree.two_force_links
-        if joint in two_force_link.joints
-    ]
+    two_force_link = tree.two_force_link_of.get(joint)
     why = (
-        f"the spin of two-force link '{two_force_links[0]}' about its own axis moves nothing"
-        if two_force_links
+        f"the spin of two-force link '{two_force_link.link.name}' about its own axis moves nothing"
+        if two_force_link is not None
         else "the joint closes a loop, where its rotations are not evaluated"
     )
     raise DeclarationError(f"drive '{name}': {why}; drive another joint")

@@ -128,8 +128,12 @@ def solving_order(multibody: Multibody, start: Mapping[str, Expression]) -> tupl
     equations = _equations(multibody, unknown)
     parts = _decomposed(equations, unknown)
     if any(len(rows) != len(columns) for rows, columns in parts):
+        # Drives are free to give way in it, for there may be too many.
+        released = ReleasedLoops.of(
+            multibody, start["posture"], start["inputs"], start["values"], ()
+        )
         slopes = _require_freedom(
-            multibody, len(equations), parts, _slopes(multibody, start), start["posture"]
+            multibody, len(equations), parts, released.slopes(start["values"]), start["posture"]
         )
         parts = [piece for part in parts for piece in _pieces(part)]
         if multibody.mechanism.space:
@@ -258,10 +262,8 @@ def _peeled(
             block = slopes[np.ix_([row[e] for e in group], [of[c] for c in covered])]
             if covered and len(group) < len(rows) and rank_of(block) == len(covered):
                 found.append((group, covered))
-                rows, columns = (
-                    [e for e in rows if e not in group],
-                    [c for c in columns if c not in covered],
-                )
+                rows = [e for e in rows if e not in group]
+                columns = [c for c in columns if c not in covered]
                 break
         else:
             break
@@ -305,10 +307,8 @@ def _forms(
     """The closed forms that solve a part one after another, where there are any."""
     if any(c.spherical is not None for c in unknown):
         return ()
-    two_force_link, phi = (
-        all(equation.loop.two_force_link is not None for equation in rows),
-        column(equation.residual for equation in rows),
-    )
+    two_force_link = all(equation.loop.two_force_link is not None for equation in rows)
+    phi = column(equation.residual for equation in rows)
     form = solve_loop(phi, unknown, multibody.coordinates, two_force_link=two_force_link)
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
     if (
@@ -380,16 +380,6 @@ def _require_freedom(
         f"mechanism '{multibody.mechanism.name}' has {freedom} degree(s) of freedom ({how}) and"
         f" {driven} drive(s); {advice}"
     )
-
-
-def _slopes(multibody: Multibody, start: Mapping[str, Expression]) -> Array | None:
-    """The loops' Jacobian by all coordinates, in a posture near the rough one, drives too; None
-    where no posture is found.
-    """
-    # Drives are free to give way in it, for there may be too many.
-    return ReleasedLoops.of(
-        multibody, start["posture"], start["inputs"], start["values"], ()
-    ).slopes(start["values"])
 
 
 def solve_line(

@@ -95,10 +95,8 @@ class Column:
             effective_length, second = effective[k] * length, thinnest.second[k]
             euler = math.pi**2 * elasticity * second / effective_length**2
             slenderness = effective_length * (thinnest.area / second) ** 0.5
-            critical, yield_moment = (
-                _critical(euler, strength * thinnest.area),
-                thinnest.modulus[k] * strength,
-            )
+            critical = _critical(euler, strength * thinnest.area)
+            yield_moment = thinnest.modulus[k] * strength
             numbers = (effective[k], slenderness, euler, critical, yield_moment)
             return tuple(number if symbolic(number) else float(number) for number in numbers)
 

@@ -105,10 +105,8 @@ def _curve(
             strains(link.at(part, x), {name: part.force(name, x) for name in part.forces}, moduli)
             for x in nodes
         ]
-        bent, sheared = (
-            sign * column(strain[bending] for strain in each),
-            column(strain[shear] for strain in each),
-        )
+        bent = sign * column(strain[bending] for strain in each)
+        sheared = column(strain[shear] for strain in each)
         length = link.link.length * part.width
         curve = length * (
             length * ca.mtimes(twice, bent) + ca.vertcat(ca.mtimes(once, sheared), 0.0)

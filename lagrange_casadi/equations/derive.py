@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import Outputs, public, texts
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base import cache
 from ..base.arrays import Expression
 from ..base.quantities import Output
@@ -257,11 +257,9 @@ class _JointForces:
     @classmethod
     def of(cls, moving: Moving, columns: Mapping[Column, Expression]) -> _JointForces:
         """The forces that are wanted, and those of ``columns`` that friction goes into."""
-        want, links, coordinates = (
-            moving.want,
-            moving.scene.mechanism.links.values(),
-            moving.body.coordinates,
-        )
+        want = moving.want
+        links = moving.scene.mechanism.links.values()
+        coordinates = moving.body.coordinates
         forces = internal_forces(moving.body, moving.solved, want, moving.scene.weights)
         friction = forces.friction
         dependent = {
@@ -306,15 +304,11 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
         if want is asked
         else {key: value for key, value in columns.items() if not _for_strain_alone(key, asked)}
     )
-    out = ca.densify(column(columns.values()))
-    names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-    instant = share_reciprocals(
-        ca.Function("instant", moving.inputs, [out], names, ["out"], {"cse": True}), "p"
-    )
+    instant = graph("instant", moving.inputs, out=column(columns.values()))
     return Program(
         data=ModelData.of(scene, moving.laws),
         wanted=asked,
-        instant=instant,
+        instant=share_reciprocals(instant, "p"),
         newton=moving.solved.newton,
         columns=tuple(columns),
         loop_angles=loop_angles,

@@ -1,27 +1,21 @@
-"""Contribution of distributed loads to section forces: terms of their own, beside those of the
-link's mass.
+"""Distributed loads of a link as columns, which section forces are made of beside the link's mass
+(:mod:`.section_function`).
 
 A load acts up to ``end``, a ratio u = xi/l, on so much of the link as ``width`` says, with the
-value c_0 + c_1 s + c_2 s^2 + ... per length, where s = (end - u)/width. With x = s kept from 0 to
-1, L = l width and a = l max(end - width - u, 0), the section at u carries of each coefficient
-
-    c_j L x^(j+1)/(j+1)                              of a force,
-    c_j L x^(j+1)/(j+1) (L x/(j+2) + a)              of a moment.
-
-Each is a product, so nothing cancels: not where the load ends, and not of a short load.
+value c_0 + c_1 s + c_2 s^2 + ... per length, where s = (end - u)/width.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import casadi as ca
 
 from ..base.arrays import Expression
 from ..base.quantities import Output
-from ..base.tables import Terms, table_of
+from ..base.tables import table_of
 from ..declare.density import Density, shifted
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Vector
@@ -110,52 +104,3 @@ def distributed_loads_of(outputs: Iterable[Output], link: str) -> dict[str, int]
             many = 0 if output.power is None else output.power + 1
             found[output.load_point] = max(found.get(output.load_point, 0), many)
     return found
-
-
-def distributed_force(
-    outputs: Mapping[Column, ca.SX], link: str, length: ca.SX, terms: Terms, ratio: ca.SX
-) -> Iterator[Expression]:
-    """The parts of a section force at a ratio by what acts along a link of a length [m]: loads by
-    their arms, couples of slices.
-    """
-    for load, powers in distributed_loads_of(
-        (key for key in outputs if isinstance(key, Output)), link
-    ).items():
-        for direction, sign, arm in (
-            (terms.distributed, terms.arm or 1, bool(terms.arm)),
-            (terms.couple, 1, False),
-        ):
-            if Output("spread", link, direction, load, 0) in outputs:
-                yield sign * _force_of_load(
-                    outputs, (link, load), length, powers, direction, ratio, arm=arm
-                )
-
-
-def _force_of_load(
-    outputs: Mapping[Column, Expression],
-    of: tuple[str, str],
-    length: Expression,
-    powers: int,
-    direction: str,
-    ratio: Expression,
-    *,
-    arm: bool,
-) -> Expression:
-    """The force of a link's load along it, the part that a section at a ratio carries in a
-    direction, or with ``arm`` its moment.
-    """
-    link, load = of
-
-    def value(member: str, power: int | None = None) -> Expression:
-        return outputs[Output("spread", link, member, load, power)]
-
-    width, end = value("width"), value("end")
-    x = ca.fmin(ca.fmax((end - ratio) / width, 0), 1)
-    reach, lever = length * width, length * ca.fmax(end - width - ratio, 0)
-
-    def terms() -> Iterator[Expression]:
-        for power in range(powers):
-            share = value(direction, power) * (reach * x ** (power + 1) / (power + 1))
-            yield share * (reach * x / (power + 2) + lever) if arm else share
-
-    return sum(terms(), ca.SX(0))

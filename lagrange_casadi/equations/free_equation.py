@@ -17,12 +17,12 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from ..arithmetic.scalars import graph
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..declare.scene import Scene
 from ..declare.torques import Law, torque_of
 from ..errors import DeclarationError
-from .checks import Check
 from .derive import compiled_for
 from .program import Program
 from .reflected_inertia import reflected_inertia
@@ -100,15 +100,9 @@ def free_equation(scene: Scene, drive: Law, load: Law, values: Mapping[str, floa
     taken = (reached - inertia * found - change * rate**2 / 2.0) * rate
     rows = [found, reached, pushed + added[0], resisting, taken, inertia * rate**2 / 2.0, -by]
     rows += [-by_rate / by, -1.0 / by, found / by, sine]
-    all_rows = ca.densify(ca.vertcat(*rows))
-    state = ca.Function(
-        "state",
-        [t, d, rate, z, added, p],
-        [all_rows],
-        ["t", "angle", "speed", "z", "added", "p"],
-        ["out"],
-        {"cse": True},
-    )
+    all_rows = ca.vertcat(*rows)
+    given = {"t": t, "angle": d, "speed": rate, "z": z, "added": added, "p": p}
+    state = graph("state", given, out=all_rows)
     slides = scene.mechanism.coordinates[joint][1].kind == "slide"
     timed = bool(ca.depends_on(all_rows, t))
     return FreeEquation(program, joint, state, _loops(program), timed, slides)
@@ -166,8 +160,6 @@ def _loops(program: Program) -> ca.Function | None:
 def _sine(program: Program, out: ca.SX) -> ca.SX:
     """The least of the loops' sines: a closed form has its square, an iterated loop a volume."""
     found = ca.SX(1.0)
-    for k, check in enumerate(program.columns):
-        if isinstance(check, Check) and check.kind == "closure":
-            iterated = program.iterates(str(check.part))
-            found = ca.fmin(found, ca.fabs(out[k]) if iterated else ca.sqrt(out[k]))
+    for name, k in program.checks("closure").items():
+        found = ca.fmin(found, ca.fabs(out[k]) if program.iterates(name) else ca.sqrt(out[k]))
     return found

@@ -68,10 +68,8 @@ def solve(
     symbols = column(one.friction.symbol for one in found)
     n = len(found)
     pressing = column(x for one in found for contact in one.contacts for x in contact.pressing)
-    slopes, indeterminate_slopes = (
-        ca.jacobian(pressing, symbols),
-        ca.jacobian(pressing, indeterminate),
-    )
+    slopes = ca.jacobian(pressing, symbols)
+    indeterminate_slopes = ca.jacobian(pressing, indeterminate)
     free = ca.substitute(
         pressing, ca.vertcat(symbols, indeterminate), ca.SX.zeros(n + indeterminate.numel())
     )

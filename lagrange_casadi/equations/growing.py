@@ -19,7 +19,7 @@ from ..geometry.frames import Carried, Frame
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, plus, times
 from .joints import orientation, turning_axes
-from .multibody import Coordinate, Turned, own_coordinate, place_along, rates_along
+from .multibody import Coordinate, Turned, motion_along, own_coordinate
 from .spherical import SphericalCoordinates
 from .tree import Branch, Tree
 from .two_force_links import TwoForceLink, two_force_frame
@@ -116,12 +116,8 @@ class Grown:
                 known = (
                     counted or measure.axis.kind == "slide" or (local is not None and local.driven)
                 )
-                place = (
-                    place_along(of, measure.axis, self.frames, self.coordinates)
-                    if known
-                    else self._counted_angle(of, measure.axis)
-                )
-                values += [place, *rates_along(of, measure.axis, self.frames, self.coordinates)]
+                place, *rates = motion_along(of, measure.axis, self.frames, self.coordinates)
+                values += [place if known else self._counted_angle(of, measure.axis), *rates]
             elif isinstance(of, Point):
                 frame, many = self.frames[of.body.name], len(measure.places)
                 speed, acceleration = frame.motion_of(of.place)
@@ -148,7 +144,7 @@ class Grown:
                 c, s, angle = turn.c, turn.s, turn.angle
             else:
                 assert axis is not None
-                angle = place_along(of, axis, self.frames, self.coordinates)
+                angle, *_ = motion_along(of, axis, self.frames, self.coordinates)
                 c, s = ca.cos(angle), ca.sin(angle)
             symbol = ca.SX.sym(f"{name}_seen")
             self.turned[name] = Turned(name, symbol, ca.SX(c), ca.SX(s), ca.SX(angle))
@@ -183,10 +179,8 @@ class Grown:
         if not isinstance(base, Carried):
             return Frame(*motion)
         if free := [coordinate for coordinate in coordinates if coordinate.spherical is not None]:
-            speed, acceleration = (
-                rotation.resolve(moved.speed),
-                rotation.resolve(moved.acceleration),
-            )
+            speed = rotation.resolve(moved.speed)
+            acceleration = rotation.resolve(moved.acceleration)
             local = Frame(
                 speed=speed,
                 acceleration=acceleration,

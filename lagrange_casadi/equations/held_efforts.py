@@ -8,7 +8,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..declare.scene import Scene, Wanted
@@ -54,15 +54,7 @@ def held_efforts(scene: Scene) -> HeldEfforts:
         if slopes[k, :].nnz()
     }
     out = ca.substitute(column(found.values()), forces.free, ca.SX.zeros(forces.free.numel()))
-    names = ["t", "d", "d_rate", "d_acceleration", "z", "p", "signs"]
-    instant = ca.Function(
-        "held",
-        [*moving.inputs, column(signs.values())],
-        [ca.densify(out)],
-        names,
-        ["out"],
-        {"cse": True},
-    )
+    instant = graph("held", moving.inputs | {"signs": column(signs.values())}, out=out)
     every_way = (
         name
         for name, load in frictions_of(mechanism).items()

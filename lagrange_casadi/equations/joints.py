@@ -126,10 +126,8 @@ def reaction(
         force = plus(force, times(multipliers[k], direction))
     held = _held(joint)
     if held:
-        base, misaligned = (
-            parent.rotation.then(orientation(joint)),
-            misalignment(joint, parent, child),
-        )
+        base = parent.rotation.then(orientation(joint))
+        misaligned = misalignment(joint, parent, child)
         for k, (local, across) in enumerate(held, len(places)):
             moment = plus(
                 moment, times(multipliers[k], base.apply(cross(misaligned.apply(local), across)))
@@ -243,10 +241,8 @@ def _residuals_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[R
     speed, acceleration = residual_motion(joint, parent, child)
     slides = sum(freedom.move == "slide" for freedom in joint.freedoms)
     if not slides:
-        distance, many = (
-            minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place)),
-            len(_across(joint, parent)),
-        )
+        distance = minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place))
+        many = len(_across(joint, parent))
         yield from zip(distance[:many], speed[:many], acceleration[:many], strict=True)
         return
     distance, held = apart(joint, parent, child), _across(joint, parent)

@@ -18,7 +18,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..declare.directions import most_across
 from ..errors import AssemblyError
 from ..geometry.vectors import AXES
@@ -398,13 +398,10 @@ class _Solver:
         body, newton, found = self.multibody, self.newton(), self.found
         if body.sphericals:
             found = found.with_values(self.iterated.placed)
-        for two_force_link in (
-            two_force_link
-            for two_force_link in body.tree.two_force_links
-            if not two_force_link.aimed
-        ):
-            along = self.numbers.of(column(body.frames[two_force_link.link.name].rotation.x))
-            found.note(column(two_force_link.aside), column(AXES[most_across(along)]))
+        for two_force_link in body.tree.two_force_links:
+            if not two_force_link.aimed:
+                along = self.numbers.of(column(body.frames[two_force_link.link.name].rotation.x))
+                found.note(column(two_force_link.aside), column(AXES[most_across(along)]))
         for spherical in body.sphericals:
             found.note(spherical.side, ca.SX(self._side(spherical)))
             found.note(spherical.axes, self.iterated.placed(spherical.axes))
@@ -417,24 +414,16 @@ class _Solver:
         residuals: dict[str, Any] = {}
         redundancy_residuals: dict[str, Any] = {}
         for block in blocks:
-            rates, accelerations = (
-                column(c.rate for c in block.unknown),
-                column(c.acceleration for c in block.unknown),
-            )
+            rates = column(c.rate for c in block.unknown)
+            accelerations = column(c.acceleration for c in block.unknown)
             still = ca.SX.zeros(len(block.unknown))
             system = LinearSystem.of(found.put_into(block.jacobian))
-            found.note(
-                rates,
-                system.solve(-found.put_into(ca.substitute(block.residual_rate, rates, still))),
-            )
-            found.note(
-                accelerations,
-                system.solve(
-                    -found.put_into(
-                        ca.substitute(block.residual_acceleration, accelerations, still)
-                    )
-                ),
-            )
+            for symbols, residual in (
+                (rates, block.residual_rate),
+                (accelerations, block.residual_acceleration),
+            ):
+                remaining = found.put_into(ca.substitute(residual, symbols, still))
+                found.note(symbols, system.solve(-remaining))
             systems.append(system)
             if block in self.residuals:
                 side = math.copysign(1.0, self.numbers.of(system.volume)[0])
@@ -492,20 +481,10 @@ class _Solver:
             return None
         residuals = self.found.put_into(column(block.residual for block in self.residuals))
         correction, relative = self.iterated.step(residuals)
-        inputs = [
-            self.iterated.symbols,
-            self.multibody.mechanism.time,
-            self.d,
-            self.multibody.mechanism.symbols,
-        ]
-        step = ca.Function(
-            "loops",
-            inputs,
-            [correction, relative],
-            ["z", "t", "d", "p"],
-            ["correction", "size"],
-            {"cse": True},
-        )
+        mechanism = self.multibody.mechanism
+        inputs = {"z": self.iterated.symbols, "t": mechanism.time, "d": self.d}
+        inputs["p"] = mechanism.symbols
+        step = graph("loops", inputs, correction=correction, size=relative)
         names = tuple(block.name for block in self.residuals)
         joints = ", ".join(block.joints for block in self.residuals)
         return NewtonLoop(

@@ -25,16 +25,16 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base.arrays import Expression
 from ..base.quantities import Output, force_members
 from ..base.tables import table_of
-from ..declare.compliant import Elastic
 from ..declare.density import Density
 from ..declare.limits import END
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
 from ..declare.scene import Wanted
+from ..declare.scene_arguments import Elastic
 from ..errors import DeclarationError, one_line
 from .checks import Column
 from .indeterminate import Forces
@@ -116,7 +116,7 @@ class Completion:
         least: LeastEnergy,
         forces: Forces,
         columns: Mapping[Column, Expression],
-        inputs: Sequence[ca.SX],
+        inputs: Mapping[str, ca.SX],
     ) -> Completion:
         """Put together what is known of ``forces`` that are among the ``columns`` of a graph, over
         its ``inputs``.
@@ -124,15 +124,10 @@ class Completion:
         doubted = {
             output: size for output, size in (forces.before or {}).items() if output in columns
         }
-        rows = ca.densify(
-            ca.vertcat(*doubted.values(), least.through, least.idle, least.chosen, least.residual)
+        rows = ca.vertcat(
+            *doubted.values(), least.through, least.idle, least.chosen, least.residual
         )
-        names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-        return cls(
-            tuple(doubted),
-            least.firm,
-            ca.Function("completion", inputs, [rows], names, ["out"], {"cse": True}),
-        )
+        return cls(tuple(doubted), least.firm, graph("completion", inputs, out=rows))
 
     def reasons(self, through: Iterable[bool], *, idle: bool) -> tuple[str, ...]:
         """Reasons why something stays indeterminate: by which of the firm links it goes

@@ -47,11 +47,7 @@ def solve_leg(
 def _leg(
     joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody: Multibody
 ) -> tuple[ClosedForm, ...]:
-    branch = next(
-        branch
-        for branch in multibody.tree.branches
-        if first.name in [one.coordinate for one in branch.joint.axes]
-    )
+    branch = multibody.tree.branch_of[multibody.mechanism.coordinates[first.name][0]]
     foot = multibody.frames[branch.near.body.name].place_of(branch.near.place)
     axis = times(branch.sign, multibody.axes[first.name])
     ends = [

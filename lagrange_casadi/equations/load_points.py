@@ -78,10 +78,8 @@ def gathered(
                 for outputs, place in named
             ]
             shares = [(outputs, load, place) for outputs, load, place in shares if is_open(load)]
-            gathered_loads, places = (
-                [load for _, load, _ in shares],
-                [place for *_, place in shares],
-            )
+            gathered_loads = [load for _, load, _ in shares]
+            places = [place for *_, place in shares]
             loads = _together(gathered_loads, places, sign * link.length, coordinates, is_open)
             for (outputs, _, _), load in zip(shares, loads, strict=True):
                 found |= zip(outputs, ca.vertsplit(load), strict=True)

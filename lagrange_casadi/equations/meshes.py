@@ -18,7 +18,7 @@ from ..declare.meshes import Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Point, Vector
 from ..geometry.vectors import cross, nil, plus, times
 from .growing import Grown
-from .multibody import Applied, Multibody, rates_along
+from .multibody import Applied, Multibody
 from .pressing import Contact, FrictionContact, slowest_of
 
 
@@ -62,7 +62,7 @@ def braking(multibody: Multibody, loss: Loss, multiplier: Expression) -> Frictio
     """Friction loss of a transmission, by its multiplier."""
     rate, acceleration = ca.SX(0), ca.SX(0)
     for sign, joint in loss.rotations:
-        one, change = rates_along(joint, joint.axes[0], multibody.frames, multibody.coordinates)
+        _, one, change = multibody.motion_along(joint, joint.axes[0])
         rate, acceleration = rate + sign * one, acceleration + sign * change
     contact = Contact(loss.arm, (multiplier,), loss.lean)
     return FrictionContact(

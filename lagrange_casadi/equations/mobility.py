@@ -28,7 +28,8 @@ import casadi as ca
 
 from ..arithmetic.scalars import column
 from ..base.arrays import Expression
-from ..base.quantities import Output, force_members, law_members, load_point_members, local_members
+from ..base.quantities import Output, force_members
+from ..base.tables import table_of
 from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.limits import at_end
@@ -50,7 +51,6 @@ from .multibody import Multibody, own_coordinate
 from .multipliers import multipliers_of
 from .pressing import frictions_of, joint_friction
 from .residuals import reach
-from .tree import Branch
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,6 +228,7 @@ def _section_law(
     stations from what acts there.
     """
     link, space = multibody.mechanism.links[name], multibody.mechanism.space
+    table = table_of(space)
     slopes = _material(multibody, name)
     tip = Action()
     load_points: dict[Column, Any] = {}
@@ -242,7 +243,7 @@ def _section_law(
         members = (*acts, place[0] / link.length)
         load_points |= {
             Output("station", name, member, source): value
-            for member, value in zip(load_point_members(space), members, strict=True)
+            for member, value in zip(table.load_point, members, strict=True)
         }
     by_mass, by_moment = ([-slopes[k, column] for k in range(slopes.size1())] for column in (0, 1))
     at_tip, about = list(tip.force), tip.couple
@@ -260,7 +261,7 @@ def _section_law(
         law += [*plane, about[1], about[0]]
     local = {
         Output("law", name, member): ca.SX(value)
-        for member, value in zip(law_members(space), law, strict=True)
+        for member, value in zip(table.law, law, strict=True)
     }
     frame = multibody.accelerated[name].along_axis()
     return (
@@ -411,14 +412,7 @@ def _in_ground_axes(
     for loop in multibody.loop_equations:
         if loop.joint is joint:
             return Action(*reaction(joint, parent, child, loop.multipliers))
-    two_force_link = next(
-        (
-            two_force_link
-            for two_force_link in multibody.tree.two_force_links
-            if joint in two_force_link.joints
-        ),
-        None,
-    )
+    two_force_link = multibody.tree.two_force_link_of.get(joint)
     if two_force_link is not None:
         x, y, z = ca.vertsplit(actions[joint.name])
         force = Action((x, y, z))
@@ -439,15 +433,11 @@ def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, ca.SX])
         for c in rotations
         if c is not None
     ] + [orientation(joint)]
-    if joint.child.body is _branch(multibody, joint).far.body:
+    if joint.child.body is multibody.tree.branch_of[joint].far.body:
         for rotation in reversed(turned):
             force, moment = rotation.apply(force), rotation.apply(moment)
     child = functools.reduce(Rotation.then, turned)
     return Action(*supported(joint, Frame(), Frame(rotation=child), force, moment))
-
-
-def _branch(multibody: Multibody, joint: Joint) -> Branch:
-    return next(branch for branch in multibody.tree.branches if branch.joint is joint)
 
 
 def _on_child(
@@ -456,7 +446,7 @@ def _on_child(
     """Force and moment on a joint's child, from a mobility of the tree, in the axes of the
     mobility.
     """
-    action = _branch(multibody, joint).sign * actions[joint.name]
+    action = multibody.tree.branch_of[joint].sign * actions[joint.name]
     if multibody.mechanism.space:
         x, y, z, *about = ca.vertsplit(action)
         return (x, y, z), ((about[0], about[1], about[2]) if about else ZERO)
@@ -467,11 +457,11 @@ def _on_joint_axes(joint: Joint, local: Action) -> dict[Column, Expression]:
     """A reaction on the axes of a joint's triad, which its parent carries: what ideal joints leave
     open lies along one of these.
     """
-    values = [dot(one, vector) for vector in (local.force, local.couple) for one in joint.triad]
-    names = local_members(moment=joint.bears_moment)
+    vectors = {"f": local.force} | ({"m": local.couple} if joint.bears_moment else {})
     return {
-        Output("reaction", joint.name, name): ca.SX(value)
-        for name, value in zip(names, values, strict=False)
+        Output("reaction", joint.name, letter + axis): ca.SX(dot(direction, vector))
+        for letter, vector in vectors.items()
+        for axis, direction in zip("uvw", joint.triad, strict=True)
     }
 
 

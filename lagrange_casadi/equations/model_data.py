@@ -12,7 +12,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base.arrays import Array, Expression
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
@@ -32,7 +32,7 @@ from ..declare.description import (
     template_of,
 )
 from ..declare.laws import Laws
-from ..declare.masses import ALL, masses_of
+from ..declare.mass_properties import ALL, masses_of
 from ..declare.parts import LineLoad, Link, Parameter
 from ..declare.scene import Scene
 from ..declare.stated import Stated
@@ -85,7 +85,7 @@ def template(scene: Scene) -> Template:
         found,
         content=found.content
         | {
-            "bars": [two_force_link.link.name for two_force_link in tree.two_force_links],
+            "bars": [one.link.name for one in tree.two_force_links],
             "unmeasured": unmeasured,
         },
     )
@@ -124,29 +124,20 @@ class ModelData(Graphs):
     @classmethod
     def of(cls, scene: Scene, laws: Laws) -> ModelData:
         """Return the data of a scene whose motions are ``laws``."""
-        mechanism, symbols = scene.mechanism, scene.mechanism.symbols
+        mechanism, given = scene.mechanism, {"p": scene.mechanism.symbols}
         return cls(
             rounding=_rounding(scene),
             parameters=mechanism.parameters,
             laws=laws,
             timing=scene.timing(),
             span=scene.span,
-            extent=ca.Function(
-                "extent",
-                [symbols],
-                [ca.densify(ca.SX(extent(mechanism)))],
-                ["p"],
-                ["extent"],
-                {"cse": True},
-            ),
+            extent=graph("extent", given, extent=extent(mechanism)),
             margins={
                 precision: scene.parameter_constraints(precision).margins()
                 for precision in PRECISIONS
             },
             corners=Corners.of(scene),
-            masses=ca.Function(
-                "masses", [symbols], [masses_of(mechanism)], ["p"], ["masses"], {"cse": True}
-            ),
+            masses=graph("masses", given, masses=masses_of(mechanism)),
             partial=tuple(
                 name
                 for name, load in mechanism.loads.items()

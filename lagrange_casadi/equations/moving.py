@@ -64,29 +64,16 @@ class Moving:
             pushed(scene.needs_drives, scene.weights),
             want.own,
         )
-        laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
-        motion = laws.motion
-        values = list(mechanism.values(scene.assembly).values())
-        first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
-        start = Start(scene.span[0], first, values)
-        solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
+        laws, start, solved = solved_motion(scene, body)
         solved, deviations = count_revolutions(
-            body, solved, motion, scene.span, start, _seeing(body, want)
+            body, solved, laws.motion, scene.span, start, _seeing(body, want)
         )
         return cls(scene, want, body, laws, start, solved, deviations)
 
     @property
-    def inputs(self) -> list[Expression]:
+    def inputs(self) -> dict[str, Expression]:
         """Arguments of every column."""
-        solved, mechanism = self.solved, self.scene.mechanism
-        return [
-            mechanism.time,
-            solved.driven,
-            solved.driven_rate,
-            solved.driven_acceleration,
-            solved.iterated,
-            mechanism.symbols,
-        ]
+        return instant_inputs(self.scene.mechanism, self.solved)
 
     def begins(self, expression: Expression) -> Expression:
         """An expression in the inputs where the motion starts."""
@@ -97,7 +84,7 @@ class Moving:
             newton.guess if newton else [],
             start.parameters,
         )
-        return ca.Function("start", self.inputs, [expression])(*at_start)
+        return ca.Function("start", [*self.inputs.values()], [expression])(*at_start)
 
     def columns(self) -> tuple[dict[Column, Expression], dict[Output, dict[Column, int]]]:
         """Columns that need no force: checks, motion and loads; and the sums of angles that loops
@@ -189,6 +176,28 @@ class Moving:
         return columns | dict(motions.items()) | _unmeasured_angles(body, motions), loop_angles
 
 
+def solved_motion(scene: Scene, body: Multibody) -> tuple[Laws, Start, kinematics.Kinematics]:
+    """The laws of a scene's driven coordinates, where its motion starts, and its loops solved."""
+    laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
+    values = list(scene.mechanism.values(scene.assembly).values())
+    first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
+    start = Start(scene.span[0], first, values)
+    posture = reference_posture(scene.mechanism) | dict(scene.posture)
+    return laws, start, kinematics.solve(body, posture, start)
+
+
+def instant_inputs(mechanism: Mechanism, solved: kinematics.Kinematics) -> dict[str, Expression]:
+    """The symbols that an instant of a mechanism is a function of, by name."""
+    return {
+        "t": mechanism.time,
+        "d": solved.driven,
+        "d_rate": solved.driven_rate,
+        "d_acceleration": solved.driven_acceleration,
+        "z": solved.iterated,
+        "p": mechanism.symbols,
+    }
+
+
 def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:
     """The expressions of loads, rows and multipliers that are evaluated, by what they are of."""
     parts = [
@@ -254,15 +263,11 @@ def _rolls(body: Multibody, want: Wanted) -> dict[Column, Expression]:
     """
     found: dict[Column, Any] = {}
     for two_force_link in body.tree.two_force_links:
-        beam = two_force_link.link.beam
-        if (
-            two_force_link.aimed
-            and beam is not None
-            and not beam.round
-            and two_force_link.link.name in want.sections
-        ):
-            part = across_link(two_force_link, body.frames[two_force_link.link.name].rotation.x)
-            found[Check("roll", two_force_link.link.name)] = dot(part, part)
+        link = two_force_link.link
+        turned = two_force_link.aimed and link.beam is not None and not link.beam.round
+        if turned and link.name in want.sections:
+            part = across_link(two_force_link, body.frames[link.name].rotation.x)
+            found[Check("roll", link.name)] = dot(part, part)
     return found
 
 

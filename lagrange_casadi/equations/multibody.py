@@ -285,74 +285,40 @@ class Multibody:
         return along, across
 
     def motion_along(self, joint: Joint, axis: Axis) -> tuple[ca.SX, ca.SX, ca.SX]:
-        """Coordinate, rate and acceleration of any joint along one of its axes, on the tree or
-        closing a loop.
-
-        Where loops set an angle, it is known up to whole turns.
+        """Coordinate, rate and acceleration of any joint along one of its axes: see
+        :func:`.motion_along`.
         """
-        place = place_along(joint, axis, self.frames, self.coordinates)
-        return place, *rates_along(joint, axis, self.frames, self.coordinates)
+        return motion_along(joint, axis, self.frames, self.coordinates)
 
 
-def place_along(
+def motion_along(
     joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]
-) -> Expression:
-    """A joint's coordinate along an axis; an angle counts turns, but where loops set it is known up
-    to them only.
+) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """Coordinate, rate and acceleration of a joint along one of its axes, on the tree or closing a
+    loop. An angle counts turns, but where loops set it is known up to them only.
+
+    Raises :class:`DeclarationError` for an angle of three that a joint that closes a loop has.
     """
     coordinate = own_coordinate(axis, coordinates)
     if coordinate is not None:
-        return coordinate.value
+        return coordinate.value, coordinate.rate, coordinate.acceleration
     parent, child = (frames[body.name] for body in joint.bodies)
     if axis.kind == "slide":
-        return ca.SX(slide(joint, parent, child, axis.direction))
-    if spherical := _spherical(axis, coordinates):
-        return ThreeRotations(joint, parent, child, spherical.side).angles[_number(joint, axis)]
-    _refuse_three(joint)
-    return ca.SX(turned(joint, _number(joint, axis), parent, child))
-
-
-def rates_along(
-    joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]
-) -> tuple[Expression, Expression]:
-    """Rate and acceleration of a joint's coordinate along an axis."""
-    coordinate = own_coordinate(axis, coordinates)
-    if coordinate is not None:
-        return coordinate.rate, coordinate.acceleration
-    parent, child = (frames[body.name] for body in joint.bodies)
-    if axis.kind == "slide":
+        place = slide(joint, parent, child, axis.direction)
         rate, acceleration = slide_motion(joint, parent, child, axis.direction)
-        return ca.SX(rate), ca.SX(acceleration)
-    if spherical := _spherical(axis, coordinates):
-        rotations, number = (
-            ThreeRotations(joint, parent, child, spherical.side),
-            _number(joint, axis),
-        )
-        return rotations.rates[number], rotations.accelerations[number]
-    _refuse_three(joint)
-    rate, acceleration = turning(joint, _number(joint, axis), parent, child)
-    return ca.SX(rate), ca.SX(acceleration)
-
-
-def _refuse_three(joint: Joint) -> None:
+        return ca.SX(place), ca.SX(rate), ca.SX(acceleration)
+    number = [one.coordinate for one in joint.axes if one.kind == "angle"].index(axis.coordinate)
+    for spherical in (one.spherical for one in coordinates if one.name == axis.coordinate):
+        if spherical is not None:
+            turns = ThreeRotations(joint, parent, child, spherical.side)
+            return turns.angles[number], turns.rates[number], turns.accelerations[number]
     if joint.turns > 2:
         raise DeclarationError(
             f"joint '{joint.name}' closes a loop, where the angles of a joint with three axes of"
             " rotation are not evaluated"
         )
-
-
-def _spherical(axis: Axis, coordinates: tuple[Coordinate, ...]) -> SphericalCoordinates | None:
-    """The ball one of whose turns an axis is."""
-    return next(
-        (c.spherical for c in coordinates if c.spherical is not None and c.name == axis.coordinate),
-        None,
-    )
-
-
-def _number(joint: Joint, axis: Axis) -> int:
-    """Number of an axis among a joint's turns."""
-    return [one.coordinate for one in joint.axes if one.kind == "angle"].index(axis.coordinate)
+    rate, acceleration = turning(joint, number, parent, child)
+    return ca.SX(turned(joint, number, parent, child)), ca.SX(rate), ca.SX(acceleration)
 
 
 def own_coordinate(axis: Axis, coordinates: tuple[Coordinate, ...]) -> Coordinate | None:

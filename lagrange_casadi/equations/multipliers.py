@@ -73,10 +73,8 @@ def _where_they_touch(
     """
     sizes = [0, *itertools.accumulate(loop.multipliers.numel() for loop in loops)]
     rows = [sizes[k] for k, loop in enumerate(loops) if loop in touching]
-    symbols, local = (
-        column(loop.multipliers for loop in touching),
-        column(found[row] for row in rows),
-    )
+    symbols = column(loop.multipliers for loop in touching)
+    local = column(found[row] for row in rows)
     every = transmissions_of(multibody.mechanism)
     idle = column(transmission.symbol for transmission in every.values())
     local = ca.substitute(local, idle, ca.SX.zeros(idle.numel()))
@@ -84,10 +82,8 @@ def _where_they_touch(
         others = column(loop.multipliers for loop in multibody.loop_equations if loop.name in every)
         solved = ca.substitute(local, others, ca.SX.zeros(others.numel()))
     else:
-        slopes, rest = (
-            ca.jacobian(local, symbols),
-            ca.substitute(local, symbols, ca.SX.zeros(symbols.numel())),
-        )
+        slopes = ca.jacobian(local, symbols)
+        rest = ca.substitute(local, symbols, ca.SX.zeros(symbols.numel()))
         solved = -ca.solve(slopes, rest)
     found, values = (ca.substitute(part, symbols, solved) for part in (found, values))
     for k, row in enumerate(rows):

@@ -12,10 +12,10 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.posture import posture_entry
+from ..declare.scene_arguments import posture_entry
 from ..errors import PostureError
 from .blocks import Block
-from .multibody import Coordinate, Multibody, own_coordinate, place_along
+from .multibody import Coordinate, Multibody, own_coordinate
 from .substitution import Numbers
 
 
@@ -38,7 +38,7 @@ def measured(
             joint, axis = multibody.mechanism.coordinates[name]
             if joint.turns > 2 and own_coordinate(axis, multibody.coordinates) is None:
                 continue
-            expression = ca.SX(place_along(joint, axis, multibody.frames, multibody.coordinates))
+            expression, *_ = multibody.motion_along(joint, axis)
         of = (owner.get(symbol.element_hash()) for symbol in ca.symvar(expression))
         known[name] = expression, {c for c in of if c is not None}
     return known

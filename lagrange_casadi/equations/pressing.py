@@ -16,7 +16,7 @@ from ..declare.parts import Friction, Vector
 from ..geometry.frames import Frame
 from ..geometry.vectors import dot, minus, times
 from .growing import Grown
-from .multibody import Multibody, rates_along
+from .multibody import Multibody
 from .residuals import reach
 
 _REST = 1e-12
@@ -113,11 +113,11 @@ def joint_friction(
     """A friction in a joint whose parent does this to its child, in ground axes, the couple about
     the child's point.
     """
-    joint, coordinates = friction.joint, multibody.coordinates
+    joint = friction.joint
     if friction.every_way:
         rate, acceleration = (_size(x) for x in turning(joint, multibody.frames))
     else:
-        rate, acceleration = rates_along(joint, friction.axis, multibody.frames, coordinates)
+        _, rate, acceleration = multibody.motion_along(joint, friction.axis)
     contacts: tuple[Contact, ...] = ()
     if friction.dry and multibody.mechanism.space:
         contacts = _in_space(multibody, friction, force, couple)
@@ -132,10 +132,9 @@ def joint_friction(
             contacts = (Contact(1.0, (pressing, 2 * couple[2] / friction.length), edges=True),)
     beside: tuple[Any, ...] = ()
     if friction.beside is not None:
-        lever = friction.radius if friction.beside.kind == "angle" else 1.0
-        beside = tuple(
-            lever * x for x in rates_along(joint, friction.beside, multibody.frames, coordinates)
-        )
+        lever: Expression = friction.radius if friction.beside.kind == "angle" else 1.0
+        _, *rates = multibody.motion_along(joint, friction.beside)
+        beside = tuple(lever * x for x in rates)
     slowest = slowest_of(multibody, slides=friction.axis.kind != "angle")
     return FrictionContact(friction, contacts, rate, acceleration, slowest, beside)
 

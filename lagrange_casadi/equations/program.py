@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..arithmetic.scalars import graph, inputs_of
+from ..base.arrays import Array, Expression
 from ..base.graph_text import dumps, loads
-from ..base.quantities import Output, law_members, load_point_members
+from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..declare.corners import Corners
 from ..declare.description import Place, Template
@@ -30,10 +31,9 @@ from .checks import Check, Column, Kind
 from .fibre_stresses import LinkStress
 from .iteration import NewtonLoop
 from .least_energy import Completion
-from .mobility import load_points_of
 from .model_data import ModelData
 from .section_function import SectionInputs, section
-from .status import Bound, Rule, beside_of, bounds_of, rules_of, status_of
+from .status import beside_of, bounds_of, rules_of, status_of
 
 Turns: TypeAlias = tuple[tuple[int, int], ...]
 """Numbers of parts of an angle, and the sign of each."""
@@ -99,29 +99,10 @@ class Program(Graphs):
             for angle, signs in self.loop_angles.items()
         )
 
-    @property
-    def bounds(self) -> tuple[Bound, ...]:
-        """Limits of columns."""
-        return bounds_of(self)
-
-    @property
-    def rules(self) -> tuple[Rule, ...]:
-        """The rules of an instant, in the order in which they are reported."""
-        return rules_of(self)
-
-    @property
-    def status(self) -> ca.Function:
-        """The function ``status(checks, limits, beside, iterated)``: the number of the first of
-        :attr:`rules` that is broken.
-        """
-        return status_of(self)
-
-    @property
-    def beside(self) -> ca.Function:
-        """The function ``beside(before, checks, next, after, most)``: what :attr:`status` sees of
-        other instants.
-        """
-        return beside_of(self)
+    bounds = cached_property(bounds_of)
+    rules = cached_property(rules_of)
+    status = symbolic_property(status_of)
+    beside = symbolic_property(beside_of)
 
     def seen(self, constraint: str, out: Array) -> Array:
         """Symbols, (..., symbols, t), of a constraint that may have kinks, from columns ``out``
@@ -160,22 +141,10 @@ class Program(Graphs):
     @cached_property
     def links(self) -> tuple[str, ...]:
         """The links of which a whole section law was wanted, and is there."""
-        space = self.data.space
-        needed = {
-            link: (
-                [Output("law", link, member) for member in law_members(space)]
-                + [
-                    Output("station", link, member, load_point)
-                    for load_point in load_points_of(self.outputs, link)
-                    for member in load_point_members(space)
-                ]
-            )
-            for link in self.wanted.sections
-        }
         return tuple(
             link
-            for link, outputs in needed.items()
-            if all(output in self.outputs for output in outputs)
+            for link in self.wanted.sections
+            if SectionInputs.of(self.outputs, link).among(self.outputs)
         )
 
     @symbolic_property
@@ -193,12 +162,8 @@ class Program(Graphs):
             function = section(inputs.alike(), density.breaks, sizes, END["double"])
             law, acting, _, xi = function.sx_in()
             numbers = ca.vertcat(length, *itertools.chain.from_iterable(density.cells))
-            forces = function(law, acting, numbers, xi)
-            names = ["law", "acting", "p", "xi"]
-            options = {"cse": True}
-            found[link] = ca.Function(
-                "section", [law, acting, p, xi], [forces], names, ["forces"], options
-            )
+            given = {"law": law, "acting": acting, "p": p, "xi": xi}
+            found[link] = graph("section", given, forces=function(law, acting, numbers, xi))
         return found
 
     @symbolic_property
@@ -216,6 +181,12 @@ class Program(Graphs):
         """The outputs that may be indeterminate, and the columns that show at which instants."""
         checks = ((column, k) for k, column in enumerate(self.columns) if isinstance(column, Check))
         return {check.part: k for check, k in checks if isinstance(check.part, Output)}
+
+    @symbolic
+    def with_columns(self, columns: Sequence[Column], out: Expression) -> Program:
+        """The Program with other columns, ``out`` as expressions of the symbols of ``instant``."""
+        instant = graph("instant", inputs_of(self.instant), out=out)
+        return replace(self, instant=instant, columns=tuple(columns))
 
     def iterates(self, closure: str) -> bool:
         """Return whether the loops of a closure are iterated."""

@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.interpret import Step, expressed, followable, replay, steps
-from ..arithmetic.scalars import column, less, product
+from ..arithmetic.scalars import column, graph, inputs_of, less, product
 from ..base.arrays import Expression
 from ..base.symbolic import symbolic
 
@@ -76,11 +76,10 @@ def _replayed(
     """The function of one output again, with what ``made`` makes of the number of a step, the step
     and its operands.
     """
-    inputs = function.sx_in()
-    (nonzeros,) = replay(function, [given.nonzeros() for given in inputs], made)
+    given = inputs_of(function)
+    (nonzeros,) = replay(function, [symbols.nonzeros() for symbols in given.values()], made)
     out = ca.SX(function.sparsity_out(0), column(nonzeros))
-    names = [function.name_in(i) for i in range(function.n_in())]
-    return ca.Function(function.name(), inputs, [out], names, [function.name_out(0)], {"cse": True})
+    return graph(function.name(), given, **{function.name_out(0): out})
 
 
 def _divisors(instructions: Sequence[Step], parameters: int) -> dict[int, tuple[int, bool]]:

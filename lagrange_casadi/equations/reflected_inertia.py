@@ -13,16 +13,14 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, entries, graph
 from ..base.quantities import Output
 from ..declare.scene import Scene, Wanted
-from ..declare.spatial import reference_posture
-from . import kinematics
 from .assembly import assemble
 from .checks import Column
 from .derive import assembled
-from .kinematics import Start
 from .model_data import ModelData
+from .moving import instant_inputs, solved_motion
 from .program import Program
 from .tree import span
 
@@ -47,47 +45,24 @@ def reflected_inertia(scene: Scene, parameters: Mapping[str, float]) -> Reflecte
     mechanism = scene.mechanism
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
     body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())
-    driven = tuple(c.name for c in body.coordinates if c.driven)
-    laws = scene.prescribed.only(driven)
-    values = list(mechanism.values(scene.assembly).values())
-    first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
-    start = Start(scene.span[0], first, values)
-    solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
+    laws, _, solved = solved_motion(scene, body)
+    driven = laws.joints
     energy = ca.substitute(
         ca.SX(body.kinetic), column(body.velocities.symbols), column(body.velocities.graphs)
     )
     still = body.mobility_rates
     energy = solved.evaluate(ca.substitute(energy, still, ca.SX.zeros(still.numel())))
-    user_outputs = {
-        c.name: solved.driven_rate[k] for k, c in enumerate(c for c in body.coordinates if c.driven)
-    }
+    given = dict(zip(driven, entries(solved.driven_rate), strict=True))
     rates = [
-        user_outputs[name]
-        if name in user_outputs
-        else solved.evaluate(ca.SX(body.motion_along(*mechanism.coordinates[name])[1]))
+        given[name]
+        if name in given
+        else solved.evaluate(body.motion_along(*mechanism.coordinates[name])[1])
         for name in drives
     ]
-    matrix, by_rate = (
-        ca.hessian(energy, solved.driven_rate)[0],
-        ca.jacobian(column(rates), solved.driven_rate),
-    )
-    out = ca.densify(ca.vertcat(ca.vec(matrix.T), ca.vec(by_rate.T)))
-    inputs = [
-        mechanism.time,
-        solved.driven,
-        solved.driven_rate,
-        solved.driven_acceleration,
-        solved.iterated,
-        mechanism.symbols,
-    ]
-    instant = ca.Function(
-        "instant",
-        inputs,
-        [out],
-        ["t", "d", "d_rate", "d_acceleration", "z", "p"],
-        ["out"],
-        {"cse": True},
-    )
+    matrix = ca.hessian(energy, solved.driven_rate)[0]
+    by_rate = ca.jacobian(column(rates), solved.driven_rate)
+    out = ca.vertcat(ca.vec(matrix.T), ca.vec(by_rate.T))
+    instant = graph("instant", instant_inputs(mechanism, solved), out=out)
     columns: list[Column] = [
         Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven
     ]

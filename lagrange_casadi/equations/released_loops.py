@@ -22,9 +22,9 @@ _STEPS = 200
 _CLOSED = 1e-11
 _SINGULAR = 1e-10
 _DEPENDENT = 1e-9
-_NO_SLOPE = 1e-14
+_NO_SLOPE = 10.0 * _CLOSED
 """A coordinate's slopes that are smaller are rounding, though they be all that it has: a guide that
-is there twice.
+is there twice, or a turntable, which turns a loop with the gap that it may have.
 """
 
 

@@ -29,6 +29,7 @@ from ..errors import DeclarationError
 from .iteration import NewtonLoop
 from .kinematics import Kinematics, Start
 from .multibody import Multibody, Turned
+from .winding import swing
 
 REACH = math.pi - 0.35
 """Largest swing of an angle [rad] from its middle for which its revolution is certain."""
@@ -96,9 +97,7 @@ def count_revolutions(
             else ca.SX(rule.centre)
         )
         c, s = (solved.evaluate(part) for part in (turned.cosine, turned.sine))
-        deviations[turned.name] = ca.atan2(
-            s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about)
-        )
+        deviations[turned.name] = swing(c, s, about)
         values[turned.name] = deviations[turned.name] + about
     extended = solved.found.and_of(
         column(turned.symbol for turned in multibody.turned),

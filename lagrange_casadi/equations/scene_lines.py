@@ -9,7 +9,8 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Expression
-from ..declare.motion import Motion, motion_function
+from ..declare.laws import motion_function
+from ..declare.motion import Motion
 from ..declare.parts import Constraint, Force, Friction, LineLoad, Load, Torque
 from ..declare.scene import Scene
 from ..declare.spatial import reference_posture

@@ -6,22 +6,30 @@ along it ``width``, ``end`` and, power by power, its coefficients. ``matter`` is
 of the link (:meth:`.ModelData.mass_properties`): its length, and the coefficients of its density
 per unit of the ratio. The result are the forces of :attr:`.Table.forces`, resultants last.
 
-A section carries what acts beyond its :func:`edge`. Own outputs, derivatives, stresses, exported C
-and the functions along a link that grids are filled from (:mod:`..instants.basis`) all come from
-here.
+A section carries what acts beyond its :func:`edge`. Of a load along the link
+(:mod:`.distributed_loads`) the section at u carries, with x = (end - u)/width kept from 0 to 1, L =
+l width and a = l max(end - width - u, 0), of each coefficient
+
+    c_j L x^(j+1)/(j+1)                              of a force,
+    c_j L x^(j+1)/(j+1) (L x/(j+2) + a)              of a moment.
+
+Each is a product, so nothing cancels: not where the load ends, and not of a short load.
+
+Own outputs, derivatives, stresses, exported C and the functions along a link that grids are filled
+from (:mod:`..instants.basis`) all come from here.
 """
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
 import casadi as ca
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base.arrays import Expression, Operand
 from ..base.quantities import Output, parts_along
 from ..base.symbolic import symbolic
@@ -29,7 +37,7 @@ from ..base.tables import PLANE, Table, Terms, table_of
 from ..beams.properties import larger, smaller
 from ..declare.density import Density
 from .checks import Column
-from .distributed_loads import distributed_force, distributed_loads_of
+from .distributed_loads import distributed_loads_of
 from .mobility import load_points_of
 
 Side = Literal["base", "tip"]
@@ -87,7 +95,7 @@ class Section:
             for side in SIDES
         ]
         for name in self.distributed_loads:
-            width, end = (self._of("spread", member, name) for member in ("width", "end"))
+            width, end = self._span(name)
             found += [Place(end), Place(end - width)]
         return found
 
@@ -115,7 +123,7 @@ class Section:
         total += sum(
             self._acting(terms, load_point, ratio, beyond) for load_point in self.load_points
         )
-        return sum(distributed_force(self.columns, self.link, self.length, terms, ratio), total)
+        return sum(self._distributed(terms, ratio), total)
 
     def _rows(self, terms: Terms, u: ca.SX) -> list[Expression]:
         """The functions along the link that go with the coefficients of a force."""
@@ -144,12 +152,43 @@ class Section:
             else ca.if_else(accelerated, value, 0)
         )
 
+    def _distributed(self, terms: Terms, ratio: ca.SX) -> Iterator[Expression]:
+        """The parts of a force by what acts along the link: loads by their arms, couples of slices
+        without.
+        """
+        parts = ((terms.distributed, terms.arm or 1, bool(terms.arm)), (terms.couple, 1, False))
+        for load, powers in self.distributed_loads.items():
+            for direction, sign, arm in parts:
+                if Output("spread", self.link, direction, load, 0) in self.columns:
+                    terms_here = self._along(load, powers, direction, ratio, arm=arm)
+                    yield sign * sum(terms_here, ca.SX(0))
+
+    def _along(
+        self, load: str, powers: int, direction: str, ratio: ca.SX, *, arm: bool
+    ) -> Iterator[Expression]:
+        """Terms of the force of a load that a section carries in a direction, or with ``arm`` of
+        its moment, power by power.
+        """
+        width, end = self._span(load)
+        x = ca.fmin(ca.fmax((end - ratio) / width, 0), 1)
+        reach, lever = self.length * width, self.length * ca.fmax(end - width - ratio, 0)
+        for power in range(powers):
+            value = self._of("spread", direction, load, power)
+            share = value * (reach * x ** (power + 1) / (power + 1))
+            yield share * (reach * x / (power + 2) + lever) if arm else share
+
+    def _span(self, load: str) -> tuple[Expression, Expression]:
+        """Width and end of a load along the link."""
+        return self._of("spread", "width", load), self._of("spread", "end", load)
+
     @property
     def _outputs(self) -> Iterator[Output]:
         return (column for column in self.columns if isinstance(column, Output))
 
-    def _of(self, group: str, member: str, load_point: str = "") -> Expression:
-        return self.columns[Output(group, self.link, member, load_point)]
+    def _of(
+        self, group: str, member: str, load_point: str = "", power: int | None = None
+    ) -> Expression:
+        return self.columns[Output(group, self.link, member, load_point, power)]
 
 
 @dataclass(frozen=True)
@@ -184,6 +223,10 @@ class SectionInputs:
                 for member in members
             ]
         return cls(tuple(Output("law", link, member) for member in table.law), tuple(acting))
+
+    def among(self, outputs: Container[Output]) -> bool:
+        """Return whether outputs have all of them."""
+        return all(output in outputs for output in (*self.law, *self.acting))
 
     @property
     def table(self) -> Table:
@@ -241,8 +284,8 @@ def section(
     forces = ca.vertcat(
         *(link.at(force, Place(xi, side=side), slack) for force in inputs.table.forces)
     )
-    given, names = [law, acting, mass_properties, xi], ["law", "acting", "matter", "xi"]
-    return ca.Function(name, given, [ca.densify(forces)], names, ["forces"], {"cse": True})
+    given = {"law": law, "acting": acting, "matter": mass_properties, "xi": xi}
+    return graph(name, given, forces=forces)
 
 
 @functools.cache
@@ -277,14 +320,8 @@ def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int]) 
     def rows(force: str, coefficient: str) -> Expression:
         given = [law[PLANE.law.index(term)] for term in PLANE.sections[force].coefficients]
         given += [loads[k] for k, output in enumerate(acting) if output.member == coefficient]
-        return ca.densify(ca.jacobian(forces[PLANE.forces.index(force)], ca.vertcat(*given)))
+        return ca.jacobian(forces[PLANE.forces.index(force)], ca.vertcat(*given))
 
     spans = (loads[k] for k, output in enumerate(acting) if output.power is None)
-    return ca.Function(
-        "along",
-        [mass_properties, column(spans), xi],
-        [rows("axial", "qn"), rows("bending", "qf")],
-        ["matter", "spans", "xi"],
-        ["force", "bending"],
-        {"cse": True},
-    )
+    inputs = {"matter": mass_properties, "spans": column(spans), "xi": xi}
+    return graph("along", inputs, force=rows("axial", "qn"), bending=rows("bending", "qf"))

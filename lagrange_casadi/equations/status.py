@@ -10,18 +10,16 @@ That all columns are finite is for the one who evaluates them to see.
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import casadi as ca
 
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.status import Status
-from ..base.symbolic import symbolic
 from ..base.tables import MOMENT
 from .checks import Check
 from .checks import Kind as CheckKind
@@ -99,9 +97,8 @@ class Rule:
     bound: int | None = None
 
 
-@functools.lru_cache(maxsize=64)
 def bounds_of(program: Program) -> tuple[Bound, ...]:
-    """Return what the columns of a program must keep to, in their order."""
+    """Limits of columns of a program, in their order."""
     sizes, found = program.checks("rowsize"), list[Bound]()
     for k, check in enumerate(program.columns):
         if not isinstance(check, Check):
@@ -119,50 +116,40 @@ def bounds_of(program: Program) -> tuple[Bound, ...]:
     return tuple(found)
 
 
-@functools.lru_cache(maxsize=64)
 def rules_of(program: Program) -> tuple[Rule, ...]:
-    """Return the rules of a program in the order in which they are reported."""
+    """Rules of an instant, in the order in which they are reported."""
     return tuple(rule for rule, _ in _tests(program))
 
 
-@functools.lru_cache(maxsize=64)
-@symbolic
 def status_of(program: Program) -> ca.Function:
-    """Return the function ``status(checks, limits, beside, iterated)``."""
-    many = len(bounds_of(program))
+    """The function ``status(checks, limits, beside, iterated)``: the number of the first rule that
+    is broken.
+    """
+    many = len(program.bounds)
     checks, limits, beside = (ca.SX.sym(name, many) for name in ("checks", "limits", "beside"))
     iterated, first = ca.SX.sym("iterated"), ca.SX(0)
     for number, (rule, fails) in reversed([*enumerate(_tests(program), 1)]):
         k = rule.bound
         broken = fails(iterated, 0, 0) if k is None else fails(checks[k], limits[k], beside[k])
         first = ca.if_else(broken, number, first)
-    names = ["checks", "limits", "beside", "iterated"]
-    return ca.Function(
-        "status",
-        [checks, limits, beside, iterated],
-        [ca.densify(first)],
-        names,
-        ["rule"],
-        {"cse": True},
-    )
+    given = {"checks": checks, "limits": limits, "beside": beside, "iterated": iterated}
+    return graph("status", given, rule=first)
 
 
-@functools.lru_cache(maxsize=64)
-@symbolic
 def beside_of(program: Program) -> ca.Function:
-    """Return the function ``beside(before, checks, next, after, most)``: what stands beside checks,
+    """The function ``beside(before, checks, next, after, most)``: what stands beside checks,
     from those at the instants before and after, and the largest sizes of terms over all instants.
 
     A loop may pass a dead centre before the next instant where, straight on from either side, the
     sine of its transmission angle meets zero. The closed forms keep to their branch there, with a
     kink; the mechanism itself may not.
     """
-    bounds = bounds_of(program)
-    names = ["before", "checks", "next", "after", "most"]
-    inputs = [ca.SX.sym(name, len(bounds)) for name in names]
+    bounds = program.bounds
+    names = ("before", "checks", "next", "after", "most")
+    inputs = {name: ca.SX.sym(name, len(bounds)) for name in names}
     found = [ca.SX(0)] * len(bounds)
     for k, bound in enumerate(bounds):
-        before, here, following, after, most = (column[k] for column in inputs)
+        before, here, following, after, most = (column[k] for column in inputs.values())
         if bound.kind in ("CLOSURE", "BRANCH"):
             s, next_s = _sine(here), _sine(following)
             left, right = 2 * s - _sine(before), 2 * next_s - _sine(after)
@@ -173,8 +160,7 @@ def beside_of(program: Program) -> ca.Function:
         elif bound.kind == "ROW":
             # Where all stands still, what rounding leaves of rates violates nothing.
             found[k] = most
-    out = ca.densify(column(found))
-    return ca.Function("beside", inputs, [out], names, ["beside"], {"cse": True})
+    return graph("beside", inputs, beside=column(found))
 
 
 def outside(program: Program) -> float:
@@ -239,7 +225,7 @@ def _tests(program: Program) -> list[tuple[Rule, _Fails]]:
     slowly after those that are at a dead centre: what else is wrong follows from that. What is at
     rest or open comes where nothing is wrong.
     """
-    numbered = [*enumerate(bounds_of(program))]
+    numbered = [*enumerate(program.bounds)]
     first, last = ("BEYOND",), ("REST", "OPEN", "OPEN_MOMENT")
     between = [(k, bound) for k, bound in numbered if bound.kind not in (*first, *last)]
     count = next(

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from heapq import heappop, heappush
 from typing import NoReturn
 
@@ -58,15 +59,21 @@ class Tree:
     closing: tuple[Joint, ...]
     two_force_links: tuple[TwoForceLink, ...] = ()
 
+    @cached_property
+    def branch_of(self) -> dict[Joint, Branch]:
+        """The branch of each joint that closes no loop."""
+        return {branch.joint: branch for branch in self.branches}
+
+    @cached_property
+    def two_force_link_of(self) -> dict[Joint, TwoForceLink]:
+        """The two-force link of each joint that is at an end of one."""
+        return {joint: link for link in self.two_force_links for joint in link.joints}
+
     def measures(self, joint: Joint, axis: Axis) -> bool:
         """Return whether the motion of a joint along an axis is an output: not the angles of one
         with three turns that closes a loop.
         """
-        return (
-            axis.kind == "slide"
-            or joint.turns < 3
-            or any(branch.joint is joint for branch in self.branches)
-        )
+        return axis.kind == "slide" or joint.turns < 3 or joint in self.branch_of
 
 
 def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
@@ -77,12 +84,10 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
     that only slides on a point.
     """
     two_force_links = find_two_force_links(mechanism, driven)
-    barred = {joint for two_force_link in two_force_links for joint in two_force_link.joints}
+    barred = {joint for one in two_force_links for joint in one.joints}
     joints = [joint for joint in mechanism.joints.values() if joint not in barred]
-    given, driven = (
-        driven,
-        {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven},
-    )
+    given = driven
+    driven = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     # What a driven joint can carry one way only is left to it, for its motion would else close a
     # loop.
     kept = {
@@ -138,7 +143,7 @@ def _refuse_unplaced(
     """Raise :class:`DeclarationError` for a body that neither the tree nor a bar
     has a place for.
     """
-    lying = {two_force_link.link for two_force_link in two_force_links}
+    lying = {one.link for one in two_force_links}
     for body in mechanism.moving:
         if body in placed or body in lying:
             continue
@@ -167,7 +172,7 @@ def _refuse_unused(mechanism: Mechanism, two_force_links: Sequence[TwoForceLink]
         if joint.name in mechanism.hard
         for body in joint.bodies
     }
-    taken |= {two_force_link.link for two_force_link in two_force_links}
+    taken |= {one.link for one in two_force_links}
     turned = {
         body for joint in mechanism.joints.values() if _is_turned(joint) for body in joint.bodies
     }

@@ -147,10 +147,8 @@ def idle_spins(mechanism: Mechanism, driven: Collection[str]) -> list[str]:
     """Describe spins between two spherical joints that nothing holds, of links that are no bars,
     and what to do.
     """
-    two_force_links, joints = (
-        [two_force_link.link for two_force_link in find_two_force_links(mechanism, driven)],
-        mechanism.joints.values(),
-    )
+    two_force_links = [one.link for one in find_two_force_links(mechanism, driven)]
+    joints = mechanism.joints.values()
     found = []
     for link in mechanism.links.values():
         attached = [joint for joint in joints if link in joint.bodies]

@@ -14,6 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.scalars import column
+from ..base.arrays import Expression
 from .multibody import Coordinate
 from .substitution import Numbers
 
@@ -37,10 +38,13 @@ def wound_angles(
             beside -= revolutions * numbers.of(other.value)[0]
     # In few digits, lest the last ones of some library's sines be seen in the graph.
     about += round(beside, _DIGITS)
-    deviation = ca.atan2(
-        s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about)
-    )
+    deviation = swing(c, s, about)
     return ca.vertcat(c, s, about + deviation), deviation
+
+
+def swing(c: Expression, s: Expression, about: ca.SX) -> Expression:
+    """The angle from -pi to pi between an angle, whose cosine and sine are given, and another."""
+    return ca.atan2(s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about))
 
 
 def _turns(angle: ca.SX, other: Coordinate, numbers: Numbers) -> int:

@@ -4,18 +4,15 @@ README.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
-from ..base.tables import Table
 from ..codegen.printer import literal
 from ..portable.contract import CORNERS, REST, Contract, Member
 from ..portable.golden import RATIOS
 from ..portable.sections import comparisons, in_words
 from ..portable.slopes import in_readme, selftest_function, selftest_numbers
 from ..portable.source import Source
-from ..portable.text import markdown, quoted, template
+from ..portable.text import markdown, number_rows, numbers, quoted, template
 from .fatigue import counting
 from .matlab import matlab
 
@@ -26,17 +23,12 @@ _ROWS = 12
 def companions(source: Source) -> dict[str, str]:
     """The other files of the folder, by name."""
     c = source.contract
-    words = source.words
-    effort = next((m for m in c.outputs if m.source.startswith("effort:")), c.outputs[0])
-    drive = next(m for m in c.inputs if m.source.startswith("motion:"))
+    words, (drive, effort) = source.words, c.shown
     link = c.links[0] if c.links else None
     rest = f", {literal(c.precision)(0.0)}" if c.rests else ""
     null = ", 0" if c.settings else ""
-    mid = _example_section(c) if link else ""
-    (start, stop), count = (
-        source.exported.program.data.span,
-        source.exported.program.data.timing.count,
-    )
+    data = source.exported.program.data
+    (start, stop), count = data.span, data.timing.count
     steps = max(1, round((count - 1) / _ROWS)) if source.iterated else 1
     number = literal(c.precision)
     return (
@@ -62,7 +54,11 @@ def companions(source: Source) -> dict[str, str]:
                 output=effort.name,
                 output_unit=quoted(effort.unit),
                 declared=f"  {c.prefix}_forces forces;\n" if link else "",
-                section=mid,
+                section=(
+                    template("example_section.c", **words, link=link.constant, half=number(0.5))
+                    if link
+                    else ""
+                ),
                 heading=f'"   {link.name}, bending at 0.5 [N m]' + '"' if link else '""',
             ),
             "selftest.c": _selftest(source, words),
@@ -77,18 +73,8 @@ def companions(source: Source) -> dict[str, str]:
                 mapped=_mapped(c) + (in_readme(c, source.slopes) if source.slopes else ""),
             ),
         }
-        | matlab(source, drive, effort)
+        | matlab(source)
         | counting(source)
-    )
-
-
-def _example_section(c: Contract) -> str:
-    link = c.links[0]
-    half = literal(c.precision)(0.5)
-    return (
-        f"    status = {c.prefix}_section(&model, &outputs, {link.constant}, {half}, &forces);\n"
-        f"    if (status != {c.prefix.upper()}_OK) return failed(status);\n"
-        f'    printf("   %13.6g", (double) forces.bending);\n'
     )
 
 
@@ -124,14 +110,6 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
     g, c = source.golden, source.contract
     coordinates = {m.source: k for k, m in enumerate(c.inputs)}
     times = [(t, _rest(t) if c.rests else 0.0) for t in g.times]
-    wide = literal("double")
-
-    def row(values: Iterable[float]) -> str:
-        return ", ".join(wide(float(x)) for x in values)
-
-    def rows(table: Iterable[Iterable[float]]) -> str:
-        return ",\n".join(f"  {{{row(values)}}}" for values in table)
-
     return template(
         "selftest.c",
         **words,
@@ -141,17 +119,13 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         n_links=len(c.links),
         n_ratios=len(RATIOS),
         steps=g.steps,
-        times=rows(times),
-        inputs=rows(g.inputs),
-        inputs_off=row(g.inputs_off),
-        outputs=rows(g.outputs),
-        outputs_off=row(g.outputs_off),
-        forces=(
-            _forces(c.table, rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel()))
-            if c.links
-            else ""
-        )
-        + (selftest_numbers(source.slopes, row) if source.slopes else ""),
+        times=number_rows(times),
+        inputs=number_rows(g.inputs),
+        inputs_off=numbers(g.inputs_off),
+        outputs=number_rows(g.outputs),
+        outputs_off=numbers(g.outputs_off),
+        forces=(_forces(source) if c.links else "")
+        + (selftest_numbers(source.slopes) if source.slopes else ""),
         given="\n".join(
             f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)
         ),
@@ -161,17 +135,25 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
             f" {int(m.wrapped)});"
             for k, m in enumerate(c.outputs)
         ),
-        sections=(_sections(c) if c.links else "")
+        sections=(_sections(source) if c.links else "")
         + (selftest_function(c, source.slopes) if source.slopes else ""),
         check_sections=("  check_sections(&model, &outputs, k);\n" if c.links else "")
         + ("  check_sensitivity(&model, k);\n" if source.slopes else ""),
-        first_input=next(m.name for m in c.inputs if m.source.startswith("motion:")),
+        first_input=c.shown[0].name,
         first_output=c.outputs[0].name,
         null=", 0" if c.settings else "",
         time_rest=f", ({c.prefix}_real) times[k][1]" if c.rests else "",
         no_rest=", 0" if c.rests else "",
-        bad_parameter=_bad_parameter(c),
-        bad_ratio=_bad_ratio(c),
+        bad_parameter=(
+            template("selftest_parameter.c", **words, parameter=c.settings[0].name)
+            if c.settings
+            else ""
+        ),
+        bad_ratio=(
+            template("selftest_ratio.c", **words, link=c.links[0].constant, links=len(c.links))
+            if c.links
+            else ""
+        ),
     )
 
 
@@ -191,43 +173,27 @@ def _taken(c: Contract, m: Member, coordinates: dict[str, int]) -> str:
     return f'    compare("motion: {m.name}", {given}, {value}, inputs_off[{k}], 0);'
 
 
-def _forces(table: Table, rows: str, off: str) -> str:
-    words, many = in_words(table), len(table.forces)
-    return (
-        f"\n/* {words[0].upper()}{words[1:]}, of each link, at each ratio. */\n"
-        f"static const double forces_at[INSTANTS][LINKS*RATIOS*{many}] = {{\n{rows}\n}};\n"
-        f"static const double forces_off[LINKS*{many}] = {{{off}}};\n"
-        f"static const double ratios[RATIOS] = {{{', '.join(map(str, RATIOS))}}};\n"
+def _forces(source: Source) -> str:
+    """Expected values of section forces."""
+    golden, table = source.golden, source.contract.table
+    words = in_words(table)
+    return template(
+        "selftest_forces.c",
+        forces=f"{words[0].upper()}{words[1:]}",
+        many=len(table.forces),
+        rows=number_rows(golden.forces.reshape(len(golden.times), -1)),
+        off=numbers(golden.forces_off.ravel()),
+        ratios=", ".join(map(str, RATIOS)),
     )
 
 
-def _sections(c: Contract) -> str:
-    links = ",\n".join(f"  {link.constant}" for link in c.links)
-    words = {"p": c.prefix, "P": c.prefix.upper(), "links": links, "many": len(c.table.forces)}
-    return template("selftest_sections.c", **words, comparisons=comparisons(c.table))
-
-
-def _bad_parameter(c: Contract) -> str:
-    if not c.settings:
-        return ""
-    p, P = c.prefix, c.prefix.upper()
-    return (
-        f"  {{\n    {p}_parameters parameters = {p}_defaults;\n    parameters.{c.settings[0].name}"
-        f" = ({p}_real) NAN;\n    expect({p}_prepare(&model, &parameters), {P}_BAD_PARAMETER);\n   "
-        f" expect({p}_evaluate(&model, &inputs, &outputs), {P}_NOT_PREPARED);\n  }}\n"
-    )
-
-
-def _bad_ratio(c: Contract) -> str:
-    if not c.links:
-        return ""
-    p, P, link = c.prefix, c.prefix.upper(), c.links[0].constant
-    call = f"{p}_section(&model, &outputs"
-    return (
-        f"  {{\n    {p}_forces forces;\n"
-        f"    expect({call}, {link}, ({p}_real) 1.5, &forces), {P}_BAD_RATIO);\n"
-        f"    expect({call}, {link}, ({p}_real) NAN, &forces), {P}_BAD_RATIO);\n"
-        f"    expect({call}, ({p}_link) {len(c.links)}, ({p}_real) 0.5, &forces), {P}_NO_LINK);\n"
-        f'    if (forces.axial == forces.axial) complain("forces are left as they were where there'
-        f' is no link");\n  }}\n'
+def _sections(source: Source) -> str:
+    """Comparisons of section forces."""
+    c = source.contract
+    return template(
+        "selftest_sections.c",
+        **source.words,
+        links=",\n".join(f"  {link.constant}" for link in c.links),
+        many=len(c.table.forces),
+        comparisons=comparisons(c.table),
     )

@@ -7,10 +7,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..beams.material import Material
-from ..codegen.printer import literal
 from ..portable.naming import constants
 from ..portable.source import Source
-from ..portable.text import template
+from ..portable.text import numbers, template
 from ..strength.fatigue import line
 
 
@@ -35,14 +34,11 @@ def counting(source: Source) -> dict[str, str]:
 
 def counter(prefix: str, materials: Mapping[str, Material]) -> str:
     """The header of some materials, by the names of their links."""
-    number = literal("double")
     rows, named = [], constants(f"{prefix}_fatigue_of", list(materials))
     for name, material in materials.items():
         endurance, start, slope = line(material)
-        numbers = ", ".join(
-            map(number, (endurance, *material.needs("damage", "ultimate"), start, slope))
-        )
-        rows.append(f"#define {named[name]} {{{numbers}, {int(material.endless)}}}")
+        given = numbers((endurance, *material.needs("damage", "ultimate"), start, slope))
+        rows.append(f"#define {named[name]} {{{given}, {int(material.endless)}}}")
     return template(
         "fatigue.h",
         p=prefix,

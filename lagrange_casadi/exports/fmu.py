@@ -17,7 +17,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.cache import working_folder
 from ..codegen import find_compiler
-from ..codegen.compiler import Compiler, broken, compiled, complaint
+from ..codegen.compiler import Compiler, broken, built
 from ..codegen.printer import literal
 from ..errors import (
     CompilerError,
@@ -26,7 +26,7 @@ from ..errors import (
     StoreError,
     UnknownNameError,
 )
-from ..portable.contract import REST
+from ..portable.contract import Contract
 from ..portable.header import header
 from ..portable.source import Source
 from ..portable.text import indented, template
@@ -64,13 +64,15 @@ def fmu(source: Source, p: Array, by: str = "") -> dict[str, bytes]:
         f"{prefix}.c": source.code,
         f"{prefix}_fmi2.c": wrapper(description),
     }
-    library = f"{prefix}{fmpy.sharedLibraryExtension}"
+    library, compiler = f"{prefix}{fmpy.sharedLibraryExtension}", _compiler()
+    flags = compiler.flags("".join(sources.values()))
+    command = [*compiler.command, *flags, *description.sources, "-o", library, "-lm"]
     files = {f"sources/{file}": text.encode() for file, text in sources.items()}
     files["modelDescription.xml"] = description.xml.encode()
     files["documentation/index.html"] = page(description).encode()
     files[FILE] = golden_vectors(description).encode()
-    files[f"binaries/{fmpy.platform}/{library}"] = _built(
-        sources, description.sources, library, _compiler()
+    files[f"binaries/{fmpy.platform}/{library}"] = built(
+        compiler, command, sources, library, lambda path: _check_loads(path, compiler)
     )
     archive = _archive(files)
     findings = _findings(archive)
@@ -84,15 +86,13 @@ def fmu(source: Source, p: Array, by: str = "") -> dict[str, bytes]:
 
 def wrapper(description: Description) -> str:
     """The C that makes a unit of the exported functions."""
-    source, c, inputs = description.source, description.contract, description.inputs
+    source, c = description.source, description.contract
     wide = literal("double")
     carried = (
         ["memcpy(model.loops, state->model.loops, sizeof model.loops);"] if source.iterated else []
     )
     carried += ["model.closed = state->model.closed;"] if source.exported.newton is not None else []
-    values = [(m.path, m.default) for m in c.settings] + [
-        (m.path, description.start[m.source]) for m in inputs
-    ]
+    values = [(v.member.path, v.start) for v in description.variables if v.start is not None]
     return template(
         "fmu.c",
         **source.words,
@@ -149,19 +149,20 @@ def _given(description: Description) -> Iterable[str]:
         else:
             yield f"return reach(&state->model, state->values[{len(c.settings)}], inputs);"
         return
-    places = {
-        m.source: f"state->values[{k}]" for k, m in enumerate(description.inputs, len(c.settings))
-    } | {"time": "state->time"}
+    values = {one.name: f"state->values[{k}]" for k, one in enumerate(description.variables)}
+    values["time"] = "state->time"
     for m in c.inputs:
-        if m.source in places:
-            yield f"inputs->{m.name} = ({c.prefix}_real) {places[m.source]};"
-        else:
-            whole = m.source.removeprefix(REST)
-            yield (
-                f"inputs->{m.name} = ({c.prefix}_real) ({places[whole]} - (double)"
-                f" inputs->{c.input_of(whole)});"
-            )
+        if not m.rest_of:
+            yield from _put(c, m.source, values[m.source])
     yield f"return {c.prefix.upper()}_OK;"
+
+
+def _put(c: Contract, name: str, value: str) -> Iterable[str]:
+    """Statements that give an input a double; in single precision also what that leaves of it."""
+    whole, *rests = c.parts_of(name)
+    yield f"inputs->{whole} = ({c.prefix}_real) {value};"
+    for rest in rests:
+        yield f"inputs->{rest} = ({c.prefix}_real) ({value} - (double) inputs->{whole});"
 
 
 def _reached(description: Description) -> str:
@@ -174,21 +175,14 @@ def _reached(description: Description) -> str:
     if description.by == "time":
         return text
     data, wide, name = source.exported.program.data, literal("double"), f"motion:{description.by}"
-    place = c.input_of(name)
-    value = f"(double) inputs->{place}"
-    parts = [f"inputs->{place} = ({c.prefix}_real) place;"]
-    if c.rests:
-        other = c.input_of(REST + name)
-        value += f" + (double) inputs->{other}"
-        parts.append(f"inputs->{other} = ({c.prefix}_real) (place - (double) inputs->{place});")
     limits = [x if math.isfinite(x) else math.copysign(1e300, x) for x in source.span]
     rising = description.start[f"{name}_rate"] > 0.0
     return text + template(
         "fmu_reach.c",
         **source.words,
         coordinate=description.by.replace("*/", ""),
-        value=value,
-        put=indented(parts),
+        value=" + ".join(f"(double) inputs->{member}" for member in c.parts_of(name)),
+        put=indented(_put(c, name, "place")),
         sign="" if rising else "-",
         start=wide(data.span[0]),
         stop=wide(data.span[1]),
@@ -231,25 +225,6 @@ def _compiler() -> Compiler:
             "an FMU needs a C compiler: install gcc, clang or the wheel ziglang, or set $CC"
         )
     return found
-
-
-def _built(
-    sources: Mapping[str, str], units: Iterable[str], library: str, compiler: Compiler
-) -> bytes:
-    """The library, built where no path gets into it."""
-    flags = compiler.flags("".join(sources.values()))
-    with working_folder() as work:
-        try:
-            for file, text in sources.items():
-                (work / file).write_text(text, encoding="utf-8")
-            command = [*compiler.command, *flags, *units, "-o", library, "-lm"]
-            run = compiled(command, work)
-            if run.returncode == 0:
-                _check_loads(work / library, compiler)
-                return (work / library).read_bytes()
-        except OSError as error:
-            raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
-    raise CompilerError(complaint(compiler, run))
 
 
 def _check_loads(library: Path, compiler: Compiler) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 from xml.etree import ElementTree
 
 import numpy as np
@@ -22,6 +22,7 @@ from ..base.quantities import Output
 from ..equations.program import Program
 from ..portable.contract import Contract, Member, Setting
 from ..portable.source import Source
+from ..portable.text import template
 from ..version import __version__
 from .units import BASE, base_unit
 
@@ -34,14 +35,25 @@ LOGGED = {
 }
 
 
+@dataclass(frozen=True)
+class Variable:
+    """A variable of a unit: what it is in C, its ``kind`` to importers, the full name that outputs
+    depend on, empty of an output itself, and its start value, if it has one.
+    """
+
+    member: Member
+    kind: Literal["parameter", "input", "output", "independent"]
+    name: str = ""
+    start: float | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Description:
     """A unit's ``modelDescription.xml``, for parameters ``p``; ``sources`` are the files to
     compile.
 
     ``by`` is empty where the motion of the drives is an input, ``time`` where the scene's motion is
-    inside, or the coordinate that is an input in place of the time. The value reference of a
-    variable is its place: parameters, inputs, outputs, and the time where anything depends on it.
+    inside, or the coordinate that is an input in place of the time.
     """
 
     source: Source
@@ -55,15 +67,6 @@ class Description:
         return self.source.contract
 
     @property
-    def inputs(self) -> tuple[Member, ...]:
-        """The motion of the drives, or as much of it as is an input.
-
-        The time is the importer's, and what single precision leaves is computed.
-        """
-        given = (m for m in self.contract.inputs if m.source in self.start)
-        return tuple(m for m in given if self.by in ("", m.source.removeprefix("motion:")))
-
-    @property
     def timed(self) -> bool:
         """True if anything depends on the importer's time."""
         return self.by == "time" or (self.contract.timed and not self.by)
@@ -72,16 +75,32 @@ class Description:
     def start(self) -> dict[str, float]:
         """Start values of inputs: the scene's motion at its first instant."""
         program = self.source.exported.program
-        rows = [
-            np.atleast_1d(row.full().ravel())
-            for row in program.motion(program.data.span[0], self.p)
+        rows = program.motion(program.data.span[0], self.p)
+        values = np.concatenate([row.full().ravel() for row in rows])
+        return dict(zip(itertools.chain(*_motions(program)), values.tolist(), strict=True))
+
+    @cached_property
+    def variables(self) -> tuple[Variable, ...]:
+        """All variables; the value reference of each is its place.
+
+        The time is the importer's, and what single precision leaves is computed.
+        """
+        c, start = self.contract, self.start
+        found = [Variable(m, "parameter", f"parameter:{m.source}", m.default) for m in c.settings]
+        found += [
+            Variable(m, "input", m.source, start[m.source])
+            for m in c.inputs
+            if m.source in start and self.by in ("", m.source.removeprefix("motion:"))
         ]
-        names = [
-            str(Output("motion", joint, member))
-            for member in ("", "rate", "acceleration")
-            for joint in program.driven
-        ]
-        return dict(zip(names, np.concatenate(rows).tolist(), strict=True))
+        found += [Variable(m, "output") for m in c.outputs]
+        if self.timed:
+            name = "time" if all(m.source != "time" for m in c.settings) else "simulation/time"
+            found.append(Variable(Member("", name, "s", "time"), "independent", "time"))
+        return tuple(found)
+
+    def members(self, kind: str) -> list[Member]:
+        """Return the members of a kind of variables, in order."""
+        return [one.member for one in self.variables if one.kind == kind]
 
     @cached_property
     def guid(self) -> str:
@@ -100,10 +119,7 @@ class Description:
         """The index, from 1, of everything outputs may depend on, by its full name: parameters,
         inputs, and the time.
         """
-        c = self.contract
-        names = [f"parameter:{m.source}" for m in c.settings] + [m.source for m in self.inputs]
-        found = {name: k for k, name in enumerate(names, 1)}
-        found |= {"time": len(names) + len(c.outputs) + 1} if self.timed else {}
+        found = {one.name: k for k, one in enumerate(self.variables, 1) if one.name}
         if not self.by:
             return found
         inside = found["time"] if self.by == "time" else found[f"motion:{self.by}"]
@@ -131,17 +147,14 @@ class Description:
             files = _add(element, "SourceFiles")
             for file in self.sources:
                 _add(files, "File", name=file)
-        members = (*c.settings, *self.inputs, *c.outputs)
         units = _add(root, "UnitDefinitions")
-        for unit in dict.fromkeys([m.unit for m in members] + ["s"] * self.timed):
+        for unit in dict.fromkeys(one.member.unit for one in self.variables):
             _unit(units, unit)
         logged = _add(root, "LogCategories")
         for name, meaning in LOGGED.items():
             _add(logged, "Category", name=name, description=meaning)
-        (start, stop), count = (
-            self.source.exported.program.data.span,
-            self.source.exported.program.data.timing.count,
-        )
+        data = self.source.exported.program.data
+        (start, stop), count = data.span, data.timing.count
         span = {"startTime": _number(start)}
         if stop > start:
             span |= {
@@ -154,74 +167,53 @@ class Description:
         return root
 
     def _variables(self, parent: ElementTree.Element) -> None:
-        c, place = self.contract, itertools.count()
-
-        def add(member: Member, words: dict[str, str], values: dict[str, str]) -> None:
-            description = "; ".join(part for part in (member.meaning, member.sign) if part)
-            called = {
-                "name": member.path,
-                "valueReference": str(next(place)),
-                "description": description,
-            }
-            variable = _add(parent, "ScalarVariable", **called, **words)
-            _add(variable, "Real", unit=member.unit, **values)
-
-        for m in c.settings:
-            limits = {
-                key: _number(x) for key, x in (("min", m.low), ("max", m.high)) if math.isfinite(x)
-            }
-            add(
-                m,
-                {"causality": "parameter", "variability": "tunable", "initial": "exact"},
-                limits | {"start": _number(m.default)},
+        for place, one in enumerate(self.variables):
+            m, numbers = one.member, dict[str, float]()
+            if isinstance(m, Setting):
+                numbers = {"min": m.low, "max": m.high}
+            if one.start is not None:
+                numbers["start"] = one.start
+            finite = {key: _number(x) for key, x in numbers.items() if math.isfinite(x)}
+            variable = _add(
+                parent,
+                "ScalarVariable",
+                name=m.path,
+                valueReference=str(place),
+                description="; ".join(part for part in (m.meaning, m.sign) if part),
+                causality=one.kind,
+                **_CHANGING[one.kind],
             )
-        for given in self.inputs:
-            add(
-                given,
-                {"causality": "input", "variability": "continuous"},
-                {"start": _number(self.start[given.source])},
-            )
-        for output in c.outputs:
-            add(
-                output,
-                {"causality": "output", "variability": "continuous", "initial": "calculated"},
-                {},
-            )
-        if self.timed:
-            name = "time" if all(m.source != "time" for m in c.settings) else "simulation/time"
-            add(
-                Member("", name, "s", "time"),
-                {"causality": "independent", "variability": "continuous"},
-                {},
-            )
+            _add(variable, "Real", unit=m.unit, **finite)
 
     def _structure(self, parent: ElementTree.Element) -> None:
-        reach = (
-            None
-            if self.source.exported.cycle is not None
-            else reached(self.source.exported.program)
-        )
+        exported = self.source.exported
+        reach = None if exported.cycle is not None else reached(exported.program)
         for kind, fixed in (("Outputs", False), ("InitialUnknowns", True)):
             group = _add(parent, kind)
-            for k, m in enumerate(
-                self.contract.outputs, len(self.contract.settings) + len(self.inputs) + 1
-            ):
+            for k, one in enumerate(self.variables, 1):
+                if one.kind != "output":
+                    continue
                 unknown = _add(group, "Unknown", index=str(k))
                 if reach is not None:
-                    on = sorted(
-                        {
-                            self.known[name]
-                            for name in reach[m.source] & self.known.keys()
-                            if fixed or not name.startswith("parameter:")
-                        }
-                    )
-                    unknown.set("dependencies", " ".join(map(str, on)))
+                    on = {
+                        self.known[name]
+                        for name in reach[one.member.source] & self.known.keys()
+                        if fixed or not name.startswith("parameter:")
+                    }
+                    unknown.set("dependencies", " ".join(map(str, sorted(on))))
 
 
 _KINDS = {
     "ModelExchange": "completedIntegratorStepNotNeeded",
     "CoSimulation": "canHandleVariableCommunicationStepSize",
 }
+_CHANGING = {
+    "parameter": {"variability": "tunable", "initial": "exact"},
+    "input": {"variability": "continuous"},
+    "output": {"variability": "continuous", "initial": "calculated"},
+    "independent": {"variability": "continuous"},
+}
+"""Words of the kinds of variables, beside their causality."""
 
 
 def reached(program: Program) -> dict[str, frozenset[str]]:
@@ -230,10 +222,7 @@ def reached(program: Program) -> dict[str, frozenset[str]]:
     """
     named = [
         ["time"],
-        *(
-            [str(Output("motion", joint, member)) for joint in program.driven]
-            for member in ("", "rate", "acceleration")
-        ),
+        *_motions(program),
         [f"parameter:{name}" for name in program.data.parameters],
     ]
     _, coordinate, rate, acceleration, z, p = range(6)
@@ -251,6 +240,12 @@ def reached(program: Program) -> dict[str, frozenset[str]]:
     return {name: frozenset(names) for name, names in zip(program.names, found, strict=True)}
 
 
+def _motions(program: Program) -> list[list[str]]:
+    """Full names of coordinates, rates and accelerations, each by drive."""
+    orders = ("", "rate", "acceleration")
+    return [[str(Output("motion", joint, order)) for joint in program.driven] for order in orders]
+
+
 def _entries(function: ca.Function, place: int) -> list[tuple[int, int]]:
     """Rows and columns of what is not zero in the derivative of a function's first output by an
     input.
@@ -259,31 +254,22 @@ def _entries(function: ca.Function, place: int) -> list[tuple[int, int]]:
     return list(zip(rows, columns, strict=True))
 
 
-_ABOUT = """\
-Efforts of the drives, reactions of the joints and forces inside the links of a mechanism, at any
-instant of any motion of its drives: everything follows from the inputs, the parameters and the
-time, and nothing is integrated. If there is no result, fmi2Discard is returned; if a parameter is
-refused, fmi2Error; and the reason is logged. Angles that follow from loops continue from the last
-instant by the nearest revolution, and iterated loops start from its solution, so instants must be
-near each other. In Co-Simulation, inputs are constant during a step: outputs that are read after it
-belong to the inputs before it, unless inputs are set again."""
-
-
 def page(description: Description) -> str:
     """Documentation of the unit: ``documentation/index.html``."""
-    c = description.contract
-    tables = (("Parameters", c.settings), ("Inputs", description.inputs), ("Outputs", c.outputs))
-    rest = "".join(_table(title, members) for title, members in tables if members)
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8">'
-        f"<title>{escape(c.name)}</title></head>\n<body>\n<h1>{escape(c.name)}</h1>\n<p>{_ABOUT}</p>\n"
-        f"<p>{escape(c.table.conventions)}.</p>\n{rest}<p>Written"
-        f" by lagrange_casadi {__version__} from the scene"
-        f" {description.source.identity}.</p>\n</body>\n</html>\n"
+    kinds = ("parameter", "input", "output")
+    return template(
+        "fmu.html",
+        title=escape(description.contract.name),
+        conventions=escape(description.contract.table.conventions),
+        tables="".join(_table(f"{kind.title()}s", description.members(kind)) for kind in kinds),
+        version=__version__,
+        scene=description.source.identity,
     )
 
 
 def _table(title: str, members: Sequence[Member]) -> str:
+    if not members:
+        return ""
     rows = "".join(
         f"<tr><td><code>{escape(m.path)}</code></td><td>{escape(m.unit)}</td><td>{escape(m.meaning)}</td>"
         f"<td>{escape(m.range if isinstance(m, Setting) else m.sign)}</td></tr>\n"

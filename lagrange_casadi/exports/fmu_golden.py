@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import itertools
 
 import numpy as np
 
+from ..base.csv_rows import csv_text
 from ..portable.text import template
 from .fmu_description import Description
 
@@ -22,24 +21,22 @@ def golden_vectors(description: Description) -> str:
     Between two golden instants there are those over which iterated loops are followed, without
     outputs.
     """
-    source, inputs = description.source, [m.source for m in description.inputs]
+    source, inputs = description.source, description.members("input")
     golden, program = source.golden, source.exported.program
     times = [golden.times[:1]]
     for start, stop in itertools.pairwise(golden.times):
         times.append(np.linspace(start, stop, golden.steps + 1)[1:])
     instants = np.concatenate(times)
     moved = np.vstack([order.full() for order in program.motion(instants[None, :], description.p)])
-    given = moved[[list(description.start).index(name) for name in inputs]].T
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    names = [m.path for m in (*description.inputs, *description.contract.outputs)]
-    rows.writerow(["time", *names])
-    rows.writerow(["within", *("" for _ in inputs), *golden.outputs_off.tolist()])
+    given = moved[[list(description.start).index(m.source) for m in inputs]].T
+    heads = [m.path for m in (*inputs, *description.contract.outputs)]
+    rows: list[list[object]] = [["time", *heads]]
+    rows.append(["within", *("" for _ in inputs), *golden.outputs_off.tolist()])
     for k, (t, row) in enumerate(zip(instants.tolist(), given.tolist(), strict=True)):
         at, between = divmod(k, golden.steps)
-        found = itertools.repeat("", len(golden.outputs_off)) if between else golden.outputs[at]
-        rows.writerow([t, *row, *map(str, found)])
-    return text.getvalue()
+        found = [""] * golden.outputs_off.size if between else golden.outputs[at].tolist()
+        rows.append([t, *row, *found])
+    return csv_text(rows)
 
 
 def golden_script(description: Description) -> str:

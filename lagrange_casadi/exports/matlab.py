@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from ..codegen.printer import literal
 from ..portable.contract import Contract, Member
+from ..portable.naming import taken_words
 from ..portable.source import Source
 from ..portable.text import octave, octave_printed, template
 
@@ -13,27 +14,10 @@ _RESTS = """
    Numbers are doubles here: what single precision would round off a coordinate or a time is kept,
    without a member of its own."""
 
-_WORDS = frozenset(
-    [
-        "catch",
-        "classdef",
-        "elseif",
-        "end",
-        "function",
-        "global",
-        "otherwise",
-        "parfor",
-        "persistent",
-        "spmd",
-        "try",
-    ]
-)
-"""Words of MATLAB and Octave that are none of C."""
 
-
-def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]:
-    """The files by name; the example shows an input and an output."""
-    c = source.contract
+def matlab(source: Source) -> dict[str, str]:
+    """The files by name."""
+    c, (coordinate, output) = source.contract, source.contract.shown
     words = source.words | {
         "coordinate": coordinate.name,
         "coordinate_unit": octave(coordinate.unit),
@@ -51,9 +35,9 @@ def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]
             outputs=_members(c, "outputs", c.outputs),
             parameters=_members(c, "parameters", c.settings),
             links=", ".join(f'"{link.name}"' for link in c.links) or "0",
-            prepare=_prepare(c),
+            prepare=_prepare(c, words),
             time_rest=f", ({c.prefix}_real) (t - (double) ({c.prefix}_real) t)" if c.rests else "",
-            section=_section(c, words) if c.links else _no_section(c),
+            section=_section(c, words) if c.links else template("mex_no_section.c", **words),
             matrices=f"{', '.join(c.table.forces[:-1])} and {c.table.forces[-1]}",
         ),
         "build_mex.m": template("build_mex.m", **words),
@@ -69,7 +53,7 @@ def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]
 
 def _field(member: Member) -> str:
     """Expression by which a script reads a member of a struct."""
-    plain = member.name[0].isalpha() and member.name not in _WORDS
+    plain = member.name[0].isalpha() and member.name not in taken_words("matlab")
     return f".{member.name}" if plain else f".('{member.name}')"
 
 
@@ -86,25 +70,12 @@ def _members(c: Contract, struct: str, members: Iterable[Member]) -> str:
     return "\n".join(f'  {{"{name}", {at}, {rest}}},' for name, at, rest in rows)
 
 
-def _prepare(c: Contract) -> str:
+def _prepare(c: Contract, words: Mapping[str, str]) -> str:
     """Statements that give the parameters that were given, and prepare the model."""
-    p = c.prefix
     check = '  if (given) check_struct(given, "parameters", members_of_parameters, "");\n'
     if not c.settings:
-        return f"{check}  status = {p}_prepare(model);"
-    return (
-        f"  {p}_parameters parameters = {p}_defaults;\n  int k;\n{check}"
-        "  for (k = 0; given && members_of_parameters[k].name; ++k) {\n"
-        "    const mxArray* value = mxGetField(given, 0, members_of_parameters[k].name);\n"
-        "    if (!value) continue;\n"
-        "    if (!is_numbers(value) || mxGetNumberOfElements(value) != 1) {\n"
-        f'      mexErrMsgIdAndTxt("{p}:type", "parameter \'%s\' must be one real number.",\n'
-        "                        members_of_parameters[k].name);\n"
-        "    }\n"
-        "    put(&parameters, members_of_parameters + k, number(value, 0));\n"
-        "  }\n"
-        f"  status = {p}_prepare(model, &parameters);"
-    )
+        return f"{check}  status = {c.prefix}_prepare(model);"
+    return template("mex_prepare.c", **words, check=check)
 
 
 def _section(c: Contract, words: Mapping[str, str]) -> str:
@@ -119,17 +90,6 @@ def _section(c: Contract, words: Mapping[str, str]) -> str:
         filled="\n".join(
             f"      {force}[j*many + i] = (double) forces.{force};" for force in forces
         ),
-    )
-
-
-def _no_section(c: Contract) -> str:
-    return (
-        "static mxArray* section(const mxArray* given, const mxArray* link, const mxArray* ratios,"
-        " const mxArray* parameters) {\n"
-        "  (void) given;\n  (void) link;\n  (void) ratios;\n  (void) parameters;\n  (void)"
-        " names_of_links;\n"
-        f'  mexErrMsgIdAndTxt("{c.prefix}:name", "there is no link with sections.");\n  return'
-        " 0;\n}\n"
     )
 
 

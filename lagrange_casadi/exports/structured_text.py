@@ -14,6 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.interpret import INFIX, operation_name, steps
+from ..arithmetic.lookups import Lookup
 from ..base.quantities import Output
 from ..base.status import Status
 from ..errors import DeclarationError
@@ -63,8 +64,10 @@ def structured_text(source: Source) -> dict[str, str]:
         raise DeclarationError("structured text: expected double precision and no table")
     given = _identifiers("in", (m.name for m in c.inputs))
     taken = _identifiers("out", (m.name for m in c.outputs))
-    inputs = {m.source: name for m, name in zip(c.inputs, given, strict=True)}
-    instant, drive = _Block(source, inputs), _Block(source, inputs)
+    called = {m.name: name for m, name in zip(c.inputs, given, strict=True)}
+    time = called[c.input_of("time")] if c.timed else "0.0"
+    moved = [[called[member] for member in members] for members in c.motion]
+    instant, drive = _Block(source, time, moved), _Block(source, time, moved)
     body, motion = list(instant.instant()), list(drive.motion())
     outputs = []
     for name, m in zip(taken, c.outputs, strict=True):
@@ -91,10 +94,13 @@ def structured_text(source: Source) -> dict[str, str]:
 
 @dataclass(eq=False)
 class _Block:
-    """A function block under way: its arrays by their sizes, and its tables."""
+    """A function block under way: the names of the time and of coordinates, rates and
+    accelerations, its arrays by their sizes, and its tables.
+    """
 
     source: Source
-    inputs: dict[str, str]
+    time: str
+    moved: list[list[str]]
     arrays: dict[str, int] = field(default_factory=dict)
     tables: dict[str, Sequence[float]] = field(default_factory=dict)
 
@@ -115,33 +121,24 @@ class _Block:
 
     def motion(self) -> Iterator[str]:
         """Yield the statements of the scene's motion at t."""
-        c, functions = self.source.contract, self.source.exported.functions
-        names = [
-            [self.inputs[f"motion:{drive}{end}"] for drive in c.drives]
-            for end in ("", "_rate", "_acceleration")
-        ]
-        yield from self.lines(functions["law"], [["t"], self.parameters()], names)
-        if c.timed:
-            yield f"{self.inputs['time']} := t;"
+        law = self.source.exported.functions["law"]
+        yield from self.lines(law, [["t"], self.parameters()], self.moved)
+        if self.source.contract.timed:
+            yield f"{self.time} := t;"
 
     def instant(self) -> Iterator[str]:
         """Yield the statements of an instant, up to whether it is valid."""
-        c, exported = self.source.contract, self.source.exported
-        functions, sizes, p = exported.functions, exported.sizes, self.parameters()
-        moment = [self.inputs.get("time", "0.0")]
-        moment += [self.inputs[f"motion:{drive}"] for drive in c.drives]
+        exported, (coordinates, *rates) = self.source.exported, self.moved
+        functions, sizes = exported.functions, exported.sizes
         counted = self.array("counted", sizes["counted"])
         if counted:
-            yield from self.lines(functions["count"], [moment, p], [counted])
+            given = [[self.time, *coordinates], self.parameters()]
+            yield from self.lines(functions["count"], given, [counted])
         z: list[str] = []
         yield from ("iterated := 0.0;", "valid := TRUE;")
         if self.source.iterated:
             z = self.array("w", sizes["loops"])
             yield from self.closing(z, counted)
-        rates = [
-            [self.inputs[f"motion:{drive}{end}"] for drive in c.drives]
-            for end in ("_rate", "_acceleration")
-        ]
         columns = [f"y[{k}]" for k in range(sizes["evaluated"])]
         given = [counted, *rates, z, self.fixed("constants_of")]
         yield from self.lines(functions["instant"], given, [columns])
@@ -196,43 +193,39 @@ class _Block:
         within: str = "n",
     ) -> Iterator[str]:
         """Yield the instructions of a function, one statement each; ``within`` counts in tables."""
-        largest = self.arrays.get("a", 0)
+        computed = [step for step in steps(function) if step.operation != ca.OP_OUTPUT]
+        size = 1 + max(step.results[0] for step in computed)
+        self.arrays["a"] = max(size, self.arrays.get("a", 0))
         for step in steps(function):
-            target = f"a[{step.results[0]}]"
+            target, given = f"a[{step.results[0]}]", [f"a[{place}]" for place in step.arguments]
+            if step.looked_up is not None:
+                yield from self.looked_up(target, given[0], step.looked_up, within)
+                continue
             if step.operation == ca.OP_OUTPUT:
                 i, k = step.results
-                yield f"{outputs[i][k]} := a[{step.arguments[0]}];"
-                continue
-            largest = max(largest, step.results[0] + 1)
-            given = [f"a[{place}]" for place in step.arguments]
-            if step.operation == ca.OP_INPUT:
+                target, value = outputs[i][k], given[0]
+            elif step.operation == ca.OP_INPUT:
                 i, k = step.arguments
-                yield f"{target} := {inputs[i][k]};"
+                value = inputs[i][k]
             elif step.operation == ca.OP_CONST:
-                yield f"{target} := {_number(step.constant)};"
-            elif step.looked_up is not None:
-                cell = step.looked_up.kind == "cell"
-                numbers = step.looked_up.numbers[1:-1] if cell else step.looked_up.numbers
-                yield from self.looked_up(
-                    target, given[0], numbers.tolist(), within if cell else ""
-                )
+                value = _number(step.constant)
             elif step.operation in _WRITTEN:
-                yield f"{target} := {_WRITTEN[step.operation].format(*given)};"
+                value = _WRITTEN[step.operation].format(*given)
             else:
                 raise DeclarationError(
                     f"structured text has no word for {operation_name(step.operation)}, which the"
                     " scene needs"
                 )
-        self.arrays["a"] = largest
+            yield f"{target} := {value};"
 
-    def looked_up(
-        self, target: str, given: str, numbers: Sequence[float], counter: str
-    ) -> Iterator[str]:
-        """Yield statements that look a number up: its cell with a counter, else its entry."""
+    def looked_up(self, target: str, given: str, table: Lookup, counter: str) -> Iterator[str]:
+        """Yield statements that look a number up: its entry, or by counting its cell."""
+        cell = table.kind == "cell"
+        numbers = (table.numbers[1:-1] if cell else table.numbers).tolist()
         name = next((one for one, held in self.tables.items() if held == numbers), "")
         name = name or f"table_{len(self.tables)}"
         self.tables[name] = numbers
-        if not counter:
+        if not cell:
             yield f"{target} := {name}[LREAL_TO_DINT({given})];"
             return
         yield from (f"x := {given};", f"{target} := 0.0;")

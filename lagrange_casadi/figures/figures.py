@@ -37,7 +37,11 @@ from ..shapes.specs import (
     UtilisationPlot,
 )
 from ..strength.parts import NEEDED, bending_of, fitted_in, strong_of
+from .deflection_plot import draw_deflection
 from .diagrams import draw_polar, draw_section_diagrams, polar_members
+from .drawing import draw_mechanism
+from .space_drawing import draw_in_space
+from .strength_plot import draw_strength, draw_utilisation
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -322,42 +326,21 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
 
 
 def _mechanism(spec: MechanismDrawing, solution: Solution, si: bool) -> Figure:
-    from .drawing import draw_mechanism
-    from .space_drawing import draw_in_space
-
     if solution.table is SPACE:
         return draw_in_space(solution, spec.count, spec.azimuth, spec.elevation, si)
     return draw_mechanism(solution, spec.count, spec.overlay, si)
-
-
-def _strength(spec: StrengthPlot, solution: Solution, si: bool) -> Figure:
-    from .strength_plot import draw_strength
-
-    return draw_strength(solution, spec.link, *_along(solution), si)
-
-
-def _utilisation(spec: UtilisationPlot, solution: Solution, si: bool) -> Figure:
-    from .strength_plot import draw_utilisation
-
-    return draw_utilisation(solution, (*spec.links, *spec.joints))
-
-
-def _deflection(spec: DeflectionPlot, solution: Solution, si: bool) -> Figure:
-    from .deflection_plot import draw_deflection
-
-    return draw_deflection(solution, spec.link, *_along(solution), si)
 
 
 _FIGURES: dict[type[Spec], Callable[[Any, Solution, bool], Figure]] = {
     TimePlot: _time,
     SpanPlot: _span,
     SectionMaps: _maps,
-    SectionDiagrams: lambda spec, *drawn: draw_section_diagrams(drawn[0], spec.links, drawn[1]),
-    PolarPlots: lambda spec, *drawn: draw_polar(drawn[0], spec.joints, drawn[1]),
+    SectionDiagrams: lambda spec, drawn, si: draw_section_diagrams(drawn, spec.links, si),
+    PolarPlots: lambda spec, drawn, si: draw_polar(drawn, spec.joints, si),
     MechanismDrawing: _mechanism,
-    StrengthPlot: _strength,
-    UtilisationPlot: _utilisation,
-    DeflectionPlot: _deflection,
+    StrengthPlot: lambda spec, drawn, si: draw_strength(drawn, spec.link, *_along(drawn), si),
+    UtilisationPlot: lambda spec, drawn, _: draw_utilisation(drawn, (*spec.links, *spec.joints)),
+    DeflectionPlot: lambda spec, drawn, si: draw_deflection(drawn, spec.link, *_along(drawn), si),
 }
 
 

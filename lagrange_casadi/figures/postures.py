@@ -15,8 +15,8 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from ..declare.description import coordinates_of
-from ..declare.posture import posture_entry
 from ..declare.scene import Scene
+from ..declare.scene_arguments import posture_entry
 from ..errors import AssemblyError, PostureError
 from ..instants.solution import Solution
 from ..shapes.pictures import one_at_a_time, save

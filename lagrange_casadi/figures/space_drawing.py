@@ -104,7 +104,9 @@ def draw_in_space(
             _draw_instant(
                 axes, one, solution.during(slice(k, k + 1)), thin, size, strong=k == chosen[0]
             )
-        _draw_paths(axes, one, thin)
+        for point in thin.description.get("paths", {}).values():
+            x, y = one.on_page(place_of(thin, point)).T
+            axes.plot(x, y, color=PATH, linewidth=1.4, zorder=2, label="_")
         if one is four[1]:
             named = named_spots(solution.description)
             _label(axes, one, (solution, thin), named, size, box, 72.0 * sheet.scale)
@@ -245,12 +247,6 @@ def _draw_instant(
             linestyle="none",
             label="_",
         )
-
-
-def _draw_paths(axes: Axes, one: View, thin: Solution) -> None:
-    for point in thin.description.get("paths", {}).values():
-        x, y = one.on_page(place_of(thin, point)).T
-        axes.plot(x, y, color=PATH, linewidth=1.4, zorder=2, label="_")
 
 
 def _label(

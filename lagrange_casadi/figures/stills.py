@@ -42,7 +42,8 @@ def stills(solution: Solution, count: int) -> list[int]:
     ends = np.linspace(0, turn, count + 1)[:-1] if turn else np.linspace(0, len(cloud) - 1, count)
     found: list[int] = []
     for k in ends.round().astype(int).tolist():
-        if all(_apart(cloud[k], cloud[other]) > _SAME * size for other in found):
+        moved = (np.linalg.norm(cloud[k] - cloud[other], axis=1).max() for other in found)
+        if all(distance > _SAME * size for distance in moved):
             found.append(k)
     return [step * k for k in found]
 
@@ -77,7 +78,3 @@ def _period(cloud: Array, size: float) -> int:
         if np.linalg.norm(cloud[turn:] - cloud[: len(cloud) - turn], axis=2).max() <= near:
             return int(turn)
     return 0
-
-
-def _apart(one: Array, other: Array) -> float:
-    return float(np.linalg.norm(one - other, axis=1).max())

@@ -19,7 +19,7 @@ from ..base.arrays import Array
 from ..errors import escaped
 from .checks import EXACT, opened
 from .laws import LawError, of_pi, python, text_of, tuple_of
-from .record import GROUND, MOVES, ROWS, Body, Frame, Joint, Law, Model, Tie
+from .record import GROUND, MOVES, Body, Frame, Joint, Law, Model, Tie
 
 WIDTH = 96
 """Characters of a line, at most, where it can be broken."""
@@ -54,8 +54,12 @@ class _Case:
     """The lines of a case under way: names of variables, parameters, places."""
 
     def __init__(self, model: Model) -> None:
-        self.model, self.open = model, opened(model)
-        self.size = model.size()
+        self.model, self.open, self.size = model, opened(model), model.size()
+        self.counted = [name for name in model.joints if self.counts(name)]
+        self.open = dict.fromkeys(self.counted, (0.0, 0.0)) | self.open
+        self.held = {GROUND}
+        for joint in model.joints.values():
+            self.held |= set() if joint.name in self.open else {joint.parent, joint.child}
         self.variables: dict[str, str] = {GROUND: "m.ground"}
         self.used = set(_NAMES)
         self.lines: list[str] = []
@@ -70,6 +74,23 @@ class _Case:
         self.lengths: dict[tuple[int, float], str] = {}
         self.masses: dict[float, str] = {}
         self.turning = False
+
+    def counts(self, name: str) -> bool:
+        """Return whether the turns of a joint are counted from another posture than the reference:
+        three turns, of which not the last one alone differs from zero there, have no difference.
+        """
+        turns = [one for one in self.model.joints[name].coordinates if ":turn_" in one]
+        first = [abs(self.model.at_reference(one)) for one in turns[:-1]]
+        given = {one: law for one, law in self.model.motions.items() if one in turns}
+        if len(turns) < 3 or max(first) < EXACT:
+            return False
+        if all(self.law(one, law) == "polynomial(0.0)" for one, law in given.items()):
+            return False
+        if len(given) < len(turns):
+            words = f"motion of '{next(iter(given))}': expected one of each turn of joint '{name}'"
+            words += ", for the body is turned about several axes in the reference posture"
+            raise self.model.refuse(self.model.joints[name].where, words)
+        return True
 
     def text(self) -> str:
         """Return the whole."""
@@ -91,8 +112,7 @@ class _Case:
             self.tie(tie)
         for body in self.model.bodies.values():
             for name, place in body.places.items():
-                point = self.written(self.place(body.frame.at(place)), inner=True)
-                arguments = [json.dumps(name), f"m.at({self.variables[body.name]}, {point})"]
+                arguments = [json.dumps(name), self.point(body.name, body.frame.at(place))]
                 self.lines += _call("m.path", arguments)
         self.end()
         return self.imports() + "".join(f"    {line}\n" if line else "\n" for line in self.lines)
@@ -109,7 +129,7 @@ class _Case:
         parts.append("from lagrange_casadi import Scene, SpatialMechanism\n")
         laws = [name for name in ("expression", "polynomial", "samples") if f"{name}(" in body]
         parts += [f"from lagrange_casadi.motion import {', '.join(laws)}\n"] if laws else []
-        parts += [_FRAME] if "frame(m, " in body else []
+        parts += [_FRAME] if model.ties else []
         parts += [_TURN] if "turned(" in body and self.turning else []
         start = f"\n\ndef scene() -> Scene:\n    m = SpatialMechanism({json.dumps(model.name)})\n"
         return "".join(parts) + start
@@ -138,8 +158,8 @@ class _Case:
 
     def gravity(self) -> None:
         """Declare gravity where it is not the usual one."""
-        if tuple(self.model.gravity) != (0.0, 0.0, -9.81):
-            self.lines.append(f"m.set_gravity{tuple_of(self.model.gravity)}")
+        if (gravity := self.model.gravity.tolist()) != [0.0, 0.0, -9.81]:
+            self.lines.append(f"m.set_gravity{tuple_of(gravity)}")
 
     def ends(self, body: Body) -> tuple[Place, Place]:
         """Return two places that a link lies between: a joint, and the place farthest from it."""
@@ -172,19 +192,26 @@ class _Case:
             return
         base, tip = self.between[body.name]
         assert body.inertia is not None
-        inertia = self.settled(body.frame.axes @ body.inertia @ body.frame.axes.T)
+        turn, centre = body.frame.axes, self.place(body.frame.at(body.centre))
+        ends = [f"between=({self.written(base)}, {self.written(tip)})"]
+        if body.name not in self.held:  # no joint gives its posture: it is on its own axes
+            own = Frame(np.array(base), self.link_axes(body.name))
+            turn = own.axes.T @ turn
+            centre = self.place(own.relative(Frame(np.array(centre))).place)
+            ends = [f"length={text_of(math.dist(base, tip))}"]
+        inertia = self.settled(turn @ body.inertia @ turn.T)
         diagonal = np.diag(np.diag(inertia))
         moments = np.diag(inertia).tolist() if np.array_equal(inertia, diagonal) else inertia
         rows = tuple_of(moments) if isinstance(moments, list) else _rows(moments)
         arguments = [
             json.dumps(body.name),
-            f"between=({self.written(base)}, {self.written(tip)})",
+            *ends,
             f"mass={mass}",
         ]
         if body.rod is None:
-            arguments.append(f"centre={tuple_of(self.place(body.frame.at(body.centre)))}")
+            arguments.append(f"centre={tuple_of(centre)}")
             arguments.append(f"inertia={rows}")
-        if any(
+        if body.name in self.held and any(
             body.name in (self.model.joints[one].parent, self.model.joints[one].child)
             for one in self.open
         ):
@@ -199,19 +226,16 @@ class _Case:
         arguments, axes = [json.dumps(joint.name)], near.axes
         if joint.name in self.open:
             gap, angle = self.open[joint.name]
-            self.lines.append(
-                f"# Closes a loop elsewhere: here it is {gap:.3g} m, {angle:.3g} rad open."
-            )
-            local = np.eye(3) if joint.parent == GROUND else self.link_axes(joint.parent)
+            if gap or angle:
+                self.lines.append(
+                    f"# Closes a loop elsewhere: here it is {gap:.3g} m, {angle:.3g} rad open."
+                )
+            local = self.link_axes(joint.parent)
             turned = self.directions(local.T @ near.axes @ far.axes.T @ self.link_axes(joint.child))
-            for body, frame in ((joint.parent, near), (joint.child, far)):
-                point = self.written(self.place(frame.place), inner=True)
-                ground = body == GROUND
-                on = self.variables[body]
-                arguments.append(f"m.ground.at({point})" if ground else f"m.at({on}, {point})")
+            arguments += [self.point(joint.parent, near.place), self.point(joint.child, far.place)]
             axes = local.T @ near.axes
             closing = [f"turned=({_tuple(turned[:, 0])}, {_tuple(turned[:, 1])})"]
-            if joint.kind in ("spherical", "free", "slot"):
+            if joint.kind in ("spherical", "free", "slot") and joint.name not in self.counted:
                 closing = []
         else:
             arguments += [parent, child]
@@ -223,6 +247,15 @@ class _Case:
             joint.name in (one.first, one.second) for one in self.model.couplings.values()
         )
         self.lines += _call(f"{name} = m.{joint.kind}" if used else f"m.{joint.kind}", arguments)
+
+    def point(self, body: str, place: Array) -> str:
+        """Return a point of a body that is at a place in the reference posture."""
+        if body not in self.held:
+            own = Frame(np.array(self.between[body][0]), self.link_axes(body))
+            place = own.relative(Frame(place)).place
+            return f"{self.variables[body]}.at{tuple_of(self.place(place))}"
+        at = self.written(self.place(place), inner=True)
+        return f"m.ground.at({at})" if body == GROUND else f"m.at({self.variables[body]}, {at})"
 
     def axes(self, joint: Joint, axes: Array, far: Frame) -> list[str]:
         """Return the arguments that say along and about what a joint moves."""
@@ -265,9 +298,7 @@ class _Case:
                 parent, child = self.turns_about(tie, tie.parent), self.turns_about(tie, tie.child)
                 self.turn("first", _minus(parent), row.angle, ("x", "y", away))
                 self.turn("second", _minus(child), row.other, ("u", "v", back))
-            factor, e, f = text_of(row.factor), "xyz"[row.i], "uvw"[row.j]
-            row_text = ROWS[row.kind].format(e=e, f=f, factor=factor)
-            said = row_text + _signed(-row.value)
+            said = row.text + _signed(-row.value)
             self.lines += _call("m.constraint", [json.dumps(name), said])
 
     def turn(self, name: str, counted: str, start: float, axes: tuple[str, str, str]) -> None:
@@ -336,16 +367,15 @@ class _Case:
 
     def offset(self, coordinate: str) -> float:
         """Return what a coordinate of the file is where that of the case is zero."""
-        owner = coordinate.partition(":")[0]
-        if owner in self.open:
+        if coordinate.partition(":")[0] in self.open:
             return 0.0
-        joint = self.model.joints[owner]
-        values = self.model.at_reference(joint)
-        found = values[joint.coordinates.index(coordinate)]
+        found = self.model.at_reference(coordinate)
         return 0.0 if abs(found) < EXACT * max(self.size, 1.0) else found
 
     def link_axes(self, body: str) -> Array:
         """Return the axes of a link as declared: x from its base to its tip, y across."""
+        if body == GROUND:
+            return np.eye(3)
         base, tip = (np.array(place) for place in self.between[body])
         x = (tip - base) / np.linalg.norm(tip - base)
         y = np.eye(3)[int(np.argmin(np.round(np.abs(x), 6)))]

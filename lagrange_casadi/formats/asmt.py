@@ -7,6 +7,7 @@ about z of its marker I. Curves of the series of results that a file may have ar
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -15,19 +16,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from .elements import Element
-from .record import (
-    GROUND,
-    Body,
-    Frame,
-    Joint,
-    Law,
-    Model,
-    Row,
-    Tie,
-    number,
-    numbers,
-    rotation,
-)
+from .record import GROUND, Body, Frame, Joint, Law, Model, Row, Tie
 
 KINDS: dict[str, str] = {
     "RevoluteJoint": "revolute",
@@ -73,6 +62,11 @@ _MOTIONS = {
 }
 """Property with the law of a motion, its coordinate, and the kind of joint that has it alone."""
 
+_GENERAL = ("rIJI1", "rIJI2", "rIJI3", "angIJJ1", "angIJJ2", "angIJJ3")
+"""Properties with the laws of a general motion: of the place of marker J and of its three turns."""
+
+_HALF_TURNS = [np.diag(one) for one in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))]
+_MARKERS = ("MarkerI", "MarkerJ")
 _HEADS = ("freeCAD: 3D CAD with Motion Simulation  by  askoh.com", "OndselSolver")
 _DEEPEST = 40
 
@@ -93,24 +87,24 @@ class _Line(Element):
 
     def number(self, name: str, where: str = "") -> float:
         """Return the number below the line of a text."""
-        return number(self.model, where or self.where, self.value(name), name)
+        return self.model.number(where or self.where, self.value(name), name)
 
     def vector(self, name: str) -> Array:
         """Return three numbers below the line of a text."""
-        return numbers(self.model, self.needed(name).where, self.value(name), name, 3)
+        return self.model.numbers(self.needed(name).where, self.value(name), name)
 
     def frame(self) -> Frame:
         """Return the place and axes below it."""
         place, rows = self.vector("Position3D"), self.needed("RotationMatrix")
-        axes = [numbers(self.model, rows.where, one.name, "axes", 3) for one in rows.inside]
+        axes = [self.model.numbers(rows.where, one.name, "axes") for one in rows.inside]
         if len(axes) != 3:
             raise rows.refuse("expected three rows")
-        return Frame(place, rotation(self.model, rows.where, np.array(axes)))
+        return Frame(place, self.model.rotation(rows.where, np.array(axes)))
 
 
 def read(path: Path, text: str) -> Model:
     """Return the model of a file. Raises :class:`.ModelFileError`, which names line and element."""
-    model = Model(path.stem, path.name, gravity=(0.0, 0.0, 0.0))
+    model = Model(path.stem, path.name, gravity=np.zeros(3))
     return _Reader(model, _tree(model, text)).read()
 
 
@@ -160,12 +154,13 @@ class _Reader:
         for joint in sets.below("Joints"):
             self.joint(joint, f"/{stated}")
         for motion in sets.below("Motions"):
-            self.motion(motion)
-        ignored = [*sets.below("Limits"), *sets.below("GeneralConstraintSets")]
+            if motion.name != "AllowRotation":
+                self.motion(motion)
+        ignored = [one for one in sets.below("Motions") if one.name == "AllowRotation"]
+        ignored += [*sets.below("Limits"), *sets.below("GeneralConstraintSets")]
         for one in (*ignored, *root.below("ForceTorques")):
             model.notes.append(f"{one.name} of line {one.line} is ignored.")
-        x, y, z = root.vector("ConstantGravity")
-        model.gravity = (float(x), float(y), float(z))
+        model.gravity = root.vector("ConstantGravity")
         self.times()
         return model
 
@@ -183,7 +178,9 @@ class _Reader:
         centre, heavy = mass.frame(), mass.number("Mass")
         inertia = centre.axes @ np.diag(mass.vector("MomentOfInertias")) @ centre.axes.T
         given, where = (heavy, centre.place, inertia, line.frame()), f"{line.where} {stated}"
-        self.points(line, self.model.add(Body, stated, where, *given), f"{path}/{stated}")
+        name = self.model.add(Body, stated, where, *given)
+        self.markers[f"{path}/{stated}/MassMarker"] = (name, centre)
+        self.points(line, name, f"{path}/{stated}")
 
     def marker(self, line: _Line, name: str) -> tuple[str, Frame]:
         """Return the body and the frame of a marker that a line names."""
@@ -193,16 +190,19 @@ class _Reader:
 
     def joint(self, line: _Line, path: str) -> None:
         """Read a joint between two markers."""
-        model, stated, kind, value = self.model, line.value("Name"), line.name, 0.0
+        model, kind, value = self.model, line.name, 0.0
+        stated = line.value("Name") or f"{kind}_{line.line}"
         where = f"{line.where} {stated}"
         if kind not in KINDS and kind not in TIES:
             words = f"is not supported; valid: {', '.join([*KINDS, *TIES])}"
             raise model.refuse(where, words)
-        (parent, near), (child, far) = self.marker(line, "MarkerI"), self.marker(line, "MarkerJ")
+        (parent, near), (child, far) = (self.marker(line, key) for key in _MARKERS)
         if line.first(key := _NUMBERS.get(kind, "")) is not None:
             value = line.number(key, where)
         if kind in KINDS:
             near = near.then(Frame(np.array([0.0, 0.0, value])))
+            known = model.frame_of(parent).then(near).relative(model.frame_of(child).then(far))
+            far = far.then(Frame(axes=_half_turn(KINDS[kind], known.axes)))
             name = model.add(Joint, stated, where, KINDS[kind], parent, child, near, far)
         else:
             if kind == "GearJoint":
@@ -210,6 +210,8 @@ class _Reader:
                 if not one or not other:
                     raise model.refuse(where, "a radius of zero is impossible")
                 value = one / other
+            if kind == "AngleJoint" and abs(math.sin(value)) < 1e-9:
+                kind = "ParallelAxesJoint"  # where the slope of the angle's cosine is zero
             frames = model.frame_of(parent).then(near), model.frame_of(child).then(far)
             rows = tuple(self.row(frames, row, kind, value) for row in TIES[kind])
             name = model.add(Tie, stated, where, parent, child, near, far, rows)
@@ -237,17 +239,27 @@ class _Reader:
         return replace(row, value=value) if row.kind == "slide" else row
 
     def motion(self, line: _Line) -> None:
-        """Read the motion of a joint."""
-        model, where = self.model, f"{line.where} {line.value('Name')}"
+        """Read the motion of a joint, or of one marker against another one."""
+        model, stated = self.model, line.value("Name")
+        where = f"{line.where} {stated}"
+        if line.name == "GeneralMotion":
+            (parent, near), (child, far) = (self.marker(line, key) for key in _MARKERS)
+            if line.value("RotationOrder").split() != ["1", "2", "3"]:
+                raise model.refuse(where, "is supported only with the RotationOrder 1 2 3")
+            name = model.add(Joint, stated, where, "free", parent, child, near, far)
+            for key, coordinate in zip(_GENERAL, model.joints[name].coordinates, strict=True):
+                model.motions[coordinate] = Law(_law(line.value(key)), where=where)
+            return
         if line.name not in _MOTIONS:
-            raise model.refuse(where, f"is not supported; valid: {', '.join(_MOTIONS)}")
+            words = f"is not supported; valid: {', '.join([*_MOTIONS, 'GeneralMotion'])}"
+            raise model.refuse(where, words)
         key, direction, single = _MOTIONS[line.name]
         joint = model.joints.get(self.named.get(path := line.value("MotionJoint"), ""))
         if joint is None:
             valid = ", ".join(path for path, name in self.named.items() if name in model.joints)
             raise model.refuse(where, f"unknown joint '{path}'; valid: {valid}")
         coordinate = joint.name if joint.kind == single else f"{joint.name}:{direction}"
-        model.motions[coordinate] = Law(line.value(key), where=where)
+        model.motions[coordinate] = Law(_law(line.value(key)), where=where)
 
     def times(self) -> None:
         """Read the instants, where the file has a simulation."""
@@ -255,7 +267,23 @@ class _Reader:
             return
         start, stop, step = (data.number(key) for key in ("tstart", "tend", "hout"))
         count = round((stop - start) / step) + 1 if step > 0.0 else 101
-        self.model.span = (start, stop, count if 1 < count <= 100_001 else 101)
+        if stop > start:  # a drawing that was assembled only has no duration
+            self.model.span = (start, stop, count if 1 < count <= 100_001 else 101)
+
+
+def _half_turn(kind: str, axes: Array) -> Array:
+    """Return the half turn of marker J, or none, after which its axes are along those of marker I.
+
+    A joint holds axes at right angles, so they may point the other way; turns are of its x axis.
+    """
+    if kind in ("prismatic", "weld"):
+        return max(_HALF_TURNS, key=lambda half: float(np.trace(axes @ half)))
+    return _HALF_TURNS[int(kind in ("revolute", "cylindrical", "planar") and axes[2, 2] < 0.0)]
+
+
+def _law(text: str) -> str:
+    """Return a law without comments, which are in quotes, and without its marks of new lines."""
+    return re.sub(r'"[^"]*"', "", text).replace("<n>", " ")
 
 
 def _clean(value: float) -> float:

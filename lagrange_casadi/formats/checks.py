@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.arrays import Array
-from .record import GROUND, Body, Frame, Joint, Model, Tie, about_axis
+from .record import GROUND, Body, Frame, Joint, Model, Tie
 
 SLACK = 1e-6
 """Frames of a joint that are apart by less, of the mechanism's size and in rad, are one."""
@@ -46,6 +46,7 @@ def checked(model: Model) -> Model:
         if name not in valid:
             words = f"unknown coordinate '{name}'; valid: {', '.join(valid)}"
             raise model.refuse(where, words)
+    _assemble(model)
     _rounding(model)
     _spins(model)
     return model
@@ -94,14 +95,43 @@ def _connected(model: Model) -> None:
     for tie in model.ties.values():
         for one, other in ((tie.parent, tie.child), (tie.child, tie.parent)):
             if one not in reached and other in reached:
-                name = model.name_of("joint", f"{one}_free", tie.where, model.joints)
-                model.joints[name] = Joint(name, "free", GROUND, one, model.frame_of(one), Frame())
+                ends = GROUND, one, model.frame_of(one), Frame()
+                model.add(Joint, f"{one}_free", tie.where, "free", *ends)
                 _connected(model)
                 return
     for body in model.bodies.values():
         if body.name not in reached:
             words = f"body '{body.name}' is not connected to the ground"
             raise model.refuse(body.where, words)
+
+
+def _assemble(model: Model) -> None:
+    """Move bodies of a drawing that is not assembled, all of whose joints are open, so that one of
+    these is closed, its coordinates as they are.
+    """
+    apart = opened(model)
+    closed = [one for one in model.joints.values() if one.name not in apart]
+    placed = {GROUND, *(name for one in closed for name in (one.parent, one.child))}
+    while True:
+        between = (
+            one for one in model.joints.values() if (one.parent in placed) != (one.child in placed)
+        )
+        if (joint := next(between, None)) is None:
+            return
+        near, far = model.frames(joint)
+        relative = model.closest(joint)
+        moves = joint.child if joint.parent in placed else joint.parent
+        if moves == joint.child:
+            frame = near.then(relative).then(joint.on_child.inverse())
+        else:
+            frame = far.then(relative.inverse()).then(joint.on_parent.inverse())
+        gap, angle = apart[joint.name]
+        model.bodies[moves] = replace(model.bodies[moves], frame=frame)
+        placed.add(moves)
+        model.notes.append(
+            f"body '{moves}' is moved so that joint '{joint.name}' is closed, which is open by"
+            f" {gap:.3g} m and {angle:.3g} rad in the file"
+        )
 
 
 def _spins(model: Model) -> None:
@@ -118,7 +148,7 @@ def _spins(model: Model) -> None:
         for mine, frame in ((last.parent, last.on_parent), (last.child, last.on_child)):
             # The neighbour carries the axis about which it turns; the body the one across it.
             z = across if mine == other else np.cross(along, across)
-            axes = model.frame_of(mine).axes.T @ about_axis(z)
+            axes = model.frame_of(mine).axes.T @ Frame.about(z).axes
             held.append(Frame(frame.place, axes))
         near, far = held
         model.joints[last.name] = replace(last, kind="universal", on_parent=near, on_child=far)
@@ -136,12 +166,15 @@ def _axis_of(model: Model, body: str, along: Array) -> Array:
             across = axis - (axis @ along) * along
             if (size := float(np.linalg.norm(across))) > 0.1:
                 return np.asarray(across / size)
-    return about_axis(along)[:, 0]
+    return Frame.about(along).axes[:, 0]
 
 
 def _rounding(model: Model) -> None:
     """Lay the frames of each joint on each other where they miss by a drawing's rounding."""
-    size = model.size()
+    size, (off, where) = model.size(), model.rounded
+    if off:
+        words = f"Axes that are off right angles by {off:.1e} (at {where}) or less"
+        model.notes.append(f"{words} are taken as rounding, and set at right angles.")
     for joint in model.joints.values():
         gap, angle = model.apart(joint)
         if max(gap / size, angle) > SLACK or max(gap / size, angle) <= EXACT:

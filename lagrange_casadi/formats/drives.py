@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..base.arrays import Array
@@ -39,88 +41,60 @@ def driven(model: Model) -> Model:
     if resting:
         model.notes.append(REST.format(", ".join(resting)))
     for name in resting:
-        joint = model.joints[name.partition(":")[0]]
-        start = model.at_reference(joint)[joint.coordinates.index(name)]
-        model.motions[name] = Law(repr(float(model.posture.get(name, start)) + 0.0))
+        start = model.posture.get(name, model.at_reference(name))
+        model.motions[name] = Law(repr(float(start) + 0.0))
     return model
 
 
 def _rates(model: Model, names: list[str]) -> Array:
-    """Return what closes: rows of loops and couplings by the rates of coordinates, in the reference
-    posture.
+    """Return what closes: rows of loops, couplings and ties by the rates of coordinates, in the
+    reference posture.
     """
-    paths: dict[str, list[tuple[str, Array]]] = {GROUND: []}
-    rows: list[Array] = []
     column = {name: k for k, name in enumerate(names)}
+    velocity = {GROUND: np.zeros((6, len(names)))}
+    rows = [np.zeros((0, len(names)))]
     waiting = list(model.joints.values())
     while waiting:
-        found = [one for one in waiting if (one.parent in paths) != (one.child in paths)]
-        closing = [one for one in waiting if one.parent in paths and one.child in paths]
-        for joint in closing:
-            rows.append(_closed(model, joint, paths, column))
-        waiting = [one for one in waiting if one not in closing]
-        if not (tree := next((one for one in found if one in waiting), None)):
-            continue
-        sign = 1.0 if tree.parent in paths else -1.0
-        near, far = (tree.parent, tree.child) if sign > 0 else (tree.child, tree.parent)
-        twists = [(name, sign * twist) for name, twist in _twists(model, tree)]
-        paths[far] = [*paths[near], *twists]
-        waiting.remove(tree)
+        joint = next(one for one in waiting if one.parent in velocity or one.child in velocity)
+        waiting.remove(joint)
+        relative = np.zeros((6, len(names)))
+        for name, twist in _twists(model, joint):
+            relative[:, column[name]] = twist
+        if joint.child not in velocity:
+            velocity[joint.child] = velocity[joint.parent] + relative
+        elif joint.parent not in velocity:
+            velocity[joint.parent] = velocity[joint.child] - relative
+        else:
+            rows.append(velocity[joint.parent] + relative - velocity[joint.child])
     for one in model.couplings.values():
-        row = np.zeros((1, len(names)))
-        row[0, column[one.second]], row[0, column[one.first]] = 1.0, -one.ratio
-        rows.append(row)
+        rows.append(np.zeros((1, len(names))))
+        rows[-1][0, column[one.second]], rows[-1][0, column[one.first]] = 1.0, -one.ratio
     for tie in model.ties.values():
-        rows.append(_tied(model, tie, paths, column))
-    return np.vstack(rows) if rows else np.zeros((0, len(names)))
+        rows.append(_tied(model, tie) @ (velocity[tie.child] - velocity[tie.parent]))
+    return np.vstack(rows)
 
 
-def _closed(
-    model: Model, joint: Joint, paths: dict[str, list[tuple[str, Array]]], column: dict[str, int]
-) -> Array:
-    """Return six rows of a loop that a joint closes, its own coordinates too."""
-    rows = np.zeros((6, len(column)))
-    for sign, body in ((1.0, joint.parent), (-1.0, joint.child)):
-        for name, twist in paths[body]:
-            rows[:, column[name]] += sign * twist
-    for name, twist in _twists(model, joint):
-        rows[:, column[name]] += twist
-    return rows
-
-
-def _tied(
-    model: Model, tie: Tie, paths: dict[str, list[tuple[str, Array]]], column: dict[str, int]
-) -> Array:
-    """Return the rows of a tie, by what its frames do in a small motion: a complex step."""
+def _tied(model: Model, tie: Tie) -> Array:
+    """Return the rows of a tie by the velocity of its child against its parent: complex steps."""
     near, far = model.frames(tie)
-    moved = np.zeros((6, len(column)))
-    for sign, body in ((1.0, tie.child), (-1.0, tie.parent)):
-        for name, twist in paths[body]:
-            moved[:, column[name]] += sign * twist
-    size, found = model.size(), np.zeros((len(tie.rows), len(column)))
-    x, y, z = near.axes.T
-    for k in range(len(column)):
-        speed, spin = moved[:3, k] * size, moved[3:, k]
-        q = far.place + 1j * STEP * (speed + np.cross(spin, far.place))
-        u, v, w = far.axes.T + 1j * STEP * np.cross(spin, far.axes.T)
-        away = q - near.place
+    size, found = model.size(), np.zeros((len(tie.rows), 6))
+    names: dict[str, Any] = {"ca": np, "p": near.place} | dict(zip("xyz", near.axes.T, strict=True))
+    for k, moved in enumerate(1j * STEP * np.eye(6)):
+        speed, spin = moved[:3] * size, moved[3:]
+        q = far.place + speed + np.cross(spin, far.place)
+        axes = far.axes.T + np.cross(spin, far.axes.T)
+        names |= {"q": q, "turn": spin @ near.axes[:, 2]} | dict(zip("uvw", axes, strict=True))
         for j, row in enumerate(tie.rows):
-            e, f = (x, y, z)[row.i], (u, v, w)[row.j]
-            values = {"slide": away @ e, "cosine": e @ f, "sides": x @ v + y @ u}
-            values |= {"distance": away @ away}
-            values["distance across"] = (away @ x) ** 2 + (away @ y) ** 2
             if row.kind == "wheels":
-                first, second = (np.append(away @ near.axes, 0)[:2], -away @ np.array([u, v]).T)
-                angles = [_angle(first), _angle(second)]
-                values["wheels"] = angles[1] + row.factor * angles[0]
-            values["slide and turn"] = away @ e + 1j * STEP * row.factor * (spin @ z)
-            found[j, k] = values[row.kind].imag / STEP
+                names["first"] = _angle((q - near.place) @ near.axes)
+                names["second"] = _angle(axes @ (near.place - q))
+            found[j, k] = eval(row.text, names).imag / STEP  # of our own table of rows
     return found
 
 
 def _angle(direction: Array) -> complex:
-    """Return the small part of a direction's angle, as an imaginary number."""
-    x, y = direction
+    """Return the small part of a direction's angle about z, as an imaginary number."""
+    x, y, _ = direction
     return complex(0.0, float((x.real * y.imag - y.real * x.imag) / (x.real**2 + y.real**2)))
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..errors import ModelFileError, shown
-from .record import Model, number, numbers
+from .record import Model
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -74,11 +74,11 @@ class Element:
 
     def amount(self, name: str, usual: float | None = None, what: str = "") -> float:
         """Return the number in an attribute; ``usual`` if there is no such attribute."""
-        return number(self.model, self.at(name), self._stated(name, usual), what or name)
+        return self.model.number(self.at(name), self._stated(name, usual), what or name)
 
     def triple(self, name: str, usual: object = None, what: str = "") -> Array:
         """Return three numbers in an attribute; ``usual`` if there is no such attribute."""
-        return numbers(self.model, self.at(name), self._stated(name, usual), what or name, 3)
+        return self.model.numbers(self.at(name), self._stated(name, usual), what or name)
 
     def direction(self, name: str, what: str = "") -> Array:
         """Return three numbers in an attribute that are not all zero."""
@@ -98,11 +98,11 @@ class Element:
         found = self.first(name) if name else self
         if found is None:
             return usual
-        return number(self.model, found.where, found.text.strip(), name or self.name)
+        return self.model.number(found.where, found.text.strip(), name or self.name)
 
     def numbers(self, what: str, count: int) -> Array:
         """Return so many numbers of its text."""
-        return numbers(self.model, self.where, self.text, what, count)
+        return self.model.numbers(self.where, self.text, what, count)
 
     def by_name(self, *names: str) -> dict[str, Self]:
         """Return the elements in it of these names, by their attribute name."""

@@ -12,22 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Json
+from ..base.arrays import Array, Json
 from ..errors import shown
 from .elements import Element
-from .record import (
-    MOVES,
-    Body,
-    Coupling,
-    Frame,
-    Joint,
-    Law,
-    Model,
-    about_axis,
-    number,
-    numbers,
-    rotation,
-)
+from .record import MOVES, Body, Coupling, Frame, Joint, Law, Model
 
 SCHEMA, VERSION = "lagrange_casadi.model", 1
 """Name of the format in a file."""
@@ -38,6 +26,7 @@ FRAME = ("place", "axes", "z")
 BODY = ("name", "mass", "centre", "inertia", "rod", "point", "places", *FRAME)
 JOINT = ("name", "kind", "parent", "child", "on_parent", "on_child", "lead")
 COUPLING = ("name", "first", "second", "ratio", "offset")
+SPAN, SAMPLES = ("start", "stop", "count"), ("times", "values")
 
 
 class _Object(Element):
@@ -54,36 +43,50 @@ class _Object(Element):
         """Return the path of an entry."""
         return f"{self.name}.{key}" if self.name else key
 
+    def table(self, key: str, valid: Sequence[str] = (), *needed: str) -> _Object:
+        """Return an object in it, empty if it is not there."""
+        return _object(self.model, self.at(key), self.given.get(key, {}), valid, *needed)
+
     def objects(self, key: str, valid: Sequence[str], *needed: str) -> Iterator[_Object]:
         """Yield the objects in a list of it."""
-        for k, one in enumerate(self.list(key)):
+        for k, one in enumerate(self.items(key)):
             yield _object(self.model, f"{self.at(key)}[{k}]", one, valid, *needed)
 
-    def list(self, key: str) -> list[object]:
-        """Return a list in it, which is empty if it is not there."""
-        return _list(self.model, self.at(key), self.given.get(key, []))
+    def items(self, key: str) -> list[object]:
+        """Return a list in it, empty if it is not there."""
+        found = self.given.get(key, [])
+        if not isinstance(found, list):
+            raise self.model.refuse(self.at(key), f"expected a list, got {shown(found)}")
+        return found
 
-    def table(self, key: str) -> dict[str, object]:
-        """Return an object in it of any keys, empty if it is not there."""
-        return _object(self.model, self.at(key), self.given.get(key, {})).given
+    def rows(self, key: str, count: int, expected: str) -> Array:
+        """Return a list in it of so many rows of three numbers."""
+        if len(rows := self.items(key)) != count:
+            raise self.model.refuse(self.at(key), f"expected {expected}")
+        return np.array([self.model.numbers(self.at(key), row, key) for row in rows])
+
+    def as_text(self, key: str, given: object) -> str:
+        """Return what an entry, or a list of it, gives as a text."""
+        if not isinstance(given, str) or not given or len(given) > 200:
+            raise self.model.refuse(self.at(key), f"expected a text, got {shown(given)}")
+        return given
 
     def word(self, key: str, usual: str = "") -> str:
         """Return a text in it."""
-        return _text(self.model, self.at(key), self.given.get(key, usual))
+        return self.as_text(key, self.given.get(key, usual))
+
+    def words(self, key: str) -> list[str]:
+        """Return a list of texts in it."""
+        return [self.as_text(key, one) for one in self.items(key)]
 
     def frame(self, key: str = "") -> Frame:
         """Return a frame in it: its place, and either its three axes, or the direction of z."""
-        one = self
-        if key:
-            one = _object(self.model, self.at(key), self.given.get(key, {}), FRAME)
+        one = self.table(key, FRAME) if key else self
         place = one.triple("place", (0.0, 0.0, 0.0))
         if "axes" in one.given:
-            where = one.at("axes")
-            axes = np.array([numbers(one.model, where, row, "axes", 3) for row in one.list("axes")])
-            if axes.shape != (3, 3):
-                raise one.model.refuse(where, "expected three unit vectors, those of x, y and z")
-            return Frame(place, rotation(one.model, where, axes.T))
-        return Frame(place, about_axis(one.direction("z"))) if "z" in one.given else Frame(place)
+            rows = one.rows("axes", 3, "three unit vectors, those of x, y and z")
+            return Frame(place, one.model.rotation(one.at("axes"), rows.T))
+        return Frame.about(one.direction("z"), place) if "z" in one.given else Frame(place)
 
 
 def _object(
@@ -101,18 +104,6 @@ def _object(
     return _Object(model, path, 0, data)
 
 
-def _list(model: Model, where: str, data: object) -> list[object]:
-    if not isinstance(data, list | tuple):
-        raise model.refuse(where, f"expected a list, got {shown(data)}")
-    return list(data)
-
-
-def _text(model: Model, where: str, given: object) -> str:
-    if not isinstance(given, str) or not given or len(given) > 200:
-        raise model.refuse(where, f"expected a text, got {shown(given)}")
-    return given
-
-
 def read(path: Path, text: str) -> Model:
     """Return the model of a file. Raises :class:`.ModelFileError`, which names the element."""
     model = Model(path.stem, path.name)
@@ -128,8 +119,7 @@ def read(path: Path, text: str) -> Model:
     if data.get("units", "SI") != "SI":
         raise model.refuse("units", f'expected "SI", got {shown(data["units"])}')
     model.name = top.word("name", model.name)
-    x, y, z = top.triple("gravity", model.gravity)
-    model.gravity = (float(x), float(y), float(z))
+    model.gravity = top.triple("gravity", model.gravity.tolist())
     for one in top.objects("bodies", BODY, "name", "mass"):
         _body(one)
     for one in top.objects("joints", JOINT, "name", "kind", "parent", "child"):
@@ -137,23 +127,22 @@ def read(path: Path, text: str) -> Model:
     for one in top.objects("couplings", COUPLING, "name", "first", "second", "ratio"):
         joints, ratio = (one.word("first"), one.word("second")), one.amount("ratio")
         model.add(Coupling, one.word("name"), one.where, *joints, ratio, one.amount("offset", 0.0))
-    for name, law in top.table("motions").items():
-        model.motions[name] = _law(model, f"motions.{name}", law)
-    for name, value in top.table("posture").items():
-        model.posture[name] = number(model, f"posture.{name}", value, "value")
+    motions, posture = top.table("motions"), top.table("posture")
+    model.motions = {name: _law(motions, name) for name in motions.given}
+    model.posture = {name: posture.amount(name, what="value") for name in posture.given}
     if "drives" in data:
-        model.drives = [_text(model, "drives", one) for one in top.list("drives")]
+        model.drives = top.words("drives")
     if "time" in data:
-        model.span = _span(model, data["time"])
-    model.notes = [_text(model, "notes", one) for one in top.list("notes")]
+        model.span = _span(top.table("time", SPAN, *SPAN))
+    model.notes = top.words("notes")
     return model
 
 
 def write(model: Model) -> str:
     """Return the text of the file for a model."""
     data: dict[str, Any] = {"schema": SCHEMA, "version": VERSION, "name": model.name, "units": "SI"}
-    data["gravity"] = list(model.gravity)
-    data["time"] = dict(zip(("start", "stop", "count"), model.span, strict=True))
+    data["gravity"] = model.gravity.tolist()
+    data["time"] = dict(zip(SPAN, model.span, strict=True))
     data["bodies"] = [_body_data(body) for body in model.bodies.values()]
     data["joints"] = [
         {"name": one.name, "kind": one.kind, "parent": one.parent, "child": one.child}
@@ -167,7 +156,7 @@ def write(model: Model) -> str:
     data["motions"] = {
         name: law.text
         if law.samples is None
-        else {"times": list(law.samples[0]), "values": list(law.samples[1])}
+        else dict(zip(SAMPLES, map(list, law.samples), strict=True))
         for name, law in model.motions.items()
     }
     data |= {"posture": model.posture} if model.posture else {}
@@ -198,29 +187,23 @@ def _frame_data(frame: Frame) -> dict[str, Json]:
 
 
 def _body(one: _Object) -> None:
-    model, name, mass = one.model, one.word("name"), one.amount("mass")
-    given, inertia, rod = one.given.get("inertia"), None, None
-    centre, frame = one.triple("centre", (0.0, 0.0, 0.0)), one.frame()
-    places = {
-        place: numbers(model, f"{one.at('places')}.{place}", at, "place", 3)
-        for place, at in one.table("places").items()
-    }
+    name, mass, given = one.word("name"), one.amount("mass"), one.given.get("inertia")
+    centre, frame, inertia, rod = one.triple("centre", (0.0, 0.0, 0.0)), one.frame(), None, None
+    places = one.table("places")
+    named = {place: places.triple(place, what="place") for place in places.given}
     if "rod" in one.given:
-        ends = one.list("rod")
-        if len(ends) != 2:
-            raise model.refuse(one.at("rod"), "expected two places")
-        start, end = (numbers(model, one.at("rod"), place, "rod", 3) for place in ends)
+        start, end = one.rows("rod", 2, "two places")
         body = Body.slender(name, mass, (start, end))
         centre, inertia, rod = body.centre, body.inertia, body.rod
-    elif isinstance(given, Sequence) and all(isinstance(row, Sequence) for row in given):
-        where = one.at("inertia")
-        inertia = np.array([numbers(model, where, row, "inertia", 3) for row in given])
-        if inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0.0):
-            raise model.refuse(where, "expected three moments or three rows, symmetric")
+    elif isinstance(given, list) and all(isinstance(row, list) for row in given):
+        expected = "three moments or three rows, symmetric"
+        inertia = one.rows("inertia", 3, expected)
+        if not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0.0):
+            raise one.model.refuse(one.at("inertia"), f"expected {expected}")
     elif given is not None:
         inertia = np.diag(one.triple("inertia"))
     point = one.given.get("point", False) is True
-    model.add(Body, name, one.where, mass, centre, inertia, frame, places, rod, point)
+    one.model.add(Body, name, one.where, mass, centre, inertia, frame, named, rod, point)
 
 
 def _joint(one: _Object) -> None:
@@ -233,20 +216,18 @@ def _joint(one: _Object) -> None:
     one.model.add(Joint, one.word("name"), one.where, one.given["kind"], *bodies, *frames, lead)
 
 
-def _law(model: Model, where: str, given: object) -> Law:
+def _law(motions: _Object, name: str) -> Law:
+    where, given = motions.at(name), motions.given[name]
     if isinstance(given, str):
         return Law(given, where=where)
-    keys = ("times", "values")
-    one = _object(model, where, given, keys, *keys)
-    count = len(one.list("times"))
-    times, values = (numbers(model, one.at(key), one.given[key], key, count) for key in keys)
+    one = motions.table(name, SAMPLES, *SAMPLES)
+    count = len(one.items("times"))
+    times, values = (one.model.numbers(one.at(key), one.given[key], key, count) for key in SAMPLES)
     return Law(samples=(tuple(times.tolist()), tuple(values.tolist())), where=where)
 
 
-def _span(model: Model, given: object) -> tuple[float, float, int]:
-    keys = ("start", "stop", "count")
-    one = _object(model, "time", given, keys, *keys)
+def _span(one: _Object) -> tuple[float, float, int]:
     count = one.given["count"]
     if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= 1_000_000:
-        raise model.refuse("time.count", f"expected 1 to 1000000, got {shown(count)}")
+        raise one.model.refuse(one.at("count"), f"expected 1 to 1000000, got {shown(count)}")
     return one.amount("start"), one.amount("stop"), count

@@ -15,18 +15,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..errors import MissingPackageError, shown
 from .elements import Element, parsed
-from .record import (
-    GROUND,
-    LARGEST,
-    Body,
-    Coupling,
-    Frame,
-    Joint,
-    Model,
-    about_axis,
-    rotation,
-    turned,
-)
+from .record import GROUND, LARGEST, Body, Coupling, Frame, Joint, Model, turned
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -99,9 +88,9 @@ class _Reader:
     def read(self) -> Model:
         """Return the model."""
         model, m = self.model, self.m
-        model.name = model.name_of("mechanism", self.own_name() or model.name, "", {})
-        x, y, z = (float(one) for one in m.opt.gravity)
-        model.gravity = (x, y, z)
+        stated = m.names.partition(b"\0")[0].decode(errors="replace")  # its own is the first one
+        model.name = model.name_of("mechanism", stated or model.name, "", {})
+        model.gravity = m.opt.gravity.copy()
         for k in range(1, m.nbody):
             self.body(k)
         for k in range(m.neq):
@@ -114,10 +103,6 @@ class _Reader:
         self.left_out()
         return model
 
-    def own_name(self) -> str:
-        """Return the model's name: the first text of its names."""
-        return str(self.m.names[: self.m.names.index(b"\0")].decode(errors="replace"))
-
     def called(self, kind: str, k: int) -> str:
         """Return the name of an object, or its number."""
         data = self.mujoco.mj_id2name(self.m, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind}"), k)
@@ -126,7 +111,7 @@ class _Reader:
     def frame(self, k: int) -> Frame:
         """Return where a body is in the reference posture."""
         axes = self.data.xmat[k].reshape(3, 3)
-        return Frame(self.data.xpos[k].copy(), rotation(self.model, f"body {k}", axes))
+        return Frame(self.data.xpos[k].copy(), self.model.rotation(f"body {k}", axes))
 
     def body(self, k: int) -> None:
         """Declare a body, and the joints that it hangs on."""
@@ -151,12 +136,11 @@ class _Reader:
         """Declare a joint; in the reference posture its coordinate is ``ref``."""
         model, m, stated = self.model, self.m, self.called("JOINT", j)
         kind = ("free", "spherical", "prismatic", "revolute")[int(m.jnt_type[j])]
-        at, far = frame.then(Frame(m.jnt_pos[j].copy())), Frame(m.jnt_pos[j].copy())
-        if kind == "free":
-            at, far = Frame(), Frame()
+        far = Frame() if kind == "free" else Frame(m.jnt_pos[j].copy())
+        at = far if kind == "free" else frame.then(far)
         if kind in ("prismatic", "revolute"):
-            axes, ref = about_axis(m.jnt_axis[j].copy()), float(m.qpos0[m.jnt_qposadr[j]])
-            at, far = at.then(Frame(axes=axes)), far.then(Frame(axes=axes))
+            along, ref = Frame.about(m.jnt_axis[j]), float(m.qpos0[m.jnt_qposadr[j]])
+            at, far = at.then(along), far.then(along)
             if kind == "revolute":
                 far = far.then(Frame(axes=turned(np.array([0.0, 0.0, 1.0]), -ref)))
             else:
@@ -202,7 +186,7 @@ class _Reader:
         """Return the axes of a quaternion."""
         axes = np.zeros(9)
         self.mujoco.mju_quat2Mat(axes, np.asarray(quaternion, dtype=float))
-        return rotation(self.model, "quaternion", axes.reshape(3, 3))
+        return self.model.rotation("quaternion", axes.reshape(3, 3))
 
     def left_out(self) -> None:
         """Note what was not read."""

@@ -65,8 +65,7 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
         raise DeclarationError(f"{what}: constraint '{name}' cannot be written into a model file")
     if described["loads"]:
         model.notes.append(f"Loads are not exported: {', '.join(described['loads'])}.")
-    x, y, z = (*described["gravity"], 0.0)[:3]
-    model.gravity = (x, y, z)
+    model.gravity = np.array([*described["gravity"], 0.0][:3])
     declared = Declared.of(described)
     for name, body in described["bodies"].items():
         model.bodies[name] = _body(name, body, declared.bodies[name], _frame(solution, name))
@@ -86,7 +85,11 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
                 f"{what}: the motion of '{name}' cannot be written into a model file"
             )
         t = ca.SX.sym("t")
-        law = ca.Function("law", [t], [ca.densify(laws.motion(t, values)[0][k])])
+        motion = ca.densify(laws.motion(t, values)[0][k])
+        if model.joints[name.partition(":")[0]].kind == "universal":
+            # Its turns are counted from the reference posture, which is that at the start.
+            motion = motion - ca.substitute(motion, t, start)
+        law = ca.Function("law", [t], [motion])
         model.motions[name] = _law(law, model.span)
     if scene.drives is not None:
         model.drives = list(scene.drives)

@@ -57,9 +57,35 @@ class Frame:
     place: Array = field(default_factory=lambda: np.zeros(3))
     axes: Array = field(default_factory=lambda: np.eye(3))
 
+    @classmethod
+    def about(cls, axis: Array, place: Sequence[float] | Array = (0.0, 0.0, 0.0)) -> Frame:
+        """Return a frame whose z is along a direction."""
+        z = axis / np.linalg.norm(axis)
+        other = np.eye(3)[int(np.argmin(np.round(np.abs(z), 9)))]
+        x = other - (other @ z) * z
+        x /= np.linalg.norm(x)
+        return cls(np.array(place), np.column_stack([x, np.cross(z, x), z]) + 0.0)
+
+    @classmethod
+    def posed(cls, place: Array, angles: Array) -> Frame:
+        """Return a frame turned by roll, pitch and yaw about fixed x, y and z [rad]."""
+        (cr, cp, cy), (sr, sp, sy) = np.cos(angles), np.sin(angles)
+        axes = np.array(
+            [
+                [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+                [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+                [-sp, cp * sr, cp * cr],
+            ]
+        )
+        return cls(place, _right_angled(axes))
+
     def then(self, inner: Frame) -> Frame:
         """Return a frame given relative to this one, relative to the reference of this one."""
         return Frame(self.place + self.axes @ inner.place, self.axes @ inner.axes)
+
+    def inverse(self) -> Frame:
+        """Return the reference of this one, relative to this one."""
+        return self.relative(Frame())
 
     def relative(self, other: Frame) -> Frame:
         """Return a frame given relative to the reference of this one, relative to this one."""
@@ -154,6 +180,12 @@ class Row:
     angle: float = 0.0
     other: float = 0.0
 
+    @property
+    def text(self) -> str:
+        """The expression of its value, as Python."""
+        e, f, factor = "xyz"[self.i], "uvw"[self.j], repr(float(self.factor) + 0.0)
+        return ROWS[self.kind].format(e=e, f=f, factor=factor)
+
 
 @dataclass(frozen=True, eq=False)
 class Tie:
@@ -189,7 +221,7 @@ class Model:
     posture are assembled. ``drives`` are the joints whose efforts make the motion, where these are
     not those that have one; ``preferred`` are joints that are driven first. ``called`` are the
     file's names of parts that have another one here; ``named`` are names here by the kind of a part
-    and its name of the file.
+    and its name of the file. ``rounded`` is by how much axes are off right angles, and where.
     """
 
     name: str
@@ -199,7 +231,7 @@ class Model:
     couplings: dict[str, Coupling] = field(default_factory=dict)
     ties: dict[str, Tie] = field(default_factory=dict)
     motions: dict[str, Law] = field(default_factory=dict)
-    gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
+    gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
     span: tuple[float, float, int] = (0.0, 1.0, 101)
     posture: dict[str, float] = field(default_factory=dict)
     drives: list[str] | None = None
@@ -207,10 +239,45 @@ class Model:
     notes: list[str] = field(default_factory=list)
     called: dict[str, str] = field(default_factory=dict)
     named: dict[tuple[str, str], str] = field(default_factory=dict)
+    rounded: tuple[float, str] = (0.0, "")
 
     def refuse(self, where: str, words: str) -> ModelFileError:
         """Return the error of an element of the file."""
         return ModelFileError(f"{self.file}: {where + ': ' if where else ''}{words}")
+
+    def number(self, where: str, given: object, what: str) -> float:
+        """Return a number of the file. Raises :class:`.ModelFileError` for what is none, and for
+        one that no machine has.
+        """
+        try:
+            found = float(given)  # type: ignore[arg-type]
+        except (TypeError, ValueError, OverflowError):
+            raise self.refuse(where, f"{what}: expected a number, got {shown(given)}") from None
+        if isinstance(given, bool) or "_" in str(given) or not abs(found) <= LARGEST:
+            expected = f"expected a finite number of at most {LARGEST:g}"
+            raise self.refuse(where, f"{what}: {expected}, got {shown(given)}")
+        return found
+
+    def numbers(self, where: str, given: object, what: str, count: int = 3) -> Array:
+        """Return so many numbers of the file, from a list or from a text with blanks."""
+        parts = given.split() if isinstance(given, str) else given
+        if not isinstance(parts, Sequence) or len(parts) != count:
+            raise self.refuse(where, f"{what}: expected {count} numbers, got {shown(given)}")
+        return np.array([self.number(where, part, what) for part in parts])
+
+    def rotation(self, where: str, axes: Array) -> Array:
+        """Return axes at right angles that are nearest to those of the file, without its rounding.
+
+        Raises :class:`.ModelFileError` for axes that are off by more than 1e-4.
+        """
+        exact = _right_angled(axes)
+        off = float(np.abs(exact - axes).max())
+        if off > 1e-4 or np.linalg.det(exact) < 0:
+            words = "axes: expected three directions at right angles, right-handed"
+            raise self.refuse(where, words)
+        if off > max(1e-9, self.rounded[0]):
+            self.rounded = off, where
+        return exact
 
     def name_of(self, kind: str, stated: str, where: str, taken: Collection[str]) -> str:
         """Return a name of the file as one that parts may have, and keep what it was."""
@@ -248,13 +315,12 @@ class Model:
 
     def frames(self, joint: Joint | Tie) -> tuple[Frame, Frame]:
         """Return the two frames of a joint in the reference posture, on the ground."""
-        return (
-            self.frame_of(joint.parent).then(joint.on_parent),
-            self.frame_of(joint.child).then(joint.on_child),
-        )
+        parent, child = self.frame_of(joint.parent), self.frame_of(joint.child)
+        return parent.then(joint.on_parent), child.then(joint.on_child)
 
-    def at_reference(self, joint: Joint) -> list[float]:
-        """Return the coordinates of a joint in the reference posture, in their order."""
+    def at_reference(self, coordinate: str) -> float:
+        """Return a coordinate in the reference posture."""
+        joint = self.joints[coordinate.partition(":")[0]]
         near, far = self.frames(joint)
         known, moves = near.relative(far), MOVES[joint.kind]
         order = ["xyzw".index(axis) for _, move, axis in moves if move != "slide"]
@@ -264,7 +330,28 @@ class Model:
         elif len(order) == 3:
             turns = _three_turns(known.axes[np.ix_(order, order)])
         slides = [known.place["xyz".index(axis)] for _, move, axis in moves if move == "slide"]
-        return [*map(float, slides), *turns[: len(order)]]
+        return float([*slides, *turns][joint.coordinates.index(coordinate)])
+
+    def closest(self, joint: Joint) -> Frame:
+        """Return where the child's frame is on the parent's if the joint, open in the reference
+        posture, is closed with the coordinates that it has there.
+        """
+        near, far = self.frames(joint)
+        known, moves = near.relative(far), MOVES[joint.kind]
+        slides = [axis for _, move, axis in moves if move == "slide"]
+        place = np.where([axis in slides for axis in "xyz"], known.place, 0.0)
+        turns = [axis for _, move, axis in moves if move != "slide"]
+        if len(turns) == 3:
+            return Frame(place, known.axes)
+        if len(turns) == 2:  # of a universal joint: the child's z is across the parent's
+            across = np.array([known.axes[0, 2], known.axes[1, 2], 0.0])
+            return Frame.about(across if np.any(across) else np.eye(3)[0], place)
+        if not turns:
+            return Frame(place)
+        angle = math.atan2(known.axes[1, 0], known.axes[0, 0])
+        if joint.kind == "screw":
+            place[2] = joint.lead * angle / math.tau
+        return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
 
     def size(self) -> float:
         """Return the extent of what joints and centres of mass span [m]."""
@@ -289,16 +376,10 @@ class Model:
             away = (float(known.place[2]) - joint.lead * turn / math.tau) / (joint.lead or 1.0)
             gap = math.hypot(gap, joint.lead * (away - round(away)))
         if not turns:
-            cosine = min(1.0, max(-1.0, (float(np.trace(known.axes)) - 1.0) / 2.0))
-            return gap, math.hypot(math.acos(cosine) if cosine < 0.9 else 0.0, _small(known.axes))
+            sine = math.hypot(*(known.axes - known.axes.T)[[0, 0, 1], [1, 2, 2]].tolist()) / 2.0
+            return gap, math.atan2(sine, (float(np.trace(known.axes)) - 1.0) / 2.0)
         tilt = math.hypot(float(known.axes[0, 2]), float(known.axes[1, 2]))
         return gap, math.atan2(tilt, float(known.axes[2, 2])) if turns == 1 else 0.0
-
-
-def _small(axes: Array) -> float:
-    """Return the angle of a small rotation, where its cosine has no digits of it."""
-    skew = axes - axes.T
-    return math.hypot(*(float(skew[i, j]) / 2.0 for i, j in ((0, 1), (0, 2), (1, 2))))
 
 
 def _three_turns(axes: Array) -> list[float]:
@@ -307,39 +388,12 @@ def _three_turns(axes: Array) -> list[float]:
     return [math.atan2(-axes[1, 2], axes[2, 2]), y, math.atan2(-axes[0, 1], axes[0, 0])]
 
 
-def number(model: Model, where: str, given: object, what: str) -> float:
-    """Return a number of a file. Raises :class:`.ModelFileError` for what is none, and for one that
-    no machine has.
+def _right_angled(axes: Array) -> Array:
+    """Return the axes at right angles that are nearest to others; components that are nothing or
+    one but for rounding are so.
     """
-    try:
-        found = float(given)  # type: ignore[arg-type]
-    except (TypeError, ValueError, OverflowError):
-        raise model.refuse(where, f"{what}: expected a number, got {shown(given)}") from None
-    if isinstance(given, bool) or "_" in str(given) or not abs(found) <= LARGEST:
-        expected = f"expected a finite number of at most {LARGEST:g}"
-        raise model.refuse(where, f"{what}: {expected}, got {shown(given)}")
-    return found
-
-
-def numbers(model: Model, where: str, given: object, what: str, count: int) -> Array:
-    """Return so many numbers of a file, from a list or from a text with blanks."""
-    parts = given.split() if isinstance(given, str) else given
-    if not isinstance(parts, Sequence) or len(parts) != count:
-        raise model.refuse(where, f"{what}: expected {count} numbers, got {shown(given)}")
-    return np.array([number(model, where, part, what) for part in parts])
-
-
-def rotation(model: Model, where: str, axes: Array) -> Array:
-    """Return axes at right angles that are nearest to those of a file, without its rounding.
-
-    Components that are nothing or one but for rounding are so. Raises :class:`.ModelFileError` for
-    axes that are off by more than 1e-4.
-    """
-    snapped = np.where(np.abs(axes) < 1e-9, 0.0, axes)
-    left, _, right = np.linalg.svd(snapped)
+    left, _, right = np.linalg.svd(np.where(np.abs(axes) < 1e-9, 0.0, axes))
     exact = left @ right
-    if np.abs(exact - axes).max() > 1e-4 or np.linalg.det(exact) < 0:
-        raise model.refuse(where, "axes: expected three directions at right angles, right-handed")
     exact = np.where(np.abs(exact) < 1e-9, 0.0, exact)
     return np.asarray(np.where(np.abs(np.abs(exact) - 1.0) < 1e-15, np.sign(exact), exact))
 
@@ -352,28 +406,6 @@ def inertia_of(moments: Sequence[float], axes: Array) -> Array:
     """Return the inertia of six :data:`MOMENTS` about axes, on the reference axes of these."""
     xx, xy, xz, yy, yz, zz = moments
     return np.asarray(axes @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ axes.T)
-
-
-def about_axis(axis: Array) -> Array:
-    """Return axes whose third is along a direction."""
-    z = axis / np.linalg.norm(axis)
-    other = np.eye(3)[int(np.argmin(np.round(np.abs(z), 9)))]
-    x = other - (other @ z) * z
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z]) + 0.0
-
-
-def rpy(angles: Array) -> Array:
-    """Return the rotation by roll, pitch and yaw about fixed x, y and z [rad]."""
-    (cr, cp, cy), (sr, sp, sy) = np.cos(angles), np.sin(angles)
-    axes = np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
-    return np.where(np.abs(axes) < 1e-15, 0.0, axes)
 
 
 def turned(axis: Array, angle: float) -> Array:

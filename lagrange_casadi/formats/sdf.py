@@ -9,19 +9,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..errors import shown
 from .elements import Element, parsed
-from .record import (
-    GROUND,
-    MOMENTS,
-    Body,
-    Coupling,
-    Frame,
-    Joint,
-    Model,
-    about_axis,
-    inertia_of,
-    rotation,
-    rpy,
-)
+from .record import GROUND, MOMENTS, Body, Coupling, Frame, Joint, Model, inertia_of
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -35,20 +23,17 @@ KINDS: dict[str, str] = {
 }
 """Types of joints."""
 
-GRAVITY = (0.0, 0.0, -9.8)
-"""Gravity of a world whose file gives none."""
-
 _IGNORED = ("pose", "link", "joint", "frame", "static", "self_collide", "enable_wind")
 
 
 def read(path: Path, text: str) -> Model:
     """Return the model of a file. Raises :class:`.ModelFileError`, which names line and element."""
-    model = Model(path.stem, path.name, gravity=GRAVITY)
+    usual = np.array([0.0, 0.0, -9.8])  # of a world whose file gives none
+    model = Model(path.stem, path.name, gravity=usual)
     root = parsed(model, text, "sdf")
     world = root.first("world")
     if world is not None and (line := world.first("gravity")) is not None:
-        x, y, z = line.numbers("gravity", 3)
-        model.gravity = (float(x), float(y), float(z))
+        model.gravity = line.numbers("gravity", 3)
     line = (world or root).needed("model")
     others = [one for one in (world or root).all("model") if one is not line]
     model.notes += [f"Model {shown(one.given.get('name'))} of line {one.line} is ignored."
@@ -77,10 +62,8 @@ class _Reader:
         hung = {name for one in self.model.joints.values() for name in (one.parent, one.child)}
         if GROUND not in hung and self.model.bodies:
             first = next(iter(self.model.bodies.values()))
-            name = self.model.name_of("joint", f"{first.name}_fixed", "", self.model.joints)
-            self.model.joints[name] = Joint(
-                name, "weld", GROUND, first.name, first.frame, Frame(), where=first.where
-            )
+            ends = GROUND, first.name, first.frame, Frame()
+            self.model.add(Joint, f"{first.name}_fixed", first.where, "weld", *ends)
             self.model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
         for one in self.line.inside:
             if one.name in ("model", "include"):
@@ -109,12 +92,12 @@ class _Reader:
         near = far = frame = self.frame(data, ())
         if kind in ("revolute", "prismatic", "screw", "universal"):
             first = self.axis(line, "axis", frame)
-            near = far = Frame(frame.place, about_axis(first))
+            near = far = Frame.about(first, frame.place)
             if kind == "universal":
                 second = self.axis(line, "axis2", frame)
                 if abs(first @ second) > 1e-6:
                     raise line.refuse("its two axes are not at right angles")
-                far = Frame(frame.place, about_axis(second))
+                far = Frame.about(second, frame.place)
         if kind == "screw":
             lead = line.needed("screw_thread_pitch").inner()
         near, far = model.frame_of(parent).relative(near), model.frame_of(child).relative(far)
@@ -125,11 +108,12 @@ class _Reader:
         model, data = self.model, line.attribute("name")
         axis = line.first("axis")
         if axis is not None and (mimic := axis.first("mimic")) is not None:
-            other = mimic.attribute("joint")
-            ratio, offset, reference = (
-                mimic.inner(key) for key in ("multiplier", "offset", "reference")
-            )
-            self.coupling(mimic, f"{data}_mimic", (other, data), ratio, offset - ratio * reference)
+            joints = mimic.attribute("joint"), data
+            first, second = (model.find("joint", joint, mimic.where) for joint in joints)
+            keys = ("multiplier", "offset", "reference")
+            ratio, offset, reference = (mimic.inner(key) for key in keys)
+            given = first, second, ratio, offset - ratio * reference
+            model.add(Coupling, f"{data}_mimic", mimic.where, *given)
         if line.given["type"] != "gearbox":
             return
         ratio = line.inner("gearbox_ratio", 1.0)
@@ -138,23 +122,13 @@ class _Reader:
         for side in ("parent", "child"):
             bodies = {self.end(line, side), model.named.get(("body", carrier), GROUND)}
             found = [
-                name
-                for name in (one.attribute("name") for one in self.line.all("joint"))
-                if (joint := model.joints.get(model.named.get(("joint", name), "")))
-                and {joint.parent, joint.child} == bodies
+                name for name, one in model.joints.items() if {one.parent, one.child} == bodies
             ]
             if len(found) != 1:
                 words = f"its {side} has no joint on the reference body {shown(carrier)}"
                 raise line.refuse(words)
-            ends.append(found[0])
-        self.coupling(line, data, (ends[0], ends[1]), -ratio, 0.0)
-
-    def coupling(
-        self, line: Element, stated: str, joints: tuple[str, str], ratio: float, offset: float
-    ) -> None:
-        """Declare second = ratio first + offset."""
-        first, second = (self.model.find("joint", joint, line.where) for joint in joints)
-        self.model.add(Coupling, stated, line.where, first, second, ratio, offset)
+            ends += found
+        model.add(Coupling, data, line.where, *ends, -ratio)
 
     def axis(self, line: Element, key: str, frame: Frame) -> Array:
         """Return the direction of a joint's axis, on the ground's axes."""
@@ -220,4 +194,4 @@ class _Reader:
             raise line.refuse("rotation_format: expected euler_rpy")
         six = line.numbers("pose", 6)
         angles = np.radians(six[3:]) if line.given.get("degrees") in ("true", "1") else six[3:]
-        return Frame(six[:3], rotation(self.model, line.where, rpy(angles)))
+        return Frame.posed(six[:3], angles)

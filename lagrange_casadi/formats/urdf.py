@@ -12,22 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.arrays import Array
 from ..errors import shown
 from .elements import Element, parsed
-from .record import (
-    GROUND,
-    MOMENTS,
-    Body,
-    Coupling,
-    Frame,
-    Joint,
-    Model,
-    about_axis,
-    inertia_of,
-    rotation,
-    rpy,
-)
+from .record import GROUND, MOMENTS, Body, Coupling, Frame, Joint, Model, inertia_of
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -69,6 +56,7 @@ class _Robot:
         self.model, self.root = model, root
         self.links = root.by_name("link")
         self.on: dict[str, tuple[str, Frame]] = {}
+        self.frames: list[str] = []
 
     def read(self) -> Model:
         """Return the model."""
@@ -104,13 +92,14 @@ class _Robot:
         """Read a joint: its link is placed by it, or closes a loop."""
         kind = line.choice("type", KINDS)
         (parent, _), (child, _) = self.side(line, _ONE), self.side(line, _OTHER)
-        origin, again = self.origin(line), child in placed
+        origin, again = self.origin(line.first("origin")), child in placed
         massless = self.links[child].first("inertial") is None
         if not again:
             placed[child] = placed[parent].then(origin)
             body, frame = self.on[parent]
             if kind == "weld" and massless:
                 self.on[child] = (body, frame.then(origin))
+                self.frames += [child] if body != GROUND else []
                 return
             self.on[child] = (self.body(child, placed[child]), Frame())
         axes = self.axes(line, kind)
@@ -133,7 +122,7 @@ class _Robot:
         if axis is not None and axis.given.get("frame") == "parent" and not apart:
             # The axis is given on the parent alone: the child's is where it is at zero.
             known = placed[child].relative(placed[parent].then(near))
-            far = Frame(far.place, rotation(self.model, line.where, known.axes))
+            far = Frame(far.place, self.model.rotation(line.where, known.axes))
         else:
             far = far.then(self.axes(line, kind, "child_axis" if apart else "parent_axis", "axis"))
         self.add(line, kind, (parent, near), (child, far))
@@ -155,8 +144,8 @@ class _Robot:
         first = self.model.find("joint", mimic.attribute("joint"), mimic.where)
         second = self.model.find("joint", joint.attribute("name"), joint.where)
         ratio, offset = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
-        stated = f"{second}_mimic"
-        self.model.couplings[stated] = Coupling(stated, first, second, ratio, offset, mimic.where)
+        given = first, second, ratio, offset
+        self.model.add(Coupling, f"{second}_mimic", mimic.where, *given)
 
     def coupling(self, line: Element, joints: list[Element]) -> None:
         """Read a coupling of two links' joints."""
@@ -195,10 +184,8 @@ class _Robot:
         }
         if losses:
             self.model.notes.append(f"Damping and friction are not read: {', '.join(losses)}.")
-        frames = [name for name, (body, _) in self.on.items() if name != body and body != GROUND]
-        frames = [name for name in frames if self.model.called.get(self.on[name][0]) != name]
-        if frames:
-            self.model.notes.append(f"Frames without mass are left out: {', '.join(frames)}.")
+        if self.frames:
+            self.model.notes.append(f"Frames without mass are left out: {', '.join(self.frames)}.")
         for one in self.root.inside:
             if one.name not in (*_KNOWN, *_LOOPS):
                 self.model.notes.append(f"<{one.name}> of line {one.line} is ignored.")
@@ -209,7 +196,7 @@ class _Robot:
         inertial, inertia = link.first("inertial"), np.zeros((3, 3))
         if inertial is not None:
             mass = inertial.needed("mass").amount("value", what="mass")
-            centre, moments = self.origin(inertial), inertial.first("inertia")
+            centre, moments = self.origin(inertial.first("origin")), inertial.first("inertia")
             six = [0.0 if moments is None else moments.amount(key, 0.0) for key in MOMENTS]
             inertia = inertia_of(six, centre.axes)
         return self.model.add(Body, stated, link.where, mass, centre.place, inertia, frame)
@@ -218,17 +205,15 @@ class _Robot:
         """Return a frame whose z is the axis of a joint, where its kind has one."""
         if kind in ("weld", "free", "spherical"):
             return Frame()
-        axis: Array = np.array([1.0, 0.0, 0.0])
-        if (found := line.first(*(names or ("axis",)))) is not None:
-            axis = found.direction("xyz", "axis")
-        return Frame(axes=about_axis(axis))
+        if (found := line.first(*(names or ("axis",)))) is None:
+            return Frame.about(np.array([1.0, 0.0, 0.0]))
+        return Frame.about(found.direction("xyz", "axis"))
 
-    def origin(self, owner: Element, name: str = "origin") -> Frame:
-        """Return the frame that ``xyz`` and ``rpy`` of an element's origin give."""
-        if (line := owner.first(name) if name else owner) is None:
+    def origin(self, line: Element | None) -> Frame:
+        """Return the frame that ``xyz`` and ``rpy`` of an element give."""
+        if line is None:
             return Frame()
-        place, angles = line.triple("xyz", "0 0 0"), line.triple("rpy", "0 0 0")
-        return Frame(place, rotation(self.model, line.where, rpy(angles)))
+        return Frame.posed(line.triple("xyz", "0 0 0"), line.triple("rpy", "0 0 0"))
 
     def side(self, line: Element, names: tuple[str, ...]) -> tuple[str, Frame]:
         """Return one link of a joint or a loop, and the frame on it that the dialect gives."""
@@ -236,10 +221,8 @@ class _Robot:
         if found is None and names == _OTHER:  # some write link1 twice
             found = next(iter(list(line.all("link1"))[1:2]), None)
         found = found or line.needed(*names)
-        link, beside = self.known(found, found.attribute("link")), f"{found.name}_origin"
-        if found.first("origin") is None and line.first(beside) is not None:
-            return link, self.origin(line, beside)
-        return link, self.origin(found, "origin" if found.first("origin") is not None else "")
+        origin = found.first("origin") or line.first(f"{found.name}_origin") or found
+        return self.known(found, found.attribute("link")), self.origin(origin)
 
     def known(self, line: Element, link: str) -> str:
         """Return a link's name. Raises :class:`.ModelFileError` for one that is not there."""

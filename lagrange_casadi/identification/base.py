@@ -15,7 +15,7 @@ import numpy as np
 
 from ..base.arrays import Array
 
-_RANK = 1e-10
+RANK = 1e-10
 """Least distance of a column from those before it, relative to its norm, that is not rounding."""
 
 _WORSE = 100.0
@@ -40,6 +40,13 @@ class Base:
     absent: tuple[int, ...]
     weights: Array
     condition: float
+
+    def rows(self, count: int) -> Array:
+        """Return the rows by which ``count`` parameters make the combinations."""
+        found: Array = np.zeros((len(self.chosen), count))
+        found[:, self.chosen] = np.eye(len(self.chosen))
+        found[:, self.dependent] = self.weights
+        return found
 
     def words(self, names: Sequence[str]) -> tuple[str, ...]:
         """Write each combination as ``m_rod + 0.5 m_slider``."""
@@ -71,8 +78,14 @@ class Ranking(NamedTuple):
 
 
 def triangle(columns: Array) -> Array:
-    """Return the triangular factor of columns (n, k), which have their norms and products."""
+    """Return the triangular factor of columns (n, k), which has their norms and products."""
     return np.asarray(np.linalg.qr(columns, mode="r"))
+
+
+def inverse(columns: Array) -> Array:
+    """Return the pseudo-inverse of independent columns (n, k)."""
+    scale = np.linalg.norm(columns, axis=0)
+    return np.asarray(np.linalg.pinv(columns / scale) / scale[:, None])
 
 
 def base_of(columns: Array, ranking: Ranking) -> Base:
@@ -83,7 +96,7 @@ def base_of(columns: Array, ranking: Ranking) -> Base:
     """
     norms = np.linalg.norm(columns, axis=0)
     sizes = norms * ranking.scales
-    present = np.flatnonzero(sizes > _RANK * sizes.max(initial=0.0))
+    present = np.flatnonzero(sizes > RANK * sizes.max(initial=0.0))
     left = triangle(columns[:, present] / norms[present])
     order = _independent(left)
     plain = _independent(left, np.argsort(np.argsort(ranking.order)[present]).tolist())
@@ -114,7 +127,7 @@ def _independent(columns: Array, ranks: Sequence[int] = ()) -> list[int]:
     for k in range(columns.shape[1]):
         far = np.linalg.norm(rest, axis=0)
         best = ranks[k] if ranks else int(np.argmax(far))
-        if far[best] > _RANK:
+        if far[best] > RANK:
             order.append(best)
             direction = rest[:, best] / far[best]
             for _ in range(2):

@@ -1,11 +1,11 @@
-"""Least squares for the unknown parameters: weights by noise, Huber's loss, priors, and what is
-linear.
+"""Least squares for the unknown parameters: weights by noise, Huber's loss, prior values, and which
+parameters are linear.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..errors import AccuracyError, DeclarationError
-from .base import Base, Ranking, base_of, triangle
+from .base import Base, Ranking, base_of, inverse, triangle
 from .consistency import Consistency
 from .measurements import Filter
 from .regressor import DrivenMotion, Regressor
@@ -32,9 +32,6 @@ are those of an iteration themselves.
 _SURE = 1e-5
 """Change of all the model, over its noise, that is none."""
 
-_DETERMINED = 1e-11
-"""Least singular value of what is determined, in columns of norm 1."""
-
 _FLOOR, _COARSE = 1e-12, 1e-6
 """Least noise of a quantity, over its root mean square; with consistency, whose steps are those of
 an iteration.
@@ -50,6 +47,8 @@ class Rows(NamedTuple):
     """Residuals (r,) of all that is measured, less the model, their derivatives by the unknown
     parameters (r, k), numbers of quantity and instant (r,), and residuals that are not filtered
     (r,).
+
+    The last rows are those of prior values, each with a number of its own after the quantities.
     """
 
     residual: Array
@@ -63,7 +62,8 @@ class Rows(NamedTuple):
 class Data:
     """Measured values (n, quantities) along a motion, and the model of them.
 
-    ``defaults`` are values of all parameters, ``numbers`` of which are unknown.
+    ``defaults`` are values of all parameters, ``numbers`` of which are unknown, and ``prior`` the
+    places among the unknown ones of those about whose values something is known.
     """
 
     regressor: Regressor
@@ -71,6 +71,7 @@ class Data:
     measured: Array
     defaults: Array
     numbers: tuple[int, ...]
+    prior: tuple[int, ...]
     low_pass: Filter | None
 
     def parameters(self, theta: Array) -> Array:
@@ -87,10 +88,12 @@ class Data:
     def some(self, rows: npt.NDArray[np.intp]) -> Data:
         """Return the data of some of the instants, not filtered."""
         motion, measured = self.motion.some(rows), self.measured[rows]
-        return Data(self.regressor, motion, measured, self.defaults, self.numbers, None)
+        return replace(self, motion=motion, measured=measured, low_pass=None)
 
     def rows(self, theta: Array, z: Array) -> Rows:
-        """Return what is measured less the model, where both are known."""
+        """Return what is measured less the model, if both are known, and prior values less those
+        of the parameters.
+        """
         model, slopes = self.regressor.at(self.motion, z, self.parameters(theta))
         parts = []
         for k in range(model.shape[1]):
@@ -102,13 +105,16 @@ class Data:
             instants = np.flatnonzero(known)
             quantity = np.full(instants.size, k)
             parts.append((both[known, 0], both[known, 1:], quantity, instants, raw[known]))
+        prior, numbers = list(self.prior), np.arange(len(self.prior))
+        away, unit = (self.theta - theta)[prior], np.eye(theta.size)[prior]
+        parts.append((away, unit, model.shape[1] + numbers, 0 * numbers, away))
         return Rows(*(np.concatenate(each) for each in zip(*parts, strict=True)))
 
     def filtered(self, rows: Rows) -> Array:
         """Filter the derivatives of rows once more."""
         if self.low_pass is None:
             return rows.columns
-        found = np.empty_like(rows.columns)
+        found: Array = rows.columns.copy()
         for k in range(self.measured.shape[1]):
             some = rows.quantity == k
             whole, known = np.zeros((len(self.measured), found.shape[1])), rows.instant[some]
@@ -116,26 +122,6 @@ class Data:
             counts = np.isin(np.arange(len(whole)), known)
             found[some] = self.low_pass(whole, counts)[known]
         return found
-
-
-@dataclass(frozen=True, eq=False)
-class Fit:
-    """Values of the unknown parameters (k,), and how sure they are.
-
-    ``covariance`` (k, k) is that of the combinations that are determined: of ``base`` by the
-    measurements, of ``sure`` by them and prior values. ``noise`` (quantities,) are standard
-    deviations, given or estimated; ``weights`` (r,) those of Huber's loss.
-    """
-
-    theta: Array
-    z: Array
-    base: Base
-    sure: Base
-    covariance: Array
-    noise: Array
-    weights: Array
-    rows: Rows
-    rounds: int
 
 
 def nonlinear(
@@ -192,69 +178,107 @@ def _differ(before: Array, after: Array, scales: Array) -> npt.NDArray[np.bool_]
     return np.asarray((change > _LINEAR * np.nan_to_num(size)).any(axis=0))
 
 
-@dataclass(frozen=True, eq=False)
-class Loss:
-    """Weights of residuals: standard deviations of quantities that are known, Huber's loss, prior
-    values (k,) with their standard deviations (k,), infinite where there is none, and consistency.
+class System(NamedTuple):
+    """Derivatives and residuals over their noise, as few rows: ``base`` is what measurements
+    determine, ``sure`` what they and prior values determine.
     """
 
-    noise: Mapping[int, float]
-    robust: bool
-    prior: Array
-    spread: Array
-    consistency: Consistency | None
+    columns: Array
+    right: Array
+    base: Base
+    sure: Base
+
+    @classmethod
+    def of(cls, rows: Rows, root: Array, quantities: int, ranking: Ranking) -> System:
+        """Reduce rows, each times its ``root`` (r,)."""
+        both = np.column_stack([rows.columns, rows.residual]) * root[:, None]
+        measured = rows.quantity < quantities
+        part = triangle(both[measured])
+        base = sure = base_of(part[:, :-1], ranking)
+        part[:, list(base.absent)] = 0.0  # else their rounding counts
+        whole = np.vstack([part, both[~measured]])
+        if not measured.all():
+            sure = base_of(whole[:, :-1], ranking)
+        return cls(whole[:, :-1], whole[:, -1], base, sure)
 
     @property
-    def whole(self) -> bool:
-        """True if all parameters are solved for, not the base alone."""
-        return bool(np.isfinite(self.spread).any()) or self.consistency is not None
+    def inverse(self) -> Array:
+        """Inverse of the columns that stand for combinations."""
+        return inverse(self.columns[:, list(self.sure.chosen)])
 
 
-def fit(data: Data, z: Array, loss: Loss, ranking: Ranking) -> Fit:
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Values of the unknown parameters (k,), and how sure they are.
+
+    ``covariance`` (k, k) is that of the parameters that stand for the combinations of
+    ``system.sure``. ``noise`` (quantities,) are standard deviations, given or estimated;
+    ``weights`` (r,) those of Huber's loss.
+    """
+
+    theta: Array
+    z: Array
+    system: System
+    covariance: Array
+    noise: Array
+    weights: Array
+    rows: Rows
+    rounds: int
+
+
+def fit(
+    data: Data,
+    z: Array,
+    ranking: Ranking,
+    given: Array,
+    robust: bool,
+    consistency: Consistency | None,
+) -> Fit:
     """Solve by Gauss and Newton's method, with exact derivatives; what is linear takes one step.
 
-    Raises :class:`.DeclarationError` where nothing measured depends on the unknown parameters, and
-    :class:`.AccuracyError` where steps do not settle.
+    ``given`` are standard deviations of quantities, NaN for those that are to be estimated, and of
+    prior values. Raises :class:`.DeclarationError` if nothing measured depends on the unknown
+    parameters, and :class:`.AccuracyError` if steps do not settle.
     """
-    theta = data.theta
-    rows = data.rows(theta, z)
-    size = np.array([_rms(data.measured[:, k]) for k in range(data.measured.shape[1])])
-    size[size == 0.0] = 1.0
-    noise, weights = np.array([loss.noise.get(k, s) for k, s in enumerate(size)]), np.ones(1)
-    free = loss.consistency is None
-    rough, still = (_SETTLED, _STILL) if free else (_ROUGH, _ROUGH**2)
-    for count in range(1, _ROUNDS + 1):
-        total = float(np.sqrt(np.nansum((data.measured / noise) ** 2)))
-        weights = _weights(rows.raw / noise[rows.quantity], robust=loss.robust and count > 1)
+    theta, rows, quantities = data.theta, data.rows(data.theta, z), data.measured.shape[1]
+    size = np.array([_rms(column) or 1.0 for column in data.measured.T] + [1.0] * len(data.prior))
+    noise, weights = np.where(np.isnan(given), size, given), np.ones(rows.raw.size)
+    free = consistency is None
+    rough, still, floor = (_SETTLED, _STILL, _FLOOR) if free else (_ROUGH, _ROUGH**2, _COARSE)
+    for rounds in range(1, _ROUNDS + 1):
+        total = float(np.sqrt(np.nansum((data.measured / noise[:quantities]) ** 2)))
         root = np.sqrt(weights) / noise[rows.quantity]
-        columns, right = rows.columns * root[:, None], rows.residual * root
-        base = base_of(columns, ranking)
-        if not base.chosen:
-            raise DeclarationError("nothing that is measured depends on the unknown parameters")
-        if right.size <= len(base.chosen) and not loss.whole:
+        system = System.of(rows, root, quantities, ranking)
+        if not system.base.chosen:
             raise DeclarationError(
-                f"{right.size} measured values do not determine {theta.size - len(base.absent)}"
-                " unknown parameters with a standard error; expected more rows, fewer unknown"
-                " parameters, or prior values"
+                "nothing that is measured depends on the unknown parameters"
+                f" {', '.join(data.regressor.unknown)}"
             )
-        step = _step(columns, right, base, theta, loss)
-        theta, z, rows, step = _taken(data, (theta, z, rows), step, root, loss, total)
-        moved = float(np.linalg.norm(columns @ step))
-        last, noise = noise, _noise(rows, size, loss, len(base.chosen))
+        if rows.raw.size <= len(system.sure.chosen) and free:
+            raise DeclarationError(
+                f"{rows.raw.size - len(data.prior)} measured values do not determine"
+                f" {theta.size - len(system.base.absent)} unknown parameters with a standard error;"
+                " expected more rows, fewer unknown parameters, or prior values"
+            )
+        if consistency is None:
+            step = np.zeros(theta.size)
+            step[list(system.sure.chosen)] = system.inverse @ system.right
+        else:
+            step = consistency.step(system.columns, system.right, theta)
+        theta, z, rows, step = _taken(data, (theta, z, rows), step, root, total, free)
+        moved = float(np.linalg.norm(system.columns @ step))
+        freedom = rows.raw.size - len(data.prior) - len(system.base.chosen)
+        last, noise = noise, _noise(rows, given, floor * size, robust, freedom)
+        weights = _weights(rows.raw / noise[rows.quantity], robust)
         same = bool(np.allclose(noise, last, rtol=rough, atol=0.0))
         if same and moved <= max(_SURE, still * total):
-            break
-    else:
-        raise AccuracyError(
-            f"the unknown parameters do not converge in {_ROUNDS} steps; give better initial"
-            " values, or prior values"
-        )
-    scaled = rows.columns / noise[rows.quantity][:, None]
-    weights = _weights(rows.raw / noise[rows.quantity], robust=loss.robust)
-    prior = np.diag(1.0 / loss.spread)[np.isfinite(loss.spread)]
-    sure = base_of(np.vstack([triangle(scaled), prior]), ranking)
-    covariance = _covariance(data, rows, noise, (prior, sure.absent), loss)
-    return Fit(theta, z, base, sure, covariance, noise, weights, rows, count)
+            system = System.of(rows, 1.0 / noise[rows.quantity], quantities, ranking)
+            covariance = _covariance(data, rows, noise, system, robust)
+            return Fit(theta, z, system, covariance, noise[:quantities], weights, rows, rounds)
+    raise AccuracyError(
+        f"the unknown parameters do not converge in {_ROUNDS} steps; give better initial values, or"
+        " prior values"
+    )
 
 
 def _rms(values: Array) -> float:
@@ -269,39 +293,15 @@ def _weights(scaled: Array, robust: bool) -> Array:
     return np.minimum(1.0, _HUBER / np.maximum(np.abs(scaled), _HUBER))
 
 
-def _noise(rows: Rows, size: Array, loss: Loss, count: int) -> Array:
-    """Return standard deviations of quantities; those that are not given are of the residuals."""
-    floor = _FLOOR if loss.consistency is None else _COARSE
-    found, free = size * floor, max(1.0 - count / rows.raw.size, 1.0 / rows.raw.size)
-    for k in range(size.size):
+def _noise(rows: Rows, given: Array, least: Array, robust: bool, freedom: int) -> Array:
+    """Return standard deviations: those that are ``given``, else those of the residuals."""
+    found: Array = given.copy()
+    share = max(freedom, 1) / rows.raw.size
+    for k in np.flatnonzero(np.isnan(given)):
         own = rows.raw[rows.quantity == k]
-        if own.size:
-            spread = _MEDIAN * np.median(np.abs(own)) if loss.robust else _rms(own)
-            found[k] = max(found[k], spread / np.sqrt(free))
-        found[k] = loss.noise.get(k, found[k])
+        spread = _MEDIAN * np.median(np.abs(own)) if robust and own.size else _rms(own)
+        found[k] = max(least[k], spread / np.sqrt(share))
     return found
-
-
-def _step(columns: Array, right: Array, base: Base, theta: Array, loss: Loss) -> Array:
-    """Return the change of the parameters that makes linear residuals least."""
-    step = np.zeros(theta.size)
-    if loss.whole:
-        columns = columns.copy()
-        columns[:, list(base.absent)] = 0.0  # else their rounding counts
-        prior = np.isfinite(loss.spread)
-        rows = np.diag(1.0 / loss.spread)[prior]
-        columns = np.vstack([columns, rows])
-        right = np.concatenate([right, ((loss.prior - theta) / loss.spread)[prior]])
-        if loss.consistency is not None:
-            whole = triangle(np.column_stack([columns, right]))
-            return loss.consistency.step(whole[:, :-1], whole[:, -1], theta)
-        scale = np.linalg.norm(columns, axis=0)
-        scale[scale == 0.0] = 1.0
-        return np.asarray(np.linalg.lstsq(columns / scale, right, rcond=1e-13)[0] / scale)
-    chosen = list(base.chosen)
-    scale = np.linalg.norm(columns[:, chosen], axis=0)
-    step[chosen] = np.linalg.lstsq(columns[:, chosen] / scale, right, rcond=None)[0] / scale
-    return step
 
 
 def _taken(
@@ -309,22 +309,18 @@ def _taken(
     place: tuple[Array, Array, Rows],
     step: Array,
     root: Array,
-    loss: Loss,
     total: float,
+    free: bool,
 ) -> tuple[Array, Array, Rows, Array]:
     """Take a step, or a half of it as often as it makes residuals larger, beside a ``total``."""
-    (theta, z, rows), known = place, np.isfinite(loss.spread)
-
-    def cost(rows: Rows, at: Array) -> float:
-        away = ((at - loss.prior) / loss.spread)[known]
-        return float(np.sqrt(np.sum((rows.residual * root) ** 2) + away @ away))
-
-    most = cost(rows, theta) * (1.0 + _SETTLED) + _STILL * total
+    theta, z, rows = place
+    most = np.linalg.norm(rows.residual * root) * (1.0 + _SETTLED) + _STILL * total
     for _ in range(_HALVINGS):
         there = data.regressor.follow(data.motion, data.parameters(theta + step), z)
         rows = data.rows(theta + step, there)
-        held = loss.consistency is not None
-        if rows.residual.size == root.size and (held or cost(rows, theta + step) <= most):
+        if rows.residual.size == root.size and (
+            not free or np.linalg.norm(rows.residual * root) <= most
+        ):
             return theta + step, there, rows, step
         step = step / 2.0
     raise AccuracyError(
@@ -334,25 +330,20 @@ def _taken(
     )
 
 
-def _covariance(
-    data: Data, rows: Rows, noise: Array, beside: tuple[Array, tuple[int, ...]], loss: Loss
-) -> Array:
-    """Return the covariance of the parameters, as far as they are determined.
+def _covariance(data: Data, rows: Rows, noise: Array, system: System, robust: bool) -> Array:
+    """Return the covariance of the parameters, as far as they stand for combinations.
 
     Filtered noise is not independent: its covariance goes with the filter applied once more.
     """
-    (prior, absent), by_noise = beside, 1.0 / noise[rows.quantity][:, None]
-    whole = np.vstack([triangle(rows.columns * by_noise), prior])
-    whole[:, list(absent)] = 0.0  # else their rounding counts
-    scale = np.linalg.norm(whole, axis=0)
-    scale[scale == 0.0] = 1.0
-    inner = np.linalg.pinv(triangle(whole / scale), rcond=_DETERMINED) / scale[:, None]
-    found = inner @ inner.T
+    chosen, root = list(system.sure.chosen), 1.0 / noise[rows.quantity]
+    part = system.inverse @ system.inverse.T
     if data.low_pass is not None:
-        again = np.vstack([triangle(data.filtered(rows) * by_noise), prior])
-        found = found @ (again.T @ again) @ found
-    if loss.robust:
-        u = rows.raw * by_noise[:, 0]
+        again = triangle(data.filtered(rows)[:, chosen] * root[:, None])
+        part = part @ (again.T @ again) @ part
+    if robust:
+        u = rows.raw * root
         psi = np.clip(u, -_HUBER, _HUBER)
-        found = found * float(np.mean(psi**2) / np.mean(np.abs(u) < _HUBER) ** 2)
-    return np.asarray(found)
+        part = part * float(np.mean(psi**2) / np.mean(np.abs(u) < _HUBER) ** 2)
+    found: Array = np.zeros((len(data.numbers), len(data.numbers)))
+    found[np.ix_(chosen, chosen)] = part
+    return found

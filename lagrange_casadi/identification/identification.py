@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import starmap
 
 import numpy as np
 
@@ -15,14 +16,17 @@ from ..case import Case, scene_of
 from ..declare.scene import Scene
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.evaluation_method import EvaluationMethod
-from .base import Ranking, base_of, triangle
+from .base import RANK, Ranking, base_of
 from .consistency import Consistency
-from .fit import Data, Fit, Loss, fit, nonlinear
+from .fit import Data, Fit, fit, nonlinear
 from .measurements import Filter, Measurements, check_units
 from .regressor import DrivenMotion, Regressor
 
-_ROUNDED = 1e-8
-"""Share of a regressor's norm that is not rounding."""
+_OPPOSITE = -0.7
+"""Correlation of a force with the model from which its sign may be wrong."""
+
+_ROUNDED = 1e-6
+"""Largest share of a column that is rounding, after those of a base are subtracted from it."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +95,9 @@ class Identification:
 
     ``initial`` are the values from which the search began, ``prior`` their standard deviations, of
     those that have one. ``impossible`` are bodies whose mass is not positive, or whose inertia no
-    body can have.
+    body can have. ``unused`` are columns of the record that are neither the motion of a drive nor a
+    force. ``opposite`` are the correlations of forces with those of the initial values, if they are
+    below -0.7: such a force may have been measured with another sign.
     """
 
     name: str
@@ -116,6 +122,8 @@ class Identification:
     initial: Mapping[str, float]
     prior: Mapping[str, float]
     impossible: tuple[str, ...]
+    unused: tuple[str, ...]
+    opposite: Mapping[str, float]
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -124,14 +132,24 @@ class Identification:
             f"forces are not linear in {name}, with {', '.join(others)}: found by iteration"
             for name, others in self.nonlinear.items()
         ]
-        if self.absent:
-            found.append(f"nothing measured depends on {', '.join(self.absent)}")
+        if self.unused:
+            found.append(f"columns that are not used: {', '.join(self.unused)}")
+        named = {word for words in self.unexcited for word in words.split()}
+        if absent := [name for name in self.absent if name not in named]:
+            found.append(f"nothing measured depends on {', '.join(absent)}")
+        for name, correlation in self.opposite.items():
+            found.append(
+                f"{name} is opposite to the model with the initial values, by a correlation of"
+                f" {correlation:.2g}: check its sign"
+            )
         for words in self.unexcited:
             found.append(
                 f"this motion does not determine {words}; other speeds and accelerations do"
             )
         for drive, cutoff in self.cutoffs.items():
-            if cutoff < math.inf:
+            if cutoff == 0.0:
+                found.append(f"{drive} is a straight line within its noise")
+            elif cutoff < math.inf:
                 found.append(f"{drive} is smoothed, half the power at {cutoff:.3g} Hz")
         if self.cutoff is not None:
             found.append(
@@ -260,32 +278,62 @@ def identify(
     measured = _measured(measurements, regressor)
     motion = measurements.motion(regressor.program.driven, trim)
     low_pass = None if cutoff is None else Filter(measurements.t, cutoff)
-    data = Data(regressor, motion, measured, p, numbers, low_pass)
+    known = {names.index(name): spread for name, spread in (prior or {}).items()}
+    data = Data(regressor, motion, measured, p, numbers, tuple(known), low_pass)
     z = regressor.follow(motion, p)
+    before = _compared(regressor, motion, measured, p, z)
     ranking = Ranking.of(data.theta, [scene.parameters[name].unit for name in names])
-    spread = np.array([(prior or {}).get(name, math.inf) for name in names])
-    given = {
-        k: measurements.noise[name]
-        for k, name in enumerate(quantities)
-        if name in measurements.noise
-    }
-    if zero := [quantities[k] for k, noise in given.items() if not noise > 0.0]:
+    noise = [measurements.noise.get(name, math.nan) for name in quantities]
+    if 0.0 in noise:
         raise DeclarationError(
-            f"{measurements.name}: noise of '{zero[0]}': expected a number above 0"
+            f"{measurements.name}: noise of '{quantities[noise.index(0.0)]}': expected a number"
+            " above 0"
         )
     consistency = Consistency.of(regressor.program, p, numbers, ranking.scales)
-    loss = Loss(given, robust, data.theta, spread, consistency if consistent else None)
     curved = nonlinear(data, z, names, ranking.scales)
-    found = fit(data, z, loss, ranking)
-    return _result(
-        scene,
-        measurements,
-        data,
-        found,
-        (names, curved, ranking),
-        cutoff,
-        dict(prior or {}),
-        consistency.impossible(found.theta),
+    given = np.array([*noise, *known.values()])
+    found = fit(data, z, ranking, given, robust, consistency if consistent else None)
+    base, sure = found.system.base, found.system.sure
+    rows = base.rows(len(names))
+    covariance = rows @ found.covariance @ rows.T
+    units = {name: scene.parameters[name].unit for name in names}
+    alone = {k for k, row in zip(sure.chosen, sure.weights, strict=True) if not row.any()}
+    single = np.sqrt(np.diag(found.covariance)).tolist()
+    combinations = zip(
+        (names[k] for k in base.chosen),
+        base.words(names),
+        (units[names[k]] for k in base.chosen),
+        (rows @ found.theta).tolist(),
+        np.sqrt(np.diag(covariance)).tolist(),
+        strict=True,
+    )
+    lowered = [found.weights[found.rows.quantity == k] < 1.0 for k in range(len(quantities))]
+    p = data.parameters(found.theta)
+    return Identification(
+        name=regressor.program.data.name,
+        measurements=measurements.name,
+        values=dict(zip(names, found.theta.tolist(), strict=True)),
+        errors={n: single[k] if k in alone else math.inf for k, n in enumerate(names)},
+        units=units,
+        base=tuple(starmap(BaseParameter, combinations)),
+        unexcited=_unexcited(data, found, ranking, names),
+        absent=tuple(names[k] for k in base.absent),
+        nonlinear=curved,
+        condition=base.condition,
+        noise=dict(zip(quantities, found.noise.tolist(), strict=True)),
+        outliers={n: float(x.mean()) for n, x in zip(quantities, lowered, strict=True) if x.size},
+        cutoffs={drive: measurements.cutoff(drive) for drive in regressor.program.driven},
+        cutoff=cutoff,
+        rounds=found.rounds,
+        comparison=_compared(regressor, motion, measured, p, found.z),
+        covariance=covariance,
+        regressor=regressor,
+        parameters=regressor.program.data.values(p),
+        initial=dict(zip(names, data.theta.tolist(), strict=True)),
+        prior=dict(prior or {}),
+        impossible=consistency.impossible(found.theta),
+        unused=tuple(n for n in measurements.columns if n not in regressor.expected),
+        opposite=_opposite(before),
     )
 
 
@@ -316,90 +364,35 @@ def _compared(
     )
 
 
-def _result(
-    scene: Scene,
-    measurements: Measurements,
-    data: Data,
-    found: Fit,
-    unknown: tuple[Sequence[str], Mapping[str, tuple[str, ...]], Ranking],
-    cutoff: float | None,
-    prior: Mapping[str, float],
-    impossible: tuple[str, ...],
-) -> Identification:
-    """Return the result of a fit."""
-    names, curved, ranking = unknown
-    regressor, base = data.regressor, found.base
-    units = {name: scene.parameters[name].unit for name in names}
-    combined = np.zeros((len(base.chosen), len(names)))
-    combined[np.arange(len(base.chosen)), base.chosen] = 1.0
-    combined[:, base.dependent] = base.weights
-    covariance = combined @ found.covariance @ combined.T
-    errors = np.sqrt(np.diag(covariance)).tolist()
-    every = zip(
-        base.chosen, base.words(names), (combined @ found.theta).tolist(), errors, strict=True
-    )
-    alone = {
-        k for k, row in zip(found.sure.chosen, found.sure.weights, strict=True) if not row.any()
-    }
-    single = np.sqrt(np.diag(found.covariance)).tolist()
-    quantities = regressor.quantities
-    outliers = {
-        name: float(np.mean(found.weights[found.rows.quantity == k] < 1.0))
-        for k, name in enumerate(quantities)
-        if (found.rows.quantity == k).any()
-    }
-    p = data.parameters(found.theta)
-    return Identification(
-        name=regressor.program.data.name,
-        measurements=measurements.name,
-        values=dict(zip(names, found.theta.tolist(), strict=True)),
-        errors={n: single[k] if k in alone else math.inf for k, n in enumerate(names)},
-        units=units,
-        base=tuple(
-            BaseParameter(names[k], words, units[names[k]], value, error)
-            for k, words, value, error in every
-        ),
-        unexcited=_unexcited(data, found, ranking, names),
-        absent=tuple(names[k] for k in base.absent),
-        nonlinear=curved,
-        condition=base.condition,
-        noise=dict(zip(quantities, found.noise.tolist(), strict=True)),
-        outliers=outliers,
-        cutoffs={drive: measurements.cutoff(drive) for drive in regressor.program.driven},
-        cutoff=cutoff,
-        rounds=found.rounds,
-        comparison=_compared(regressor, data.motion, data.measured, p, found.z),
-        covariance=covariance,
-        regressor=regressor,
-        parameters=regressor.program.data.values(p),
-        initial=dict(zip(names, data.theta.tolist(), strict=True)),
-        prior=prior,
-        impossible=impossible,
-    )
+def _opposite(compared: Comparison) -> dict[str, float]:
+    """Return the correlations of quantities with the model that are far below zero."""
+    found = {}
+    for name, measured in compared.measured.items():
+        both = np.stack([measured, compared.model[name]])
+        x, y = both[:, np.isfinite(both).all(axis=0)]
+        size = float(np.linalg.norm(x) * np.linalg.norm(y))
+        if size > 0.0 and (correlation := float(x @ y) / size) < _OPPOSITE:
+            found[name] = correlation
+    return found
 
 
 def _unexcited(data: Data, found: Fit, ranking: Ranking, names: Sequence[str]) -> tuple[str, ...]:
-    """Return combinations that only other rates and accelerations would determine."""
-    generator, motion, scales = np.random.default_rng(0), data.motion, ranking.scales
+    """Return combinations that other rates and accelerations would determine beside the base."""
+    generator, motion = np.random.default_rng(0), data.motion
     known = np.flatnonzero(np.isfinite(motion.acceleration).all(axis=1))
     sizes = [
         np.sqrt(np.mean(part[known] ** 2)) + 1.0 for part in (motion.rate, motion.acceleration)
     ]
     rate, acceleration = (size * generator.standard_normal(motion.d.shape) for size in sizes)
     other = DrivenMotion(motion.t, motion.d, rate, acceleration)
-    slopes = (
-        data.regressor.at(other, found.z, data.parameters(found.theta))[1] / found.noise[:, None]
-    )
-    rows = slopes.reshape(-1, len(names))
-    rows = rows[np.isfinite(rows).all(axis=1)] * scales
-    here = found.rows.columns / found.noise[found.rows.quantity][:, None] * scales
-    size = np.linalg.norm(here, axis=0) + np.linalg.norm(rows, axis=0)
-    size = np.maximum(size, _ROUNDED * size.max())
-    rank = len(found.base.chosen)
-    left = np.linalg.svd(triangle(here / size), full_matrices=True)[2][rank:]
-    rows = triangle(rows / size)
-    more = rows @ left.T @ left
-    if not np.linalg.norm(more) > _ROUNDED * np.linalg.norm(rows):
-        return ()
-    more[:, np.linalg.norm(more, axis=0) <= _ROUNDED * np.linalg.norm(rows)] = 0.0
-    return base_of(more / size / scales, ranking).words(names)
+    slopes = data.regressor.at(other, found.z, data.parameters(found.theta))[1]
+    rows = (slopes / found.noise[:, None]).reshape(-1, len(names))
+    rows = rows[np.isfinite(rows).all(axis=1)]
+    base, more, sizes = found.system.base, rows.copy(), np.linalg.norm(rows, axis=0)
+    chosen, dependent = list(base.chosen), list(base.dependent)
+    more[:, chosen] = 0.0
+    more[:, dependent] -= rows[:, chosen] @ base.weights
+    sizes[dependent] += sizes[chosen] @ np.abs(base.weights)
+    least = RANK * (sizes * ranking.scales).max() / ranking.scales
+    more[:, np.linalg.norm(more, axis=0) <= np.maximum(_ROUNDED * sizes, least)] = 0.0
+    return base_of(more, ranking).words(names)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy.typing as npt
 
 from ..arguments import NotNegative, Positive, public
 from ..base.arrays import Array
-from ..base.csv_rows import headings, read_rows
+from ..base.csv_rows import Row, headings, read_rows
 from ..base.units import UNITS
 from ..declare.curves import curve
 from ..errors import DeclarationError, UnknownNameError
@@ -39,6 +40,9 @@ _EMPTY = ("", "nan", "na", "n/a", "null", "-")
 
 _QUANTUM = 1.0 / math.sqrt(12.0)
 """Root mean square of what rounding to whole counts leaves."""
+
+_PART = 0.25
+"""Largest step of an angle [turn] that is none from one turn to the next."""
 
 _FEWEST = 8
 _DECAY = math.sqrt(math.log(2.0)) / (2.0 * math.pi)
@@ -106,11 +110,17 @@ class Measurements:
                 raise DeclarationError(f"{self.name}: column '{name}' has no values")
         if unknown := [name for name in self.noise if name not in columns]:
             raise UnknownNameError("column of noise=", unknown, columns, place=self.name)
+        if wrong := [name for name, noise in self.noise.items() if not 0.0 <= noise < math.inf]:
+            raise DeclarationError(
+                f"{self.name}: noise of '{wrong[0]}': expected a number that is not negative, got"
+                f" {self.noise[wrong[0]]:g}"
+            )
         object.__setattr__(self, "t", t)
         object.__setattr__(self, "columns", columns)
 
     def quantities(self, drives: Sequence[str]) -> tuple[str, ...]:
-        """Return the names of the forces: the columns that are no motion of the drives.
+        """Return the names of the forces: the columns that are no motion of the drives, and whose
+        names have a colon.
 
         Parameters
         ----------
@@ -123,7 +133,7 @@ class Measurements:
             Names of the other columns.
         """
         moving = {f"{drive}{end}" for drive in drives for end in MOTION}
-        return tuple(name for name in self.columns if name not in moving)
+        return tuple(name for name in self.columns if name not in moving and ":" in name)
 
     def motion(self, drives: Sequence[str], trim: float = 0.0) -> DrivenMotion:
         """Return coordinates, rates and accelerations of drives.
@@ -154,22 +164,14 @@ class Measurements:
         for drive in drives:
             if drive not in self.columns:
                 raise UnknownNameError("column of a drive", drive, self.columns, place=self.name)
-            values = self.columns[drive]
-            found = [values, *(self.columns.get(f"{drive}{e}") for e in MOTION[1:])]
-            if any(column is None or np.isnan(column).any() for column in found):
-                spline = self._spline(drive)
-                noisy = self.noise.get(drive, 0.0) > 0.0
-                found = [
-                    spline[k]
-                    if column is None or (k == 0 and noisy)
-                    else _filled(column, spline[k])
-                    for k, column in enumerate(found)
-                ]
-            parts.append([np.asarray(column) for column in found])
-        d, rate, acceleration = (
-            np.stack([part[k] for part in parts], axis=1) if parts else np.zeros((self.t.size, 0))
-            for k in range(3)
-        )
+            missing = np.full(self.t.size, np.nan)
+            found = np.array([self.columns.get(f"{drive}{end}", missing) for end in MOTION])
+            if self.noise.get(drive, 0.0) > 0.0:
+                found[0] = np.nan
+            if np.isnan(found).any():
+                found = np.where(np.isnan(found), self._spline(drive), found)
+            parts.append(found)
+        d, rate, acceleration = np.array(parts).reshape(-1, 3, self.t.size).transpose(1, 2, 0)
         outside = (self.t < self.t[0] + trim) | (self.t > self.t[-1] - trim)
         if outside.all():
             raise DeclarationError(
@@ -192,23 +194,28 @@ class Measurements:
         Returns
         -------
         float
-            Frequency [Hz]; infinity without smoothing.
+            Frequency [Hz]; infinity without smoothing, 0 for a drive whose coordinate is a straight
+            line within its noise.
         """
         if not self.noise.get(drive, 0.0) > 0.0:
             return math.inf
         known = np.isfinite(self.columns[drive])
-        t, (smooth, _, bend) = self.t[known], (part[known] for part in self._spline(drive))
+        t, (smooth, _, bend) = self.t[known], self._spline(drive)[:, known]
         jumps = np.diff(np.diff(bend) / np.diff(t))[1:-1]
+        if not jumps.any():
+            return 0.0
         away = (self.columns[drive][known] - smooth)[2:-2]
         weight = float(jumps @ away / (jumps @ jumps)) * float(np.diff(t).mean())
         return float(((math.sqrt(2.0) - 1.0) / weight) ** 0.25 / math.tau)
 
     @cached_property
-    def _spline(self) -> Callable[[str], list[Array]]:
-        """Coordinate, rate and acceleration of the smoothing spline of a drive, built once."""
+    def _spline(self) -> Callable[[str], Array]:
+        """Coordinate, rate and acceleration (3, n) of the smoothing spline of a drive, built once,
+        or of a straight line if that is near enough.
+        """
         return cache(self._smoothed)
 
-    def _smoothed(self, drive: str) -> list[Array]:
+    def _smoothed(self, drive: str) -> Array:
         values = self.columns[drive]
         known = np.isfinite(values)
         if known.sum() < _FEWEST or not (known[0] and known[-1]):
@@ -217,15 +224,16 @@ class Measurements:
                 f" the last among them, got {int(known.sum())}"
             )
         noise = self.noise.get(drive, 0.0)
+        for degree in (0, 1):
+            line = np.polynomial.Polynomial.fit(self.t[known], values[known], degree)
+            if np.mean((values - line(self.t))[known] ** 2) <= noise**2:
+                return np.array([line(self.t), line.deriv()(self.t), 0.0 * self.t])
         found = curve(self.t[known].tolist(), values[known].tolist(), smoothing=noise)
         starts, cells = np.array(found.starts), np.array(found.cells)
         cell = np.clip(np.searchsorted(starts, self.t, side="right") - 1, 0, len(cells) - 1)
         u, (a, b, c, d) = self.t - starts[cell], cells[cell].T
-        return [
-            a + u * (b + u * (c + u * d)),
-            b + u * (2.0 * c + 3.0 * u * d),
-            2.0 * c + 6.0 * u * d,
-        ]
+        rate, bend = b + u * (2.0 * c + 3.0 * u * d), 2.0 * c + 6.0 * u * d
+        return np.array([a + u * (b + u * (c + u * d)), rate, bend])
 
 
 def check_units(measurements: Measurements, expected: Mapping[str, str]) -> None:
@@ -239,11 +247,6 @@ def check_units(measurements: Measurements, expected: Mapping[str, str]) -> None
             raise DeclarationError(
                 f"{measurements.name}: column '{name}' is in {word}; expected {some}"
             )
-
-
-def _filled(column: Array, other: Array) -> Array:
-    """Return a column, in which another stands for what is missing."""
-    return np.where(np.isnan(column), other, column)
 
 
 @public
@@ -261,11 +264,12 @@ def read_measurements(
     ----------
     path
         The file. Its first line has the names of the columns and their units, as ``J1 [deg]``,
-        ``effort:J1 [N m]``, ``strain:rod:side +y@0.5 [ustrain]``, ``J1 [counts]``. Empty cells and
-        ``nan`` are missing values.
+        ``effort:J1 [N m]``, ``strain:rod:side +y@0.5 [ustrain]``, ``J1 [counts]``; units may
+        also stand in a line of their own below the names. Empty cells and ``nan`` are missing
+        values. An angle that begins again after each turn is made to go on.
     names
         Heads of the file, by the name that they are to have: ``{"J1": "position 1"}``. Columns
-        that are not named here keep theirs.
+        that are not named here keep theirs, if none has it. The name of the times is ``t``.
     noise
         Standard deviations by name, in the units of the file. Of a column in counts it is by
         default that of rounding to whole counts, 0.29.
@@ -284,16 +288,17 @@ def read_measurements(
     PathError
         For a file that cannot be read.
     DeclarationError
-        For a cell that is no number, and times that do not increase.
+        For a cell that is no number, a unit that is none of time, and times that do not increase.
     UnknownNameError
-        For unknown units, and names that the file does not have.
+        For names that the file does not have.
     """
-    rows = read_rows(path, "columns of times, motion and forces")
-    heads = headings(next(rows).cells)
+    heads, rows = _opened(path)
     plain = [head for head, _ in heads]
     if twice := [head for head in plain if plain.count(head) > 1]:
         raise DeclarationError(f"{path}: expected one column '{twice[0]}', got {len(twice)}")
-    chosen = {**(names or {}), "t": time}
+    chosen = {"t": time, **(names or {})}
+    if chosen["t"] not in plain:
+        raise UnknownNameError("column of times", chosen["t"], plain, place=str(path))
     if lost := [head for head in chosen.values() if head not in plain]:
         raise UnknownNameError("column", lost, plain, place=str(path))
     named = {head: name for name, head in chosen.items()}
@@ -305,14 +310,19 @@ def read_measurements(
             if math.isnan(value) and cell.lower() not in _EMPTY:
                 raise DeclarationError(f"{row.where}: expected a number, got {cell!r}")
             found[-1].append(value)
-    columns, deviations, units = {}, {}, {}
+    columns: dict[str, Array] = {}
+    deviations, units = {}, {}
     table = np.array(found, float).reshape(-1, len(heads)).T
     for (head, unit), values in zip(heads, table, strict=True):
+        if head in chosen and head not in named:  # its name is that of another column
+            continue
         name = named.get(head, head)
         size = _size(str(path), head, unit, counts_per_turn)
         columns[name] = size * values
         if unit:
             units[name] = "rad" if unit in _COUNTS else unit
+        if units.get(name) in UNITS["rad"]:
+            columns[name] = _going_on(columns[name])
         if name in (noise or {}):
             deviations[name] = size * dict(noise or {})[name]
         elif unit in _COUNTS:
@@ -324,6 +334,25 @@ def read_measurements(
     return found_in
 
 
+def _opened(path: str | Path) -> tuple[list[tuple[str, str]], Iterator[Row]]:
+    """Return names and units of columns, units from a row below the names if there is one, and the
+    rows of a file.
+    """
+    rows = read_rows(path, "columns of times, motion and forces")
+    first = next(rows)
+    if not any(math.isnan(first.number(cell)) for cell in first.cells):
+        raise DeclarationError(
+            f"{first.where}: expected names of columns, as 't [s]', got {first.cells[0]!r}"
+        )
+    heads, below = headings(first.cells), next(rows, None)
+    if below is None:
+        return heads, rows
+    words = [cell.strip("[]()") for cell in below.cells]
+    if {"", "1"}.issuperset(words) or not {"", *_SIZES, *_COUNTS}.issuperset(words):
+        return heads, chain([below], rows)
+    return [(name, unit or word) for (name, unit), word in zip(heads, words, strict=True)], rows
+
+
 def _size(path: str, head: str, unit: str, counts_per_turn: float | None) -> float:
     """Return the size of a unit of a column in SI units."""
     if unit in _COUNTS:
@@ -332,9 +361,17 @@ def _size(path: str, head: str, unit: str, counts_per_turn: float | None) -> flo
                 f"{path}: column {head} is in counts; expected counts_per_turn=, a number above 0"
             )
         return math.tau / counts_per_turn
-    if unit and unit not in _SIZES:
-        raise UnknownNameError("unit", unit, [*_SIZES, "counts"], place=path)
-    return _SIZES[unit][1] if unit else 1.0
+    return _SIZES[unit][1] if unit in _SIZES else 1.0
+
+
+def _going_on(angle: Array) -> Array:
+    """Return an angle that begins again after each turn as one that goes on; another as it is."""
+    known = np.isfinite(angle)
+    steps = np.abs(np.diff(angle[known])) / math.tau
+    whole = np.abs(steps - 1.0) < _PART
+    if whole.any() and (whole | (steps < _PART)).all():
+        angle[known] = np.unwrap(angle[known])
+    return angle
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ import functools
 import math
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -27,7 +28,7 @@ from ..equations.program import Program
 from ..equations.reciprocals import differentiable
 from ..equations.section_function import SectionInputs
 from ..equations.stress import CrossSections
-from ..errors import AssemblyError, UnknownNameError
+from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..instants.backends import begun
 from ..instants.evaluation_method import EvaluationMethod
 from ..sensitivity.jacobian import total
@@ -198,25 +199,31 @@ def _wanted(scene: Scene, quantities: Sequence[str]) -> list[str]:
     """
     wanted = []
     for name in quantities:
-        if match := _ALONG.fullmatch(name):
-            wanted.append(f"section:{match[2]}")
-        else:
-            kind, _, part = name.partition(":")
-            wanted.append("effort" if kind == "effort" else f"{kind}:{part.partition(':')[0]}")
+        kind, _, part = name.partition(":")
+        kind = "section" if kind == "strain" else kind
+        wanted.append("effort" if kind == "effort" else f"{kind}:{part.partition(':')[0]}")
     for name, want in zip(quantities, wanted, strict=True):
         if want.partition(":")[0] not in (*_FORCES, "section") or want not in scene.outputs:
             forces = [one for one in scene.outputs if one.partition(":")[0] in _FORCES[1:]]
             forces = [f"effort:{drive}" for drive in scene.laws] + forces
             raise UnknownNameError("measured quantity", name, forces)
+        if want.startswith("section") and along(name) is None:
+            raise DeclarationError(
+                f"measured quantity '{name}': expected a force or a fibre, and a place xi/l"
+                f" from 0 to 1, as {want}:bending@0.5"
+            )
     return list(dict.fromkeys(wanted))
 
 
 def along(name: str) -> Along | None:
     """Read the name of a section force, ``section:LINK:FORCE@XI``, or of a strain,
-    ``strain:LINK:FIBRE@XI``; None for another name.
+    ``strain:LINK:FIBRE@XI``; None for another name, or a place that is not on the link.
     """
-    match = _ALONG.fullmatch(name)
-    return None if match is None else Along(match[1], match[2], match[3], float(match[4]))
+    if match := _ALONG.fullmatch(name):
+        with suppress(ValueError):
+            if 0.0 <= (ratio := float(match[4])) <= 1.0:
+                return Along(match[1], match[2], match[3], ratio)
+    return None
 
 
 def _rows(program: Program, quantities: Sequence[str]) -> list[Output]:

@@ -386,10 +386,8 @@ def _raise_to_other_units(largest: dict[str | Column, Array], extent: float) -> 
                 found[which] = np.maximum(found[which], least)
     if FORCE in largest and MOMENT in largest and extent > 0.0:
         forces, moments = largest[FORCE], largest[MOMENT]
-        largest[FORCE], largest[MOMENT] = (
-            np.maximum(forces, moments / extent),
-            np.maximum(moments, forces * extent),
-        )
+        largest[FORCE] = np.maximum(forces, moments / extent)
+        largest[MOMENT] = np.maximum(moments, forces * extent)
 
 
 def _kind(program: Program, column: Column) -> str | Column:

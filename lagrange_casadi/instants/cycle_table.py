@@ -13,17 +13,15 @@ import functools
 import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
-from ..codegen import find_compiler
 from ..codegen.calls import Call
-from ..codegen.compiler import loaded
-from ..errors import CompilerError, DeclarationError, warn
+from ..codegen.compiler import loaded_or_none, written
+from ..errors import DeclarationError
 
 if TYPE_CHECKING:
     from _ctypes import CFuncPtr
@@ -356,24 +354,13 @@ def splines(values: Array) -> Array:
 
 def source() -> str:
     """The C that reads tables of numbers of type ``REAL``."""
-    return (
-        resources.files("lagrange_casadi.codegen").joinpath("interpolate.c").read_text()
-        + INTERPOLATE.text("real")
-        + _ENTRY
-    )
+    return written("interpolate.c") + INTERPOLATE.text("real") + _ENTRY
 
 
 @functools.cache
 def _compiled(dtype: str) -> CFuncPtr | None:
     """The C function for numbers of a type, or None where there is no compiler that takes it."""
-    try:
-        compiler = find_compiler()
-        if compiler is None:
-            return None
-        entry = loaded(
-            source(), compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}")
-        ).lagrange_casadi_interpolate
-    except CompilerError as error:
-        warn(f"{error}; NumPy evaluates the tables of the cycle, more slowly: same values")
-        return None
-    return INTERPOLATE.declare(entry)
+    options = (*_OPTIONS, f"-DREAL={_REAL[dtype]}")
+    instead = "NumPy evaluates the tables of the cycle, more slowly"
+    library = loaded_or_none(source(), options, instead)
+    return None if library is None else INTERPOLATE.declare(library.lagrange_casadi_interpolate)

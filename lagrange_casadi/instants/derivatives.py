@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Instants, during
 from ..base.quantities import Output, quotient
 from ..declare.wanted_names import SENSITIVITY
 from ..errors import UnknownNameError
@@ -74,14 +73,9 @@ class Derivatives:
             }
         )
 
-    def during(self, instants: slice | npt.NDArray[np.bool_]) -> Derivatives:
+    def during(self, instants: Instants) -> Derivatives:
         """Derivatives at some of the instants."""
-        return Derivatives(
-            {
-                name: {output: x[instants] for output, x in found.items()}
-                for name, found in self.by.items()
-            }
-        )
+        return Derivatives(during(self.by, instants))
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,9 +10,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
-import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array
@@ -22,7 +20,7 @@ from ..base.tables import MOMENT
 from ..equations.checks import Check, Column
 from ..equations.program import Program
 from .backends import Evaluated, run
-from .elasticity import Elasticity
+from .beyond_equilibrium import Elasticity
 from .evaluation_method import EvaluationMethod
 from .rules import indeterminate_limit
 
@@ -50,10 +48,8 @@ def completed(
     known = np.isfinite(found.out).all(axis=0)
     if not known.any():
         return Elasticity(), {}
-    driven, iterated = (
-        program.motion(t[None, known], p),
-        np.asarray(found.iterated, float)[:, known],
-    )
+    driven = program.motion(t[None, known], p)
+    iterated = np.asarray(found.iterated, float)[:, known]
     rows = completion.function(t[None, known], *driven, iterated, p).full()
     changes, (*through, idle, chosen, unbalanced) = np.split(rows, [len(completion.doubted)])
     doubted = _beyond(
@@ -113,14 +109,5 @@ def determinate(
 @functools.lru_cache(maxsize=32)
 def _without(program: Program, columns: tuple[Column, ...]) -> Program:
     kept = [k for k, column in enumerate(program.columns) if column not in columns]
-    inputs = program.instant.sx_in()
-    names = [program.instant.name_in(i) for i in range(program.instant.n_in())]
-    instant = ca.Function(
-        "instant",
-        inputs,
-        [ca.densify(program.instant(*inputs)[kept])],
-        names,
-        ["out"],
-        {"cse": True},
-    )
-    return replace(program, instant=instant, columns=tuple(program.columns[k] for k in kept))
+    out = program.instant(*program.instant.sx_in())[kept]
+    return program.with_columns([program.columns[k] for k in kept], out)

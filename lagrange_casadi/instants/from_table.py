@@ -6,16 +6,17 @@ from __future__ import annotations
 
 import functools
 import math
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import graph, inputs_of
 from ..base.arrays import Array
 from ..base.space import cores
 from ..base.status import Status
 from ..base.symbolic import symbolic
+from ..base.threads import in_threads
 from ..equations.checks import Check
 from ..equations.program import Program
 from .backends import Evaluated, run, unevaluated
@@ -62,11 +63,7 @@ def columns(
 
     shares = max(1, min(threads or cores(), t.size // _SHARE))
     size = -(-t.size // shares)
-    if shares == 1:
-        fill(0)
-    else:
-        with ThreadPoolExecutor(shares) as pool:
-            list(pool.map(fill, range(0, t.size, size)))
+    in_threads(fill, range(0, t.size, size), shares)
     for k in np.flatnonzero(cycle.drift):
         found.out[k] += cycle.drift[k] * (angle - phase)
     for output, place in still(program, tuple(p.tolist())).items():
@@ -114,16 +111,14 @@ def drive_of(program: Program) -> Program:
     """The graph of the one drive alone: its angle, rate and acceleration, and the angle within one
     turn, two, and so on.
     """
-    t, d, rate, acceleration, _, p = program.instant.sx_in()
+    given = inputs_of(program.instant) | {"z": ca.SX(0, 1)}
+    d = given["d"]
     within = [
         d - math.tau * (revolutions * ca.floor(d * (1 / (revolutions * math.tau))))
         for revolutions in range(1, TURNS + 1)
     ]
-    out = ca.densify(ca.vertcat(d, rate, acceleration, *within))
-    names = [program.instant.name_in(i) for i in range(program.instant.n_in())]
-    instant = ca.Function(
-        "instant", [t, d, rate, acceleration, ca.SX(0, 1), p], [out], names, ["out"], {"cse": True}
-    )
+    out = ca.vertcat(d, given["d_rate"], given["d_acceleration"], *within)
+    instant = graph("instant", given, out=out)
     columns = (
         "angle",
         "rate",

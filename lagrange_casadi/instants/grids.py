@@ -13,21 +13,19 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import resources
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, during
 from ..base.space import cores, require
 from ..base.threads import in_threads
-from ..codegen import find_compiler
 from ..codegen.calls import Call
-from ..codegen.compiler import loaded
+from ..codegen.compiler import loaded_or_none, written
 from ..declare.limits import END
 from ..equations.section_function import edge
-from ..errors import CompilerError, DeclarationError, warn
+from ..errors import DeclarationError
 
 WORTH_COMPILING = 1 << 9
 """Values from which on compiled code fills grids."""
@@ -248,18 +246,13 @@ def _fill_in_blocks(columns: Columns, basis: Array, u: Array, out: Array, slack:
             _sum_up(
                 [c[block] for c in columns.columns[plane * terms : (plane + 1) * terms]],
                 basis,
-                [_cut(load, block) for load in columns.loads[plane * many : (plane + 1) * many]],
+                during(columns.loads[plane * many : (plane + 1) * many], block),
                 u,
                 values,
                 slack,
             )
             if plane:
                 np.sqrt(rows * rows + values * values, out=rows)
-
-
-def _cut(load: Load, block: slice) -> Load:
-    load_point, constant, slope = load
-    return load_point[block], constant[block], slope[block]
 
 
 def _sum_up(
@@ -281,17 +274,11 @@ def _sum_up(
 @functools.cache
 def _compiled() -> ctypes.CDLL | None:
     """The C functions, or None where there is no compiler that takes them."""
-    functions = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
-    source = (
-        f"#define MOST {_MOST}\n#define LINE {_LINE}\n" + GRID.text() + LARGEST.text() + functions
-    )
-    try:
-        compiler = find_compiler()
-        if compiler is None:
-            return None
-        library = loaded(source, compiler, _OPTIONS)
-    except CompilerError as error:
-        warn(f"{error}; NumPy computes the section forces along links, more slowly: same values")
+    macros = f"#define MOST {_MOST}\n#define LINE {_LINE}\n"
+    source = macros + GRID.text() + LARGEST.text() + written("grids.c")
+    instead = "NumPy computes the section forces along links, more slowly"
+    library = loaded_or_none(source, _OPTIONS, instead)
+    if library is None:
         return None
     some = (ctypes.c_longlong,) * 3
     GRID.declare(library.lagrange_casadi_grids, *some)

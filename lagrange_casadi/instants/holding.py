@@ -35,8 +35,8 @@ from ..equations.derive import as_derived, compile_scene
 from ..equations.held_efforts import HeldEfforts, held_efforts
 from ..equations.program import Program
 from .backends import run
+from .beyond_equilibrium import Holding
 from .evaluation_method import EvaluationMethod
-from .held import Holding
 from .rules import OPEN, SLIP
 from .solution import Solution
 

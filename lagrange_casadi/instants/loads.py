@@ -1,19 +1,18 @@
 """Loads of a link as numbers: what acts at stations, and along it, with the functions that go with
 its coefficients.
 
-See :mod:`..equations.distributed_loads`.
+See :mod:`..equations.section_function`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
-from typing import Any, TypeVar
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Instants, during
 from ..base.quantities import Output
 
 _AnyLoad = TypeVar("_AnyLoad", bound="_Load")
@@ -25,18 +24,9 @@ class _Load:
 
     name: str
 
-    def during(self: _AnyLoad, instants: slice | npt.NDArray[np.generic]) -> _AnyLoad:
+    def during(self: _AnyLoad, instants: Instants) -> _AnyLoad:
         """Load at some of the instants."""
-        arrays = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        del arrays["name"]
-        return replace(self, **{name: _cut(values, instants) for name, values in arrays.items()})
-
-
-def _cut(values: Any, instants: slice | npt.NDArray[np.generic]) -> Any:
-    """Values at some of the instants, each (t,)."""
-    if isinstance(values, Mapping):
-        return {key: tuple(row[instants] for row in rows) for key, rows in values.items()}
-    return values[instants]
+        return replace(self, **during(vars(self), instants))
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,12 +102,10 @@ class DistributedLoad(_Load):
         (..., t).
         """
         width, end = self.width[..., :1], self.end[..., :1]
-        # x, L and a of equations/distributed_loads.py.
-        x, reach, lever = (
-            np.clip((end - u) / width, 0.0, 1.0),
-            length * width,
-            length * np.maximum(end - width - u, 0.0),
-        )
+        # x, L and a of equations/section_function.py.
+        x = np.clip((end - u) / width, 0.0, 1.0)
+        reach = length * width
+        lever = length * np.maximum(end - width - u, 0.0)
         within = (x > 0.0) & (x < 1.0)
         by_end, by_width = np.zeros_like(x), np.zeros_like(x)
         for j, values in enumerate(self.terms.get(direction, ())):

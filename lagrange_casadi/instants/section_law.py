@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array, Operand
+from ..base.arrays import Array, Instants, Operand, during
 from ..base.brief import Brief
 from ..base.quantities import Output
 from ..base.space import require
@@ -107,15 +107,13 @@ class SectionLaw(Brief):
         """
         return grids.largest(self._sum(force, basis), basis.u, self.slack)
 
-    def during(self, instants: slice | npt.NDArray[np.generic]) -> SectionLaw:
+    def during(self, instants: Instants) -> SectionLaw:
         """The law at some of the instants."""
-        coefficients = {name: values[instants] for name, values in self.coefficients.items()}
-        loads = tuple(load.during(instants) for load in self.loads)
-        distributed_loads = tuple(
-            distributed.during(instants) for distributed in self.distributed_loads
-        )
         return replace(
-            self, coefficients=coefficients, loads=loads, distributed_loads=distributed_loads
+            self,
+            coefficients=during(self.coefficients, instants),
+            loads=during(self.loads, instants),
+            distributed_loads=during(self.distributed_loads, instants),
         )
 
     def at(self, force: str, xi: Operand, side: Side = "tip") -> Array:
@@ -206,10 +204,8 @@ class SectionLaw(Brief):
                     values[:, None] for values in self._acting(force, load)
                 )
                 moved, more, steeper = (values[..., None] for values in self._acting(force, change))
-                gap, size = (
-                    more + steeper * (load_point + moved - u) + slope * moved,
-                    np.abs(constant) + np.abs(slope * (load_point - u)),
-                )
+                gap = more + steeper * (load_point + moved - u) + slope * moved
+                size = np.abs(constant) + np.abs(slope * (load_point - u))
                 for k, visible in enumerate(there):
                     gaps[..., k] += np.where(visible, gap, 0.0)
                     sizes[..., k] += np.where(visible, size, 0.0)
@@ -283,10 +279,8 @@ class SectionLaw(Brief):
                 self.distributed_loads, rates.distributed_loads, strict=True
             )
         )
-        values, passing = (
-            replace(rates, loads=(), distributed_loads=distributed_loads).at(force, u, side),
-            np.zeros(u.shape),
-        )
+        values = replace(rates, loads=(), distributed_loads=distributed_loads).at(force, u, side)
+        passing = np.zeros(u.shape)
         for load, change in zip(self.loads, rates.loads, strict=True):
             load_point, _, slope = (_column(values, u) for values in self._acting(force, load))
             going, more, steeper = (_column(values, u) for values in self._acting(force, change))

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arguments import public
-from ..base.arrays import Array
+from ..base.arrays import Array, during
 from ..base.quantities import Kinds, Output
 from ..base.tables import Table
 from ..declare.description import Description, density_of, kinds_of_described
@@ -23,10 +23,9 @@ from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError, shown
 from ..methods import method
 from ..renamed import renamed
+from .beyond_equilibrium import Elasticity, Holding, held_notes
 from .derivatives import Derivatives
-from .elasticity import Elasticity
 from .frames import dataset, frame
-from .held import Holding, held_notes
 from .laws import law_of, made_of
 from .ordering import table_of_described
 from .sizes import largest, size_of
@@ -389,20 +388,10 @@ class Solution:
                 "during: expected a slice, or True or False for each instant, got"
                 f" {shown(instants)}"
             )
-        outputs = {output: values[instants] for output, values in self.outputs.items()}
-        residuals = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])
-        slopes = self.sensitivities.during(instants)
-        holding = {name: found.during(instants) for name, found in self.holding.items()}
-        return replace(
-            self,
-            t=self.t[instants],
-            outputs=outputs,
-            certificate=residuals,
-            over=over,
-            sensitivities=slopes,
-            holding=holding,
-        )
+        names = ("t", "outputs", "certificate", "sensitivities", "holding")
+        moving = {name: getattr(self, name) for name in names}
+        return replace(self, over=over, **during(moving, instants))
 
     @property
     def by_equilibrium(self) -> Solution:

@@ -46,10 +46,8 @@ class Statistics:
     def over(cls, name: str, unit: str, t: Array, values: Array) -> Statistics:
         """Make them from values (t,) at increasing times."""
         counts = counted(values)
-        weights, there = (
-            shares(t, counts),
-            values if counts.all() else np.where(counts, values, 0.0),
-        )
+        weights = shares(t, counts)
+        there = values if counts.all() else np.where(counts, values, 0.0)
         chosen = (*_ends(values, values), largest(values))
         ends = (Extreme(float(values[i]), float(t[i])) for i in map(int, chosen))
         return cls(name, unit, float(there @ weights), float(np.sqrt(there**2 @ weights)), *ends)

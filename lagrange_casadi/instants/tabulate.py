@@ -90,10 +90,8 @@ def tabulate(
         best = found if best is None or found.error < best.error else best
         if 2 * nodes > MOST:
             break
-        values, nodes = (
-            np.stack((values, between), axis=-1).reshape(*values.shape[:2], -1),
-            2 * nodes,
-        )
+        values = np.stack((values, between), axis=-1).reshape(*values.shape[:2], -1)
+        nodes = 2 * nodes
     column = column_of(best.columns[int(np.argmax(best.errors))])
     worst = f"the {column.kind} of '{column.part}'" if isinstance(column, Check) else f"'{column}'"
     raise DeclarationError(

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from ..base.arrays import Array
-from ..peak_search.polynomials import interpolation
+from ..peak_search.fits import interpolation
 
 _HALVINGS = 60
 _ROUNDING = 2 * float(np.finfo(float).eps)

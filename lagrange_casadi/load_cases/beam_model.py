@@ -17,7 +17,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..beams.shape import Shape, between
 from ..errors import DeclarationError
-from .loads import LoadCase, Rod, listed, nodes_of, set_names
+from .loads import LoadCase, Rod, inertia_field, listed, node_sets, title
 
 _ELEMENTS = 16
 """Elements of a link, where no load point and no step of the section asks for more."""
@@ -33,8 +33,13 @@ _ENDS = np.array([(1 - _POINTS) / 2, (1 + _POINTS) / 2])
 """Linear ones, for couples: CalculiX takes none at nodes in the middle."""
 
 
-def beam_model(case: LoadCase, rod: Rod, nodes: Mapping[str, str]) -> Iterator[str]:
+def beam_model(case: LoadCase, _number: int, nodes: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of an input file; ``nodes`` are names of node sets, by those of the loads."""
+    rod = case.rod
+    if rod is None:
+        raise DeclarationError(
+            f"load cases of link '{case.link}': format 'beam' needs a link with a beam"
+        )
     elastic = rod.beam.material.needs("a model for finite elements", "elasticity", "shear_modulus")
     poisson = elastic[0] / (2.0 * elastic[1]) - 1.0
     if not -1.0 < poisson < 0.5:
@@ -42,28 +47,26 @@ def beam_model(case: LoadCase, rod: Rod, nodes: Mapping[str, str]) -> Iterator[s
             f"load case of link '{case.link}': material '{rod.beam.material.name}' has Poisson's"
             f" ratio {poisson:.4g} by its moduli, but solids have -1 to 0.5"
         )
-    known = nodes_of(case)
-    x = _mesh(rod, [at[0] for at, _, _ in known.values()])
+    bearing = node_sets(case, nodes)
+    x = _mesh(rod, [node.at[0] for _, node in bearing])
     loads = _inertia(case, rod, x)
+    sets: list[tuple[str, int]] = []
+    for name, node in bearing:
+        k = int(np.argmin(np.abs(x - node.at[0])))
+        arm = np.array(node.at) - [x[k], 0.0, 0.0]
+        loads[k] += [*node.force, *(np.array(node.moment) + np.cross(arm, node.force))]
+        sets.append((name, k))
     # CalculiX holds no node against twisting that bears a moment: one within an element bears none.
-    held = {"BASE": 0, "TIP": x.size - 1, "WITHIN": x.size // 4 * 2 + 1}
-    sets = {}
-    for name, (at, force, moment) in known.items():
-        node = int(np.argmin(np.abs(x - at[0])))
-        arm = np.array(at) - [x[node], 0.0, 0.0]
-        loads[node] += [*force, *(np.array(moment) + np.cross(arm, force))]
-        sets[name] = node
+    sets += [("BASE", 0), ("TIP", x.size - 1), ("WITHIN", x.size // 4 * 2 + 1)]
     yield "*HEADING"
-    yield f"{case.link} at t = {case.t:.9g} s: {', '.join(case.governs) or 'as asked'}"
+    yield title(case)
     yield "** SI units, on the axes of the link: x leads from its base to its tip."
     yield "*NODE, NSET=NODES"
     yield from (f"{k}, {listed([at, 0.0, 0.0])}" for k, at in enumerate(x, 1))
     yield from _elements(case.link, rod, x)
-    names = set_names(known, nodes)
-    for name, node in [*((names[name], node) for name, node in sets.items()), *held.items()]:
+    for name, k in sets:
         if not name.isdigit():
-            yield f"*NSET, NSET={name}"
-            yield f"{node + 1}"
+            yield from (f"*NSET, NSET={name}", f"{k + 1}")
     yield "*MATERIAL, NAME=MATERIAL"
     yield f"** {rod.beam.material.name}"
     yield "*ELASTIC"
@@ -73,8 +76,8 @@ def beam_model(case: LoadCase, rod: Rod, nodes: Mapping[str, str]) -> Iterator[s
     yield from ("*BOUNDARY", "BASE, 1, 3", "TIP, 2, 3", "WITHIN, 4", "*STEP", "*STATIC")
     yield "** Loads of joints, with inertia and weight as forces of nodes"
     yield "*CLOAD"
-    for node, row in enumerate(loads.tolist(), 1):
-        yield from (f"{node}, {k}, {value:.12g}" for k, value in enumerate(row, 1) if value)
+    for number, row in enumerate(loads.tolist(), 1):
+        yield from (f"{number}, {k}, {value:.12g}" for k, value in enumerate(row, 1) if value)
     yield from ("*NODE FILE", "U", "*EL FILE", "S", "*END STEP")
 
 
@@ -96,18 +99,15 @@ def _mesh(rod: Rod, places: Sequence[float]) -> Array:
 
 def _inertia(case: LoadCase, rod: Rod, x: Array) -> Array:
     """Return forces and moments of nodes (nodes, 6) of weight and inertia."""
-    acceleration, omega, alpha, gravity = map(
-        np.array, (case.acceleration, case.omega, case.alpha, case.gravity)
-    )
+    moved = np.array([case.acceleration, case.omega, case.alpha, case.gravity])
+    _, omega, alpha, _ = moved
     loads = np.zeros((x.size, 6))
     for k in range(0, x.size - 1, 2):
         start, stop = x[k], x[k + 2]
         at = (start + stop) / 2 + (stop - start) / 2 * _POINTS
         share = _WEIGHTS * (stop - start) / (2 * rod.length)
-        r = at[:, None] * np.array([1.0, 0.0, 0.0])
-        field = gravity - acceleration - np.cross(alpha, r)
-        field = field - np.cross(omega, np.cross(omega, r))
         mass = share * rod.density.at(at / rod.length)
+        field = inertia_field(moved, at[:, None] * np.array([1.0, 0.0, 0.0]))
         loads[k : k + 3, :3] += _SHAPES @ (mass[:, None] * field)
         if rod.slices:
             yy, zz, yz = (share * moment.at(at / rod.length) for moment in rod.slices)

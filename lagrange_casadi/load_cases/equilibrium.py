@@ -5,7 +5,7 @@ They are the actions by which the certificate balances bodies, so nothing of the
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -25,9 +25,9 @@ from ..errors import CertificateError, DeclarationError, UnknownNameError
 from ..instants.solution import Solution
 from ..verification.balance import all_actions, forces_needed
 from ..verification.certificate import placed_of, reported_of, tolerance
-from ..verification.placing import Moving
+from ..verification.placing import Moving, Placed
 from ..verification.vectors import Vector
-from .loads import Load, LoadCase, Rod
+from .loads import Load, LoadCase, Rod, inertia_field
 
 _SLIGHT = 1e-9
 """Share of the largest load below which a peak is rounding, and governs nothing."""
@@ -85,13 +85,10 @@ def link_load_cases(
             f"load cases of link '{link}': the motion is missing; evaluate with wanted=['motion',"
             " ...], or 'all'"
         )
-    history = _History(declared, link, placed.bodies[link], (solution.t.size, 3), {})
-    for action in all_actions(placed):
-        for body, opposite in action.moving:
-            if body == link:
-                sign = -1.0 if opposite else 1.0
-                history.add(action.name, action.at, sign * action.force, sign * action.couple)
-    return history.cases(solution, t)
+    loads, motion = _loads_on(placed, link, solution.t.size), placed.bodies[link]
+    vectors = motion.change, motion.rate, motion.acceleration, Vector(*declared.gravity)
+    moved = _on_axes(motion, solution.t.size, *vectors)
+    return _History(solution, declared, link, loads, moved).cases(t)
 
 
 def _declared(solution: Solution, link: str, scene: Scene | Case | None) -> Declared:
@@ -127,164 +124,157 @@ def _check_reported(solution: Solution, declared: Declared, link: str) -> None:
         )
 
 
-@dataclass(eq=False)
-class _History:
-    """Loads on a link over all instants, on its axes, each array (t, 3)."""
+def _loads_on(placed: Placed, link: str, count: int) -> dict[str, Array]:
+    """Return loads on a link by name, each its place, force and moment over time (3, t, 3); several
+    of one name that act at one place are added up.
+    """
+    motion, found = placed.bodies[link], dict[str, Array]()
+    for action in all_actions(placed):
+        for body, opposite in action.moving:
+            if body != link:
+                continue
+            sign = -1.0 if opposite else 1.0
+            acting = action.at - motion.at, sign * action.force, sign * action.couple
+            load, number, name = _on_axes(motion, count, *acting), 1, action.name
+            while name in found and not np.array_equal(found[name][0], load[0]):
+                number, name = number + 1, f"{action.name}:{number + 1}"
+            if name in found:
+                found[name][1:] += load[1:]
+            else:
+                found[name] = load
+    return found
 
+
+def _on_axes(motion: Moving, count: int, *vectors: Vector) -> Array:
+    """Return vectors in ground axes on the axes of a body, over time (vectors, t, 3)."""
+    found = np.empty((len(vectors), count, 3))
+    for rows, vector in zip(found, vectors, strict=True):
+        for k, component in enumerate(motion.axes.resolve(vector).components):
+            rows[:, k] = component
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _History:
+    """Loads on a link over all instants, on its axes; ``moved`` are the acceleration of its origin,
+    its angular velocity and acceleration, and gravity (4, t, 3).
+    """
+
+    solution: Solution
     declared: Declared
     link: str
-    motion: Moving
-    shape: tuple[int, int]
-    loads: dict[str, tuple[Array, Array, Array]]
+    loads: Mapping[str, Array]
+    moved: Array
 
-    def _rows(self, vector: Vector) -> Array:
-        """A vector in ground axes as rows (t, 3) on the link's axes."""
-        rows = np.empty(self.shape)
-        for column, component in zip(
-            rows.T, self.motion.axes.resolve(vector).components, strict=True
-        ):
-            column[:] = component
-        return rows
-
-    def add(self, name: str, at: Vector, force: Vector, moment: Vector) -> None:
-        """Take a load; several of one name that act at one place are added up."""
-        found = self._rows(at - self.motion.at), self._rows(force), self._rows(moment)
-        number, key = 1, name
-        while key in self.loads:
-            if np.array_equal(self.loads[key][0], found[0]):
-                before = self.loads[key]
-                found = before[0], before[1] + found[1], before[2] + found[2]
-                break
-            number, key = number + 1, f"{name}:{number + 1}"
-        self.loads[key] = found
-
-    def cases(self, solution: Solution, t: Sequence[float] | None) -> tuple[LoadCase, ...]:
+    def cases(self, t: Sequence[float] | None) -> tuple[LoadCase, ...]:
         """Return the load cases at times, or at the instants that govern."""
-        body, limit = self.declared.bodies[self.link], tolerance(solution)
-        rod = _rod(solution.description["bodies"][self.link])
-        known = np.ones(self.shape[0], dtype=bool)
-        for _, force, moment in self.loads.values():
-            known &= np.isfinite(force + moment).all(axis=1)
-        chosen = self._chosen(solution, t, known)
-        vectors = (self.motion.change, self.motion.rate, self.motion.acceleration)
-        fields = [*map(self._rows, vectors), self._rows(Vector(*self.declared.gravity))]
-        residuals, largest = self._residuals(known, *fields)
-        governing: dict[int, list[str]] = {i: [] for i in chosen}
+        acting = np.stack([load[1:] for load in self.loads.values()])
+        known = np.asarray(np.isfinite(acting).all(axis=(0, 1, 3)))
+        asked = np.arange(known.size) if t is None else self._numbers(t)
+        unknown = asked[~known[asked]]
+        if unknown.size and (t is not None or not known.any()):
+            raise DeclarationError(self._indeterminate(unknown))
+        residuals, largest = self._residuals(known)
+        governing: dict[int, list[str]] = {i: [] for i in asked.tolist()}
         if t is None:
-            governing = self._governing(solution, known, largest)
-        found = []
-        for i, governs in sorted(governing.items()):
-            force_residual, moment_residual = residuals[:, i].tolist()
-            if not max(force_residual, moment_residual) <= limit:
+            governing = self._governing(known, largest)
+        rod = _rod(self.solution.description["bodies"][self.link])
+        found = [self._case(i, governing[i], residuals[:, i], rod) for i in sorted(governing)]
+        limit = tolerance(self.solution)
+        for case in found:
+            if not max(case.residual) <= limit:
                 raise CertificateError(
-                    f"load case of link '{self.link}' at t = {solution.t[i]:.6g} s is not in"
-                    f" equilibrium: residuals of force {force_residual:.2g} and moment"
-                    f" {moment_residual:.2g}, but at most {limit:.2g} is rounding"
+                    f"load case of link '{self.link}' at t = {case.t:.6g} s is not in equilibrium:"
+                    f" residuals of force {case.residual[0]:.2g} and moment"
+                    f" {case.residual[1]:.2g}, but at most {limit:.2g} is rounding"
                 )
-            loads = (
-                Load(name, *(_triple(rows[i]) for rows in load))
-                for name, load in self.loads.items()
-            )
-            acceleration, omega, alpha, gravity = (_triple(rows[i]) for rows in fields)
-            case = LoadCase(
-                link=self.link,
-                t=float(solution.t[i]),
-                governs=tuple(governs),
-                loads=tuple(loads),
-                acceleration=acceleration,
-                omega=omega,
-                alpha=alpha,
-                gravity=gravity,
-                mass=body.mass,
-                centre=body.centre,
-                inertia=body.inertia,
-                residual=(force_residual, moment_residual),
-                rod=rod,
-            )
-            found.append(case)
         return tuple(found)
 
-    def _residuals(
-        self,
-        known: npt.NDArray[np.bool_],
-        acceleration: Array,
-        omega: Array,
-        alpha: Array,
-        gravity: Array,
-    ) -> tuple[Array, float]:
+    def _case(self, i: int, governs: Sequence[str], residual: Array, rod: Rod | None) -> LoadCase:
+        """Return the load case of an instant."""
+        body = self.declared.bodies[self.link]
+        acceleration, omega, alpha, gravity = map(_triple, self.moved[:, i])
+        of_forces, of_moments = residual.tolist()
+        return LoadCase(
+            link=self.link,
+            t=float(self.solution.t[i]),
+            governs=tuple(governs),
+            loads=tuple(Load(name, *map(_triple, load[:, i])) for name, load in self.loads.items()),
+            acceleration=acceleration,
+            omega=omega,
+            alpha=alpha,
+            gravity=gravity,
+            mass=body.mass,
+            centre=body.centre,
+            inertia=body.inertia,
+            residual=(of_forces, of_moments),
+            rod=rod,
+        )
+
+    def _residuals(self, known: npt.NDArray[np.bool_]) -> tuple[Array, float]:
         """Return the residuals of forces and of moments about the centre (2, t), and the largest
         force.
         """
-        body = self.declared.bodies[self.link]
+        body, (_, omega, alpha, _) = self.declared.bodies[self.link], self.moved
         centre, inertia = np.array(body.centre), np.array(body.inertia)
-        change = acceleration + np.cross(alpha, centre)
-        change += np.cross(omega, np.cross(omega, centre))
-        inertial = body.mass * (change - gravity)
+        at, pushes, couples = np.stack([*self.loads.values()], axis=1)
+        arms = at - centre
+        weight = body.mass * inertia_field(self.moved, centre)
         spun = alpha @ inertia.T + np.cross(omega, omega @ inertia.T)
-        force, moment = -inertial, -spun
-        largest, twisting = _largest(inertial[known]), _largest(spun[known])
-        reach = body.length or 0.0
-        for at, push, couple in self.loads.values():
-            force = force + push
-            moment = moment + couple + np.cross(at - centre, push)
-            largest = max(largest, _largest(push[known]))
-            twisting = max(twisting, _largest(couple[known]))
-            reach = max(reach, _largest((at - centre)[known]))
-        residuals = np.zeros((2, self.shape[0]))
+        force, moment = sum(pushes, weight), -spun
+        for couple, turning in zip(couples, np.cross(arms, pushes), strict=True):
+            moment = moment + couple + turning
+        largest, twisting, reach = (
+            float(_sizes(np.stack([*rows])[:, known]).max(initial=0.0))
+            for rows in ((weight, *pushes), (spun, *couples), arms)
+        )
+        reach = max(reach, body.length or 0.0)
+        residuals = np.zeros((2, known.size))
         residuals[0] = _sizes(force) / (largest or 1.0)
         if self.declared.oriented(self.link):
             residuals[1] = _sizes(moment) / (max(twisting, largest * reach) or 1.0)
         return residuals, largest
 
-    def _chosen(
-        self, solution: Solution, t: Sequence[float] | None, known: npt.NDArray[np.bool_]
-    ) -> list[int]:
-        """Return the numbers of the instants that were asked for, at each of which all is known."""
-        instants, chosen = solution.t, []
-        for time in () if t is None else t:
-            i = int(np.argmin(np.abs(instants - time)))
-            if not abs(instants[i] - time) <= _NEAR * np.abs(instants).max():
+    def _numbers(self, times: Sequence[float]) -> npt.NDArray[np.intp]:
+        """Return the numbers of the instants that were asked for."""
+        instants = self.solution.t
+        numbers = np.array([np.argmin(np.abs(instants - time)) for time in times], dtype=np.intp)
+        for time, nearest in zip(times, instants[numbers], strict=True):
+            if not abs(nearest - time) <= _NEAR * np.abs(instants).max():
                 raise DeclarationError(
                     f"load cases of link '{self.link}': t = {time:.9g} s is no instant of the"
-                    f" solution; the nearest is {instants[i]:.9g} s"
+                    f" solution; the nearest is {nearest:.9g} s"
                 )
-            chosen.append(i)
-        numbers = np.flatnonzero(known) if t is None else np.array(chosen, dtype=int)
-        if known[numbers].all() and (numbers.size or t is not None):
-            return chosen
-        numbers = numbers[~known[numbers]] if t is not None else np.arange(known.size)
+        return numbers
+
+    def _indeterminate(self, numbers: npt.NDArray[np.intp]) -> str:
+        """Return why loads are not known at instants."""
         names = ", ".join(
-            name
-            for name, (_, force, moment) in self.loads.items()
-            if not np.isfinite(force[numbers] + moment[numbers]).all()
+            name for name, load in self.loads.items() if not np.isfinite(load[1:, numbers]).all()
         )
-        if solution.resting[numbers].any():
-            raise DeclarationError(
+        if self.solution.resting[numbers].any():
+            return (
                 f"load cases of link '{self.link}': a joint with friction is at rest at"
-                f" t = {solution.t[numbers[0]]:.6g} s, which leaves {names} indeterminate"
+                f" t = {self.solution.t[numbers[0]]:.6g} s, which leaves {names} indeterminate"
             )
-        raise DeclarationError(
+        return (
             f"load cases of link '{self.link}': equilibrium does not determine {names}; give the"
             " links beams and evaluate with elastic=True, or release a joint"
         )
 
-    def _governing(
-        self, solution: Solution, known: npt.NDArray[np.bool_], largest: float
-    ) -> dict[int, list[str]]:
+    def _governing(self, known: npt.NDArray[np.bool_], largest: float) -> dict[int, list[str]]:
         """Return what is largest in size at an instant, by its number."""
         found: dict[int, list[str]] = {}
-        size = largest * self.declared.size
-        for name, values, scale in self._peaking(solution, largest, size):
+        for name, values, scale in self._peaking(largest, largest * self.declared.size):
             sizes = np.where(known, np.nan_to_num(np.abs(values)), 0.0)
             i = int(np.argmax(sizes))
             if sizes[i] > _SLIGHT * scale:
                 found.setdefault(i, []).append(name)
         return found or {int(np.argmax(known)): []}
 
-    def _peaking(
-        self, solution: Solution, force: float, moment: float
-    ) -> Iterator[tuple[str, Array, float]]:
+    def _peaking(self, force: float, moment: float) -> Iterator[tuple[str, Array, float]]:
         """Yield quantities whose peaks govern, over time, each with the load to compare with."""
+        solution = self.solution
         if self.link in solution.links_with_sections:
             for section in solution.table.forces:
                 name = f"section:{self.link}:{section}"
@@ -294,10 +284,10 @@ class _History:
                 stress = solution.stress(self.link)
                 for kind in ("normal", "shear", "von_mises"):
                     yield f"stress:{self.link}:{kind}", stress.largest(kind).value, 0.0
-        for name, (_, forces, moments) in self.loads.items():
+        for name, (_, push, couple) in self.loads.items():
             if name.startswith("reaction:"):
-                yield f"{name}:resultant", _sizes(forces), force
-                yield f"{name}:moment", _sizes(moments), moment
+                yield f"{name}:resultant", _sizes(push), force
+                yield f"{name}:moment", _sizes(couple), moment
 
 
 def _rod(body: Description) -> Rod | None:
@@ -310,11 +300,7 @@ def _rod(body: Description) -> Rod | None:
 
 
 def _sizes(rows: Array) -> Array:
-    return np.asarray(np.linalg.norm(rows, axis=1))
-
-
-def _largest(rows: Array) -> float:
-    return float(_sizes(rows).max(initial=0.0))
+    return np.asarray(np.linalg.norm(rows, axis=-1))
 
 
 def _triple(row: Array) -> Triple:

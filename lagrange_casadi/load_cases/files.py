@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-import csv
-import io
+import itertools
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 
 from ..arguments import public
+from ..base.csv_rows import csv_text
 from ..base.publish import filling
 from ..base.vocabulary import LOAD_FORMATS
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import UnknownNameError
 from .beam_model import beam_model
-from .loads import LoadCase, nodes_of
+from .loads import LoadCase, node_sets
 from .solver_text import calculix, nastran
 
-_NASTRAN = 10
-"""Numbers of Nastran's load sets of a load case."""
+_SOLVERS = {
+    "inp": (calculix, "inp"),
+    "nas": (nastran, "nas"),
+    "beam": (beam_model, "beam.inp"),
+}
+"""Writers of a file for one load case, and endings of its name, by format."""
 
 _UNITS = {
     "t": "s",
@@ -78,82 +82,69 @@ def write_load_cases(
     if unknown := [name for name in formats if name not in LOAD_FORMATS]:
         raise UnknownNameError("format", unknown, LOAD_FORMATS)
     links, chosen = dict.fromkeys(case.link for case in cases), dict(nodes or {})
-    loaded = {name: None for case in cases for name in (*nodes_of(case), case.link)}
+    loaded = dict.fromkeys(
+        name
+        for case in cases
+        for name in (*(node.name for _, node in node_sets(case, {})), case.link)
+    )
     if unknown := [name for name in chosen if name not in loaded]:
         raise UnknownNameError("load", unknown, loaded)
-    written = []
+    files: dict[str, str] = {}
+    for link in links:
+        own = [case for case in cases if case.link == link]
+        for name in dict.fromkeys(formats):
+            files |= _files(name, own, chosen)
     with filling(Path(folder)) as draft:
-        for link in links:
-            own = [case for case in cases if case.link == link]
-            for name in dict.fromkeys(formats):
-                for file, text in _files(name, own, chosen):
-                    (draft / file).write_text(text, encoding="utf-8", newline="\n")
-                    written.append(file)
-    return tuple(written)
+        for file, text in files.items():
+            (draft / file).write_text(text, encoding="utf-8", newline="\n")
+    return tuple(files)
 
 
-def _files(
-    name: str, cases: Sequence[LoadCase], nodes: Mapping[str, str]
-) -> Iterator[tuple[str, str]]:
-    """Yield names and texts of the files of a link in a format."""
-    if name in ("json", "csv"):
-        yield from _json(cases) if name == "json" else _csv(cases)
-        return
-    for number, case in enumerate(cases, 1):
-        file = f"{case.link}_{number}.{'beam.inp' if name == 'beam' else name}"
-        if name == "inp":
-            lines = calculix(case, file, nodes)
-        elif name == "nas":
-            lines = nastran(case, _NASTRAN * number, nodes)
-        elif case.rod is None:
-            raise DeclarationError(
-                f"load cases of link '{case.link}': format 'beam' needs a link with a beam"
-            )
-        else:
-            lines = beam_model(case, case.rod, nodes)
-        yield file, "\n".join(lines) + "\n"
-
-
-def _json(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
-    """Yield one file with all load cases of a link."""
-    content = {
-        "link": cases[0].link,
-        "axes": "of the link, from its origin",
-        "units": _UNITS,
-        "cases": [_numbers(case) for case in cases],
+def _files(name: str, cases: Sequence[LoadCase], nodes: Mapping[str, str]) -> dict[str, str]:
+    """Return the texts of the files of a link in a format, by their names."""
+    link = cases[0].link
+    if name == "json":
+        return {f"{link}.json": _json(link, cases)}
+    if name == "csv":
+        return {f"{link}.csv": _csv_of_loads(cases), f"{link}.inertia.csv": _csv_of_inertia(cases)}
+    lines, ending = _SOLVERS[name]
+    return {
+        f"{link}_{number}.{ending}": "\n".join(lines(case, number, nodes)) + "\n"
+        for number, case in enumerate(cases, 1)
     }
-    yield f"{cases[0].link}.json", json.dumps(content, indent=1) + "\n"
 
 
-def _numbers(case: LoadCase) -> dict[str, object]:
-    found = asdict(replace(case, rod=None))
-    del found["rod"]
-    return found
+def _json(link: str, cases: Sequence[LoadCase]) -> str:
+    every = [asdict(replace(case, rod=None)) for case in cases]
+    for numbers in every:
+        del numbers["rod"]
+    content = {"link": link, "axes": "of the link, from its origin", "units": _UNITS}
+    return json.dumps({**content, "cases": every}, indent=1) + "\n"
 
 
-def _csv(cases: Sequence[LoadCase]) -> Iterator[tuple[str, str]]:
-    """Yield a file of loads, and one of inertia, with a row for each."""
-    heads = [("at", "{}"), ("force", "f{}"), ("moment", "m{}")]
-    loads: list[list[object]] = [["case", "t [s]", "name", *_columns(heads)]]
-    heads = [("acceleration", "a{}"), ("omega", "omega_{}"), ("alpha", "alpha_{}")]
-    heads += [("gravity", "g{}"), ("centre", "centre_{}")]
-    fields: list[list[object]] = [
-        [
-            *("case", "t [s]", "governs", *_columns(heads), "mass [kg]"),
-            *("residual of forces [1]", "residual of moments [1]"),
-        ]
-    ]
+def _csv_of_loads(cases: Sequence[LoadCase]) -> str:
+    heads = ["case", "t [s]", "name", *_columns(at="{}", force="f{}", moment="m{}")]
+    rows = (
+        [number, case.t, load.name, *load.at, *load.force, *load.moment]
+        for number, case in enumerate(cases, 1)
+        for load in case.loads
+    )
+    return csv_text([heads, *rows])
+
+
+def _csv_of_inertia(cases: Sequence[LoadCase]) -> str:
+    heads = _columns(
+        acceleration="a{}", omega="omega_{}", alpha="alpha_{}", gravity="g{}", centre="centre_{}"
+    )
+    last = ["mass [kg]", "residual of forces [1]", "residual of moments [1]"]
+    rows: list[list[object]] = [["case", "t [s]", "governs", *heads, *last]]
     for number, case in enumerate(cases, 1):
-        for load in case.loads:
-            loads.append([number, case.t, load.name, *load.at, *load.force, *load.moment])
         vectors = (case.acceleration, case.omega, case.alpha, case.gravity, case.centre)
-        row = [x for vector in vectors for x in vector]
-        fields.append([number, case.t, " ".join(case.governs), *row, case.mass, *case.residual])
-    for name, rows in (("", loads), (".inertia", fields)):
-        text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows(rows)
-        yield f"{cases[0].link}{name}.csv", text.getvalue()
+        numbers = itertools.chain(*vectors, [case.mass], case.residual)
+        rows.append([number, case.t, " ".join(case.governs), *numbers])
+    return csv_text(rows)
 
 
-def _columns(heads: Sequence[tuple[str, str]]) -> list[str]:
-    return [f"{name.format(x)} [{_UNITS[field]}]" for field, name in heads for x in "xyz"]
+def _columns(**names: str) -> list[str]:
+    """Return heads of the columns of vectors."""
+    return [f"{name.format(x)} [{_UNITS[field]}]" for field, name in names.items() for x in "xyz"]

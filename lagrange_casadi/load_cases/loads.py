@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
+import numpy as np
+
+from ..base.arrays import Array
 from ..beams.beam import Beam
 from ..declare.density import NumericDensity
 from ..declare.stated import Triple
@@ -68,27 +71,37 @@ class LoadCase:
     rod: Rod | None = None
 
 
-def nodes_of(case: LoadCase) -> dict[str, tuple[Triple, Triple, Triple]]:
-    """Return places by names of node sets, each with the sum of its forces and moments: two loads
-    at one place are one node's.
+def inertia_field(moved: Array, at: Array) -> Array:
+    """Return inertia and weight of a unit of mass [m/s^2] at places of a link, as in
+    :class:`LoadCase`; ``moved`` are acceleration, omega, alpha and gravity (4, ..., 3).
     """
-    found: dict[str, tuple[Triple, Triple, Triple]] = {}
+    acceleration, omega, alpha, gravity = moved
+    change = acceleration + np.cross(alpha, at) + np.cross(omega, np.cross(omega, at))
+    return np.asarray(gravity - change)
+
+
+def title(case: LoadCase) -> str:
+    """Return one line: link, time, and what governs."""
+    return f"{case.link} at t = {case.t:.9g} s: {', '.join(case.governs) or 'as asked'}"
+
+
+def node_sets(case: LoadCase, chosen: Mapping[str, str]) -> list[tuple[str, Load]]:
+    """Return node sets with what each bears: two loads at one place are one node's. A set has the
+    name that was ``chosen``, else that of the load, which is without its kind.
+    """
+    found: dict[str, Load] = {}
     for load in case.loads:
-        for name, (at, force, moment) in found.items():
-            if math.dist(at, load.at) <= _SAME:
-                found[name] = (at, _sum(force, load.force), _sum(moment, load.moment))
+        for name, node in found.items():
+            if math.dist(node.at, load.at) <= _SAME:
+                force, moment = _sum(node.force, load.force), _sum(node.moment, load.moment)
+                found[name] = replace(node, force=force, moment=moment)
                 break
         else:
             name = load.name.partition(":")[2].replace(":", "_")
-            while name.upper() in {other.upper() for other in found}:
+            while name.upper() in map(str.upper, found):
                 name += "_"
-            found[name] = (load.at, load.force, load.moment)
-    return found
-
-
-def set_names(names: Iterable[str], chosen: Mapping[str, str]) -> dict[str, str]:
-    """Return names of node sets: those that were chosen, and else those of the loads."""
-    return {name: chosen.get(name, name) for name in names}
+            found[name] = replace(load, name=name)
+    return [(chosen.get(name, name), node) for name, node in found.items()]
 
 
 def _sum(a: Triple, b: Triple) -> Triple:

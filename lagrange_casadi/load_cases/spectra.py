@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import os
 from collections.abc import Sequence
@@ -14,9 +12,11 @@ import numpy as np
 
 from ..arguments import Positive, public
 from ..base.arrays import Array
+from ..base.csv_rows import csv_text
 from ..base.publish import writing
+from ..base.table_file import TableFile
 from ..base.units import count
-from ..errors import DeclarationError
+from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Solution
 from ..strength.bearings import equivalent_load, joint_rate, reaction_sizes, time_weights
 from ..strength.rainflow import counted
@@ -83,7 +83,7 @@ def write_bearing_loads(loads: Sequence[BearingLoads], path: Path) -> None:
     """Write loads of bearings as CSV, a row for each joint."""
     each = ("radial [N]", "axial [N]", "speed [1/min]")
     heads = ["joint", *each, *(f"largest {name}" for name in each)]
-    _write(path, "", [heads, *map(astuple, loads)])
+    TableFile(path).write(heads, map(astuple, loads))
 
 
 @public
@@ -141,8 +141,9 @@ def write_spectrum(
         rows = [size, mean, np.bincount(same.ravel(), times), size, size, mean, mean]
     seconds = float(np.ptp(solution.t))
     again = "which repeat" if repeating else "once"
-    text = f"# {name} [{unit}], counted over {seconds:.9g} s, {again}\n"
-    _write(Path(path), text, [_HEADS, *np.column_stack(rows).tolist()])
+    head = f"# {name} [{unit}], counted over {seconds:.9g} s, {again}\n"
+    with writing(Path(path)) as (draft,):
+        draft.write((head + csv_text([_HEADS, *np.column_stack(rows).tolist()])).encode())
 
 
 def _history(solution: Solution, name: str) -> tuple[Array, str]:
@@ -166,16 +167,7 @@ def _history(solution: Solution, name: str) -> tuple[Array, str]:
     link, _, force = quantity.rpartition(":")
     law = solution.section(link).law
     if force not in solution.table.forces:
-        raise DeclarationError(
-            f"spectrum of '{name}': unknown section force '{force}'; valid:"
-            f" {', '.join(solution.table.forces)}"
-        )
+        place = f"spectrum of '{name}'"
+        raise UnknownNameError("section force", force, solution.table.forces, place=place)
     values = law.at(force, np.full((solution.t.size, 1), ratio))[:, 0]
     return np.asarray(values), solution.unit(f"section:{quantity}")
-
-
-def _write(path: Path, head: str, rows: Sequence[Sequence[object]]) -> None:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    with writing(path) as (draft,):
-        draft.write((head + text.getvalue()).encode())

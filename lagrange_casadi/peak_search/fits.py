@@ -1,10 +1,14 @@
-"""Polynomials through a few values at equal steps of time, and where they are largest."""
+"""Polynomials through a few values: at equal steps of time, with where they are largest, and at
+Chebyshev's nodes.
+"""
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from ..base.arrays import Array
 
@@ -115,10 +119,8 @@ def where(y: Array, at: int, level: float) -> float:
     number: by a polynomial in the values.
     """
     first = window(at, y.size)
-    values, places = (
-        y[first : first + SEVEN] - level,
-        np.arange(first - at, first - at + SEVEN, dtype=float),
-    )
+    values = y[first : first + SEVEN] - level
+    places = np.arange(first - at, first - at + SEVEN, dtype=float)
     for k in range(1, SEVEN):
         places = (values[k:] * places[:-1] - values[:-k] * places[1:]) / (values[k:] - values[:-k])
     place = float(places[0])
@@ -132,12 +134,10 @@ def kink(y: Array) -> list[tuple[float, float]]:
     And a little before it and after it, for only there does each show what it is worth. Nothing
     where they do not meet in a tip.
     """
-    a1, a2, b1, b2 = (
-        y[2] - y[1],
-        (y[2] - 2 * y[1] + y[0]) / 2,
-        y[4] - y[5],
-        (y[4] - 2 * y[5] + y[6]) / 2,
-    )
+    a1 = y[2] - y[1]
+    a2 = (y[2] - 2 * y[1] + y[0]) / 2
+    b1 = y[4] - y[5]
+    b2 = (y[4] - 2 * y[5] + y[6]) / 2
 
     def left(x: float) -> float:
         return float(y[2] + (x + 1) * (a1 + (x + 2) * a2))
@@ -156,3 +156,14 @@ def kink(y: Array) -> list[tuple[float, float]]:
     if not (up > bend and down > bend and -1.0 < x < 1.0 and left(x) >= y[3]):
         return []
     return [(x, left(x)), (x - ASIDE, left(x - ASIDE)), (x + ASIDE, right(x + ASIDE))]
+
+
+@functools.cache
+def interpolation(degree: int) -> tuple[Array, Array]:
+    """Nodes from -1 to 1, and what makes coefficients of Chebyshev's polynomials of the values
+    there: values @ weights.
+    """
+    nodes = chebyshev.chebpts1(degree + 1)
+    weights = chebyshev.chebvander(nodes, degree) * (2.0 / (degree + 1))
+    weights[:, 0] /= 2.0
+    return nodes, np.asarray(weights, float)

@@ -220,12 +220,10 @@ class _Search:
             there = self.best[q] > NOTHING * self.scale[q]
             taken = there and size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
         if taken:
-            self.size[q], self.t[q], self.xi[q], self.sign[q] = (
-                size,
-                t,
-                xi,
-                math.copysign(1.0, value),
-            )
+            self.size[q] = size
+            self.t[q] = t
+            self.xi[q] = xi
+            self.sign[q] = math.copysign(1.0, value)
 
     def lacks(self, t: float) -> Flags:
         """Curves that are not sought at a time: in steps beside rest those that are indeterminate
@@ -249,11 +247,9 @@ class _Search:
             if sizes[:, i].max() >= least and (
                 self.size[q] < least or t[i] < self.t[q] - self.step / 2
             ):
-                self.t[q], self.xi[q], self.sign[q] = (
-                    t[i],
-                    samples.places[row, i],
-                    math.copysign(1.0, samples.values[row, i]),
-                )
+                self.t[q] = t[i]
+                self.xi[q] = samples.places[row, i]
+                self.sign[q] = math.copysign(1.0, samples.values[row, i])
         resolved = (self.resolved & (self.going <= self.best / 2)) | np.isinf(self.best)
         return Peaks(np.copysign(self.best, self.sign), self.t, self.xi, resolved)
 
@@ -314,10 +310,8 @@ class _Search:
         jump is.
         """
         start, stop = interval.t[step], interval.t[step + 1]
-        first, last = (
-            interval.samples.some(slice(step, step + 1)),
-            interval.samples.some(slice(step + 1, step + 2)),
-        )
+        first = interval.samples.some(slice(step, step + 1))
+        last = interval.samples.some(slice(step + 1, step + 2))
         beside = SIDE * self.step
         found = sides(self.source, interval, step, self.curves.watches, beside)
         if found is None:
@@ -384,11 +378,9 @@ class _Search:
                 ):
                     self.going[q] = max(self.going[q], sizes[0])
             if endless >= 0:
-                self.best[q], self.t[q], self.xi[q] = (
-                    np.inf,
-                    interval.t[endless],
-                    interval.samples.places[curve, endless],
-                )
+                self.best[q] = np.inf
+                self.t[q] = interval.t[endless]
+                self.xi[q] = interval.samples.places[curve, endless]
                 self.sign[q] = math.copysign(1.0, row[endless])
 
     def stretches(self, interval: Interval, bound: Array, kinked: Flags) -> None:
@@ -441,10 +433,8 @@ class _Search:
         for candidate, size in zip(
             again, self.sample([(candidate, candidate.t) for candidate in again]), strict=True
         ):
-            missed, rounding = (
-                abs(size - candidate.size),
-                self.rounding[self.quantity[candidate.curve]],
-            )
+            missed = abs(size - candidate.size)
+            rounding = self.rounding[self.quantity[candidate.curve]]
             # What was missed now bends the slope in turn.
             candidate.closed = (
                 missed <= rounding
@@ -563,10 +553,8 @@ class _Search:
         """Return whether a result closes both steps beside a maximum; else, if it is worth another
         sample, its place.
         """
-        rounding, missed = (
-            float(self.rounding[self.quantity[candidate.curve]]),
-            found - candidate.size,
-        )
+        rounding = float(self.rounding[self.quantity[candidate.curve]])
+        missed = found - candidate.size
         if not (candidate.bend < 0.0 and candidate.rough <= rounding - ROUGH * candidate.bend):
             return False
         if not (abs(missed) <= rounding or abs(missed) <= -candidate.trust * candidate.bend):

@@ -12,17 +12,17 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Iterator, Sequence, Set
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..arithmetic.interpret import followable, operations
+from ..arithmetic.interpret import codes, followable, operations
 from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
-from ..arithmetic.scalars import column
+from ..arithmetic.scalars import column, graph, inputs_of
 from ..base.arrays import Array, Operand
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
@@ -90,8 +90,8 @@ class Sharpness:
             else set()
         )
         columns = sorted({*columns, *laws} - largest)
-        inputs = program.instant.sx_in()
-        names = [program.instant.name_in(i) for i in range(len(inputs))]
+        given = inputs_of(program.instant)
+        inputs = [*given.values()]
         knots = {t for knots in program.laws.knots for t in knots}
         found = _Found(inputs, knots)
         if followable(program.instant):
@@ -99,8 +99,7 @@ class Sharpness:
             found.visit(ca.Function("wanted", inputs, [out], {"cse": True}), inputs)
         if followable(program.laws.motion):
             found.visit(program.laws.motion, [inputs[0], inputs[-1]])
-        rows = ca.densify(column(row for row, _ in found.kept.values()))
-        watched = ca.Function("watched", inputs, [rows], names, ["out"], {"cse": True})
+        watched = graph("watched", given, out=column(row for row, _ in found.kept.values()))
         return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(sorted(knots)))
 
     def rounding(self, *inputs: Operand) -> Array:
@@ -125,17 +124,9 @@ class Sharpness:
 def with_watched(program: Program, sharpness: Sharpness) -> Program:
     """The graph with what is watched as further columns, the last ones."""
     inputs = program.instant.sx_in()
-    names = [program.instant.name_in(i) for i in range(len(inputs))]
+    watched = [Check("watched", str(k)) for k in range(len(sharpness.watches))]
     out = ca.vertcat(program.instant(*inputs), sharpness.watched(*inputs))
-    instant = ca.Function("instant", inputs, [out], names, ["out"], {"cse": True})
-    return replace(
-        program,
-        instant=instant,
-        columns=(
-            *program.columns,
-            *(Check("watched", str(k)) for k in range(len(sharpness.watches))),
-        ),
-    )
+    return program.with_columns([*program.columns, *watched], out)
 
 
 def bent(program: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArray[np.bool_]:
@@ -239,16 +230,7 @@ class _Found:
         return divisor
 
 
-_ALIKE = {
-    ca.OP_NEG,
-    ca.OP_INV,
-    ca.OP_SQ,
-    ca.OP_SQRT,
-    ca.OP_TWICE,
-    ca.OP_FABS,
-    ca.OP_COPYSIGN,
-    ca.OP_CONSTPOW,
-}
+_ALIKE = codes("neg inv sq sqrt twice fabs copysign constpow")
 
 
 def _watched(

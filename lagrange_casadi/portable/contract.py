@@ -115,6 +115,13 @@ class Contract:
         return "float" if self.precision == "single" else "double"
 
     @property
+    def shown(self) -> tuple[Member, Member]:
+        """An input and an output for examples: a coordinate, and an effort, if there is one."""
+        efforts = (m for m in self.outputs if m.source.startswith("effort:"))
+        moved = next(m for m in self.inputs if m.source.startswith("motion:"))
+        return moved, next(efforts, self.outputs[0])
+
+    @property
     def units(self) -> set[str]:
         """The units of the outputs."""
         return {m.unit for m in self.outputs}
@@ -144,6 +151,18 @@ class Contract:
     def input_of(self, name: str) -> str:
         """The member for the input of a full name, such as ``motion:O_rate`` or ``time``."""
         return next(member.name for member in self.inputs if member.source == name)
+
+    def parts_of(self, name: str) -> list[str]:
+        """The members that add up to the input of a full name: its own, and its rest, if any."""
+        return [m.name for m in self.inputs if m.source in (name, f"{REST}{name}")]
+
+    @property
+    def motion(self) -> list[list[str]]:
+        """The members for coordinates, rates and accelerations, each by drive."""
+        return [
+            [self.input_of(f"motion:{drive}{order}") for drive in self.drives]
+            for order in ("", "_rate", "_acceleration")
+        ]
 
 
 def _short(source: str, kind: str = "") -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from .contract import CORNERS, Contract
+from .contract import CORNERS
 from .sections import about, law_in_words
-from .slopes import declaration, types
+from .slopes import types
 from .source import Source
 from .stack import deepest
 from .statuses import STATUSES
@@ -20,7 +20,6 @@ def header(source: Source) -> str:
     return template(
         "mechanism.h",
         **source.words,
-        space=" " * (2 * len(p) + 9),
         null=", 0" if c.settings else "",
         begin=_begin(source),
         story=filled(source.story),
@@ -52,7 +51,7 @@ def header(source: Source) -> str:
         statuses=",\n".join(
             f"  {P}_{key} = {k} /* {text} */" for k, (key, text) in enumerate(STATUSES.items())
         ),
-        parameters=_parameters(c),
+        parameters=_parameters(source),
         inputs="\n".join(member(p, m.name, m.comment) for m in c.inputs),
         outputs_note=(
             " Angles that follow from loops are within one turn."
@@ -60,7 +59,7 @@ def header(source: Source) -> str:
             else ""
         ),
         outputs="\n".join(member(p, m.name, m.comment) for m in c.outputs),
-        links=_links(c) + (types(c, source.slopes) if source.slopes else ""),
+        links=_links(source) + (types(c, source.slopes) if source.slopes else ""),
         model="\n".join(f"  {line}" for line in _model(source)),
         for_parameters=", for parameters, or 0 for the defaults" if c.settings else "",
         anew=(
@@ -78,7 +77,8 @@ def header(source: Source) -> str:
         ),
         time_rest=f", {p}_real time_rest" if c.rests else "",
         follows=_follows(source),
-        sections=_section_functions(c) + (declaration(c) if source.slopes else ""),
+        sections=_section_functions(source)
+        + (template("sensitivity.h", **source.words) if source.slopes else ""),
     )
 
 
@@ -94,17 +94,14 @@ def _begin(source: Source) -> str:
     c, start = source.contract, source.exported.program.data.span[0]
     if source.iterated:
         return f"status = {c.prefix}_motion(&model, {start:g}{', 0' if c.rests else ''}, &inputs);"
-    drive = next(m for m in c.inputs if m.source.startswith("motion:"))
-    return f"inputs.{drive.name} = 0.3{'f' if c.rests else ''};"
+    return f"inputs.{c.shown[0].name} = 0.3{'f' if c.rests else ''};"
 
 
 def _follows(source: Source) -> str:
     if not source.iterated:
         return ""
-    (start, stop), count = (
-        source.exported.program.data.span,
-        source.exported.program.data.timing.count,
-    )
+    data = source.exported.program.data
+    (start, stop), count = data.span, data.timing.count
     near = (
         f", as instants {(stop - start) / (count - 1):.2g} s apart are in the scene's motion"
         if count > 1
@@ -124,16 +121,12 @@ def _gravity(source: Source) -> str:
     )
 
 
-def _parameters(c: Contract) -> str:
-    p = c.prefix
+def _parameters(source: Source) -> str:
+    c = source.contract
     if not c.settings:
         return ""
-    rows = "\n".join(member(p, m.name, m.comment) for m in c.settings)
-    about = f"/* Numbers that may change without generating anything again.\n   {CORNERS} */"
-    return (
-        f"\n{about}\ntypedef struct {{\n{rows}\n}} {p}_parameters;\n\nextern const {p}_parameters"
-        f" {p}_defaults;\n"
-    )
+    rows = "\n".join(member(c.prefix, m.name, m.comment) for m in c.settings)
+    return template("mechanism_parameters.h", **source.words, corners=CORNERS, rows=rows)
 
 
 def _model(source: Source) -> list[str]:
@@ -144,30 +137,19 @@ def _model(source: Source) -> list[str]:
     ]
 
 
-def _links(c: Contract) -> str:
-    p = c.prefix
+def _links(source: Source) -> str:
+    c = source.contract
     if not c.links:
         return ""
-    rows = ",\n".join(f"  {link.constant} = {k}" for k, link in enumerate(c.links))
-    forces = "\n".join(member(p, force, about(c.table, force)) for force in c.table.forces)
-    story = "/* What the part towards the tip does to the part towards the base. */"
-    return (
-        f"\ntypedef enum {{\n{rows}\n}} {p}_link;\n\n{story}\ntypedef struct {{\n{forces}\n}}"
-        f" {p}_forces;\n"
+    return template(
+        "mechanism_links.h",
+        **source.words,
+        links=",\n".join(f"  {link.constant} = {k}" for k, link in enumerate(c.links)),
+        forces="\n".join(member(c.prefix, one, about(c.table, one)) for one in c.table.forces),
     )
 
 
-def _section_functions(c: Contract) -> str:
-    p = c.prefix
-    if not c.links:
+def _section_functions(source: Source) -> str:
+    if not source.contract.links:
         return ""
-    take = f"const {p}_model* model, const {p}_outputs* outputs, {p}_link link"
-    one, many = f"{p}_status {p}_section(", f"{p}_status {p}_sections("
-    return (
-        "\n/* The forces inside a link at the ratio xi = distance from the base / length, from 0"
-        " to 1, for outputs of this\n   model; at a station, where they jump, those on its side"
-        f" towards the tip. */\n{one}{take},\n{' ' * len(one)}{p}_real xi, {p}_forces*"
-        " forces);\n\n/* The same at many ratios. Returns the first status that is not"
-        f" {p.upper()}_OK, if any. */\n{many}{take},\n{' ' * len(many)}long many, const {p}_real*"
-        f" xi, {p}_forces* forces);\n"
-    )
+    return template("mechanism_sections.h", **source.words)

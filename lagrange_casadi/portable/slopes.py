@@ -5,7 +5,7 @@ C, and what they must be.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +20,7 @@ from ..instants.evaluation_method import EvaluationMethod
 from ..sensitivity.jacobian import total
 from ..sensitivity.series import at_instants
 from .contract import Contract, Setting
-from .text import comment, indented, template
+from .text import comment, indented, member, number_rows, numbers, template
 
 FUNCTION = "slopes_of"
 """Name of CasADi's function in C."""
@@ -77,35 +77,16 @@ def check_method(method: EvaluationMethod) -> None:
 
 def types(c: Contract, slopes: ExportedSlopes) -> str:
     """The structs, for the header."""
-    p = c.prefix
-    rows = [
-        f"  {p}_real {s.name}; /* {comment(f'by {s.meaning}, for a unit of it [{s.unit}]')} */"
-        for s in slopes.by
-    ]
+    rows = (
+        member(c.prefix, s.name, f"by {s.meaning}, for a unit of it [{s.unit}]") for s in slopes.by
+    )
     units = ("; ".join(quotient(m.unit, s.unit) for s in slopes.by) for m in c.outputs)
     members = (
-        f"  {p}_changes {m.name}; /* [{comment(unit)}] */"
+        f"  {c.prefix}_changes {m.name}; /* [{comment(unit)}] */"
         for m, unit in zip(c.outputs, units, strict=True)
     )
-    return (
-        "\n/* How an output changes with parameters. */\n"
-        f"typedef struct {{\n{chr(10).join(rows)}\n}} {p}_changes;\n"
-        "\n/* How the outputs change, each by its own name. */\n"
-        f"typedef struct {{\n{chr(10).join(members)}\n}} {p}_sensitivities;\n"
-    )
-
-
-def declaration(c: Contract) -> str:
-    """The function, for the header."""
-    p = c.prefix
-    head = f"{p}_status {p}_sensitivity("
-    return (
-        "\n/* The outputs at an instant, and their exact derivatives by parameters. The time [s]"
-        " is that of the instant:\n   where the scene's motion depends on parameters, drives"
-        f" change with them as its laws do at that time. */\n{head}{p}_model* model, {p}_real time,"
-        f" const {p}_inputs* inputs,\n{' ' * len(head)}{p}_outputs* outputs, {p}_sensitivities*"
-        " sensitivities);\n"
-    )
+    words = {"rows": "\n".join(rows), "members": "\n".join(members)}
+    return template("sensitivity_types.h", p=c.prefix, **words)
 
 
 def code(c: Contract, slopes: ExportedSlopes, drives: int, loops: bool) -> str:
@@ -125,19 +106,18 @@ def code(c: Contract, slopes: ExportedSlopes, drives: int, loops: bool) -> str:
 
 
 def _given(c: Contract) -> Iterator[str]:
-    for name, ending in (("d", ""), ("rate", "_rate"), ("acceleration", "_acceleration")):
-        for k, drive in enumerate(c.drives):
-            yield f"{name}[{k}] = inputs->{c.input_of(f'motion:{drive}{ending}')};"
+    for name, members in zip(("d", "rate", "acceleration"), c.motion, strict=True):
+        yield from (f"{name}[{k}] = inputs->{member};" for k, member in enumerate(members))
 
 
-def selftest_numbers(slopes: ExportedSlopes, row: Callable[[Array], str]) -> str:
-    """Expected values of the self-test; ``row`` writes numbers."""
-    rows = ",\n".join(f"  {{{row(x.ravel())}}}" for x in slopes.expected)
+def selftest_numbers(slopes: ExportedSlopes) -> str:
+    """Expected values of the self-test."""
     many = slopes.off.size
+    rows = number_rows(slopes.expected.reshape(-1, many))
     return (
         "\n/* How the outputs change with each parameter. */\n"
         f"static const double slopes_at[INSTANTS][{many}] = {{\n{rows}\n}};\n"
-        f"static const double slopes_off[{many}] = {{{row(slopes.off.ravel())}}};\n"
+        f"static const double slopes_off[{many}] = {{{numbers(slopes.off.ravel())}}};\n"
     )
 
 

@@ -88,6 +88,7 @@ class Source:
             "called": printed(self.contract.name),
             "p": self.contract.prefix,
             "P": self._upper,
+            "space": " " * (2 * len(self.contract.prefix) + 9),
             "version": __version__,
             "casadi": ca.CasadiMeta.version(),
             "scene": self.identity,
@@ -317,12 +318,13 @@ class Source:
             yield f"inputs->{c.input_of('time')} = time;"
             if c.rests:
                 yield f"inputs->{c.input_of(f'{REST}time')} = time_rest;"
-        for k, drive in enumerate(c.drives):
-            yield f"inputs->{c.input_of(f'motion:{drive}')} = d[{k}];"
+        for k, (value, rate, acceleration) in enumerate(zip(*c.motion, strict=True)):
+            yield f"inputs->{value} = d[{k}];"
             if c.rests:
-                yield f"inputs->{c.input_of(f'{REST}motion:{drive}')} = d[{len(c.drives) + k}];"
-            yield f"inputs->{c.input_of(f'motion:{drive}_rate')} = rate[{k}];"
-            yield f"inputs->{c.input_of(f'motion:{drive}_acceleration')} = acceleration[{k}];"
+                rest = c.input_of(f"{REST}motion:{c.drives[k]}")
+                yield f"inputs->{rest} = d[{len(c.drives) + k}];"
+            yield f"inputs->{rate} = rate[{k}];"
+            yield f"inputs->{acceleration} = acceleration[{k}];"
 
     def _instant(self) -> Iterable[str]:
         c, P, sizes = self.contract, self._upper, self.exported.sizes
@@ -343,9 +345,9 @@ class Source:
         for k, name in enumerate(names):
             known = "motion:" in name or c.timed
             yield f"moment[{k}] = {f'inputs->{c.input_of(name)}' if known else '0'};"
-        for k, drive in enumerate(c.drives):
-            yield f"rate[{k}] = inputs->{c.input_of(f'motion:{drive}_rate')};"
-            yield f"acceleration[{k}] = inputs->{c.input_of(f'motion:{drive}_acceleration')};"
+        for k, (_, rate, acceleration) in enumerate(zip(*c.motion, strict=True)):
+            yield f"rate[{k}] = inputs->{rate};"
+            yield f"acceleration[{k}] = inputs->{acceleration};"
         given = " + ".join(f"inputs->{m.name}" for m in c.inputs)
         yield f"if (!is_finite({given})) return {P}_BAD_INPUT;"
         yield "arg[0] = moment;"

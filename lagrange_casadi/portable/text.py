@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from importlib import resources
 from string import Template
 
+from ..codegen.printer import literal
+
 WIDTH = 128
 
 
@@ -58,6 +60,16 @@ def markdown(text: str) -> str:
 def member(p: str, name: str, about: str) -> str:
     """A member of a struct of numbers."""
     return f"  {p}_real {name}; /* {comment(about)} */"
+
+
+def numbers(values: Iterable[float]) -> str:
+    """Doubles of C with commas between."""
+    return ", ".join(literal("double")(float(value)) for value in values)
+
+
+def number_rows(table: Iterable[Iterable[float]]) -> str:
+    """Rows of doubles, for an array of arrays."""
+    return ",\n".join(f"  {{{numbers(row)}}}" for row in table)
 
 
 def indented(lines: Iterable[str]) -> str:

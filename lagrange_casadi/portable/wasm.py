@@ -9,12 +9,11 @@ import math
 import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from importlib import resources
 
-from ..base.cache import working_folder
 from ..base.packages import check_installed
-from ..codegen.compiler import Compiler, compiled, complaint
-from ..errors import CompilerError
+from ..codegen.compiler import Compiler, built
 from .contract import Contract, Member
 from .header import header
 from .sections import about
@@ -84,20 +83,7 @@ def _build(
     code = [file for file in files if file.endswith(".c")]
     compiler = Compiler("c", (sys.executable, "-m", "ziglang", "cc"), "")
     command = [*compiler.command, *_FLAGS, *target, *linked, *code, "-o", "module.wasm"]
-
-    def build() -> bytes:
-        with working_folder() as work:
-            try:
-                for file, text in files.items():
-                    (work / file).write_text(text, encoding="utf-8")
-                run = compiled(command, work)
-                if run.returncode == 0:
-                    return (work / "module.wasm").read_bytes()
-            except OSError as error:
-                raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
-        raise CompilerError(complaint(compiler, run))
-
-    return build
+    return partial(built, compiler, command, files, "module.wasm")
 
 
 def _size_check(source: Source) -> str:
@@ -215,7 +201,6 @@ def _types(source: Source) -> str:
 def _page(source: Source, size: int) -> str:
     c, t = source.contract, source.golden.times
     setting, link = next(iter(c.settings), None), next(iter(c.links), None)
-    effort = next((m for m in c.outputs if m.source.startswith("effort:")), c.outputs[0])
     first = f"mechanism.evaluate(mechanism.motion({t[0]:.6g}))"
     followed = (
         "\n- Iterated loops are followed from the instant before: times must be near each other,"
@@ -233,7 +218,7 @@ def _page(source: Source, size: int) -> str:
             else "mechanism.prepare();"
         ),
         times=", ".join(f"{time:.6g}" for time in t[:3]),
-        output=effort.name,
+        output=c.shown[1].name,
         section=(
             f"console.log(mechanism.section({first}, {json.dumps(link.name)}, 0.5));\n"
             if link

@@ -20,7 +20,7 @@ from ..instants.ordering import error_of, ordered
 from ..instants.solution import Solution
 from .arrays import Arrays
 from .contents import series_of
-from .instants import shown_instants
+from .instants import drive_entry, shown_instants
 from .page import COMPARISON_SCRIPTS, assembled, page, page_digest, script, write_page
 from .words import GROUPS, what
 
@@ -62,20 +62,13 @@ def _page(solutions: tuple[Solution, Solution], names: Sequence[str]) -> str:
     clock = _clock(solutions)
     for solution, name in zip(solutions, names, strict=True):
         chosen = shown_instants(solution)
-        over = solution.over
         runs.append(
             {
                 "name": name,
                 "case": solution.case,
                 "certified": solution.certified,
                 "t": arrays.add(solution.t[chosen]),
-                "over": None
-                if over is None
-                else {
-                    "joint": over.joint,
-                    "unit": over.unit,
-                    "values": arrays.add(over.values[chosen]),
-                },
+                "over": drive_entry(solution, chosen, arrays),
                 "series": [asdict(one) for one in series_of(solution, chosen, arrays)],
                 "parameters": {
                     parameter: [entry["value"], entry["unit"]]

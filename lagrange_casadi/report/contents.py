@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,8 +13,8 @@ import numpy.typing as npt
 from ..base.arrays import Array, Json
 from ..base.quantities import Output
 from ..declare.description import Description
+from ..instants.beyond_equilibrium import held_outputs
 from ..instants.derivatives import derivatives
-from ..instants.held import held_outputs
 from ..instants.ordering import error_of, ordered
 from ..instants.solution import Solution
 from ..instants.statistics import Extreme
@@ -26,10 +25,9 @@ from ..shapes.views import upright
 from ..strength.parts import looked
 from ..verification.certificate import failure, summary
 from .arrays import Arrays, finite
-from .instants import shown_instants
+from .instants import Mark, drive_entry, mark, shown_instants
 from .live import Live
 from .maps import map_entries
-from .marks import Mark, mark
 from .sections import section_entries
 from .words import GROUPS, what
 
@@ -120,15 +118,11 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Json]:
 
 
 def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Json]:
-    over: Any = solution.over
     return {
         "total": solution.t.size,
         "shown": int(chosen.size),
         "t": arrays.add(solution.t[chosen]),
-        "over": (
-            over
-            and {"joint": over.joint, "unit": over.unit, "values": arrays.add(over.values[chosen])}
-        ),
+        "over": drive_entry(solution, chosen, arrays),
     }
 
 

@@ -16,7 +16,7 @@ from ..instants.statistics import counted
 from ..strength.parts import bending_of, strong_of
 from ..strength.stress import Stress
 from .arrays import Arrays
-from .marks import Mark, mark
+from .instants import Mark, mark
 
 RATIOS = 51
 """Equal ratios xi/l of a map, both ends included."""

@@ -17,7 +17,7 @@ from ..shapes.places import require_poses
 from ..studies.evaluate import evaluate
 from .page import page
 from .still import still
-from .words import what
+from .words import html_table, what
 
 _ROWS = 12
 """Peaks that are shown at most: the largest of each unit first."""
@@ -136,16 +136,10 @@ def _table(solution: Solution) -> str:
         peak = peaks[output]
         where = f"{peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.3f}")
         value = f"{peak.value + 0.0:.5g}" + ("" if peak.unit == "1" else f" {peak.unit}")
-        cells = (output.part, what(output, solution.table), value, where)
-        rows.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
-    heads = "".join(f"<th>{head}</th>" for head in ("part", "quantity", "peak", "at"))
+        rows.append((output.part, what(output, solution.table), value, where))
     more = (
         f"<p>and {len(plain) - len(rows)} more; view() shows all</p>"
         if len(plain) > len(rows)
         else ""
     )
-    return (
-        f"<table><thead><tr>{heads}</tr></thead><tbody>{''.join(rows)}</tbody></table>{more}"
-        if rows
-        else ""
-    )
+    return html_table(("part", "quantity", "peak", "at"), rows) + more if rows else ""

@@ -12,6 +12,7 @@ from ..studies.sweep.axes import counted
 from ..studies.sweep.best import with_errors
 from ..studies.sweep.meanings import STATUS
 from ..studies.sweep.reading import Sweep
+from .words import html_table
 
 _ROWS = 12
 """Columns that are shown at most."""
@@ -49,22 +50,13 @@ def summary(sweep: Sweep) -> str:
                 min(low, finite.min(initial=np.inf)),
                 max(high, finite.max(initial=-np.inf)),
             )
-    rows = "".join(
-        "<tr>"
-        + "".join(
-            f"<td>{escape(cell)}</td>"
-            for cell in (name, *_range_cells(ends[name]), sweep.unit(name))
-        )
-        + "</tr>"
-        for name in shown
-    )
-    heads = "".join(f"<th>{word}</th>" for word in ("column", "smallest", "largest", "unit"))
+    rows = [(name, *_range_cells(ends[name]), sweep.unit(name)) for name in shown]
     more = (
         f"<p>and {len(names) - _ROWS} more; report(PATH) shows all</p>"
         if len(names) > _ROWS
         else ""
     )
-    return f"{head}<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>{more}"
+    return head + html_table(("column", "smallest", "largest", "unit"), rows) + more
 
 
 def _range_cells(ends: tuple[float, float]) -> tuple[str, str]:

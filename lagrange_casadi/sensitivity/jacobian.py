@@ -17,6 +17,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import graph, inputs_of
 from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
@@ -33,6 +34,9 @@ SAME_PLACE = 1e-9
 """Distance from a load point, as a ratio to the length, within which a peak along a link is at
 it.
 """
+
+_DRIVEN = ("d", "d_rate", "d_acceleration")
+"""Inputs of an instant that the motion gives."""
 
 _SWITCHES = (Kind.SWITCH, Kind.STEP, Kind.ROOT, Kind.KNOT)
 
@@ -69,7 +73,8 @@ class PointFunction(Graphs):
         watches = () if sharpness is None else sharpness.watches
         sharp = [k for k, watch in enumerate(watches) if watch.kind in _SWITCHES]
         instant = differentiable(program.instant)
-        t, _, rate, acceleration, _, p = inputs = instant.sx_in()
+        every = inputs_of(instant)
+        t, _, rate, acceleration, _, p = inputs = [*every.values()]
         xi, value, moving = (ca.SX.sym(name) for name in ("xi", "value", "moving"))
         chosen = ca.SX.sym("chosen", len(quantities) + len(sharp))
         out = instant(*inputs)
@@ -85,21 +90,17 @@ class PointFunction(Graphs):
         by_t += ca.dot(ca.vertcat(rate, acceleration, program.laws.jerk()(t, p)), by_drives)
         found = ca.vertcat(ca.dot(held, ca.vertcat(*rows)), by_t, adjoint[-1], by_p)
         found = ca.substitute(found, held, ca.vertcat(*weights))
-        names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-        names += ["xi", "value", "moving", "chosen"]
-        every = [*inputs, xi, value, moving, chosen]
-        at_drives = ca.Function(
-            "at_drives", every, [ca.densify(found)], names, ["found"], {"cse": True}
-        )
-        given = at_drives.sx_in()
-        given[1:4] = program.motion.call([given[0], given[5]])
-        made = at_drives(*given)
-        every, names = [given[0], *given[4:]], [names[0], *names[4:]]
+        every |= {"xi": xi, "value": value, "moving": moving, "chosen": chosen}
+        at_drives = graph("at_drives", every, found=found)
+        given = inputs_of(at_drives)
+        moved = zip(_DRIVEN, program.motion(given["t"], given["p"]), strict=True)
+        made = at_drives(*(given | dict(moved)).values())
+        at_once = {name: symbols for name, symbols in given.items() if name not in _DRIVEN}
         return cls(
             program,
             tuple(quantities),
             tuple(watches[k] for k in sharp),
-            ca.Function("at_once", every, [made], names, ["found"], {"cse": True}),
+            graph("at_once", at_once, found=made),
         )
 
     @symbolic
@@ -109,9 +110,9 @@ class PointFunction(Graphs):
 
         Raises :class:`.DeclarationError` for a motion by samples whose knots are not known.
         """
-        t, z, p, xi, *_ = inputs = self.function.sx_in()
-        names = self.function.name_in()
-        gradient = self.function(*inputs)[1:]
+        given = inputs_of(self.function)
+        t, z, p, xi = (given[name] for name in ("t", "z", "p", "xi"))
+        gradient = self.function(*given.values())[1:]
         direction = ca.SX.sym("way", 2 + p.numel())
         of, along = [t, xi, p], [direction[0], direction[1], direction[2:]]
         if self.program.newton is not None:
@@ -119,14 +120,7 @@ class PointFunction(Graphs):
             along.append(ca.jtimes(step, ca.vertcat(t, p), ca.vertcat(direction[0], direction[2:])))
             of.append(z)
         change = ca.jtimes(gradient, ca.vertcat(*of), ca.vertcat(*along))
-        return ca.Function(
-            "at_once",
-            [*inputs, direction],
-            [ca.densify(ca.vertcat(gradient, change))],
-            [*names, "way"],
-            ["found"],
-            {"cse": True},
-        )
+        return graph("at_once", given | {"way": direction}, found=ca.vertcat(gradient, change))
 
 
 def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> ca.Function:
@@ -137,7 +131,8 @@ def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> ca.Functi
     are fewer rows: then backwards, a sweep a row.
     """
     instant = differentiable(program.instant)
-    t, d, rate, acceleration, z, p = inputs = instant.sx_in()
+    given = inputs_of(instant)
+    t, d, rate, acceleration, z, p = inputs = [*given.values()]
     out, of = instant(*inputs)[list(rows)], ca.vertcat(d, rate, acceleration, z, p)
     if len(by) > len(rows):
         adjoint = ca.jtimes(out, ca.vertcat(*inputs), ca.SX.eye(len(rows)), True)
@@ -150,8 +145,7 @@ def total(program: Program, rows: Sequence[int], by: Sequence[int]) -> ca.Functi
             step = program.newton.step(z, t, d, p)[0]
             loops = ca.jtimes(step, ca.vertcat(d, p), ca.vertcat(moved[0], seeds))
         slopes = ca.jtimes(out, of, ca.vertcat(*moved, loops, seeds)).T
-    names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-    return ca.Function("total", inputs, [ca.densify(slopes)], names, ["slopes"], {"cse": True})
+    return graph("total", given, slopes=slopes)
 
 
 def section_slopes(
@@ -164,11 +158,9 @@ def section_slopes(
     changes. At a station a force is that on its tip's side.
     """
     table, p = table_of(data.space), ca.SX.sym("p", len(data.parameters))
-    values, slopes, xi = (
-        ca.SX.sym("columns", len(columns)),
-        ca.SX.sym("slopes", len(by), len(columns)),
-        ca.SX.sym("xi"),
-    )
+    values = ca.SX.sym("columns", len(columns))
+    slopes = ca.SX.sym("slopes", len(by), len(columns))
+    xi = ca.SX.sym("xi")
     section = data.section(link, dict(zip(columns, ca.vertsplit(values), strict=True)), p)
     values_here = {force: section.at(force, Place(xi), END["double"]) for force in table.sections}
     seeds = ca.vertcat(slopes.T, _seeds(p.numel(), by))
@@ -179,9 +171,8 @@ def section_slopes(
         parts = table.parts("section", force)
         weights = _weights([values_here[part] for part in parts])
         rows.append(sum(w * changes[part] for w, part in zip(weights, parts, strict=True)))
-    given, names = [values, slopes, xi, p], ["columns", "slopes", "xi", "p"]
-    found = ca.densify(ca.vertcat(*rows).T)
-    return ca.Function("at_once", given, [found], names, ["changes"], {"cse": True})
+    given = {"columns": values, "slopes": slopes, "xi": xi, "p": p}
+    return graph("at_once", given, changes=ca.vertcat(*rows).T)
 
 
 def resultant(parts: Sequence[Expression]) -> Expression:

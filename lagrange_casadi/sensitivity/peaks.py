@@ -413,10 +413,8 @@ class MovingPeaks:
         numbers, (_, t, xi, values) = np.nonzero(there)[0], others[there].T
         sizes = np.zeros(numbers.size, bool)
         changed = self.gradient(chosen[numbers], (values, t, xi), sizes).slopes
-        sized, direct = (
-            np.sign(values)[:, None] * changed,
-            np.sign(value[numbers])[:, None] * first_order.slopes[numbers],
-        )
+        sized = np.sign(values)[:, None] * changed
+        direct = np.sign(value[numbers])[:, None] * first_order.slopes[numbers]
         # What rounding leaves of a slope that is nothing is no difference.
         noise = _NOISE * np.nanmax(np.abs(first_order.slopes), axis=0) + _FAINT * np.abs(
             value[numbers, None]
@@ -434,10 +432,8 @@ class MovingPeaks:
         instants, (first, last) = self.instants, self.ends.slopes
         share = np.linspace(0.0, 1.0, instants.size)[:, None]
         moved = (1.0 - share) * first + share * last
-        z, nowhere = (
-            self.slopes.iterated(instants, self.p, instants),
-            np.full_like(instants, np.nan),
-        )
+        z = self.slopes.iterated(instants, self.p, instants)
+        nowhere = np.full_like(instants, np.nan)
         found = []
         for number in chosen:
             every = np.full(instants.size, number, np.intc)

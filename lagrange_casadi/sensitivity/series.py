@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import graph
 from ..base.arrays import Array
 from ..base.quantities import Output, parts_along
 from ..base.space import require
@@ -77,9 +78,7 @@ def at_instants(
         "both", inner.sx_in(), [ca.vertcat(local.T, inner(time, *driven, z, values))]
     )
     slopes = inner(time, *program.motion.call([time, values]), z, values)
-    function = ca.Function(
-        "at_once", [time, z, values], [slopes], ["t", "z", "p"], ["found"], {"cse": True}
-    )
+    function = graph("at_once", {"t": time, "z": z, "p": values}, found=slopes)
     place = Loops.of(program, method).at(t, p, t)
     given = {"t": (t[:, None], 1), "z": (place, 1), "p": (p[None], 0)}
     found = Batch.of(function, method).at(t.size, given)

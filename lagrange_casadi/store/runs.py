@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import h5py
 import numpy as np
@@ -44,8 +43,7 @@ from ..errors import (
     UnknownNameError,
     one_line,
 )
-from ..instants.elasticity import Elasticity
-from ..instants.held import ENDS, Holding, held_outputs
+from ..instants.beyond_equilibrium import ENDS, Elasticity, Holding, held_outputs
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
 from ..verification.certificate import COARSE, TOLERANCE, blur, certify
@@ -478,11 +476,7 @@ def _add_drive_axis(file: h5py.File, scales: Scales, over: DriveAxis) -> None:
     dataset = file.create_dataset(
         _OVER, data=over.values, fletcher32=True, fillvalue=np.nan, **LARGE
     )
-    dataset.attrs["units"], dataset.attrs["long_name"], dataset.attrs["joint"] = (
-        over.unit,
-        over.long_name,
-        over.joint,
-    )
+    say(dataset, over.unit, {"long_name": over.long_name, "joint": over.joint})
     scales.attach(dataset, ("t",))
     file.attrs["coordinates"] = _OVER
 
@@ -604,10 +598,6 @@ def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
         )
         found[name] = Holding(least, largest, solution.unit(Output("effort", name)), reason)
     return found
-
-
-if TYPE_CHECKING:
-    import h5py
 
 
 def drive_axis(

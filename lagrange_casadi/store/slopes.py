@@ -15,6 +15,7 @@ from ..declare.wanted_names import SENSITIVITY
 from ..instants.derivatives import Derivatives, derivatives
 from ..instants.solution import Solution
 from .scales import Scales
+from .words import say
 
 
 def add_slopes(
@@ -27,9 +28,7 @@ def add_slopes(
     for found in derivatives(solution):
         dataset = create(_place(found.name), found.values.shape)
         dataset[...] = found.values
-        dataset.attrs["units"] = found.unit
-        for key, text in found.attributes.items():
-            dataset.attrs[key] = text
+        say(dataset, found.unit, found.attributes)
         scales.attach(dataset, found.output.quantity.axes)
 
 

@@ -19,7 +19,7 @@ from ..errors import DeclarationError, check_kind
 from ..instants.section_law import SectionLaw, Side
 from ..instants.solution import Solution
 from ..instants.statistics import counted
-from ..peak_search.polynomials import interpolation
+from ..peak_search.fits import interpolation
 
 _EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
 """Tolerance of a polynomial for the factors of forces, its degrees, and the length of a part of a
@@ -92,10 +92,8 @@ class Member:
             )
         member = cls(link, beam_from_numbers(body["beam"]), law, solution.t, solution.xi, space)
         member._check_torsion()
-        two_force_links, aimed = (
-            solution.description.get("bars", ()),
-            solution.description.get("beside", ()),
-        )
+        two_force_links = solution.description.get("bars", ())
+        aimed = solution.description.get("beside", ())
         if link in two_force_links and link not in aimed and not (spun or member.beam.round):
             raise DeclarationError(unaimed(link))
         return member
@@ -166,6 +164,26 @@ class Member:
             np.clip(mark, 0.0, 1.0)
             for mark in (*found, *(still + b for b in self.law.density.breaks[1:-1]))
         ]
+
+    @cached_property
+    def edges(self) -> Array:
+        """Ratios (t, m) from 0 to 1 between which strains are smooth, in order at every instant."""
+        still = np.zeros_like(self.t)
+        fixed = [0.0, 1.0, *(cell.high for cell in self.cells[:-1])]
+        return np.sort(np.stack([*self.marks, *(still + ratio for ratio in fixed)], axis=1), axis=1)
+
+    @property
+    def strain_degree(self) -> int:
+        """The degree of polynomials that give strains between two edges."""
+        changing = max(cell.degree for cell in self.cells)
+        return self.degree + (changing + 6 if changing else 0)
+
+    def index_at(self, u: Array) -> npt.NDArray[np.intp]:
+        """The numbers of the parts of the beam, between breaks of its cross-section, in which
+        ratios are.
+        """
+        inner = np.array(self.beam.course.breaks[1:-1])
+        return np.searchsorted(inner, u, side="right")
 
     def cell_at(self, u: float, side: Side) -> Cell:
         """The part in which a ratio is; at a border that on one of its sides."""

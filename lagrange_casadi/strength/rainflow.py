@@ -82,10 +82,8 @@ def counted(values: Array, *, repeating: bool) -> list[StressCycle]:
     for index in turning_points.tolist():
         stack.append(index)
         while len(stack) > 2:
-            newest, before = (
-                abs(level[stack[-1]] - level[stack[-2]]),
-                abs(level[stack[-2]] - level[stack[-3]]),
-            )
+            newest = abs(level[stack[-1]] - level[stack[-2]])
+            before = abs(level[stack[-2]] - level[stack[-3]])
             if newest < before:
                 break
             if len(stack) == 3 and not repeating:

@@ -27,7 +27,7 @@ from ..beams.beam import Notch
 from ..equations.stress import KINDS, concentration, squared
 from ..errors import DeclarationError, UnknownNameError, shown
 from ..instants.section_law import Side
-from ..peak_search.polynomials import interpolation
+from ..peak_search.fits import interpolation
 from .member import Cell, Member
 
 _SAMPLES, _GLANCES, _BLOCK = 8, 4, 1 << 21
@@ -191,11 +191,9 @@ class Stress:
         values, places, fibres = zip(
             *(stress._largest(kind) for stress in Stress(moving)._blocks()), strict=True
         )
-        value, place, names = (
-            np.concatenate(values),
-            np.concatenate(places),
-            list(itertools.chain.from_iterable(fibres)),
-        )
+        value = np.concatenate(values)
+        place = np.concatenate(places)
+        names = list(itertools.chain.from_iterable(fibres))
         if moving is self.member:
             return Largest(value, place, tuple(names))
         found, place_names = np.full((2, self.member.t.size), np.nan), [""] * self.member.t.size
@@ -342,12 +340,10 @@ class Stress:
                 last = order[np.append(np.diff(t[order]) != 0, True)]
                 better = last[square[last] > value[t[last]]]
                 at = t[better]
-                value[at], place[at], signs[at], fibre[at] = (
-                    square[better],
-                    u[better],
-                    sign[better],
-                    number * 1000 + f[better],
-                )
+                value[at] = square[better]
+                place[at] = u[better]
+                signs[at] = sign[better]
+                fibre[at] = number * 1000 + f[better]
         labels = [names[k // 1000][k % 1000] for k in fibre.tolist()]
         return _signed(kind, value, signs), place, labels
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from ..arguments import LATER, Outputs, ThreadCount, public
 from ..base.vocabulary import Backend, Precision
-from ..declare.compliant import Elastic
 from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
+from ..declare.scene_arguments import Elastic
 from ..declare.times import Over, Times
 from ..instants.evaluation_method import EvaluationMethod
 from .request import Request

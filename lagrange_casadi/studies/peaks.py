@@ -402,7 +402,11 @@ class ContinuousSolution:
 
     def signals(self, quantities: Sequence[Quantity], turned: Mapping[int, Array]) -> Signals:
         """Quantities as curves over time; ``turned`` as in :class:`.Signals`."""
-        columns = {k for quantity in quantities for k in _columns(quantity)}
+        columns = {
+            k
+            for quantity in quantities
+            for k in (quantity if isinstance(quantity, tuple) else quantity.columns.values())
+        }
         sharpness = Sharpness.of(self.program, sorted(columns))
         signals = Signals(
             self.interpreter,
@@ -519,11 +523,6 @@ class ContinuousSolution:
         """
         of_link = {output: columns[k] for output, k in parts_along(self.rows, link).items()}
         return self.solution.section(link).law.of(link, of_link)
-
-
-def _columns(quantity: Quantity) -> set[int]:
-    """The columns that a quantity is made of."""
-    return set(quantity if isinstance(quantity, tuple) else quantity.columns.values())
 
 
 def wanted_for(output: Output) -> str:

@@ -14,7 +14,6 @@ import casadi as ca
 from ..arguments import Positive, public
 from ..arithmetic.scalars import column
 from ..base.numerals import readable
-from ..beams.beam import Beam
 from ..beams.profiles import Profile
 from ..declare.description import Template, beams_of, values_of
 from ..declare.end_conditions import ends_of
@@ -375,12 +374,6 @@ class _Search:
         return Sizing(tuple(links), chosen, self.evaluations, self.left, solution)
 
 
-def _area(beam: Beam) -> float:
-    """Average the areas of the cross-sections of a link, by which profiles are put in order."""
-    areas = [float(shape.area) for shape in beam.course.shapes()]
-    return sum(areas) / len(areas)
-
-
 class _UnfitError(LagrangeCasadiError):
     """Profiles do not fit a link."""
 
@@ -392,7 +385,9 @@ def _slot(
     parameters: Mapping[str, Parameter],
     defaults: Mapping[str, float],
 ) -> _Slot:
-    """Find the profiles that may be a link's own. Raises :class:`_UnfitError`."""
+    """Find the profiles that may be a link's own, in the order of the mean area of its
+    cross-sections. Raises :class:`_UnfitError`.
+    """
     owners: dict[str, str] = {}
     shapes = list(
         beam_at(described, link, column(one.symbol for one in parameters.values())).course.shapes()
@@ -428,6 +423,7 @@ def _slot(
                         f"profile '{profile.name}': {words} of its {shape.kind} must be positive,"
                         f" got {readable(float(value))}"
                     )
-        weights.append(_area(beam))
+        areas = [float(shape.area) for shape in beam.course.shapes()]
+        weights.append(sum(areas) / len(areas))
     order = sorted(range(len(profiles)), key=lambda k: weights[k])
     return _Slot(owners, tuple(profiles[k] for k in order))

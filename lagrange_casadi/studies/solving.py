@@ -12,11 +12,11 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.space import cores, in_words, require
-from ..declare.compliant import Elastic
 from ..declare.ends import BEYOND
 from ..declare.even_points import checked_ratios, points
 from ..declare.laws import Laws
 from ..declare.scene import Scene
+from ..declare.scene_arguments import Elastic
 from ..declare.times import Timing, instants_of, span_of
 from ..declare.wanted_names import by_parameters
 from ..equations.derive import compiled_for

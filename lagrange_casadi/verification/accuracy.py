@@ -77,10 +77,8 @@ def estimate(
     )
     # What was exact at all these instants may be rounded once at others; and what underflows is in
     # no trial.
-    once, least = (
-        ROUNDING[evaluated.stages.precision],
-        float(np.finfo(DTYPES[evaluated.stages.precision]).tiny),
-    )
+    once = ROUNDING[evaluated.stages.precision]
+    least = float(np.finfo(DTYPES[evaluated.stages.precision]).tiny)
     return {
         output: max(least, error or once * abs(solution.peak(output).value))
         for output, error in worst.items()

@@ -116,11 +116,9 @@ def balance(placed: Placed, digits: Digits) -> dict[str, list[Residuals]]:
     worst, power = np.zeros_like(placed.reported.t), sums.power
     gravity, size = Vector(*placed.declared.gravity), placed.declared.size
     for name, body in placed.declared.bodies.items():
-        motion, (_, speed, change), inertia = (
-            placed.bodies[name],
-            centres[name],
-            Axes.of(body.inertia),
-        )
+        motion = placed.bodies[name]
+        (_, speed, change) = centres[name]
+        inertia = Axes.of(body.inertia)
         inertial = body.mass * (change - gravity)
         spin = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.rate)))
         gains = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.acceleration)))
@@ -280,11 +278,9 @@ def _ends(placed: Placed, acting: Sequence[Action], digits: Digits) -> Residuals
     And beside what the rounding of places leaves open, which turns short links most.
     """
     declared, reported = placed.declared, placed.reported
-    worst, scale, blurred = (
-        np.zeros_like(reported.t),
-        digits.least,
-        digits.coarseness * declared.extent,
-    )
+    worst = np.zeros_like(reported.t)
+    scale = digits.least
+    blurred = digits.coarseness * declared.extent
     for link, law in reported.laws.items():
         inside, twisted = reported.inside(link)
         force, moment, flow = _before(placed, link, acting, law.slack * law.length)
@@ -313,8 +309,6 @@ def _before(
             if not np.any(there <= edge):
                 continue
             here = np.where(there <= edge, -1.0 if opposite else 1.0, 0.0)
-            force, moment = (
-                force + here * act.force,
-                moment + here * (arm.cross(act.force) + act.couple),
-            )
+            force = force + here * act.force
+            moment = moment + here * (arm.cross(act.force) + act.couple)
     return motion.axes.resolve(force), motion.axes.resolve(moment), largest

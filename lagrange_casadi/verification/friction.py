@@ -60,10 +60,7 @@ def _of_losses(placed: Placed, digits: Digits) -> Iterator[Array]:
 def _sliding(placed: Placed) -> Iterator[tuple[str, Array, bool]]:
     """Each friction with the rate that it follows, and whether that is of an angle."""
     reported, declared = placed.reported, placed.declared
-    for name, load in declared.loads.items():
-        if load.friction is None:
-            continue
-        holder = load.coordinate.partition(":")[0]
+    for name, load, holder in placed.frictions:
         if declared.joints[holder].kind == "spherical":
             near, far = placed.ends(holder)
             yield name, np.broadcast_to((far.rate - near.rate).size, reported.t.shape), True
@@ -81,12 +78,9 @@ def _of_laws(placed: Placed) -> Array | None:
     """
     declared, outputs = placed.declared, placed.reported.outputs
     worst: Array | None = None
-    for name, load in declared.loads.items():
-        numbers, holder = load.friction, load.coordinate.partition(":")[0]
-        value, rate = (
-            outputs.get(Output("friction", name, "along")),
-            outputs.get(Output("motion", load.coordinate, "rate")),
-        )
+    for name, load, holder in placed.frictions:
+        numbers, value = load.friction, outputs.get(Output("friction", name, "along"))
+        rate = outputs.get(Output("motion", load.coordinate, "rate"))
         if numbers is None or value is None or Output("reaction", holder, "fx") not in outputs:
             continue
         joint, spin = declared.joints[holder], None

@@ -46,25 +46,14 @@ def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
                 0.0,
             )
         worst = np.maximum(worst, residual)
-    for name, load in placed.declared.loads.items():
-        value, holder = (
-            placed.reported.outputs.get(Output("friction", name, "along")),
-            load.coordinate.partition(":")[0],
-        )
-        if (
-            load.friction is None
-            or value is None
-            or placed.declared.joints[holder].kind == "spherical"
-        ):
+    for name, load, holder in placed.frictions:
+        value = placed.reported.outputs.get(Output("friction", name, "along"))
+        joint = placed.declared.joints[holder]
+        if value is None or joint.kind == "spherical":
             continue
-        axis = next(
-            axis
-            for axis in placed.declared.joints[holder].axes
-            if axis.coordinate == load.coordinate
-        )
-        worst = np.maximum(
-            worst, _apart(placed, _given(placed, name), placed.along(holder, axis, value))
-        )
+        axis = next(axis for axis in joint.axes if axis.coordinate == load.coordinate)
+        acts = placed.along(holder, axis, value)
+        worst = np.maximum(worst, _apart(placed, _given(placed, name), acts))
     return worst
 
 

@@ -7,7 +7,7 @@ it is reported (:mod:`.unplaced`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..declare.declared import AxisNumbers, Declared, JointNumbers
+from ..declare.declared import AxisNumbers, Declared, JointNumbers, LoadNumbers
 from ..declare.stated import Entry, Triple
 from .reported import Reported
 from .vectors import GROUND, NIL, Axes, Scalar, Vector, most
@@ -144,15 +144,20 @@ class Placed:
         speeds, changes, turning, gains = zip(
             *(body.sizes for body in self.bodies.values()), strict=True
         )
-        turned, gained = (
-            most([*turning, *map(reported.rate, angles)]),
-            most([*gains, *map(reported.acceleration, angles)]),
-        )
+        turned = most([*turning, *map(reported.rate, angles)])
+        gained = most([*gains, *map(reported.acceleration, angles)])
         return (
             turned,
             most(speeds) + turned * declared.extent,
             most(changes) + (gained + turned**2) * declared.extent,
         )
+
+    @property
+    def frictions(self) -> Iterator[tuple[str, LoadNumbers, str]]:
+        """Each friction by its name, and the joint that it is in."""
+        for name, load in self.declared.loads.items():
+            if load.friction is not None:
+                yield name, load, load.coordinate.partition(":")[0]
 
     def along(self, joint: str, axis: AxisNumbers, effort: Array) -> tuple[Vector, Vector]:
         """The force and the couple of an effort along an axis of a joint, on its child at the
@@ -232,11 +237,9 @@ def _relative(declared: Declared, reported: Reported, joint: JointNumbers) -> Re
         moves, gains = reported.rate(name), reported.acceleration(name)
         along = direction if axis.kind == "slide" else joint.pitch * direction
         if any(along.components):
-            slide, speed, change = (
-                slide + reported.value(name) * along,
-                speed + moves * along,
-                change + gains * along,
-            )
+            slide = slide + reported.value(name) * along
+            speed = speed + moves * along
+            change = change + gains * along
         if axis.kind == "slide":
             continue
         about[name] = turned.turn(direction)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from ..arithmetic.interpret import Arithmetic, interpret
+from ..arithmetic.interpret import Arithmetic, codes, interpret
 from ..base.arrays import Array
 from ..equations.program import Program
 from ..errors import AssemblyError, LagrangeCasadiError
@@ -57,7 +57,7 @@ def reference(
         rows = []
         for i, moment in enumerate(t):
             time = mp.mpf(moment)
-            driven = _driven(program, time, values)
+            driven = interpret(program.laws.motion, [[time], values], plain)
             guess = [] if z is None else [mp.mpf(float(x)) for x in z[:, i]]
             inner = _closed(program, guess, time, driven[0], values, mp.mpf(10) ** (4 - digits))
             (out,) = interpret(program.instant, [[time], *driven, inner, values], following(known))
@@ -88,7 +88,7 @@ def _operations(mp: MPContext) -> Mapping[int, Callable[..., mpf]]:
         ca.OP_NOT: lambda x: zero if x else one,
         ca.OP_CALL: lambda lookup, x: mp.mpf(float(lookup.at(float(x)))),
     }
-    names = (
+    names = codes(
         "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log log1p expm1 erf sqrt"
         " floor ceil"
     )
@@ -114,11 +114,7 @@ def _operations(mp: MPContext) -> Mapping[int, Callable[..., mpf]]:
         ca.OP_FMOD: lambda x, y: mp.sign(x) * mp.fmod(abs(x), abs(y)),
         ca.OP_REMAINDER: lambda x, y: x - y * mp.nint(x / y),
     }
-    return (
-        unary
-        | {getattr(ca, f"OP_{name.upper()}"): getattr(mp, name) for name in names.split()}
-        | binary
-    )
+    return unary | {code: getattr(mp, name) for code, name in names.items()} | binary
 
 
 def _mpmath() -> MPContext:
@@ -129,10 +125,6 @@ def _mpmath() -> MPContext:
             "a reference of many digits needs mpmath; install it with: pip install '.[trade]'"
         ) from None
     return mp
-
-
-def _driven(program: Program, time: mpf, values: list[mpf]) -> list[list[mpf]]:
-    return interpret(program.laws.motion, [[time], values], arithmetic())
 
 
 def _closed(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, during
 from ..base.quantities import Output
 from ..declare.declared import Declared, JointNumbers
 from ..instants.section_law import SectionLaw
@@ -39,12 +39,8 @@ class Reported:
 
     def during(self, instants: slice) -> Reported:
         """The results at some of the instants."""
-        outputs, phases = (
-            {output: values[instants] for output, values in one.items()}
-            for one in (self.outputs, self.phases)
-        )
-        laws = {link: law.during(instants) for link, law in self.laws.items()}
-        return replace(self, t=self.t[instants], outputs=outputs, phases=phases, laws=laws)
+        moving = {name: getattr(self, name) for name in ("t", "outputs", "phases", "laws")}
+        return replace(self, **during(moving, instants))
 
     def without_locked(self, declared: Declared) -> Reported:
         """The results without turns near gimbal lock among what is used: those bodies are taken

@@ -4,7 +4,7 @@
 
      ${p}_control::Control control;
      if (control.configure() != ${P}_OK) ...
-     control.efforts(q, dq, ddq, tau$time_word);
+     control.efforts(q, dq, ddq, tau$time_given);
 
    Positions in the order of coordinates[], efforts in that of drives[]. What fails returns why, and leaves tau as it was. */
 #ifndef ${P}_CONTROL_HPP

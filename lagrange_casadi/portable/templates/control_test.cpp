@@ -25,7 +25,7 @@ int main() {
   control::Efforts tau, still;
   control::Inertia inertia;
   double before = times[0];
-  expect(mechanism.configure($null) == ${P}_OK, "configure", 0);
+  expect(mechanism.configure() == ${P}_OK, "configure", 0);
   for (unsigned k = 0; k < sizeof times/sizeof *times; ++k) {
     const int steps = k ? $steps : 1;
     for (int n = 1; n <= steps; ++n) {

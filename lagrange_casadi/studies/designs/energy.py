@@ -173,7 +173,8 @@ class _Nodes:
         u = np.concatenate([np.zeros(panels + 1), roots[inside]])
         steps = h / 6.0 * (beyond[:-2:2] + 4.0 * beyond[1:-1:2] + beyond[2::2])
         before = np.concatenate([[0.0], np.cumsum(steps)])[number]
-        parts = [np.append(y[s], 0.0)[number] for y, s in _thirds(beyond)]
+        thirds = (slice(0, -2, 2), slice(1, -1, 2), slice(2, None, 2))
+        parts = [np.append(beyond[third], 0.0)[number] for third in thirds]
         energy = before + np.append(h, 0.0)[number] * sum(
             w * y for w, y in zip(_shares(u), parts, strict=True)
         )
@@ -185,11 +186,6 @@ class _Nodes:
     def beyond(self) -> Array:
         """Power beyond that of the mean effort."""
         return np.asarray((self.effort - self.mean) * self.rate)
-
-
-def _thirds(y: Array) -> list[tuple[Array, slice]]:
-    """Values at the beginning, in the middle and at the end of panels."""
-    return [(y, slice(0, -2, 2)), (y, slice(1, -1, 2)), (y, slice(2, None, 2))]
 
 
 def _shares(u: Array) -> tuple[Array, Array, Array]:

@@ -399,7 +399,8 @@ class DesignEngine:
         """Gradient by all parameters of the peaks (q,) of a design (parameters,), which are at
         times ``t`` and ratios ``xi``.
         """
-        self._not_sampled()
+        if self.sampled:
+            raise DeclarationError("peaks: 'sampled' ones have no derivatives; expected 'exact'")
         chosen = np.arange(value.size, dtype=np.intc)
         return self.moving(p).gradient(chosen, (value, t, xi), self._faint(value))
 
@@ -411,11 +412,6 @@ class DesignEngine:
         """
         chosen = np.arange(value.size, dtype=np.intc)
         return self.moving(p).curvature(chosen, (value, t, xi), first_order, self._faint(value))
-
-    def _not_sampled(self) -> None:
-        """Raise :class:`DeclarationError` where peaks are those of the instants."""
-        if self.sampled:
-            raise DeclarationError("peaks: 'sampled' ones have no derivatives; expected 'exact'")
 
     def tied(self, p: Array, value: Array, first_order: PeakSlopes) -> npt.NDArray[np.bool_]:
         """Return which of the peaks (q,) of a design, whose gradient is ``first_order``, tie with

@@ -11,13 +11,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...errors import AssemblyError
-from .evaluated_design import EvaluatedDesign
-from .fatigue import tired_link
 from .nonlinear_program import Found, Held, NonlinearProgram
 from .problem import Box, Problem
-from .sampled_design import KEEP, Point
+from .sampled_design import KEEP, EvaluatedDesign, Point
 from .search_run import CONVERGED, HOLDS, STOPPED, SearchRun, rounded
 from .term_evaluator import TermEvaluator
+from .terms import tired_link
 
 _ROUNDS, _HALVINGS = 40, 12
 """Programs that are solved at most; and how often a step is halved that leads to where loops do not

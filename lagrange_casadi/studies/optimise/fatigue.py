@@ -21,7 +21,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Expression
-from ...base.quantities import Output
 from ...beams.material import Material
 from ...equations.fibre_stresses import LinkStress
 from ...equations.program import Program
@@ -156,12 +155,6 @@ class Tired:
             [used(amplitude, mean, self.material)],
             {"cse": True} if kind is ca.SX else {},
         )
-
-
-def tired_link(output: Output | None) -> str | None:
-    """The link whose utilisation against fatigue an output is; None of any other."""
-    fatigue = output is not None and (output.group, output.member) == ("utilisation", "fatigue")
-    return output.part if output is not None and fatigue else None
 
 
 def _root(square: Expression) -> Expression:

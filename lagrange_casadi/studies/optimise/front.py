@@ -19,9 +19,9 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...errors import NoDesignError
-from .evaluated_design import EvaluatedDesign
 from .optimum import Optimum
 from .problem import Problem
+from .sampled_design import EvaluatedDesign
 from .searching import Search
 from .terms import Constraint, Term
 

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Array
-from .evaluated_design import EvaluatedDesign
-from .fatigue import tired_link
 from .problem import Problem
+from .sampled_design import EvaluatedDesign
 from .search_run import CONVERGED, HOLDS, SearchRun
 from .solver import Solver
-from .terms import Constraint, Term
+from .terms import Constraint, Term, tired_link
 
 _NEAR = 1e-5
 """Distance from its limit, relative to its scale, within which a term is active."""

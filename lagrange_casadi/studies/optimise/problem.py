@@ -24,10 +24,9 @@ from ...strength.fatigue import lacking, strengths
 from ..designs.engine import DesignEngine
 from ..peaks import wanted_for
 from ..sweep.meanings import WAYS
-from .evaluated_design import EvaluatedDesign
-from .fatigue import tired_link
+from .sampled_design import EvaluatedDesign
 from .search_run import HOLDS
-from .terms import Constraint, Term
+from .terms import Constraint, Term, tired_link
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,10 +1,12 @@
 """A design looked at over its whole motion: where its quantities have peaks, and how near its loops
-are to a dead centre.
+are to a dead centre; and the values of terms there.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from ...base.quantities import Output
 from ...peak_search.intervals import Listed
 from ..designs.engine import DesignEngine
 from ..designs.outcome import History
+from .terms import Term
 
 KEEP = 0.7
 """Fraction of the largest peak from which local peaks are examined."""
@@ -150,3 +153,33 @@ class SampledDesign:
             if o.group == "station" and o.part == output.part and o.member == "station"
         )
         return curve - 1 if output.group == "section" and 2 <= curve < 2 + 2 * load_points else 0
+
+
+Signed = tuple[Point, float]
+"""A point, and the sign by which its value counts."""
+
+
+@dataclass(frozen=True, eq=False)
+class EvaluatedDesign:
+    """A design after its evaluation: the value of every term, NaN without a result.
+
+    ``closure`` is the least square of the sine of a transmission angle, NaN without loops;
+    ``closing`` by how much it is below its limit, relative to the limit. ``sampled`` and the local
+    ``points`` of the terms, the largest first, are None and empty unless they were asked for.
+    """
+
+    p: Array
+    values: Mapping[Term, float]
+    sampled: SampledDesign | None = None
+    closure: float = math.nan
+    closing: float = -math.inf
+    points: Mapping[Term, tuple[Signed, ...]] = field(default_factory=dict)
+
+    def value(self, term: Term) -> float:
+        """Value of a term."""
+        return self.values[term]
+
+    @property
+    def has_result(self) -> bool:
+        """True if there is a result."""
+        return all(math.isfinite(value) for value in self.values.values())

@@ -22,7 +22,7 @@ from .front import Front, front_of
 from .journal import kept
 from .optimum import Optimum
 from .problem import Problem, Question
-from .searching import Executor, LocalExecutor, Progress, Search
+from .searching import Executor, Progress, Search, one_by_one
 from .solver import Solver
 from .starts import MOST, Starts
 
@@ -175,7 +175,7 @@ def optimise(
         )
     if resume and out is None:
         raise DeclarationError("resume: expected out, the file of the search that was stopped")
-    executor: Executor = LocalExecutor() if dask is None else method("optimise.dask")(dask)
+    executor: Executor = one_by_one if dask is None else method("optimise.dask")(dask).go
     solver = Solver.of(question, question.engine(found_scene))
     target = None if out is None else Path(out)
     if target is not None:

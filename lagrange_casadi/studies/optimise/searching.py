@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Protocol, TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
 from ...base.publish import uninterrupted
 from ...errors import NoDesignError
-from .evaluated_design import EvaluatedDesign
 from .journal import Journal
 from .optimum import Optimum, optimum_of
 from .problem import Problem
+from .sampled_design import EvaluatedDesign
 from .search_run import STOPPED, SearchRun
 from .solver import SearchTask, Solver
 from .starts import Starts, chosen, named, screen
@@ -27,27 +27,20 @@ it.
 """
 
 
-class Executor(Protocol):
-    """Executor of runs."""
-
-    def go(
-        self, solver: Solver, tasks: Sequence[SearchTask], progress: Progress
-    ) -> Iterator[tuple[int, SearchRun]]:
-        """The ways of errands with their numbers, in any order.
-
-        One that was interrupted says so, and is the last.
-        """
+Executor: TypeAlias = Callable[
+    [Solver, Sequence[SearchTask], Progress], Iterator[tuple[int, SearchRun]]
+]
+"""Function that gives the runs of tasks with their numbers, in any order; one that was interrupted
+says so, and is the last.
+"""
 
 
-class LocalExecutor:
-    """The present process, one start after another."""
-
-    def go(
-        self, solver: Solver, tasks: Sequence[SearchTask], progress: Progress
-    ) -> Iterator[tuple[int, SearchRun]]:
-        """The ways of errands."""
-        for number, task in enumerate(tasks):
-            yield number, solver.descend(task, partial(progress, number))
+def one_by_one(
+    solver: Solver, tasks: Sequence[SearchTask], progress: Progress
+) -> Iterator[tuple[int, SearchRun]]:
+    """The runs of tasks, in this process."""
+    for number, task in enumerate(tasks):
+        yield number, solver.descend(task, partial(progress, number))
 
 
 @dataclass(eq=False)
@@ -137,7 +130,7 @@ class Search:
             self.progress(first + missing[number], objective, excess)
 
         try:
-            for number, run in self.executor.go(self.solver, [tasks[k] for k in missing], report):
+            for number, run in self.executor(self.solver, [tasks[k] for k in missing], report):
                 found[missing[number]] = run
                 if run.ending == STOPPED:
                     self.stopped = True

@@ -10,8 +10,8 @@ import numpy as np
 from ...base.status import Status
 from ...base.units import Within
 from ...errors import DeclarationError, NoDesignError, UnknownNameError
-from .evaluated_design import EvaluatedDesign
 from .problem import Problem
+from .sampled_design import EvaluatedDesign
 from .sobol import sobol
 from .solver import Solver
 

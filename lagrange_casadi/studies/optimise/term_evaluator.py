@@ -15,11 +15,9 @@ from ...base.status import Status
 from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
-from .evaluated_design import EvaluatedDesign, Signed
-from .fatigue import tired_link
 from .problem import Box
-from .sampled_design import Point, SampledDesign
-from .terms import Term
+from .sampled_design import EvaluatedDesign, Point, SampledDesign, Signed
+from .terms import Term, tired_link
 from .values import PointValues
 
 _BESIDE, _BESIDE_MOST, _STILL = 1e-3, 0.05, 1e-8

@@ -17,7 +17,6 @@ from ...base.numerals import real
 from ...base.quantities import AVERAGED, Output
 from ...equations.model_data import ModelData
 from ...errors import DeclarationError
-from .fatigue import tired_link
 
 Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "fluctuation", "mass", "parameter"]
 
@@ -38,6 +37,12 @@ _AVERAGES: tuple[Kind, ...] = ("mean", "rms")
 _UPPER: tuple[Kind, ...] = ("peak", "max", "rms", "fluctuation")
 _CONSTRAINT = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
 _EXAMPLE = "peak:section:rod:bending <= 12"
+
+
+def tired_link(output: Output | None) -> str | None:
+    """The link whose utilisation against fatigue an output is; None of any other."""
+    fatigue = output is not None and (output.group, output.member) == ("utilisation", "fatigue")
+    return output.part if output is not None and fatigue else None
 
 
 @public

@@ -29,8 +29,9 @@ from ...equations.section_function import Place
 from ...errors import DeclarationError
 from ...sensitivity.jacobian import resultant
 from ..designs.times import DesignTimes
-from .fatigue import Tired, tired_link
+from .fatigue import Tired
 from .sampled_design import Point
+from .terms import tired_link
 
 _NUDGE, _NEAR, _REACH = 1e-2, 1e-2, 8.0
 """Steps between instants: of which second derivatives are taken, in which a smooth peak is where it

@@ -386,7 +386,7 @@ def check_known(names: Sequence[str], parameters: Collection[str], head_of: str 
         )
 
     for column, name in unknown.items():
-        if _is_result(name):
+        if isinstance(name, str) and (name in RESULTS or ":" in name):
             raise DeclarationError(": ".join(filter(None, (place([column]), not_parameter(name)))))
     if unknown:
         raise UnknownNameError(
@@ -436,10 +436,6 @@ def not_parameter(name: str) -> str:
         f"'{name}' is a result of a sweep, not a parameter: take the results out; `lagrange-casadi"
         " table` writes the chosen columns"
     )
-
-
-def _is_result(name: str) -> bool:
-    return isinstance(name, str) and (name in RESULTS or ":" in name)
 
 
 def _length(words: str) -> int:

@@ -26,7 +26,7 @@ from .blocks import Queue
 from .file import check_names, joining
 from .parts import Folder, Part
 from .plan import SCHEMA, Plan, difference
-from .reading import identity_of
+from .reading import Sweep
 from .workers import Workers
 
 Progress = Callable[[str, float, float], None]
@@ -117,14 +117,14 @@ def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
                 " anew"
             )
         return there and _is_whole(folder.target, plan)
-    _refuse_other(folder.target, difference(identity_of(folder.target), plan.identity))
+    _refuse_other(folder.target, difference(Sweep.open(folder.target).identity, plan.identity))
     return True
 
 
 def _is_whole(target: Path, plan: Plan) -> bool:
     """Return whether a kill came between the file and the end of its parts."""
     try:
-        return difference(identity_of(target), plan.identity) is None
+        return difference(Sweep.open(target).identity, plan.identity) is None
     except StoreError:
         return False
 

@@ -1,4 +1,5 @@
-"""Columns of a sweep: their names, units and axes, and how they are taken from an engine's outcome.
+"""Columns of a sweep: what is asked of its designs, the names, units and axes of columns, and how
+they are taken from an engine's outcome.
 
 A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_t:effort:O``,
 ``rms:effort:O``), the quantity named as everywhere; the same with slashes is its place in the file.
@@ -6,25 +7,33 @@ A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_
 
 from __future__ import annotations
 
+import json
+import math
+import zlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from ...arithmetic.scalars import column
-from ...base.arrays import Array, Operand
+from ...base.arrays import Array, Json, Operand
 from ...base.quantities import Output
 from ...base.status import Status
-from ...base.tables import Table, table_of
-from ...base.vocabulary import KEEPS, Keep
+from ...base.tables import table_of
+from ...base.vocabulary import KEEPS, Keep, PeakSearch
 from ...declare.density import Density
+from ...declare.even_points import EvenPoints, points
+from ...declare.times import Timing
 from ...declare.wanted_names import SENSITIVITY
+from ...equations.fingerprint import sources
 from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...errors import DeclarationError, UnknownNameError
+from ...instants.evaluation_method import EvaluationMethod
 from ...instants.laws import law_of
 from ...instants.section_law import SectionLaw
 from ...instants.statistics import of_counted
@@ -32,31 +41,22 @@ from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
 from .chunks import encoded
-from .column import MISSING, Column
-from .instant_axis import InstantAxis
-from .meanings import ERROR, FLUCTUATION, LEAST, LIFE, MASS, STATUS, TIMES, Meanings
+from .meanings import (
+    ERROR,
+    FLUCTUATION,
+    STATUS,
+    TIMES,
+    InstantAxis,
+    Meanings,
+)
 from .strength import Kept
 
-KINDS = (
-    STATUS,
-    "peak",
-    "peak_t",
-    "peak_over",
-    "peak_xi",
-    ERROR,
-    "mean",
-    "rms",
-    FLUCTUATION,
-    SENSITIVITY,
-    "peak_at",
-    "history",
-    LEAST,
-    LIFE,
-    MASS,
-)
-"""Kinds of columns, in the order in which they are listed."""
+MISSING = "NaN for designs for which it is indeterminate, by equilibrium or by friction at rest"
+"""Attribute ``missing`` of a column that may lack a number for a design with a result."""
 
 _MEANS = ("mean", "rms")
+_PEAKS = {"peak": "value", "peak_t": "t", "peak_over": "over", "peak_xi": "xi", ERROR: "error"}
+"""Field of :class:`.Outcome` of each kind of columns on peaks."""
 
 _MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
 _AT_HAND = 1 << 22
@@ -76,37 +76,83 @@ def check_keep(keep: str) -> None:
         raise UnknownNameError("choice of what to keep", str(keep), KEEPS)
 
 
-@dataclass(frozen=True, eq=False)
-class Harvest:
-    """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the
-    ratios kept, none where empty.
-
-    By the ``whole`` graph designs are looked at closely.
-
-    ``safety`` and ``life`` are the links of which these are kept. By the parameters ``by`` the
-    derivatives of peaks are kept too, and with ``fluctuation`` that of the energy of drives.
+@dataclass(frozen=True)
+class Column:
+    """One dataset: its full name, the axes beyond those of the designs, their lengths, unit, type,
+    and what a file says of it.
     """
 
-    engine: DesignEngine
-    whole: Program
+    name: str
+    unit: str
+    attributes: Mapping[str, str]
+    axes: tuple[str, ...] = ()
+    lengths: tuple[int, ...] = ()
+    dtype: str = "<f8"
+
+    @property
+    def place(self) -> str:
+        """The dataset's path in the file."""
+        return self.name.replace(":", "/")
+
+    @property
+    def width(self) -> int:
+        """Bytes a design."""
+        return np.dtype(self.dtype).itemsize * math.prod(self.lengths)
+
+
+@dataclass(frozen=True)
+class Task:
+    """Evaluation of a scene's designs, as it is sent to a worker: nothing in it depends on the
+    designs themselves.
+
+    ``safety`` and ``life`` are the links of which these are kept, ``by`` the parameters by which
+    derivatives are, and with ``fluctuation`` that of the energy of drives is.
+    """
+
+    timing: Timing
+    xi: EvenPoints | None
     keep: Keep
-    axis: InstantAxis
-    xi: Array
+    method: EvaluationMethod
     safety: tuple[str, ...] = ()
     life: tuple[str, ...] = ()
     by: tuple[str, ...] = ()
+    peaks: PeakSearch = "exact"
     fluctuation: bool = False
 
     def __post_init__(self) -> None:
-        check_keep(self.keep)
-        if self.fluctuation and not self.engine.drives:
+        if self.peaks != "exact" and (self.safety or self.life or self.by):
+            raise DeclarationError(
+                "peaks: safety, life and sensitivity need exact ones; leave them out of wanted="
+            )
+
+    def harvest(self, program: Program, whole: Program | None = None) -> Harvest:
+        """Compile the graph of what is wanted, for what is kept of its outcomes; ``whole`` has all
+        outputs.
+        """
+        engine = DesignEngine.compiled(program, self.timing, self.method, self.peaks)
+        return Harvest(self, engine, whole or program)
+
+
+@dataclass(frozen=True, eq=False)
+class Harvest:
+    """A task, compiled: its engine, and what is kept of the engine's outcomes.
+
+    By the ``whole`` graph designs are looked at closely.
+    """
+
+    task: Task
+    engine: DesignEngine
+    whole: Program
+
+    def __post_init__(self) -> None:
+        if self.task.fluctuation and not self.engine.drives:
             raise DeclarationError(
                 "fluctuation: only efforts of joints whose motion is given have a fluctuation of"
                 " energy, and none is in wanted=; add effort"
             )
         if self.xi.size and not self._links:
             raise DeclarationError("xi: ratios apply to section forces, and none is in wanted=")
-        if self.keep == "laws" and not self._links:
+        if self.task.keep == "laws" and not self._links:
             raise DeclarationError(
                 "keep laws: laws describe section forces, and none is in wanted="
             )
@@ -117,43 +163,50 @@ class Harvest:
         return self.engine.program.data
 
     @cached_property
+    def axis(self) -> InstantAxis:
+        """Axis of the instants."""
+        return InstantAxis.of(self.data, self.task.timing)
+
+    @cached_property
+    def xi(self) -> Array:
+        """Ratios at which section forces are kept, none where empty."""
+        return np.zeros(0) if self.task.xi is None else points(self.task.xi)
+
+    @cached_property
+    def signature(self) -> dict[str, Json]:
+        """Inputs of a design's numbers beside its parameters, wherever it is evaluated."""
+        program, task, made = self.engine.program, self.task, self.engine.provenance
+        words = {
+            "versions": {**made.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
+            "sources": sources(),
+            "backend": made.backend,
+            "precision": made.precision,
+            "compiler": made.compiler,
+            "flags": made.flags,
+            "rung": made.method + (", sampled peaks" if task.peaks == "sampled" else ""),
+            "wanted": asdict(program.wanted)
+            | ({SENSITIVITY: task.by} if task.by else {})
+            | ({FLUCTUATION: True} if task.fluctuation else {}),
+            "t": task.timing.words(program.data.symbols),
+            "xi": task.xi,
+            "keep": task.keep,
+            "scene": program.identity or "cannot be identified",
+        }
+        content: dict[str, Json] = json.loads(json.dumps(words))
+        return content
+
+    @cached_property
     def columns(self) -> tuple[Column, ...]:
         """All columns, in the order of :meth:`evaluate`."""
-        engine, over = self.engine, self.axis.name
-        names = {STATUS: tuple[str, ...]()}
-        names |= {
-            f"{kind}:{quantity}": ()
-            for quantity in self._quantities
-            for kind in self._of_peaks(quantity)
-        }
-        names |= {f"{kind}:{name}": () for name in engine.efforts for kind in _MEANS}
-        names |= {f"{FLUCTUATION}:{name}": () for name in self._drives}
-        for parameter in self.by:
-            names |= {f"{SENSITIVITY}:{parameter}:peak:{name}": () for name in engine.quantities}
-            names |= {
-                f"{SENSITIVITY}:{parameter}:{kind}:{name}": ()
-                for kind in _MEANS
-                for name in engine.efforts
-            }
-        sections = [
-            f"section:{link}:{force}"
-            for link in self._links
-            for force in self._table.forces
-            if self.xi.size
-        ]
-        names |= {f"peak_at:{name}": ("xi",) for name in sections}
-        names |= {f"history:{name}": (over,) for name in self._series}
-        if self._own_times:
-            names[TIMES] = (over,)
-        if self.keep == "histories":
-            names |= {f"history:{name}": (over, "xi") for name in sections}
-        names |= dict.fromkeys(self.strength.columns, ())
-        lengths, meanings = {over: self.axis.values.size, "xi": self.xi.size}, self.meanings
+        lengths, meanings = (
+            {self.axis.name: self.axis.values.size, "xi": self.xi.size},
+            self.meanings,
+        )
         found = []
-        for name, axes in names.items():
-            unit, words = meanings.of_column(name, names)
+        for name, (axes, *_) in self._kept.items():
+            unit, words = meanings.of_column(name, self._kept)
             indeterminate = self.strength.columns.get(
-                name, name.partition(":")[2] in engine.indeterminate
+                name, name.partition(":")[2] in self.engine.indeterminate
             )
             words |= {"missing": MISSING} if indeterminate else {}
             found.append(
@@ -168,12 +221,48 @@ class Harvest:
             )
         return tuple(found)
 
+    @cached_property
+    def _kept(self) -> dict[str, tuple[tuple[str, ...], str, tuple[int, ...]]]:
+        """The axes of each column, and its place in a :class:`_Batch`: table and numbers."""
+        engine, over, series = self.engine, self.axis.name, self.engine.columns
+        found: dict[str, tuple[tuple[str, ...], str, tuple[int, ...]]] = {
+            STATUS: ((), "states", ())
+        }
+        for k, quantity in enumerate(self._quantities):
+            for kind in self._of_peaks(quantity):
+                found[f"{kind}:{quantity}"] = (), _PEAKS[kind], (k,)
+        for k, name in enumerate(engine.efforts):
+            found |= {f"{kind}:{name}": ((), kind, (k,)) for kind in _MEANS}
+        for k, drive in enumerate(self._drives):
+            found[f"{FLUCTUATION}:{drive}"] = (), "fluctuations", (k,)
+        for parameter in self.task.by:
+            p, begin = list(self.data.parameters).index(parameter), f"{SENSITIVITY}:{parameter}"
+            for k, name in enumerate(engine.quantities):
+                found[f"{begin}:peak:{name}"] = (), "slopes", (p, k)
+            for mean, kind in enumerate(_MEANS):
+                for k, name in enumerate(engine.efforts):
+                    found[f"{begin}:{kind}:{name}"] = (), "mean_slopes", (p, mean, k)
+        sections = [f"section:{link}:{force}" for link in self._links for force in self._forces]
+        sections = sections if self.xi.size else []
+        for k, name in enumerate(sections):
+            found[f"peak_at:{name}"] = ("xi",), "along_links", (0, k)
+        for name in self._series:
+            found[f"history:{name}"] = (over,), "series", (series.index(name),)
+        if self.task.keep != "peaks" and over != "t":
+            found[TIMES] = (over,), "instants", ()
+        if self.task.keep == "histories":
+            for k, name in enumerate(sections):
+                found[f"history:{name}"] = (over, "xi"), "along_links", (1, k)
+        for k, name in enumerate(self.strength.columns):
+            found[name] = (), "strength", (k,)
+        return found
+
     @property
     def meanings(self) -> Meanings:
         """Meanings of columns and axes."""
         units = {name: parameter.unit for name, parameter in self.data.parameters.items()}
         return Meanings(
-            self._table,
+            table_of(self.data.space),
             self.data.kinds,
             units,
             self.axis.name,
@@ -186,8 +275,8 @@ class Harvest:
         """Number of designs of a block: about a second of a core's work, within memory and a
         reader's chunk.
         """
-        grids = len(self._table.forces) * len(self._links) * self.axis.values.size * self.xi.size
-        seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.by else 0.0)
+        grids = len(self._forces) * len(self._links) * self.axis.values.size * self.xi.size
+        seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.task.by else 0.0)
         seconds += _FLUCTUATION_COST * len(self._drives)
         return max(
             1,
@@ -228,63 +317,30 @@ class Harvest:
         axes).
         """
         outcome = self.engine.evaluate(p, threads=1, histories=self._histories)
-        found: list[Any] = [outcome.status.astype(np.int8, copy=False)]
-        for k, output in enumerate(self._quantities):
-            found += [outcome.value[:, k], outcome.t[:, k]]
-            if self.axis.joint:
-                assert outcome.over is not None
-                found.append(outcome.over[:, k])
-            if output.group == "section":
-                found.append(outcome.xi[:, k])
-            if outcome.error is not None:
-                found.append(outcome.error[:, k])
-        for k in range(len(self.engine.efforts)):
-            found += [outcome.mean[:, k], outcome.rms[:, k]]
-        found += self._fluctuations(outcome, p)
-        if self.by:
-            peaks, means = self.engine.slopes_at(p, outcome), self.engine.mean_slopes_at(p, outcome)
-            for number in map(list(self.data.parameters).index, self.by):
-                found += [*np.moveaxis(peaks[:, :, number], 1, 0)]
-                found += [
-                    means[:, k, e, number]
-                    for k in range(len(_MEANS))
-                    for e in range(len(self.engine.efforts))
-                ]
-        largest, whole = self._along_links(outcome, p)
-        found += largest
-        if self._series:
-            assert outcome.series is not None
-            rows = {name: k for k, name in enumerate(self.engine.columns)}
-            found += [outcome.series[:, rows[name]] for name in self._series]
-        if self._own_times:
-            assert outcome.times is not None
-            found.append(np.where((outcome.status == Status.OK)[:, None], outcome.times, np.nan))
-        if self.strength.columns:
-            found_there = (outcome.status, outcome.value, outcome.series, p)
-            return found + whole + self.strength.evaluate(*found_there)
-        return found + whole
+        batch = _Batch(self, p, outcome)
+        return [batch.column(table, numbers) for _, table, numbers in self._kept.values()]
 
     @property
-    def _table(self) -> Table:
-        """Table of quantities."""
-        return table_of(self.data.space)
+    def _forces(self) -> tuple[str, ...]:
+        """Section forces."""
+        return table_of(self.data.space).forces
 
     @cached_property
     def strength(self) -> Kept:
         """Strength results of links that are kept."""
-        engine = self.engine
+        engine, task = self.engine, self.task
         indeterminate = {
             output.part
             for output in map(Output.of, engine.indeterminate)
             if output.group == "section"
         }
         made = (engine.quantities, engine.columns)
-        return Kept(self.engine.program, self.safety, self.life, *made, indeterminate)
+        return Kept(engine.program, task.safety, task.life, *made, indeterminate)
 
     @property
     def _histories(self) -> bool:
         """True if whole histories must be evaluated."""
-        return self.keep != "peaks" or bool(self.xi.size) or self.strength.histories
+        return self.task.keep != "peaks" or bool(self.xi.size) or self.strength.histories
 
     @property
     def _piece(self) -> int:
@@ -294,11 +350,6 @@ class Harvest:
         series = 8 * len(self.engine.columns) * self.axis.values.size if self._histories else 0
         capacity = _BYTES if self._histories else _AT_HAND
         return max(1, capacity // (series + sum(column.width for column in self.columns)))
-
-    @property
-    def _own_times(self) -> bool:
-        """True if the times of each design's instants are kept."""
-        return self.keep != "peaks" and self.axis.name != "t"
 
     @cached_property
     def _quantities(self) -> tuple[Output, ...]:
@@ -313,28 +364,18 @@ class Harvest:
     @cached_property
     def _series(self) -> tuple[str, ...]:
         """The engine's columns that are kept whole."""
-        if self.keep == "peaks":
+        if self.task.keep == "peaks":
             return ()
         return tuple(
             name
             for name in self.engine.columns
-            if self.keep == "histories" or Output.of(name).along
+            if self.task.keep == "histories" or Output.of(name).along
         )
 
     @property
     def _drives(self) -> tuple[Output, ...]:
         """The efforts of which the fluctuation of energy is kept."""
-        return self.engine.drives if self.fluctuation else ()
-
-    def _fluctuations(self, outcome: Outcome, p: Array) -> list[Array]:
-        """The fluctuation of energy of each drive, (designs,)."""
-        found = []
-        for drive in self._drives:
-            energy, column = DriveEnergy(self.engine, drive), np.full(len(p), np.nan)
-            for k in np.flatnonzero(outcome.status == Status.OK):
-                column[k] = energy.fluctuation(p[k])
-            found.append(column)
-        return found
+        return self.engine.drives if self.task.fluctuation else ()
 
     def _of_peaks(self, quantity: Output) -> list[str]:
         """The kinds of columns of the peak of a quantity."""
@@ -342,40 +383,100 @@ class Harvest:
         xi = ["peak_xi"] if quantity.group == "section" else []
         return ["peak", "peak_t", *over, *xi, *([ERROR] if self.engine.sampled else [])]
 
-    def _along_links(self, outcome: Outcome, p: Array) -> tuple[list[Array], list[Array]]:
+
+@dataclass(frozen=True, eq=False)
+class _Batch:
+    """Designs ``p`` (designs, parameters) after their evaluation: tables of columns, by the numbers
+    of these first. Each is made when a column is taken from it.
+    """
+
+    harvest: Harvest
+    p: Array
+    outcome: Outcome
+
+    def column(self, table: str, numbers: tuple[int, ...]) -> Operand:
+        """The column of some numbers in a table: of the outcome, or of what is made of that."""
+        made = hasattr(type(self), table)
+        found: Any = getattr(self, table) if made else getattr(self.outcome, table).swapaxes(0, 1)
+        for number in numbers:
+            found = found[number]
+        return np.asarray(found)
+
+    @property
+    def states(self) -> Operand:
+        """Status of each design, as the file has it."""
+        return self.outcome.status.astype(np.int8, copy=False)
+
+    @property
+    def instants(self) -> Array:
+        """Instants of each design."""
+        assert self.outcome.times is not None
+        return np.asarray(np.where(self._valid[:, None], self.outcome.times, np.nan))
+
+    @cached_property
+    def fluctuations(self) -> list[Array]:
+        """The fluctuation of energy of each drive, (designs,)."""
+        found = []
+        for drive in self.harvest.engine.drives:
+            energy, column = DriveEnergy(self.harvest.engine, drive), np.full(len(self.p), np.nan)
+            for k in np.flatnonzero(self._valid):
+                column[k] = energy.fluctuation(self.p[k])
+            found.append(column)
+        return found
+
+    @cached_property
+    def slopes(self) -> Array:
+        """Derivatives of peaks, (parameters, quantities, designs)."""
+        found = self.harvest.engine.slopes_at(self.p, self.outcome)
+        return np.moveaxis(found, (2, 0), (0, 2))
+
+    @cached_property
+    def mean_slopes(self) -> Array:
+        """Derivatives of means and of root mean squares, (parameters, 2, efforts, designs)."""
+        found = self.harvest.engine.mean_slopes_at(self.p, self.outcome)
+        return np.moveaxis(found, (3, 0), (0, 3))
+
+    @cached_property
+    def strength(self) -> list[Array]:
+        """Columns on the strength of links."""
+        found = self.outcome
+        return self.harvest.strength.evaluate(found.status, found.value, found.series, self.p)
+
+    @cached_property
+    def along_links(self) -> tuple[list[Array], list[Array]]:
         """Largest values over the instants of each link and force, (designs, xi), and, if they are
         kept, all, (designs, t, xi).
         """
-        if not self.xi.size:
-            return [], []
-        series = outcome.series
+        harvest, p, xi, series = self.harvest, self.p, self.harvest.xi, self.outcome.series
+        engine, forces = harvest.engine, harvest._forces
         assert series is not None
         largest, whole = [], []
-        for link in self._links:
-            mass_properties = LinkProperties.of(self.data, link, self.engine.provenance.precision)
-            every = enumerate(map(Output.of, self.engine.columns))
+        for link in harvest._links:
+            mass_properties = LinkProperties.of(harvest.data, link, engine.provenance.precision)
+            every = enumerate(map(Output.of, engine.columns))
             rows = {output: k for k, output in every if output.along and output.part == link}
             with np.errstate(all="ignore"):  # of designs that have no result
                 moving = of_counted(series[:, list(rows.values())])
                 laws = mass_properties.law(
                     {output: moving[:, k] for k, output in enumerate(rows)}, p
                 )
-                basis = laws.basis(self.xi)
-                found = (laws.largest(force, basis) for force in self._table.forces)
-                largest += [
-                    np.where((outcome.status == Status.OK)[:, None], one, np.nan) for one in found
-                ]
-            if self.keep == "histories":
-                grids = np.full(
-                    (len(self._table.forces), len(p), self.axis.values.size, self.xi.size), np.nan
-                )
-                for i in np.flatnonzero(outcome.status == Status.OK):
+                basis = laws.basis(xi)
+                found = (laws.largest(force, basis) for force in forces)
+                largest += [np.where(self._valid[:, None], one, np.nan) for one in found]
+            if harvest.task.keep == "histories":
+                grids = np.full((len(forces), len(p), harvest.axis.values.size, xi.size), np.nan)
+                for i in np.flatnonzero(self._valid):
                     law = mass_properties.law(
                         {output: series[i, k] for output, k in rows.items()}, p[i]
                     )
-                    law.on_grids(self._table.forces, self.xi, grids[:, i], threads=1)
+                    law.on_grids(forces, xi, grids[:, i], threads=1)
                 whole += list(grids)
         return largest, whole
+
+    @property
+    def _valid(self) -> npt.NDArray[np.bool_]:
+        """True for designs with a result."""
+        return np.asarray(self.outcome.status == Status.OK)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,8 @@ import numpy as np
 
 from ...store.untrusted import check_dataset, check_links, check_shape, parsed, shown
 from .axes import DESIGN
-from .columns import KINDS
 from .file import WORDS
-from .meanings import STATUS
+from .meanings import KINDS, STATUS
 from .plan import IDENTITY, Identity
 
 _NAMED = (
@@ -105,7 +104,7 @@ def contents(file: h5py.File) -> Contents:
         "columns": {
             name: columns[name]
             for name in sorted(
-                columns, key=lambda name: (KINDS.index(name.partition(":")[0]), name)
+                columns, key=lambda name: (tuple(KINDS).index(name.partition(":")[0]), name)
             )
         },
         "statuses": {int(number): (word, sentence) for (number, sentence), word in words},

@@ -19,24 +19,21 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.publish import PatientFile
-from ...declare.wanted_names import SENSITIVITY
 from ...errors import DeclarationError
 from ...store.scales import LARGE, Scales
 from ...store.words import conventions, say
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS
-from .column import Column
-from .columns import KINDS
-from .instant_axis import InstantAxis
-from .meanings import ERROR, FLUCTUATION, LEAST, LIFE, MASS
+from .columns import Column
+from .meanings import KINDS, InstantAxis
 from .plan import SCHEMA, Plan
 
 WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 """Attributes that are JSON; the others of a plan's identity are as they stand."""
 
 _CHUNK = 1 << 15
-_SOME = ("peak_over", ERROR, FLUCTUATION, SENSITIVITY, LEAST, LIFE, MASS)
+_SOME = tuple(name for name, kind in KINDS.items() if kind.optional)
 """Kinds of columns that not every file has."""
 
 _TAKEN = ("grid", *(kind for kind in KINDS if kind not in _SOME), DESIGN, "t", "xi")

@@ -5,15 +5,21 @@ what ``check`` compares.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from ...base.arrays import Array
 from ...base.quantities import Kinds, Output, quotient
 from ...base.status import Status
 from ...base.tables import ANGLE, LENGTH, Table
 from ...declare.description import Description, kinds_of_described, motions_of
-from ...declare.masses import ALL
+from ...declare.even_points import points
+from ...declare.mass_properties import ALL
+from ...declare.times import Timing, instants_of
 from ...declare.wanted_names import SENSITIVITY
+from ...equations.model_data import ModelData
 from ...instants.ordering import table_of_described
 from .axes import DESIGN
 
@@ -21,6 +27,8 @@ OVER, CYCLE = "over", "cycle"
 """Axes beside ``t``: the coordinate of a drive that all designs have in common; and from 0 to 1,
 where they have none.
 """
+
+_WORDS = {OVER: "the drive's coordinate", CYCLE: "the cycle"}
 
 STATUS = "status"
 """The one column whose name stands alone: why a design has no result, 0 where it has one."""
@@ -50,27 +58,83 @@ NO_SLOPE = "NaN for designs for which it has no derivative"
 SLOPES_OF = {"peak": "peak", "mean": "mean over time", "rms": "root of the mean square over time"}
 """Quantities whose derivatives are kept, in words."""
 
-_OF_OUTPUTS = {
-    "peak": "largest magnitude over time: ",
-    "mean": "mean over time: ",
-    "peak_at": "largest magnitude over the instants: ",
-    "history": "",
-}
-"""Kinds of columns that have the sign of their quantity."""
 
-_BESIDE = {
-    "peak_t": ("instant of the peak: ", "s"),
-    "peak_xi": ("ratio xi/l of the peak: ", "1"),
-    ERROR: ("bound of how much larger the peak is between the instants, infinite if none: ", ""),
-    "rms": ("root of the mean square over time: ", ""),
-    FLUCTUATION: ("fluctuation of the energy beyond that of the mean: ", "J"),
+@dataclass(frozen=True)
+class Kind:
+    """A kind of columns: ``words`` before those of their quantity, their ``unit`` if it is not the
+    quantity's, and their ``label`` in figures.
+
+    Those with ``sign`` have that of their quantity. Files in which no column is of an ``optional``
+    kind have no group of its name.
+    """
+
+    words: str = ""
+    unit: str = ""
+    label: str = ""
+    sign: bool = False
+    optional: bool = False
+
+
+KINDS: Mapping[str, Kind] = {
+    STATUS: Kind(),
+    "peak": Kind("largest magnitude over time: ", label="|peak|", sign=True),
+    "peak_t": Kind("instant of the peak: ", "s", "instant of the peak"),
+    "peak_over": Kind(label="coordinate of the drive at the peak", optional=True),
+    "peak_xi": Kind("ratio xi/l of the peak: ", "1", r"$\xi/l$ of the peak"),
+    ERROR: Kind(
+        "bound of how much larger the peak is between the instants, infinite if none: ",
+        label="error of the peak",
+        optional=True,
+    ),
+    "mean": Kind("mean over time: ", label="mean", sign=True),
+    "rms": Kind("root of the mean square over time: ", label="rms"),
+    FLUCTUATION: Kind(
+        "fluctuation of the energy beyond that of the mean: ", "J", "fluctuation", optional=True
+    ),
+    SENSITIVITY: Kind(optional=True),
+    "peak_at": Kind("largest magnitude over the instants: ", label="peak", sign=True),
+    "history": Kind(sign=True),
+    LEAST: Kind(optional=True),
+    LIFE: Kind(optional=True),
+    MASS: Kind(optional=True),
 }
-"""Kinds that have none, and their units, if these are not the quantity's."""
+"""Kinds of columns, in the order in which they are listed."""
 
 _AGAINST = {mode: f"against {'yielding' if mode == 'yield' else mode}" for mode in WAYS}
 
 Meaning = tuple[str, dict[str, str]]
 """A unit, and what else a file says."""
+
+
+def in_words(axes: Sequence[str]) -> str:
+    """Axes of columns in words."""
+    return " and ".join(_WORDS.get(axis, axis) for axis in axes)
+
+
+@dataclass(frozen=True, eq=False)
+class InstantAxis:
+    """An axis: its name in the file and values (t,); ``joint`` is the drive by which instants are
+    asked for.
+    """
+
+    name: str
+    values: Array
+    joint: str = ""
+    drive_unit: str = ""
+
+    @classmethod
+    def of(cls, data: ModelData, timing: Timing) -> InstantAxis:
+        """Axis of a mechanism's designs."""
+        if timing.shared:
+            return cls("t", instants_of(data.laws, timing, data.values(data.defaults)).t)
+        joint = timing.joint
+        unit = timing.unit if joint else ""
+        if joint and timing.fixed:
+            start, stop, _ = timing.bounds(np.zeros((1, 0)))
+            coordinates = points((float(start[0]), float(stop[0]), timing.count))
+            return cls(OVER, coordinates, joint, unit)
+        places = points((0.0, 1.0, timing.count)) if timing.count > 1 else np.zeros(1)
+        return cls(CYCLE, places, joint, unit)
 
 
 @dataclass(frozen=True)
@@ -132,17 +196,16 @@ class Meanings:
             }
         output = Output.of(rest)
         words = output.meant(self.table).attributes
-        if kind in _OF_OUTPUTS:
+        if KINDS[kind].sign:
             sampled = kind == "peak" and f"{ERROR}:{rest}" in among
-            return output.unit(self.kinds), words | {
-                "long_name": _OF_OUTPUTS["peak_at" if sampled else kind] + words["long_name"]
-            }
+            begin = KINDS["peak_at" if sampled else kind].words
+            return output.unit(self.kinds), words | {"long_name": begin + words["long_name"]}
         if kind == "peak_over":
             return self.drive_unit, {
                 "long_name": f"coordinate of joint '{self.joint}' at the peak: {words['long_name']}"
             }
-        prefix, unit = _BESIDE[kind]
-        return unit or output.unit(self.kinds), {"long_name": prefix + words["long_name"]}
+        unit = KINDS[kind].unit or output.unit(self.kinds)
+        return unit, {"long_name": KINDS[kind].words + words["long_name"]}
 
     def of_axis(self, name: str) -> Meaning:
         """The meaning of an axis: one that every sweep may have, or that of a parameter."""

@@ -23,7 +23,7 @@ from ...base.locks import lock
 from ...base.publish import flush, put, reporting, settled
 from ...errors import BusyError, PathError, StoreError, one_line
 from ...store.untrusted import parsed
-from .column import Column
+from .columns import Column
 from .plan import IDENTITY, Identity
 
 

@@ -4,10 +4,8 @@ from other sweeps.
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import math
-import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,25 +17,16 @@ from ...base.arrays import Array, Json, spread
 from ...base.space import in_words, require
 from ...base.vocabulary import Keep, PeakSearch, Precision
 from ...declare.description import Description, beams_of, fitted_of, shape_of
-from ...declare.even_points import EvenPoints, checked_ratios, points
+from ...declare.even_points import checked_ratios
 from ...declare.scene import STRENGTH, Scene
-from ...declare.times import Timing
 from ...declare.wanted_names import SENSITIVITY, among, by_parameters, without_fitted
 from ...equations.derive import compile_scene
-from ...equations.fingerprint import sources
-from ...equations.program import Program
 from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
-from ...instants.evaluation_method import EvaluationMethod
-from ...instants.solution import Provenance
-from ..designs.engine import DesignEngine
 from ..designs.spot_check import wanted_whole
 from ..request import Request
 from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
-from .column import Column
-from .columns import Harvest, check_keep
-from .instant_axis import InstantAxis
-from .meanings import FLUCTUATION
+from .columns import Column, Harvest, Task, check_keep
 
 SCHEMA = "lagrange-casadi-sweep"
 SCHEMA_VERSION = 7
@@ -105,63 +94,18 @@ _TIMES = 4
 """Number of copies of a design's results in memory before they are written."""
 
 
-@dataclass(frozen=True)
-class Task:
-    """Evaluation of a scene's designs, as it is sent to a worker: nothing in it depends on the
-    designs themselves.
-
-    ``safety`` and ``life`` are the links of which these are kept, ``by`` the parameters by which
-    derivatives are, and with ``fluctuation`` that of the energy of drives is.
-    """
-
-    timing: Timing
-    xi: EvenPoints | None
-    keep: Keep
-    method: EvaluationMethod
-    safety: tuple[str, ...] = ()
-    life: tuple[str, ...] = ()
-    by: tuple[str, ...] = ()
-    peaks: PeakSearch = "exact"
-    fluctuation: bool = False
-
-    def __post_init__(self) -> None:
-        if self.peaks != "exact" and (self.safety or self.life or self.by):
-            raise DeclarationError(
-                "peaks: safety, life and sensitivity need exact ones; leave them out of wanted="
-            )
-
-    def harvest(self, program: Program, whole: Program | None = None) -> Harvest:
-        """Compile the graph of what is wanted, for what is kept of its outcomes; ``whole`` has all
-        outputs.
-        """
-        xi = np.zeros(0) if self.xi is None else points(self.xi)
-        engine = compiled(program, self.timing, self.method, self.peaks)
-        axis = InstantAxis.of(program.data, self.timing)
-        kept = (self.safety, self.life, self.by, self.fluctuation)
-        return Harvest(engine, whole or program, self.keep, axis, xi, *kept)
-
-
-def compiled(
-    program: Program, timing: Timing, method: EvaluationMethod, peaks: PeakSearch = "exact"
-) -> DesignEngine:
-    """The engine of a graph."""
-    return DesignEngine.compiled(program, timing, method, peaks)
-
-
 @dataclass(frozen=True, eq=False)
 class Plan:
     """A sweep before it runs; ``values`` are those of all parameters, the swept ones at their
     defaults.
 
-    ``program`` has the wanted outputs, and ``description`` describes the mechanism with these
-    values. ``case_file`` is the file of the case that is swept, as written in the sweep's file.
+    ``description`` describes the mechanism with these values. ``case_file`` is the file of the case
+    that is swept, as written in the sweep's file.
     """
 
-    program: Program
     description: Description
     designs: Designs
     values: Mapping[str, float]
-    task: Task
     harvest: Harvest
     case_file: str = ""
 
@@ -227,7 +171,7 @@ class Plan:
             "a design and what it is made from",
             (_TIMES, sum(column.width for column in harvest.columns) // 8),
         )
-        return cls(program, program.data.at(list(values.values())), designs, values, task, harvest)
+        return cls(program.data.at(list(values.values())), designs, values, harvest)
 
     @property
     def size(self) -> int:
@@ -291,15 +235,16 @@ class Plan:
     @property
     def _version(self) -> int:
         """The first version of the schema that has all of it."""
-        if self.task.fluctuation:
+        task = self.harvest.task
+        if task.fluctuation:
             return SCHEMA_VERSION
-        if self.task.peaks == "sampled":
+        if task.peaks == "sampled":
             return _WITHOUT_ENERGY
-        if self.harvest.by:
+        if task.by:
             return _WITH_EXACT_PEAKS
-        if self.program.data.space:
+        if self.harvest.data.space:
             return _WITHOUT_SLOPES
-        return _WITH_COMMON_TIMES if self.task.timing.shared else _PLANAR
+        return _WITH_COMMON_TIMES if task.timing.shared else _PLANAR
 
     @cached_property
     def identity(self) -> Identity:
@@ -308,8 +253,8 @@ class Plan:
         """
         words = {
             "schema_version": self._version,
-            "case": self.program.data.name,
-            **signature(self.program, self.task, self.harvest.engine.provenance),
+            "case": self.harvest.data.name,
+            **self.harvest.signature,
             "mechanism": self.description,
             "grid": self.designs.describe(),
         }
@@ -360,28 +305,6 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     strength = (name for name in names if name.partition(":")[0] in STRENGTH)
     slopes = (f"{SENSITIVITY}:{name}" for name in by_parameters(scene.parameters, names))
     return (*(name for name in user_outputs if name not in ("all", "motion")), *strength, *slopes)
-
-
-def signature(program: Program, task: Task, provenance: Provenance) -> dict[str, Json]:
-    """Inputs of a design's numbers beside its parameters, wherever it is evaluated."""
-    words = {
-        "versions": {**provenance.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
-        "sources": sources(),
-        "backend": provenance.backend,
-        "precision": provenance.precision,
-        "compiler": provenance.compiler,
-        "flags": provenance.flags,
-        "rung": provenance.method + (", sampled peaks" if task.peaks == "sampled" else ""),
-        "wanted": dataclasses.asdict(program.wanted)
-        | ({SENSITIVITY: task.by} if task.by else {})
-        | ({FLUCTUATION: True} if task.fluctuation else {}),
-        "t": task.timing.words(program.data.symbols),
-        "xi": task.xi,
-        "keep": task.keep,
-        "scene": program.identity or "cannot be identified",
-    }
-    content: dict[str, Json] = json.loads(json.dumps(words))
-    return content
 
 
 def difference(before: object, now: object, where: str = "") -> str | None:

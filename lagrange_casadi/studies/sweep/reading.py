@@ -655,11 +655,6 @@ def is_sweep(path: str | Path) -> bool:
     return kind_of(path) == SCHEMA
 
 
-def identity_of(path: Path) -> Identity:
-    """Identity of a finished sweep. Raises what :meth:`Sweep.open` does."""
-    return Sweep.open(path).identity
-
-
 def _taken(dataset: h5py.Dataset, where: int | slice | tuple[int | slice, ...] = ()) -> Values:
     """Contents of a dataset. Raises :class:`StoreError` that names its column."""
     try:

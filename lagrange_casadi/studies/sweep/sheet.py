@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from ...base.arrays import Array, Operand
 from ...declare.wanted_names import SENSITIVITY
+from .meanings import KINDS, Kind
 from .reading import Sweep
 from .scale import Scale, tick
 
@@ -44,17 +45,6 @@ _FOOT = 0.03
 _TIED = re.compile(r" (?=[^\[\]]*\])| (?==)|(?<==) |(?<=\d) (?=[a-zA-Z])")
 _SHADES = (0.12, 0.3, 0.48, 0.66)
 _CROSSES = ("x", "+", "^", "s")
-_KINDS = {
-    "peak": "|peak|",
-    "peak_at": "peak",
-    "peak_t": "instant of the peak",
-    "peak_over": "coordinate of the drive at the peak",
-    "peak_xi": r"$\xi/l$ of the peak",
-    "peak_error": "error of the peak",
-    "mean": "mean",
-    "rms": "rms",
-    "fluctuation": "fluctuation",
-}
 
 
 @dataclass(frozen=True)
@@ -275,7 +265,7 @@ def label(sweep: Sweep, name: str, sized: bool = False) -> str:
         kind, (group, *parts) = f"{parts[0]}, derivative by {group}", parts[1:]
     words = " ".join(part for part in parts if part != "resultant")
     words = words if group == "section" else f"{group} {words}"
-    return f"{words}, {'|peak|' if sized else _KINDS.get(kind, kind)}" + _unit(
+    return f"{words}, {'|peak|' if sized else KINDS.get(kind, Kind()).label or kind}" + _unit(
         sweep.column(name).unit, " [{}]"
     )
 

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...declare.masses import ALL
+from ...declare.mass_properties import ALL
 from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...instants.statistics import counted

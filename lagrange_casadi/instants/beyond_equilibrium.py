@@ -1,4 +1,6 @@
-"""Range of a drive's effort at each instant if friction helps to hold the mechanism."""
+"""Results of a solution that equilibrium alone does not determine: by elasticity, and where
+friction helps to hold the mechanism.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +8,40 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Instants
 from ..base.quantities import Output
 from ..renamed import renamed
+
+
+@renamed
+@dataclass(frozen=True)
+class Elasticity:
+    """The indeterminate outputs that least strain energy determined, ``completed``, and the
+    ``reasons`` why others stay indeterminate.
+    """
+
+    completed: tuple[Output, ...] = ()
+    reasons: tuple[str, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Results in lines."""
+        lines = (
+            [
+                (
+                    f"{len(self.completed)} statically indeterminate series are determined by least"
+                    " strain energy"
+                )
+            ]
+            if self.completed
+            else []
+        )
+        return (
+            *lines,
+            *(f"elasticity does not determine some forces: {reason}" for reason in self.reasons),
+        )
+
 
 ENDS = ("least", "largest")
 
@@ -36,7 +67,7 @@ class Holding:
         """The one of both that is larger in size, (t,)."""
         return np.where(np.abs(self.least) > np.abs(self.largest), self.least, self.largest)
 
-    def during(self, instants: slice | npt.NDArray[np.bool_]) -> Holding:
+    def during(self, instants: Instants) -> Holding:
         """Ranges at some of the instants."""
         return replace(self, least=self.least[instants], largest=self.largest[instants])
 

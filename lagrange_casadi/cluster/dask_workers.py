@@ -1,6 +1,6 @@
-"""Evaluation of blocks by the workers of a Dask cluster.
+"""The workers of a Dask cluster, for sweeps and for searches.
 
-They are sent what is derived and designs, and send back columns.
+They are sent what is derived, with designs or with starts, and send back columns or runs.
 """
 
 from __future__ import annotations
@@ -13,18 +13,21 @@ import pickle
 import re
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..base.arrays import Array, Json
-from ..equations.program import Program
 from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line, warn
+from ..studies.designs.engine import DesignEngine
+from ..studies.optimise.search_run import STOPPED, SearchRun
+from ..studies.optimise.searching import Progress
+from ..studies.optimise.solver import SearchTask, Solver
 from ..studies.sweep.blocks import Queue
-from ..studies.sweep.columns import Harvest
-from ..studies.sweep.plan import Plan, Task, difference, signature
+from ..studies.sweep.columns import Harvest, Task
+from ..studies.sweep.plan import Plan, difference
 from ..studies.sweep.workers import PATIENCE, PULSE, Blocks, ThreadPool
 
 if TYPE_CHECKING:
@@ -46,7 +49,8 @@ _PROBE = "__import__('importlib.util').util.find_spec('lagrange_casadi') is not 
 _AHEAD = 2
 """Blocks sent out for each thread of the cluster."""
 
-_building = threading.Lock()
+_building, _searching = threading.Lock(), threading.Lock()
+"""Held while a worker compiles; and while a solver is at a run, of which it goes one at a time."""
 
 
 @dataclass(frozen=True)
@@ -70,15 +74,31 @@ class Cluster:
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue, in the order in which workers are done."""
-        sent = pickle.dumps((plan.program, plan.harvest.whole))
-        identity = signature(plan.program, plan.task, plan.harvest.engine.provenance)
+        harvest = plan.harvest
+        sent = pickle.dumps((harvest.engine.program, harvest.whole))
 
         def asked(start: int, stop: int) -> Asked:
-            return Asked(
-                _evaluate, (sent, plan.task, identity, plan.block(start, stop), plan.capacity)
-            )
+            designs = plan.block(start, stop)
+            return Asked(_evaluate, (sent, harvest.task, harvest.signature, designs, plan.capacity))
 
         yield from self.done(asked, queue)
+
+    def go(
+        self, solver: Solver, tasks: Sequence[SearchTask], progress: Progress
+    ) -> Iterator[tuple[int, SearchRun]]:
+        """Runs of tasks, as they are done; those that an interrupt stopped are left out."""
+        sent = pickle.dumps((solver.engine.program, solver.question))
+        words = solver.question.words(solver.engine)
+        queue = Queue((k, k + 1) for k in range(len(tasks)))
+
+        def asked(start: int, _stop: int) -> Asked:
+            return Asked(_descend, (sent, words, tasks[start]))
+
+        for done in self.done(asked, queue):
+            if done is not None:
+                number, _, run = done
+                progress(number, run.objective, run.excess)
+                yield number, run
 
     def done(
         self, asked: Callable[[int, int], Asked], queue: Queue
@@ -339,7 +359,7 @@ class Asked:
         return self.function, self.arguments
 
 
-def check_same(asked: Mapping[str, Json], here: Mapping[str, Json]) -> None:
+def _check_same(asked: Mapping[str, Json], here: Mapping[str, Json]) -> None:
     """Raise :class:`ClusterError` if a worker's inputs ``here`` differ from those asked for."""
     if found := difference(asked, here):
         raise ClusterError(
@@ -348,23 +368,45 @@ def check_same(asked: Mapping[str, Json], here: Mapping[str, Json]) -> None:
         )
 
 
+@contextmanager
+def _sendable() -> Iterator[None]:
+    """Raise :class:`ClusterError` for errors of ours: not every one can be sent as what it is."""
+    try:
+        yield
+    except ClusterError:
+        raise
+    except LagrangeCasadiError as error:
+        raise ClusterError(f"a worker failed: {error}") from None
+
+
 def _evaluate(
     sent: bytes, task: Task, identity: Mapping[str, Json], p: Array, capacity: int
 ) -> list[bytes]:
     """Evaluate the columns of a block of designs on a worker."""
-    try:
+    with _sendable():
         with _building:
-            program, harvest = _built(sent, task)
-        check_same(identity, signature(program, task, harvest.engine.provenance))
+            harvest = _harvest(sent, task)
+        _check_same(identity, harvest.signature)
         return harvest.chunks(p, capacity)
-    except ClusterError:
-        raise
-    except LagrangeCasadiError as error:
-        # Not every error of ours can be sent as what it is.
-        raise ClusterError(f"a worker failed: {error}") from None
 
 
 @functools.lru_cache(maxsize=4)
-def _built(sent: bytes, task: Task) -> tuple[Program, Harvest]:
-    program, whole = pickle.loads(sent)
-    return program, task.harvest(program, whole)
+def _harvest(sent: bytes, task: Task) -> Harvest:
+    return task.harvest(*pickle.loads(sent))
+
+
+def _descend(sent: bytes, words: Mapping[str, Json], task: SearchTask) -> SearchRun:
+    """Run a start on a worker."""
+    with _sendable(), _searching:
+        solver = _solver(sent)
+        _check_same(words, solver.question.words(solver.engine))
+        run = solver.descend(task, lambda *_: None)
+    if run.ending == STOPPED:
+        raise ClusterError("a worker was interrupted")
+    return run
+
+
+@functools.lru_cache(maxsize=4)
+def _solver(sent: bytes) -> Solver:
+    program, question = pickle.loads(sent)
+    return Solver.of(question, DesignEngine.compiled(program, question.timing, question.method))

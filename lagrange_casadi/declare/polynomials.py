@@ -1,9 +1,12 @@
-"""An expression as a polynomial of one of its symbols: followed by its operations, so that nothing
-is taken for one by chance.
+"""Polynomials whose coefficients are expressions, which may depend on parameters: the coefficients
+of an expression that is one, and the lowest value on an interval.
+
+An expression is followed by its operations, so that nothing is taken for a polynomial by chance.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -17,6 +20,15 @@ from ..errors import DeclarationError
 
 Polynomial = tuple[Any, ...]
 """Coefficients of rising powers, each a ``casadi.SX``."""
+
+_MOST = 64
+"""The highest power that is multiplied out."""
+
+_HALVINGS = 30
+"""Number of halvings of an interval with a zero of a derivative.
+
+At a turning point a miss by 1e-9 changes a value by its square.
+"""
 
 
 class _NoPolynomialError(Exception):
@@ -87,12 +99,17 @@ def _negative(a: Polynomial) -> Polynomial:
     return tuple(-x for x in a)
 
 
-def _times(a: Polynomial, b: Polynomial) -> Polynomial:
+def product(a: Sequence[Expression], b: Sequence[Expression]) -> list[ca.SX]:
+    """The coefficients of the product of two polynomials."""
     found = [ca.SX(0)] * (len(a) + len(b) - 1)
     for i, x in enumerate(a):
         for j, y in enumerate(b):
             found[i + j] = found[i + j] + x * y
-    return _trimmed(found)
+    return found
+
+
+def _times(a: Polynomial, b: Polynomial) -> Polynomial:
+    return _trimmed(product(a, b))
 
 
 def _over(a: Polynomial, b: Polynomial) -> Polynomial:
@@ -114,7 +131,6 @@ def _power(a: Polynomial, b: Polynomial) -> Polynomial:
     return found
 
 
-_MOST = 64
 _POLYNOMIAL: dict[int, Callable[..., Polynomial]] = {
     ca.OP_ADD: _plus,
     ca.OP_SUB: lambda a, b: _plus(a, _negative(b)),
@@ -128,3 +144,62 @@ _POLYNOMIAL: dict[int, Callable[..., Polynomial]] = {
     ca.OP_ASSIGN: lambda a: a,
 }
 """Operations that make polynomials of polynomials."""
+
+
+def lowest(cell: Sequence[Expression], start: float, stop: float) -> tuple[ca.SX, ca.SX]:
+    """Place u from ``start`` to ``stop`` at which sum_j cell[j] u^j is lowest, and its value there,
+    for finite coefficients.
+    """
+    place, value = ca.SX(start), _at(cell, ca.SX(start))
+    turning = _zeros(_derivative(cell), start, stop) if len(cell) > 2 else []
+    for u in (ca.SX(stop), *turning):
+        other = _at(cell, u)
+        lower = other < value
+        place, value = ca.if_else(lower, u, place), ca.if_else(lower, other, value)
+    return place, value
+
+
+def _zeros(cell: Sequence[Expression], start: float, stop: float) -> list[ca.SX]:
+    """Places from ``start`` to ``stop``, in order: all zeros of a polynomial there, and for those
+    that it lacks any others.
+
+    Up to a parabola in closed form; of a higher degree between the zeros of its derivative, where
+    it is monotonic.
+    """
+    if len(cell) == 2:
+        return [_within(-cell[0] / ca.SX(cell[1]), start, stop)]
+    if len(cell) == 3:
+        c, b, a = (ca.SX(x) for x in cell)
+        square = b * b - 4.0 * a * c
+        root = ca.sqrt(ca.if_else(square > 0.0, square, 0.0))
+        # The sum does not cancel; a parabola that is a line has one zero far away.
+        total = -0.5 * (b + ca.if_else(b < 0.0, -root, root))
+        one, other = _within(total / a, start, stop), _within(c / total, start, stop)
+        return [ca.fmin(one, other), ca.fmax(one, other)]
+    ends = [ca.SX(start), *_zeros(_derivative(cell), start, stop), ca.SX(stop)]
+    return [_zero(cell, low, high) for low, high in itertools.pairwise(ends)]
+
+
+def _zero(cell: Sequence[Expression], low: Expression, high: Expression) -> Expression:
+    negative = _at(cell, low) < 0.0
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        same = ca.eq(_at(cell, middle) < 0.0, negative)
+        low, high = ca.if_else(same, middle, low), ca.if_else(same, high, middle)
+    return high
+
+
+def _at(cell: Sequence[Expression], u: ca.SX) -> ca.SX:
+    value = ca.SX(cell[-1])
+    for coefficient in reversed(cell[:-1]):
+        value = value * u + coefficient
+    return value
+
+
+def _derivative(cell: Sequence[Expression]) -> list[Expression]:
+    return [j * coefficient for j, coefficient in enumerate(cell)][1:]
+
+
+def _within(x: ca.SX, start: float, stop: float) -> ca.SX:
+    """A place in the interval; its start for what is not a number."""
+    return ca.if_else(x > start, ca.if_else(x < stop, x, stop), start)
