@@ -61,22 +61,16 @@ def sheller(over=True):
     links, a spring, a turned guide.
     """
     m = Mechanism("sheller")
-    r, l, b = (
-        m.parameter("r", 0.1, "m", low=0.0),
-        m.parameter("l", 0.45, "m"),
-        m.parameter("b", 0.12, "m"),
-    )
-    mass, snow, tilt = (
-        m.parameter("m", 1.5, "kg"),
-        m.parameter("snow", 40.0, "N/m"),
-        m.parameter("tilt", 0.1, "rad"),
-    )
+    r = m.parameter("r", 0.1, "m", low=0.0)
+    l = m.parameter("l", 0.45, "m")
+    b = m.parameter("b", 0.12, "m")
+    mass = m.parameter("m", 1.5, "kg")
+    snow = m.parameter("snow", 40.0, "N/m")
+    tilt = m.parameter("tilt", 0.1, "rad")
     turn, rpm = m.parameter("turn", 6.2, "rad"), m.parameter("rpm", 60.0, "1/min")
-    crank, rod, ram = (
-        m.link("crank", length=r, mass=mass),
-        m.link("rod", length=l, mass=2.0),
-        m.point_mass("ram", 3.0 * mass),
-    )
+    crank = m.link("crank", length=r, mass=mass)
+    rod = m.link("rod", length=l, mass=2.0)
+    ram = m.point_mass("ram", 3.0 * mass)
     rocker = m.link("rocker", length=1.1 * l + b, density=density.polynomial(2.0, b, 1.0))
     drive = m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)

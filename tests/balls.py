@@ -42,13 +42,11 @@ def platform(seed: int, t: float, reverse: bool = False) -> Drawn:
     """
     rng = np.random.default_rng(seed)
     at = np.array([0.0, 0.0, 0.7]) + rng.normal(size=3) * 0.02
-    plate, bodies, joints, laws, guess = (
-        rigid(rng, "plate", 0.2),
-        [],
-        [],
-        {},
-        {"plate": (at, np.eye(3))},
-    )
+    plate = rigid(rng, "plate", 0.2)
+    bodies = []
+    joints = []
+    laws = {}
+    guess = {"plate": (at, np.eye(3))}
     for k in range(3):
         out = np.array([math.cos(2.1 * k), math.sin(2.1 * k), 0.0])
         foot, top = 0.35 * out, at + 0.2 * out

@@ -267,12 +267,10 @@ def _planetary_gear(arithmetic, values):
     """Teeth as forces at pitch points, their flanks those that the load presses; the sun pushes all
     planets alike; and the load.
     """
-    number, sin, cos, pi = (
-        arithmetic.number,
-        arithmetic.sin,
-        arithmetic.cos,
-        arithmetic.number(math.pi),
-    )
+    number = arithmetic.number
+    sin = arithmetic.sin
+    cos = arithmetic.cos
+    pi = arithmetic.number(math.pi)
     tangent, module = sin(pi / 9) / cos(pi / 9), number(values["module"])
     sun, planet, ring = (module * teeth / 2 for teeth in (24, 18, 60))
     carrier = ("carrier", 0, 0)

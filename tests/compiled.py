@@ -22,6 +22,7 @@ SCENES = {
 }
 
 PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
+STRICT = [*PEDANTIC, "-Wdouble-promotion", "-Wfloat-conversion"]
 
 
 def columns(program, t, language, threads=1, extra=(), precision="double"):
@@ -59,21 +60,16 @@ def fake_compiler(folder, monkeypatch, script, variable="CC"):
     return program
 
 
-HARNESS = """
-#include "@.h"
-#include <math.h>
-#include <stdio.h>
-int main(void) {
-  @_model model;
-  @_inputs inputs;
-  @_outputs outputs;
-  @_parameters parameters = @_defaults;
-  @_status status;
-  outputs.effort_O = 1;
-  %s
-  printf("%%d %%g %%s", (int) status, (double) outputs.effort_O, @_message(status));
-  return 0;
-}
+TRIED = """  {
+    @_model model;
+    @_inputs inputs;
+    @_outputs outputs;
+    @_parameters parameters = @_defaults;
+    @_status status;
+    outputs.EFFORT = 1;
+    %s
+    printf("%%d %%g %%s\\n", (int) status, (double) outputs.EFFORT, @_message(status));
+  }
 """
 
 EVALUATED = "status = @_evaluate(&model, &inputs, &outputs);"
@@ -111,12 +107,21 @@ def present(command):
         return False
 
 
-def told(folder, made, statements):
-    """What a program says that does this with an exported slider-crank."""
-    (folder / "harness.c").write_text((HARNESS % statements).replace("@", made.prefix))
+def told(folder, made, *tried):
+    """What a program says that does these things, one after another, with an exported mechanism:
+    the status, the effort of its drive and the sentence of each.
+    """
+    effort = next(member.name for member in made.outputs if member.name.startswith("effort_"))
+    blocks = "".join(TRIED % statements for statements in tried).replace("EFFORT", effort)
+    if f"{made.prefix}_defaults" not in (folder / f"{made.prefix}.h").read_text():
+        blocks = blocks.replace("@_parameters parameters = @_defaults;", "")
+    head = "\n".join(f"#include {name}" for name in ('"@.h"', "<math.h>", "<stdio.h>"))
+    text = f"{head}\nint main(void) {{\n{blocks}  return 0;\n}}\n"
+    (folder / "harness.c").write_text(text.replace("@", made.prefix))
     result = cc(["cc", "-std=c99"], folder, "harness.c", f"{made.prefix}.c")
     assert result.returncode == 0, result.stderr
-    status, effort, sentence = subprocess.run(
+    lines = subprocess.run(
         [folder / "program"], capture_output=True, text=True, check=True
-    ).stdout.split(" ", 2)
-    return int(status), float(effort), sentence
+    ).stdout.splitlines()
+    answers = [line.split(" ", 2) for line in lines]
+    return [(int(status), float(effort), sentence) for status, effort, sentence in answers]

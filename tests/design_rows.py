@@ -37,10 +37,8 @@ def peaks_of(designs, outcome, row):
 
 def scales(designs, outcome, row):
     """The largest peak of each quantity's unit."""
-    units, sizes = (
-        np.array(designs.units),
-        np.abs(np.where(np.isfinite(outcome.value[row]), outcome.value[row], 0.0)),
-    )
+    units = np.array(designs.units)
+    sizes = np.abs(np.where(np.isfinite(outcome.value[row]), outcome.value[row], 0.0))
     return {
         name: sizes[units == unit].max()
         for name, unit in zip(designs.quantities, designs.units, strict=True)

@@ -35,10 +35,8 @@ def every_kind():
     arm, sleeve, nut, plate, bead, cross, ball, flyer, tail = (
         m.link(name, length=0.3, mass=1.0) for name in names
     )
-    bob, slider = (
-        m.point_mass("bob", 0.5),
-        m.link("slider", length=0.2, mass=1.0, centre=(0, 0, 0), inertia=(0.01, 0.01, 0.01)),
-    )
+    bob = m.point_mass("bob", 0.5)
+    slider = m.link("slider", length=0.2, mass=1.0, centre=(0, 0, 0), inertia=(0.01, 0.01, 0.01))
     m.revolute("revolute", m.ground, arm, axis=(0.6, 0.0, 0.8))
     m.prismatic("prismatic", arm.at(0.1, 0.05, 0.0), slider, axis=(0, 1, 0))
     m.cylindrical("cylindrical", m.ground.at(0.0, 0.5, 0.0), sleeve, axis=(0, 0, 1))

@@ -11,11 +11,9 @@ def every_joint_and_load():
         m.link(name, length=length, mass=1.0)
         for name, length in (("crank", 0.1), ("rod", 0.4), ("arm", 0.7))
     )
-    slider, block, lump = (
-        m.link("slider", length=0.1, mass=0.7),
-        m.point_mass("block", 0.5),
-        m.point_mass("lump", 0.3),
-    )
+    slider = m.link("slider", length=0.1, mass=0.7)
+    block = m.point_mass("block", 0.5)
+    lump = m.point_mass("lump", 0.3)
     o = m.revolute("O", m.ground, crank)
     a = m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slider)

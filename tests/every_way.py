@@ -39,11 +39,9 @@ def plane():
     a rocker without mass under a load of any shape, outputs of every kind, its shaking force.
     """
     m = Mechanism("together")
-    l, mu, d = (
-        m.parameter("l", 0.4, "m", low=0.2),
-        m.parameter("mu", 0.1, low=0.0),
-        m.parameter("d", 0.02, "m", low=0.005),
-    )
+    l = m.parameter("l", 0.4, "m", low=0.2)
+    mu = m.parameter("mu", 0.1, low=0.0)
+    d = m.parameter("d", 0.02, "m", low=0.005)
     start = m.parameter("start", 0.1, "m", low=0.0, high=0.2)
     shape = beams.tapered(beams.rectangle(d, 0.012), beams.rectangle(0.6 * d, 0.012))
     crank = m.link("crank", length=0.1, mass=1.0)
@@ -96,11 +94,9 @@ def space():
     its shaking force.
     """
     m = SpatialMechanism("together_in_space")
-    l, mu, d = (
-        m.parameter("l", 0.4, "m", low=0.2),
-        m.parameter("mu", 0.1, low=0.0),
-        m.parameter("d", 0.02, "m", low=0.005),
-    )
+    l = m.parameter("l", 0.4, "m", low=0.2)
+    mu = m.parameter("mu", 0.1, low=0.0)
+    d = m.parameter("d", 0.02, "m", low=0.005)
     thick = density.thick(
         density.tabulated((0.0, 0.4, 1.0), (8.0, 9.0, 10.0)),
         yy=1e-3,
@@ -135,11 +131,9 @@ def space():
 def laws():
     """Arms on arms, each driven by a law of another kind, of parameters."""
     m = Mechanism("laws")
-    stroke, ratio, pace = (
-        m.parameter("stroke", 0.9, "rad"),
-        m.parameter("ratio", 1.3),
-        m.parameter("pace", 1.1, "s", low=0.5),
-    )
+    stroke = m.parameter("stroke", 0.9, "rad")
+    ratio = m.parameter("ratio", 1.3)
+    pace = m.parameter("pace", 1.1, "s", low=0.5)
     times = np.linspace(0.0, 1.0, 14)
     lift = moves(
         [

@@ -146,10 +146,8 @@ def of_solution(solution, i, sections, loads=(), accelerations=None):
             base = np.array([pose.x[i], pose.y[i], pose.z[i]])
         else:
             c, s = np.cos(pose.angle[i]), np.sin(pose.angle[i])
-            axes, base = (
-                np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]),
-                np.array([pose.x[i], pose.y[i], 0.0]),
-            )
+            axes = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+            base = np.array([pose.x[i], pose.y[i], 0.0])
         axes_of[link] = axes
         p, e, g, line = sections[link]
         ordered = sorted(xs)

@@ -64,10 +64,8 @@ def linkage(rng, name, links, grounded, drives, *, decorate=None, swing=None, ma
         posture[own] = angle
         for pin in own:
             dx, dy = pins[pin] - pins[own[0]]
-            along, across = (
-                dx * math.cos(angle) + dy * math.sin(angle),
-                dy * math.cos(angle) - dx * math.sin(angle),
-            )
+            along = dx * math.cos(angle) + dy * math.sin(angle)
+            across = dy * math.cos(angle) - dx * math.sin(angle)
             point = {own[0]: link.base, own[1]: link.tip}.get(pin) or link.at(
                 float(along), float(across)
             )
@@ -146,11 +144,9 @@ def _crank(rng, name):
     m = Mechanism(name)
     r = float(rng.uniform(0.05, 0.2))
     l = r * float(rng.uniform(1.3, 5.0))
-    a, b, s = (
-        m.link("a", length=r, mass=_mass(rng)),
-        m.link("b", length=l, mass=_mass(rng)),
-        m.point_mass("s", _mass(rng)),
-    )
+    a = m.link("a", length=r, mass=_mass(rng))
+    b = m.link("b", length=l, mass=_mass(rng))
+    s = m.point_mass("s", _mass(rng))
     main = m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, s)
@@ -218,10 +214,8 @@ def stations(rng):
         m.revolute(f"J{i}", m.ground if near is None else near, link)
         motion[f"J{i}"] = _law(rng, float(rng.uniform(-1, 1)))
         for k in range(int(rng.integers(1, 4))):
-            place, size = (
-                link.at(_station(rng, l, length), float(rng.choice([0.0, 0.02]))),
-                float(10 ** rng.uniform(0, 6)),
-            )
+            place = link.at(_station(rng, l, length), float(rng.choice([0.0, 0.02])))
+            size = float(10 ** rng.uniform(0, 6))
             kind = int(rng.integers(4))
             if kind == 0:
                 m.weld(f"w{i}{k}", place, m.point_mass(f"lump{i}{k}", size / 1e3))
@@ -237,10 +231,8 @@ def _jumping(rng, x, span):
     """A load that jumps with what it is given, which runs through ``span``; now and then at an
     instant of the grid.
     """
-    size, at = (
-        float(10 ** rng.uniform(0, 5)),
-        span[0] + (span[1] - span[0]) * float(rng.integers(0, COUNT)) / (COUNT - 1),
-    )
+    size = float(10 ** rng.uniform(0, 5))
+    at = span[0] + (span[1] - span[0]) * float(rng.integers(0, COUNT)) / (COUNT - 1)
     width = span[1] - span[0]
     return (
         lambda: -size * ca.sign(x - at),
@@ -296,14 +288,10 @@ def jumps(rng):
 def quick_return(rng):
     """A crank's pin in the slot of a rocker, over ratios of its length; a ram that cuts one way."""
     m = Mechanism("quick_return")
-    crank, rocker = (
-        m.link("crank", length=0.1, mass=_mass(rng)),
-        m.link("rocker", length=0.6, mass=_mass(rng)),
-    )
-    connecting, ram = (
-        m.link("connecting", length=0.25, mass=_mass(rng)),
-        m.point_mass("ram", _mass(rng)),
-    )
+    crank = m.link("crank", length=0.1, mass=_mass(rng))
+    rocker = m.link("rocker", length=0.6, mass=_mass(rng))
+    connecting = m.link("connecting", length=0.25, mass=_mass(rng))
+    ram = m.point_mass("ram", _mass(rng))
     m.revolute("O", m.ground, crank)
     m.revolute(
         "C", m.ground.at(0, -float(rng.choice([0.2, 0.3, 0.25, rng.uniform(0.15, 0.3)]))), rocker
@@ -343,10 +331,8 @@ def stiff_springs(rng):
     def sprung(m, made, pins, rng):
         for k, link in enumerate(made.values()):
             (x0, y0), (x1, y1) = pins[link.name[0]], pins[link.name[1]]
-            u, stiffness = (
-                float(rng.choice([0.25, 0.5, 0.64, 1.0])),
-                float(10 ** rng.uniform(3, 10)),
-            )
+            u = float(rng.choice([0.25, 0.5, 0.64, 1.0]))
+            stiffness = float(10 ** rng.uniform(3, 10))
             gap = float(10 ** rng.uniform(-9, -1)) * rng.normal(size=2)
             at = m.ground.at(
                 *(
@@ -391,11 +377,9 @@ def lift(stages, mass, l, forces, count=COUNT):
 
 def scissors(rng):
     """A lift of light links under a large load."""
-    stages, mass, l = (
-        int(rng.integers(1, 6)),
-        float(10 ** rng.uniform(-9, 1)),
-        float(rng.uniform(0.4, 1.5)),
-    )
+    stages = int(rng.integers(1, 6))
+    mass = float(10 ** rng.uniform(-9, 1))
+    l = float(rng.uniform(0.4, 1.5))
     load = float(10 ** rng.uniform(1, 6))
     return lift(stages, mass, l, (load, load * float(rng.uniform(0, 2))))
 

@@ -6,6 +6,7 @@ import math
 
 import casadi as ca
 import numpy as np
+from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, curve
 from lagrange_casadi.motion import expression, harmonic, polynomial, samples
@@ -252,11 +253,9 @@ def parallelogram(third=1.0, pendulum=False):
 
 def flat_parallelogram():
     m = Mechanism("parallelogram")
-    a, b, c = (
-        m.link("a", length=0.2, mass=1.0),
-        m.link("b", length=0.5, mass=1.0),
-        m.link("c", length=0.2, mass=1.0),
-    )
+    a = m.link("a", length=0.2, mass=1.0)
+    b = m.link("b", length=0.5, mass=1.0)
+    c = m.link("c", length=0.2, mass=1.0)
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, c.tip)
@@ -283,6 +282,17 @@ def spline_arm():
     m = Mechanism("arm")
     m.revolute("J", m.ground, m.link("a", length=1, mass=1))
     return Scene(m, {"J": samples([0, 1, 2, 3], [0, 1, 4, 2])}, t=(0, 3, 4))
+
+
+def every_function():
+    """An arm under a torque that takes every function there is."""
+    m = Mechanism("functions")
+    arm = m.link("arm", length=1, mass=1)
+    joint = m.revolute("J", m.ground, arm)
+    x, y = m.coordinate(joint) * m.rate(joint) / 2, m.rate(joint)
+    each = EACH | {"acosh": ca.acosh(1 + X)}
+    m.torque("t", arm, ca.substitute(sum(each.values()), ca.vertcat(X, Y), ca.vertcat(x, y)))
+    return Scene(m, {"J": polynomial(0.3, 0.4)}, t=(0, 1, 9))
 
 
 def cam_lift(angle):
@@ -318,10 +328,8 @@ def sampled_cam(count=73, **keywords):
 def bracket(reach=0.9):
     """A mass slides along a swinging arm, beyond its tip and before its base."""
     m = Mechanism("bracket")
-    arm, p = (
-        m.link("arm", length=m.parameter("l", 0.5, "m", low=0.0), mass=1.0),
-        m.point_mass("p", 2.0),
-    )
+    arm = m.link("arm", length=m.parameter("l", 0.5, "m", low=0.0), mass=1.0)
+    p = m.point_mass("p", 2.0)
     m.revolute("J", m.ground.at(0, 0), arm.at(0.1))
     m.prismatic("S", arm, p, axis=(1, 0))
     return Scene(
@@ -458,11 +466,9 @@ def press(law=polynomial, wanted=("all",), pin=PIN, **keywords):
     """
     m = Mechanism("press")
     rpm, length = m.parameter("rpm", 600.0, "1/min"), m.parameter("l", 0.5, "m", low=0.0)
-    crank, rod, ram = (
-        m.link("crank", length=0.1, mass=1.2),
-        m.link("rod", length=length, mass=2.0),
-        m.point_mass("ram", 15.0),
-    )
+    crank = m.link("crank", length=0.1, mass=1.2)
+    rod = m.link("rod", length=length, mass=2.0)
+    ram = m.point_mass("ram", 15.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     pin(m, "B", rod.tip, ram)

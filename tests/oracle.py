@@ -299,10 +299,8 @@ class Oracle:
         together.
         """
         frames, place = self.frames(result.q), self.places(result)
-        labels, unknowns = (
-            [],
-            [],
-        )  # an unknown is what a unit of it does: a list of (point, fx, fy, mz)
+        labels = []
+        unknowns = []  # an unknown is what a unit of it does: a list of (point, fx, fy, mz)
 
         def pair(joint, label, force, moment):
             at = joint.child
@@ -349,10 +347,8 @@ class Oracle:
         keep = np.array([b.oriented or k < 2 for b in self.bodies for k in range(3)])
         matrix, right = matrix[keep], right[keep]
         found = self.arithmetic.solve(matrix, right, 1e-11)
-        left, size = (
-            np.max(np.abs(matrix @ found - right)),
-            np.max(np.abs(right)) + np.max(np.abs(found)),
-        )
+        left = np.max(np.abs(matrix @ found - right))
+        size = np.max(np.abs(right)) + np.max(np.abs(found))
         assert left <= 1000 * self.arithmetic.tolerance * size, (
             "the oracle's forces do not balance its bodies"
         )
@@ -427,11 +423,9 @@ class Oracle:
         """
 
         def at(ratio: float) -> tuple[float, float, float]:
-            ratio, l, near = (
-                self.arithmetic.number(ratio),
-                body.length,
-                100 * self.arithmetic.tolerance * body.length,
-            )
+            ratio = self.arithmetic.number(ratio)
+            l = body.length
+            near = 100 * self.arithmetic.tolerance * body.length
             phi, c, s = frames[body.name][2], frames[body.name][3].v, frames[body.name][4].v
             cut = place_in(frames, (body.name, ratio * l, 0.0))
             fx = fy = mz = 0.0  # what acts on the piece towards the tip
@@ -452,10 +446,8 @@ class Oracle:
             if mass and weight:
                 middle = first / mass
                 centre = place_in(frames, (body.name, middle * l, 0.0))
-                gx, gy = (
-                    mass * (self.gravity[0] - centre[0].a),
-                    mass * (self.gravity[1] - centre[1].a),
-                )
+                gx = mass * (self.gravity[0] - centre[0].a)
+                gy = mass * (self.gravity[1] - centre[1].a)
                 arm = (centre[0].v - cut[0].v, centre[1].v - cut[1].v)
                 fx, fy = fx + gx, fy + gy
                 mz += arm[0] * gy - arm[1] * gx - (second - first * middle) * l**2 * phi.a

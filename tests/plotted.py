@@ -10,10 +10,8 @@ from internals import Sweep, sweep
 
 BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
 
-CLOSED, REACH = (
-    "the iterated loops did not converge",
-    "no result: the iterated loops did not converge",
-)
+CLOSED = "the iterated loops did not converge"
+REACH = "no result: the iterated loops did not converge"
 
 
 def rewritten(found, name, change):

@@ -85,10 +85,8 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     lean = {"scene": scene, "wanted": ["effort"], "backend": "vm"}
     bare = {"scene": scene, "backend": "vm"}
     one = {"l": (0.2, 0.3, 2)}
-    t, columns = (
-        np.linspace(0.0, 1.0, 9),
-        {"O": np.linspace(0.0, 1.0, 9) ** 2, "effort:O": np.ones(9)},
-    )
+    t = np.linspace(0.0, 1.0, 9)
+    columns = {"O": np.linspace(0.0, 1.0, 9) ** 2, "effort:O": np.ones(9)}
     record = root.Measurements(t, columns)
     heads = [f"{at},{angle},1.0" for at, angle in zip(t, columns["O"], strict=True)]
     Path("record.csv").write_text("\n".join(["t [s],O [rad],effort:O [N m]", *heads]))

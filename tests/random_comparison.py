@@ -371,10 +371,8 @@ class Comparison:
             if name.startswith("load:"):
                 given = float(np.max(np.abs(values))) / (self.size if name.endswith(":mz") else 1.0)
                 largest["force"] = max(largest["force"], given)
-        mass, weight = (
-            sum(body.mass for body in self.d.bodies.values()),
-            math.hypot(*self.d.gravity),
-        )
+        mass = sum(body.mass for body in self.d.bodies.values())
+        weight = math.hypot(*self.d.gravity)
         largest["force"] = max(
             largest["force"], mass * (weight + largest["acceleration"] * self.size)
         )

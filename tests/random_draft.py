@@ -137,10 +137,8 @@ class Draft:
         """A link that is not placed yet; ``matter`` is its text, and what :class:`oracle.Body`
         takes.
         """
-        name, size = (
-            self.new("b"),
-            length if isinstance(length, Number) else self.number(length, spread),
-        )
+        name = self.new("b")
+        size = length if isinstance(length, Number) else self.number(length, spread)
         text, body = matter or self.matter(size.value)
         self.lines.append(f'{name} = m.link("{name}", length={size.text}, {text})')
         if "centre" in body:
@@ -169,18 +167,14 @@ class Draft:
                 "density": lambda u: (a.value + b * u) * length
             }
         if kind == "table":
-            at, to = (
-                (0.0, self.between(0.2, 0.8), 1.0),
-                tuple(self.between(0.0, 4.0) for _ in range(3)),
-            )
+            at = (0.0, self.between(0.2, 0.8), 1.0)
+            to = tuple(self.between(0.0, 4.0) for _ in range(3))
             return f"density=density.tabulated({at}, {to})", {
                 "density": lambda u: _linear(u, at, to) * length,
                 "breaks": at,
             }
-        mass, inertia = (
-            self.number(self.between(0.1, 3.0), 0.5),
-            self.number(self.between(1e-3, 0.1), 0.5),
-        )
+        mass = self.number(self.between(0.1, 3.0), 0.5)
+        inertia = self.number(self.between(1e-3, 0.1), 0.5)
         centre = (self.between(-0.2, 0.4), self.choose(0.0, self.between(-0.2, 0.2)))
         given = {"mass": mass.value, "centre": centre, "inertia": inertia.value}
         return f"mass={mass.text}, centre={centre}, inertia={inertia.text}", given
@@ -223,10 +217,8 @@ class Draft:
             return self.ground((self.between(-0.5, 0.5), self.between(-0.5, 0.5)))
         if not self.bodies[body].oriented:
             return self.base(body)
-        kind, l = (
-            self.choose("base", "tip", "station", "beside", weights=[2, 3, 2, 1]),
-            self.bodies[body].length,
-        )
+        kind = self.choose("base", "tip", "station", "beside", weights=[2, 3, 2, 1])
+        l = self.bodies[body].length
         if kind in ("base", "tip"):
             return getattr(self, kind)(body)
         return self.at(
@@ -297,10 +289,8 @@ class Draft:
         else:
             before = self.between(0.02, 0.1)
             name = self.link(before + length + self.between(0.06, 0.1), matter, spread)
-            first, second = (
-                self.at(name, before, 0.0, spread),
-                self.at(name, before + length, 0.0, spread),
-            )
+            first = self.at(name, before, 0.0, spread)
+            second = self.at(name, before + length, 0.0, spread)
         self.put(first, a, phi)
         return first, second
 

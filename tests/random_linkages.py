@@ -178,10 +178,8 @@ def scott_russell(d: Draft) -> list[str]:
 def parallel_cranks(d: Draft) -> list[str]:
     """Two or three equal cranks on one bar."""
     at, turned = frame(d)
-    r, phi = (
-        d.number(d.between(0.1, 0.3), 0.2),
-        d.choose(math.pi / 2, d.between(0.4, 2.7), d.between(-2.7, -0.4)),
-    )
+    r = d.number(d.between(0.1, 0.3), 0.2)
+    phi = d.choose(math.pi / 2, d.between(0.4, 2.7), d.between(-2.7, -0.4))
     feet = [
         (0.0, 0.0),
         (d.between(0.3, 0.5), 0.0),
@@ -303,10 +301,8 @@ def platform(d: Draft) -> list[str]:
         if d.chance(0.3):
             (x, y), (u, v) = at(*foot), at(*corner)
             way = math.atan2(v - y, u - x)
-            lower, upper = (
-                d.link(0.6 * math.dist(foot, corner)),
-                d.link(0.6 * math.dist(foot, corner)),
-            )
+            lower = d.link(0.6 * math.dist(foot, corner))
+            upper = d.link(0.6 * math.dist(foot, corner))
             d.put(d.base(lower), (x, y), way)
             d.put(d.tip(upper), (u, v), way)
             d.pin(d.ground((x, y)), d.base(lower))

@@ -57,12 +57,10 @@ def load(d: Draft) -> None:
         joints = [j for j in d.movable() if not d.joints[j].slides and abs(d.coordinate(j)) < 2.0]
         if not joints:
             return
-        joint, stiffness, angle, damping = (
-            d.choose(*joints),
-            d.between(0.1, 5),
-            d.between(-1, 1),
-            d.choose(0.0, d.between(0.01, 1)),
-        )
+        joint = d.choose(*joints)
+        stiffness = d.between(0.1, 5)
+        angle = d.between(-1, 1)
+        damping = d.choose(0.0, d.between(0.01, 1))
         numbers = f"stiffness={stiffness!r}, angle={angle!r}, damping={damping!r}"
         name = d.new("f")
         d.lines.append(f'm.torsion_spring("{name}", {joint}, {numbers})')

@@ -235,10 +235,8 @@ def _finish(seed: int, d: Draft) -> Drawn:
     path = follow(d, grid[1], 0.05 if d.whole else 0.1)
     if path.end < grid[1] and d.chance(0.8) and path.end > grid[0] + 0.05:
         stop = grid[0] + float(f"{0.9 * (path.end - grid[0]):.2g}")
-        scene_grid, grid = (
-            (scene_grid[0], max(stop, scene_grid[0] + 0.01), scene_grid[2]),
-            (grid[0], stop, grid[2]),
-        )
+        scene_grid = (scene_grid[0], max(stop, scene_grid[0] + 0.01), scene_grid[2])
+        grid = (grid[0], stop, grid[2])
     if all(
         text.startswith("motion.polynomial") and "," not in text for text, _ in d.laws.values()
     ) and d.chance(0.5):  # at rest

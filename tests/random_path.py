@@ -70,14 +70,10 @@ def follow(d, stop: float, largest: float, start: float | None = None, poses=Non
             for q in motion.q.values()
             for x, scale in zip(q, (size, size, 1.0), strict=True)
         ]
-        speed, bend = (
-            max(abs(x.d) / scale for x, scale in parts),
-            max(abs(x.a) / scale for x, scale in parts),
-        )
-        h, found = (
-            min(stop - t, largest / max(speed, math.sqrt(largest * bend), largest / (stop - t))),
-            None,
-        )
+        speed = max(abs(x.d) / scale for x, scale in parts)
+        bend = max(abs(x.a) / scale for x, scale in parts)
+        h = min(stop - t, largest / max(speed, math.sqrt(largest * bend), largest / (stop - t)))
+        found = None
         for _ in range(_TRIES):
             found = _step(d, motion, t, h if h < stop - t else stop - t, size)
             if found is not None:

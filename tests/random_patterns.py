@@ -102,10 +102,8 @@ def rack(d: Draft) -> list[str]:
 def cam(d: Draft) -> list[str]:
     """A follower that an equation ties to the angle of a cam."""
     at, turned = frame(d)
-    wheel, follower = (
-        block(d, at(0.0, 0.0)),
-        d.mass_point(at(0.0, d.between(0.2, 0.4)), d.between(0.1, 1.0)),
-    )
+    wheel = block(d, at(0.0, 0.0))
+    follower = d.mass_point(at(0.0, d.between(0.2, 0.4)), d.between(0.1, 1.0))
     main = d.pin(d.ground(at(0.0, 0.0)), wheel)
     way = d.line("prismatic", "ground", follower, turned(math.pi / 2))
     q, s = d.measured("coordinate", main), d.measured("coordinate", way)
@@ -125,10 +123,8 @@ def sleigh(d: Draft) -> list[str]:
     drive would.
     """
     at, turned = frame(d)
-    cross, pivot = (
-        block(d, at(0.0, 0.0), turned(d.angle())),
-        block(d, at(0.0, 0.0), turned(d.angle())),
-    )
+    cross = block(d, at(0.0, 0.0), turned(d.angle()))
+    pivot = block(d, at(0.0, 0.0), turned(d.angle()))
     body = d.link(d.between(0.3, 0.6))
     d.put(d.base(body), at(0.0, 0.0), turned(0.0))
     x = d.line("prismatic", "ground", cross, turned(0.0), d.ground(at(0.0, 0.0)))

@@ -35,10 +35,8 @@ def solved(name, count=41):
 def press(t=(0, 0.628, 9), wanted=("all",), unit="m"):
     """The slider-crank of the README."""
     m = Mechanism("press")
-    crank, rod = (
-        m.link("crank", length=0.1, mass=1.2),
-        m.link("rod", length=m.parameter("l", 0.5, unit, low=0.0), mass=2.0),
-    )
+    crank = m.link("crank", length=0.1, mass=1.2)
+    rod = m.link("rod", length=m.parameter("l", 0.5, unit, low=0.0), mass=2.0)
     ram = m.point_mass("ram", 15.0)
     drive = m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)

@@ -102,11 +102,9 @@ def solve_rubbing(oracle: Oracle, rubs: Sequence[Rub], drives, guess) -> Result:
     slopes = np.stack([(balanced(unit)[1] - alone) / size for unit in units], axis=-1)
     forces = a.zeros(n)
     for _ in range(PASSES):
-        before, forces = (
-            forces,
-            a.array(
-                [rub.law(r, place) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)]
-            ),
+        before = forces
+        forces = a.array(
+            [rub.law(r, place) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)]
         )
         if np.max(np.abs(forces - before)) <= a.tolerance / 10 * size:
             break

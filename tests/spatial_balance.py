@@ -210,11 +210,9 @@ class Balance:
 
         Raises :class:`spatial_algebra.InconsistentError` where no forces balance the bodies.
         """
-        arithmetic, joints, bodies = (
-            self.motion.arithmetic,
-            self.mechanism.joints,
-            self.mechanism.bodies,
-        )
+        arithmetic = self.motion.arithmetic
+        joints = self.mechanism.joints
+        bodies = self.mechanism.bodies
         nought, size = arithmetic.number(0), self.mechanism.size
         needs = {b.name: self.inertia(b) for b in bodies}
         row = {b.name: 6 * i for i, b in enumerate(bodies)}

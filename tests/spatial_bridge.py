@@ -176,17 +176,13 @@ def postures(drawn: Drawn, t: float) -> dict[str, float]:
 
 def _body(m, body, pose=None, beam=None):
     if isinstance(body, Rigid):
-        rows, centre, told = (
-            np.array(body.inertia, float),
-            np.array(body.centre, float),
-            {"length": _SIZE},
-        )
+        rows = np.array(body.inertia, float)
+        centre = np.array(body.centre, float)
+        told = {"length": _SIZE}
         if pose is not None:
-            rows, centre, told = (
-                pose[1] @ rows @ pose[1].T,
-                pose[0] + pose[1] @ centre,
-                _lying(*pose, _SIZE),
-            )
+            rows = pose[1] @ rows @ pose[1].T
+            centre = pose[0] + pose[1] @ centre
+            told = _lying(*pose, _SIZE)
         told |= {
             "centre": tuple(map(float, centre)),
             "inertia": tuple(tuple(map(float, row)) for row in rows),
@@ -291,11 +287,9 @@ def _turns(R):
     """A rotation as turns in sequence; as directions where the second would be a right angle."""
     if math.hypot(R[0, 0], R[1, 0]) < 1e-3:
         return tuple(map(float, R[:, 0])), tuple(map(float, R[:, 1]))
-    yaw, pitch, roll = (
-        math.atan2(R[1, 0], R[0, 0]),
-        math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0])),
-        math.atan2(R[2, 1], R[2, 2]),
-    )
+    yaw = math.atan2(R[1, 0], R[0, 0])
+    pitch = math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0]))
+    roll = math.atan2(R[2, 1], R[2, 2])
     return [("z", yaw), ("y", pitch), ("x", roll)]
 
 

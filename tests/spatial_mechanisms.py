@@ -151,10 +151,8 @@ def _loop(rng, universal, slides):
     O, a, _ = _pivot(rng, "O", crank, rng.normal(size=3) * 0.1, crank.length)
     if slides:
         last, at_last, R = rigid(rng, "slider", 0.1), (0, 0, 0), orientation(rng)
-        Q, b = (
-            Joint("Q", "prismatic", GROUND, "slider", far, axis=direction(rng), orientation=R),
-            far,
-        )
+        Q = Joint("Q", "prismatic", GROUND, "slider", far, axis=direction(rng), orientation=R)
+        b = far
     else:
         last = rod(rng, "rocker", rng.uniform(0.25, 0.4))
         at_last = (last.length, 0, 0)
@@ -201,11 +199,9 @@ def rsup(rng) -> Drawn:
 def stewart(rng) -> Drawn:
     """A Stewart-Gough platform of six legs, its pose prescribed, the efforts in its legs."""
     at, tilt = np.array([0.0, 0.0, rng.uniform(0.5, 0.7)]), rng.uniform(-0.2, 0.2, 3)
-    bodies, joints, guess = (
-        [rigid(rng, "platform", 0.3)],
-        [Joint("pose", "free", GROUND, "platform")],
-        {},
-    )
+    bodies = [rigid(rng, "platform", 0.3)]
+    joints = [Joint("pose", "free", GROUND, "platform")]
+    guess = {}
     places = [swing(rng, x, 0.04) for x in at]
     turns = [swing(rng, x, 0.1) for x in tilt]
     laws = {("pose", k): law for k, law in enumerate([*places, *turns])}
@@ -214,10 +210,8 @@ def stewart(rng) -> Drawn:
     for i in range(6):
         base, top = (_corner(rng, i, *ring) for ring in ((0.5, 0.2), (0.3, 0.8)))
         way = np.array([x, y, z]) + R @ top - base
-        cylinder, piston = (
-            body(rng, f"cylinder{i}", rng.uniform(0.3, 0.45)),
-            body(rng, f"piston{i}", rng.uniform(0.35, 0.5)),
-        )
+        cylinder = body(rng, f"cylinder{i}", rng.uniform(0.3, 0.45))
+        piston = body(rng, f"piston{i}", rng.uniform(0.35, 0.5))
         reach = rng.uniform(0.35, 0.5) if isinstance(piston, Rigid) else piston.length
         axes = frame(way, rng)
         bodies += [cylinder, piston]
@@ -468,11 +462,9 @@ def suspension(rng) -> Drawn:
         (-0.3, 0.25, 0.22),
         (0.15, 0.3, 0.29),
     ]
-    bodies, joints, guess = (
-        [hub],
-        [Joint("travel", "free", GROUND, "hub")],
-        {"hub": (at, np.eye(3))},
-    )
+    bodies = [hub]
+    joints = [Joint("travel", "free", GROUND, "hub")]
+    guess = {"hub": (at, np.eye(3))}
     for i, (end, base) in enumerate(zip(ends, inner, strict=True)):
         end, base = (np.array(x) + rng.normal(size=3) * 0.02 for x in (end, base))
         way = at + end - base

@@ -131,10 +131,8 @@ class Motion:
         R, w, alpha = parent.R, parent.w, parent.alpha
         v = a = None
         if moving:
-            v, a = (
-                parent.velocity(self.at_parent[joint.name]),
-                parent.acceleration(self.at_parent[joint.name]),
-            )
+            v = parent.velocity(self.at_parent[joint.name])
+            a = parent.acceleration(self.at_parent[joint.name])
         directions = []
         for k in self.kept(joint):
             u, (q, rate, acceleration) = R @ axes[k].direction, values[joint.name, k]
@@ -271,12 +269,10 @@ class Motion:
         """Poses and coordinates with rates and accelerations."""
         new = {GROUND: self.ground}
         for name, c in self.column.items():
-            v, w, a, alpha = (
-                rates[c : c + 3],
-                rates[c + 3 : c + 6],
-                accelerations[c : c + 3],
-                accelerations[c + 3 : c + 6],
-            )
+            v = rates[c : c + 3]
+            w = rates[c + 3 : c + 6]
+            a = accelerations[c : c + 3]
+            alpha = accelerations[c + 3 : c + 6]
             new[name] = replace(poses[name], v=v, w=w, a=a, alpha=alpha)
         return new, values | {
             key: (values[key][0], rates[c], accelerations[c]) for key, c in self.number.items()

@@ -144,11 +144,9 @@ def solve_rubbing(drawn: Drawn, rubs: Sequence[Rub], t: float) -> tuple[Result, 
     slopes = np.stack([(balanced(size * unit)[1] - alone) / size for unit in np.eye(n)], axis=-1)
     forces = np.zeros(n)
     for _ in range(PASSES):
-        before, forces = (
-            forces,
-            np.array(
-                [rub.law(still, r) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)]
-            ),
+        before = forces
+        forces = np.array(
+            [rub.law(still, r) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)]
         )
         if np.max(np.abs(forces - before)) <= 1e-16 * size:
             break

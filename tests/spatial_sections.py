@@ -50,10 +50,8 @@ class Section:
                 *((low, min(high, cut)) if from_base else (max(low, cut), high)),
             )
         for one in acting:
-            force, moment = (
-                force + one.force,
-                moment + one.moment + cross(one.place - place, one.force),
-            )
+            force = force + one.force
+            moment = moment + one.moment + cross(one.place - place, one.force)
         if weight:
             ends = (0, xi) if from_base else (xi, 1)
             for x, mass, inertia in self.rod.slices(arithmetic, *map(arithmetic.number, ends)):
@@ -61,10 +59,8 @@ class Section:
                 needed = (pose.acceleration(point) - self.gravity) * mass
                 inertia = pose.R @ inertia @ pose.R.T
                 couple = inertia @ pose.alpha + cross(pose.w, inertia @ pose.w)
-                force, moment = (
-                    force - needed,
-                    moment - couple - cross(pose.at(point) - place, needed),
-                )
+                force = force - needed
+                moment = moment - couple - cross(pose.at(point) - place, needed)
         found = np.concatenate([pose.R.T @ force, pose.R.T @ moment])
         return -found if from_base else found
 

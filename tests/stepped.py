@@ -36,10 +36,8 @@ def two_rods(motion=MOTION, **keywords):
         ("closed", l, Mechanism.revolute, (1, 0)),
         ("stepped", 0.5, pinned, (0, 1)),
     ):
-        rod, slider = (
-            m.link(f"{name}_rod", length=length, mass=0.1),
-            m.point_mass(f"{name}_slider", 0.1),
-        )
+        rod = m.link(f"{name}_rod", length=length, mass=0.1)
+        slider = m.point_mass(f"{name}_slider", 0.1)
         m.revolute(f"{name}_A", crank.tip, rod)
         pin(m, f"{name}_B", rod.tip, slider)
         m.prismatic(f"{name}_guide", m.ground, slider, axis=way)

@@ -23,10 +23,8 @@ def press(
     """
     m = Mechanism("press")
     beam = beams.Beam(shape, material, notches, columns)
-    crank, rod = (
-        m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.2),
-        m.link("rod", length=0.4, beam=beam),
-    )
+    crank = m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.2)
+    rod = m.link("rod", length=0.4, beam=beam)
     ram = m.point_mass("ram", 15.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
@@ -62,17 +60,13 @@ def robot(shape, material=STEEL):
 def slider(endurance=None):
     """A slider-crank of rectangular bars, whose height may be chosen."""
     m = Mechanism("slider")
-    r, l, h = (
-        m.parameter("r", 0.1, "m", low=0.0),
-        m.parameter("l", 0.4, "m", low=0.0),
-        m.parameter("h", 0.02, "m", low=0.0),
-    )
+    r = m.parameter("r", 0.1, "m", low=0.0)
+    l = m.parameter("l", 0.4, "m", low=0.0)
+    h = m.parameter("h", 0.02, "m", low=0.0)
     bar = beams.Beam(beams.rectangle(h, 0.012), STEEL.but(endurance=endurance))
-    crank, rod, ram = (
-        m.link("crank", length=r, beam=bar),
-        m.link("rod", length=l, beam=bar),
-        m.point_mass("ram", 15.0),
-    )
+    crank = m.link("crank", length=r, beam=bar)
+    rod = m.link("rod", length=l, beam=bar)
+    ram = m.point_mass("ram", 15.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, ram)
@@ -86,10 +80,8 @@ BARS = [Profile(f"bar {d}", {"diameter": d / 1000}) for d in (14, 8, 12, 10, 18,
 def arms(push=-60.0, shared=False):
     """Two arms, one on the other, fast enough that what they weigh is what loads them."""
     m = Mechanism("arms")
-    d1, d2 = (
-        m.parameter("d1", 0.03, "m", low=0.001, high=0.1),
-        m.parameter("d2", 0.03, "m", low=0.001, high=0.1),
-    )
+    d1 = m.parameter("d1", 0.03, "m", low=0.001, high=0.1)
+    d2 = m.parameter("d2", 0.03, "m", low=0.001, high=0.1)
     upper = m.link("upper", length=0.5, beam=beams.Beam(beams.round_bar(d1), STEEL))
     fore = m.link("fore", length=0.4, beam=beams.Beam(beams.round_bar(d1 if shared else d2), STEEL))
     plate = m.link("plate", length=0.1, beam=beams.Beam(beams.rectangle(0.05, 0.01), STEEL))

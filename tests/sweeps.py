@@ -17,7 +17,7 @@ from internals import DesignEngine, Outcome, Provenance, sweep
 from lagrange_casadi.version import __version__
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
-ASKED = ["sweep", str(CASE), "--t", "0:0.08:21", "--want", "effort", "--want", "section:rod"]
+ASKED = "sweep CASE --t 0:0.08:21 --want effort --want section:rod"
 BENDING = "peak:section:rod:bending"
 GRID = {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 7)}
 SIZE = 420

@@ -57,11 +57,9 @@ def friction(load):
     slider pushed likewise.
     """
     m = Mechanism("friction")
-    crank, rod, slider = (
-        m.link("crank", length=0.1, mass=1.0),
-        m.link("rod", length=0.3, mass=1.0),
-        m.point_mass("slider", 1.0),
-    )
+    crank = m.link("crank", length=0.1, mass=1.0)
+    rod = m.link("rod", length=0.3, mass=1.0)
+    slider = m.point_mass("slider", 1.0)
     main = m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slider)
@@ -106,11 +104,9 @@ def test_a_load_that_jumps_where_rounding_decides():
     instant at a time.
     """
     m = Mechanism("reversing")
-    crank, rod, slider = (
-        m.link("crank", length=0.1, mass=1.0),
-        m.link("rod", length=0.3, mass=1.0),
-        m.point_mass("slider", 1.0),
-    )
+    crank = m.link("crank", length=0.1, mass=1.0)
+    rod = m.link("rod", length=0.3, mass=1.0)
+    slider = m.point_mass("slider", 1.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slider)

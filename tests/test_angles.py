@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from commands import words
 from hypothesis import given
 from hypothesis import strategies as st
 from internals import Range, Sweep, Values, angle, best, chosen, sweep
@@ -288,32 +289,12 @@ def test_the_command_line_takes_degrees(here, capfd):
         "expected NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg, got"
         in capfd.readouterr().err
     )
-    sweep = [
-        "sweep",
-        "case.py",
-        "--grid",
-        "tilt=0:1:3",
-        "--grid",
-        "l=0.2:0.4:3",
-        "--quiet",
-        "--want",
-        "effort",
-        "--out",
-        "s.h5",
-    ]
+    sweep = words(
+        "sweep case.py --grid tilt=0:1:3 --grid l=0.2:0.4:3 --quiet --want effort --out s.h5"
+    )
     assert main(sweep) == 0
     assert main([*sweep[:4], *sweep[6:-1], "t.h5", "--set", "l=2deg"]) == 2
-    degrees = [
-        "sweep",
-        "case.py",
-        "--grid",
-        "tilt=0deg:90deg:3",
-        "--grid",
-        "l=0.2,0.4",
-        "--quiet",
-        "--out",
-        "d.h5",
-    ]
+    degrees = words("sweep case.py --grid tilt=0deg:90deg:3 --grid l=0.2,0.4 --quiet --out d.h5")
     assert main(degrees) == 0
     assert main([*degrees[:3], "tilt=0,45 deg,90deg", *degrees[4:-1], "e.h5"]) == 0
     assert (here / "d.h5").read_bytes() == (here / "e.h5").read_bytes()

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from commands import command, words
 from drawn_scenes import every_kind
 from internals import Film, Line, gif, picture_of, svg, write_animation
 from PIL import Image
@@ -140,10 +141,8 @@ def test_arrows_and_ribbons_have_the_signs_of_the_solution():
         * picture_size(solution)
     )
     for link, both in (("crank", lines[:2]), ("rod", lines[2:4])):
-        angle, values = (
-            solution.pose(link).angle[:-1],
-            solution.section(link).law.on_grid("bending", np.linspace(0, 1, 41))[:-1],
-        )
+        angle = solution.pose(link).angle[:-1]
+        values = solution.section(link).law.on_grid("bending", np.linspace(0, 1, 41))[:-1]
         n = np.column_stack([-np.sin(angle), -np.cos(angle)])[:, None]
         for line, kept in zip(both, (np.maximum(values, 0), np.minimum(values, 0)), strict=True):
             ordinates = np.sum((line.points[:, :40:-1] - line.points[:, :41]) * n, axis=-1)
@@ -280,18 +279,7 @@ def put_ffmpeg(folder, monkeypatch):
 def test_a_film_is_made_by_ffmpeg(here, capsys, monkeypatch):
     put_ffmpeg(here / "programs", monkeypatch)
     save(press(TURN), "press.h5")
-    arguments = [
-        "animate",
-        "press.h5",
-        "--out",
-        "a.mp4",
-        "--width",
-        "160",
-        "--rate",
-        "5",
-        "--seconds",
-        "2",
-    ]
+    arguments = words("animate press.h5 --out a.mp4 --width 160 --rate 5 --seconds 2")
     assert main(arguments) == 0
     assert (here / "a.mp4").read_text() == "5 10"
     (here / "programs" / "fails").touch()
@@ -303,22 +291,7 @@ def test_a_film_is_made_by_ffmpeg(here, capsys, monkeypatch):
 
 def test_the_command_shows_a_file_and_a_case(here, capsys):
     save(press(TURN), "press.h5")
-    assert (
-        main(
-            [
-                "animate",
-                "press.h5",
-                "--forces",
-                "--section",
-                "bending",
-                "--width",
-                "160",
-                "--rate",
-                "5",
-            ]
-        )
-        == 0
-    )
+    assert command("animate press.h5 --forces --section bending --width 160 --rate 5") == 0
     assert (
         main(["animate", "four_bar", "--out", "b.svg", "--forces", "--no-names", "--t", "0:0.5:21"])
         == 0

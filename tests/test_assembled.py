@@ -75,10 +75,8 @@ def test_a_scene_is_compiled_with_values_where_its_own_do_not_serve():
     """
     with pytest.raises(AssemblyError):
         compile_scene(four_bar(SHORT), ["effort"])
-    program, own = (
-        compile_scene(four_bar(SHORT), ["effort"], parameters=VALUES),
-        compile_scene(four_bar(LONG), ["effort"]),
-    )
+    program = compile_scene(four_bar(SHORT), ["effort"], parameters=VALUES)
+    own = compile_scene(four_bar(LONG), ["effort"])
     p = list(VALUES.values())
     t, motion = 0.1, program.motion(0.1, p)
     np.testing.assert_array_equal(

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from commands import command
 
 from lagrange_casadi import (
     Mechanism,
@@ -16,7 +17,6 @@ from lagrange_casadi import (
     save,
     sweep,
 )
-from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 
@@ -191,20 +191,6 @@ def scene():
 def test_run_tells_what_governs(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "case.py").write_text(CASE)
-    assert (
-        main(
-            [
-                "run",
-                "case.py",
-                "--no-figures",
-                "--no-certificate",
-                "--backend",
-                "vm",
-                "--want",
-                "safety",
-            ]
-        )
-        == 0
-    )
+    assert command("run case.py --no-figures --no-certificate --backend vm --want safety") == 0
     assert "  O   " in (out := capsys.readouterr().out)
     assert "life of bearing governs" in out

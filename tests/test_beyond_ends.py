@@ -56,10 +56,8 @@ def test_the_lines_make_what_was_meant(station):
     solution = evaluate(scene)
     assert solution.certified
     angle, alpha = solution.motion("O").value, 10.0
-    inertia, moment = (
-        MASS * LENGTH**2 / 3 + WEIGHT * station**2,
-        MASS * LENGTH / 2 + WEIGHT * station,
-    )
+    inertia = MASS * LENGTH**2 / 3 + WEIGHT * station**2
+    moment = MASS * LENGTH / 2 + WEIGHT * station
     torque = inertia * alpha + G * moment * np.cos(angle)
     np.testing.assert_allclose(
         solution.effort("O"), torque, rtol=0, atol=1e-13 * np.abs(torque).max()

@@ -3,100 +3,86 @@
 import importlib
 import re
 import resource
-from pathlib import Path
 
 import psutil
 import pytest
 import sweeps
+from commands import command
 from internals import plan, points, space, workers
 from mechanisms import slider_crank
 from stepped import iterated
 
 from lagrange_casadi import evaluate, sweep
-from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, SizeError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
-CASE = str(Path(__file__).parent.parent / "cases" / "slider_crank")
 HUGE = "99999999999999999999999"
 COUNT = r"t: COUNT must be a whole number from 1 to 2\^63 - 1, got "
 STEPS = (
     r"newton: expected a number of steps, from 1 to 1000 \(after some ten nothing changes\), got "
 )
 THREADS = "is not in the range 1<=x<=1024"
-GRID = ["--grid", "l=0.2:0.3:3"]
+GRID = "--grid l=0.2:0.3:3"
 FREE = r"GB, and this machine has \S+ GB free"
 
 REFUSED = {
-    "newton": (["run", CASE, "--newton", "1000000000"], 2, STEPS + "1000000000"),
-    "newton-huge": (["run", CASE, "--newton", HUGE], 2, STEPS + HUGE),
-    "newton-exported": (
-        ["export", CASE, "--out", "x", "--newton", "1000000000"],
-        2,
-        STEPS + "1000000000",
-    ),
-    "newton-swept": (["sweep", CASE, *GRID, "--newton", "1001"], 2, STEPS + "1001"),
+    "newton": ("run CASE --newton 1000000000", 2, STEPS + "1000000000"),
+    "newton-huge": (f"run CASE --newton {HUGE}", 2, STEPS + HUGE),
+    "newton-exported": ("export CASE --out x --newton 1000000000", 2, STEPS + "1000000000"),
+    "newton-swept": (f"sweep CASE {GRID} --newton 1001", 2, STEPS + "1001"),
     "t": (
-        ["run", CASE, "--t", "0:0.08:100000000000"],
+        "run CASE --t 0:0.08:100000000000",
         1,
         f"not enough memory for the outputs over time: .* {FREE}",
     ),
-    "t-huge": (["run", CASE, "--t", f"0:0.08:{HUGE}"], 2, COUNT + HUGE),
+    "t-huge": (f"run CASE --t 0:0.08:{HUGE}", 2, COUNT + HUGE),
     "t-swept": (
-        ["sweep", CASE, *GRID, "--t", "0:0.08:100000000000"],
+        f"sweep CASE {GRID} --t 0:0.08:100000000000",
         1,
         f"not enough memory for the points from 0 to 0.08: .* {FREE}",
     ),
-    "t-swept-huge": (
-        ["sweep", CASE, *GRID, "--t", f"0:0.08:{HUGE}"],
-        2,
-        COUNT,
-    ),
-    "t-traded": (
-        ["trade", CASE, "--t", "0:0.08:100000000000"],
-        1,
-        f"not enough memory for .* {FREE}",
-    ),
+    "t-swept-huge": (f"sweep CASE {GRID} --t 0:0.08:{HUGE}", 2, COUNT),
+    "t-traded": ("trade CASE --t 0:0.08:100000000000", 1, f"not enough memory for .* {FREE}"),
     "xi": (
-        ["run", CASE, "--xi", "0:1:100000000000", "--t", "0:0.08:9"],
+        "run CASE --xi 0:1:100000000000 --t 0:0.08:9",
         1,
         f"not enough memory for the points from 0 to 1: .* {FREE}",
     ),
     "xi-swept": (
-        ["sweep", CASE, *GRID, "--xi", "0:1:100000000000"],
+        f"sweep CASE {GRID} --xi 0:1:100000000000",
         1,
         f"not enough memory for the points from 0 to 1: .* {FREE}",
     ),
     "table": (
-        ["run", CASE, "--table", "1000000000"],
+        "run CASE --table 1000000000",
         2,
         "table: expected a whole number of nodes from 8 to 16384",
     ),
     "table-exported": (
-        ["export", CASE, "--out", "x", "--table", HUGE],
+        f"export CASE --out x --table {HUGE}",
         2,
         "table: expected a whole number of nodes from 8 to 16384",
     ),
-    "threads": (["run", CASE, "--threads", "1000000000"], 2, THREADS),
-    "workers": (["sweep", CASE, *GRID, "--workers", "1000000000"], 2, THREADS),
+    "threads": ("run CASE --threads 1000000000", 2, THREADS),
+    "workers": (f"sweep CASE {GRID} --workers 1000000000", 2, THREADS),
     "grid-unmeant": (
-        ["sweep", CASE, "--grid", "l=0.2:0.3:2000000000"],
+        "sweep CASE --grid l=0.2:0.3:2000000000",
         2,
         "2 000 000 000 designs, more than 10\\^9; if that is meant, say --yes",
     ),
     "grid-huge": (
-        ["sweep", CASE, "--yes", "--grid", f"l=0.2:0.3:{HUGE}"],
+        f"sweep CASE --yes --grid l=0.2:0.3:{HUGE}",
         2,
         "99 999 .* designs, and a sweep at most 10\\^12",
     ),
     "grid-product": (
-        ["sweep", CASE, "--yes", "--grid", "l=0.2:0.3:10000000", "--grid", "r=0.05:0.1:10000000"],
+        "sweep CASE --yes --grid l=0.2:0.3:10000000 --grid r=0.05:0.1:10000000",
         2,
         "100 000 000 000 000 designs, and a sweep at most 10\\^12",
     ),
     "grid-no-disk": (
-        ["sweep", CASE, "--yes", "--grid", "l=0.2:0.3:1000000000000"],
+        "sweep CASE --yes --grid l=0.2:0.3:1000000000000",
         1,
         r"takes about 8e\+03 GB, and the disk has \S+ GB left",
     ),
@@ -112,10 +98,10 @@ def limited():
     resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
-@pytest.mark.parametrize(("arguments", "status", "says"), REFUSED.values(), ids=REFUSED)
-def test_a_number_that_cannot_be_meant_is_one_line(here, limited, capfd, arguments, status, says):
+@pytest.mark.parametrize(("line", "status", "says"), REFUSED.values(), ids=REFUSED)
+def test_a_number_that_cannot_be_meant_is_one_line(here, limited, capfd, line, status, says):
     """Within 8 GB of addresses, of which what computes would take more."""
-    assert main(arguments) == status
+    assert command(line) == status
     *notes, error = capfd.readouterr().err.splitlines()
     assert re.search(says, error), error
     assert error.startswith("error: ")
@@ -134,15 +120,11 @@ def test_python_refuses_them_too(keywords):
 
 
 @pytest.mark.parametrize(
-    "command",
-    [
-        ["table", "x.h5", "--rows", HUGE],
-        ["best", "x.h5", "--minimise", "peak:effort:O", "--count", HUGE],
-    ],
+    "line", [f"table x.h5 --rows {HUGE}", f"best x.h5 --minimise peak:effort:O --count {HUGE}"]
 )
-def test_more_rows_than_there_are_are_all(here, capsys, command):
+def test_more_rows_than_there_are_are_all(here, capsys, line):
     sweep(slider_crank(), {"l": (0.2, 0.3, 25)}, t=(0, 0.08, 5), wanted=["effort"], out="x.h5")
-    assert main(command) == 0
+    assert command(line) == 0
     assert len(capsys.readouterr().out.splitlines()) == 26
 
 

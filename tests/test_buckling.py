@@ -112,11 +112,9 @@ def test_a_beam_column_by_its_differential_equation():
     sqrt(N/N_e)); the interaction with Euler's load and the yield load in its place is on the safe
     side of that, by little."""
     area, second, height, length = 4e-4, 2e-8, 0.02, 0.5
-    euler, yields, bends = (
-        math.pi**2 * E * second / length**2,
-        area * SY,
-        SY * second / (height / 2),
-    )
+    euler = math.pi**2 * E * second / length**2
+    yields = area * SY
+    bends = SY * second / (height / 2)
     of = Column((1.0, 1.0), (0.0, 0.0), (euler, euler), (yields, yields), (bends, bends))
     n, m = 2e4, 40.0
     found = load_factor(np.array([n]), (np.array([m]), np.zeros(1)), of)[0]

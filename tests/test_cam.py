@@ -33,11 +33,9 @@ def machine(kind, law="cycloidal", h=0.02, base=0.05, offset=0.008, lift=None):
     swings about (0.11, 0.02).
     """
     m, swinging = Mechanism("machine"), kind.startswith("swinging")
-    rise, radius, preload = (
-        m.parameter("h", h),
-        m.parameter("base", base, "m"),
-        m.parameter("preload", 400.0),
-    )
+    rise = m.parameter("h", h)
+    radius = m.parameter("base", base, "m")
+    preload = m.parameter("preload", 400.0)
     disc = m.link("disc", length=0.04, mass=1.5, centre=(0, 0), inertia=1e-3)
     main = m.revolute("main", m.ground.at(0.01, -0.02), disc)
     high = 10 * rise if swinging else rise

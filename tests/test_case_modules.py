@@ -10,6 +10,7 @@ import textwrap
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from commands import words
 
 from lagrange_casadi import case_modules, load_case
 from lagrange_casadi.errors import CaseError, PickleError
@@ -170,11 +171,7 @@ def test_a_case_may_have_processes_work_for_it(here, tmp_path_factory, method, c
         *command,
         "run",
         str(folder),
-        "--no-figures",
-        "--t",
-        "0:1:5",
-        "--out",
-        "x.h5",
+        *words("--no-figures --t 0:1:5 --out x.h5"),
     ]
     done = subprocess.run(asked, capture_output=True, text=True, timeout=120, check=False)
     assert (done.returncode, done.stderr) == (0, "")

@@ -124,12 +124,10 @@ def test_squeezer_at_the_printed_rates():
     """At the set's own q, q' and q'', all seven, the Lagrange terms give its torque and multipliers
     to its own accuracy.
     """
-    q, qd, qdd, lam = (
-        ca.SX.sym("q", 7),
-        ca.SX.sym("qd", 7),
-        ca.SX.sym("qdd", 7),
-        ca.SX.sym("lam", 6),
-    )
+    q = ca.SX.sym("q", 7)
+    qd = ca.SX.sym("qd", 7)
+    qdd = ca.SX.sym("qdd", 7)
+    lam = ca.SX.sym("lam", 6)
     module = load_module("andrews_squeezer")
     beta, theta, gamma, phi, delta, omega, epsilon = ca.vertsplit(q)
     g = vars(module)

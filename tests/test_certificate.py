@@ -7,17 +7,8 @@ import casadi as ca
 import h5py
 import numpy as np
 import pytest
-from conftest import CASES
-from internals import (
-    COARSE,
-    DesignEngine,
-    EvaluationMethod,
-    Solution,
-    Status,
-    check,
-    load,
-    loops,
-)
+from commands import command
+from internals import COARSE, DesignEngine, EvaluationMethod, Solution, Status, check, load, loops
 from internals import instants_refusal as refusal
 from mechanisms import far, ladder, parallelogram, slider_crank
 
@@ -154,19 +145,7 @@ def test_a_file_of_a_result_that_fails_is_marked(tmp_path):
 
 
 def test_run_ends_with_a_status_where_the_certificate_fails(here, capsys):
-    assert (
-        main(
-            [
-                "run",
-                str(CASES / "slider_crank"),
-                "--backend",
-                "c",
-                "--flags=-Dsin=cos",
-                "--no-figures",
-            ]
-        )
-        == 1
-    )
+    assert command("run CASE --backend c --flags=-Dsin=cos --no-figures") == 1
     told = capsys.readouterr()
     assert "slider_crank.h5 is marked as not certified" in told.err.splitlines()[-1]
     assert "certificate: relative residuals closure" in told.out
@@ -177,19 +156,9 @@ def test_a_sweep_ends_with_a_status_where_a_certificate_fails(here, capsys):
     """The designs that are kept need not hold what shows it: one of a block is evaluated with all
     outputs, and compared.
     """
-    sweep = [
-        "sweep",
-        str(CASES / "slider_crank"),
-        "--grid",
-        "l=0.2:0.4:9",
-        "--want",
-        "effort",
-        "--out",
-        "s.h5",
-        "--quiet",
-    ]
-    assert main([*sweep, "--backend", "c"]) == 0
-    assert main([*sweep, "--backend", "c", "--flags=-Dsin=cos", "--force"]) == 1
+    line = "sweep CASE --grid l=0.2:0.4:9 --want effort --out s.h5 --quiet --backend c"
+    assert command(line) == 0
+    assert command(f"{line} --flags=-Dsin=cos --force") == 1
     assert "checked in full, one of each block, fails its certificate" in capsys.readouterr().err
     with h5py.File("s.h5") as file:
         status, effort = file["status"][()], file["peak/effort/O"][()]

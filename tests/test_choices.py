@@ -35,10 +35,8 @@ def loaded(choice):
 def lifted(choice):
     m = Mechanism("m")
     disc, stem = m.link("disc", length=0.1, mass=1.0), m.link("stem", length=0.1, mass=1.0)
-    main, guide = (
-        m.revolute("main", m.ground, disc),
-        m.prismatic("guide", m.ground, stem, axis=(0, 1), angle="90 deg"),
-    )
+    main = m.revolute("main", m.ground, disc)
+    guide = m.prismatic("guide", m.ground, stem, axis=(0, 1), angle="90 deg")
     elements.disc_cam(m, "cam", main, guide, choice, base_radius=0.03)
 
 

@@ -52,10 +52,8 @@ def clear_is_smooth(seeds):
         if smooth is None:
             continue
         start = r.uniform(-1, 1)
-        paths, p = (
-            np.linspace(start, start + 10 ** r.uniform(-2, 0), 1001)[None, None],
-            np.array([[float(r.choice([0.0, 0.3, 1.0]))]]),
-        )
+        paths = np.linspace(start, start + 10 ** r.uniform(-2, 0), 1001)[None, None]
+        p = np.array([[float(r.choice([0.0, 0.3, 1.0]))]])
         if not smooth.clearance.near(
             paths.min(axis=2), paths.max(axis=2), p, lambda _, paths=paths: paths
         )[0]:

@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 import h5py
 import numpy as np
 import pytest
+from commands import command, words
 from forging import forging
 from internals import ordered, peak_line, shown
 from internals import report_readable as readable
@@ -26,7 +27,7 @@ CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 
 
 def test_run_writes_the_file_and_the_figures(here, capsys):
-    assert main(["run", str(CASE)]) == 0
+    assert command("run CASE") == 0
     assert sorted(path.name for path in here.iterdir()) == [
         "slider_crank.h5",
         "slider_crank_figures",
@@ -49,10 +50,9 @@ def test_run_writes_the_file_and_the_figures(here, capsys):
 
 def test_figures_may_be_svg(here):
     """The same ones as PNG, with a page that shows them; the bytes are the same each time."""
-    run = ["run", str(CASE), "--t", "0:0.08:41", "--want", "section:rod", "--no-figures"]
-    assert main(run) == 0
-    for folder, options in (("png", []), ("svg", ["--svg"]), ("again", ["--svg"])):
-        assert main(["plot", "slider_crank.h5", "--out", folder, *options]) == 0
+    assert command("run CASE --t 0:0.08:41 --want effort --want reaction:A --no-figures") == 0
+    for out in ("png", "svg --svg", "again --svg"):
+        assert command(f"plot slider_crank.h5 --out {out}") == 0
     drawn = sorted((here / "svg").glob("*.svg"))
     assert drawn
     assert [path.stem for path in drawn] == sorted(
@@ -68,20 +68,10 @@ def test_figures_may_be_svg(here):
 
 def test_run_refines_peaks(here, capsys):
     """The report changes, the file does not."""
-    arguments = [
-        "run",
-        str(CASE),
-        "--t",
-        "0:0.08:41",
-        "--no-figures",
-        "--want",
-        "effort",
-        "--want",
-        "section:rod",
-    ]
-    assert main([*arguments, "--out", "one.h5"]) == 0
+    line = "run CASE --t 0:0.08:41 --no-figures --want effort --want section:rod"
+    assert command(f"{line} --out one.h5") == 0
     assert "ratios xi/l, backend" in (plain := capsys.readouterr().out)
-    assert main([*arguments, "--out", "two.h5", "--refine-peaks"]) == 0
+    assert command(f"{line} --out two.h5 --refine-peaks") == 0
     refined = capsys.readouterr().out
     assert "; largest at the instants:" in plain
     assert "; largest, refined between the instants:" in refined
@@ -101,22 +91,8 @@ def test_a_peak_that_is_not_told_is_no_number(slider_crank):
 
 @pytest.mark.quick
 def test_run_takes_options(here):
-    arguments = [
-        "--set",
-        "l=0.25",
-        "--set",
-        "m3=0.2",
-        "--t",
-        "0:0.04:5",
-        "--xi",
-        "0:1:3",
-        "--want",
-        "section:rod",
-    ]
-    assert (
-        main(["run", str(CASE), *arguments, "--backend", "vm", "--out", "x.h5", "--no-figures"])
-        == 0
-    )
+    options = "--set l=0.25 --set m3=0.2 --t 0:0.04:5 --xi 0:1:3 --want section:rod"
+    assert command(f"run CASE {options} --backend vm --out x.h5 --no-figures") == 0
     assert [path.name for path in here.iterdir()] == ["x.h5"]
     with h5py.File("x.h5") as h:
         assert set(h) == {"t", "xi", "section", "certificate"}
@@ -128,37 +104,20 @@ def test_run_takes_options(here):
 @pytest.mark.quick
 def test_run_goes_over_a_drive(here, capsys):
     """Angles in degrees where they are typed and where they are shown."""
-    assert (
-        main(
-            [
-                "run",
-                str(CASE),
-                "--over",
-                "O = 0:360deg:37",
-                "--want",
-                "effort",
-                "--out",
-                "x.h5",
-                "--no-figures",
-            ]
-        )
-        == 0
-    )
+    assert command("run CASE --over 'O = 0:360deg:37' --want effort --out x.h5 --no-figures") == 0
     assert re.search(r"effort:O .* N m  at O = 30 deg, t = 0\.00666", capsys.readouterr().out)
     with h5py.File("x.h5") as h:
         np.testing.assert_allclose(h["over"], math.tau * np.arange(37) / 36, rtol=1e-15)
-    assert main(["info", "x.h5"]) == 0
+    assert command("info x.h5") == 0
     assert "in equal steps of O [deg]: 0 to 360" in capsys.readouterr().out
 
 
 def test_run_replaces_an_older_file(here):
     Path("x.h5").touch()
     for count in (5, 9):
-        assert (
-            main(["run", str(CASE), "--t", f"0:0.04:{count}", "--out", "x.h5", "--no-figures"]) == 0
-        )
+        assert command(f"run CASE --t 0:0.04:{count} --out x.h5 --no-figures") == 0
         assert load("x.h5").t.size == count
-    assert main(["check", "x.h5"]) == 0
+    assert command("check x.h5") == 0
 
 
 PLAIN = f"""
@@ -169,26 +128,12 @@ def scene(): return load_case({str(CASE)!r}).scene
 
 def test_cases_of_two_versions_write_files_of_their_own(here):
     for version in ("1.2", "1.3"):
-        folder = here / "cases" / f"press_{version}"
+        folder = Path("cases") / f"press_{version}"
         folder.mkdir(parents=True)
         (folder / "case.py").write_text(PLAIN)
-        assert main(["run", str(folder), "--t", "0:0.04:5", "--want", "effort"]) == 0
-        assert (
-            main(
-                [
-                    "sweep",
-                    str(folder),
-                    "--grid",
-                    "l=0.2,0.3",
-                    "--want",
-                    "effort",
-                    "--t",
-                    "0:0.04:5",
-                    "--quiet",
-                ]
-            )
-            == 0
-        )
+        assert command(f"run {folder} --t 0:0.04:5 --want effort") == 0
+        line = f"sweep {folder} --grid l=0.2,0.3 --want effort --t 0:0.04:5 --quiet"
+        assert command(line) == 0
     own = [
         f"press_{version}{end}"
         for version in ("1.2", "1.3")
@@ -200,7 +145,7 @@ def test_cases_of_two_versions_write_files_of_their_own(here):
 @pytest.mark.parametrize("figures", ["x.h5", "./x.h5", "y/../x.h5"])
 def test_figures_have_a_place_of_their_own(here, capfd, figures):
     (here / "y").mkdir()
-    assert main(["run", str(CASE), "--t", "0:0.04:5", "--out", "x.h5", "--figures", figures]) == 2
+    assert command(f"run CASE --t 0:0.04:5 --out x.h5 --figures {figures}") == 2
     assert capfd.readouterr() == (
         "",
         f"error: --figures {Path(figures)}: expected another place than the file's\n",
@@ -211,23 +156,7 @@ def test_figures_have_a_place_of_their_own(here, capfd, figures):
 def test_what_is_in_the_way_of_a_figure_is_told_before_the_file_is_there(here, capfd):
     (here / "figures" / "effort_O.png").mkdir(parents=True)
     (here / "case.py").write_text(PLAIN)
-    assert (
-        main(
-            [
-                "run",
-                "case.py",
-                "--t",
-                "0:0.04:5",
-                "--want",
-                "effort",
-                "--out",
-                "x.h5",
-                "--figures",
-                "figures",
-            ]
-        )
-        == 2
-    )
+    assert command("run case.py --t 0:0.04:5 --want effort --out x.h5 --figures figures") == 2
     assert capfd.readouterr().err.startswith(
         "error: cannot draw into figures: it holds other files, 'effort_O.png' among"
     )
@@ -250,20 +179,17 @@ def figures(): return list({{type(spec): spec for spec in CASE.figures}}.values(
 def test_plot_draws_what_run_drew(here):
     """Of the case's own figures some: one of each kind."""
     (here / "case.py").write_text(FEW_FIGURES.format(case=str(CASE)))
-    assert (
-        main(["run", "case.py", "--t", "0:0.08:41", "--out", "slider_crank.h5", "--figures", "one"])
-        == 0
-    )
+    assert command("run case.py --t 0:0.08:41 --out slider_crank.h5 --figures one") == 0
     assert len(list(Path("one").glob("*.png"))) == 4
-    assert main(["plot", "slider_crank.h5", "--out", "two"]) == 0
+    assert command("plot slider_crank.h5 --out two") == 0
     for path in Path("one").iterdir():
         assert path.read_bytes() == (Path("two") / path.name).read_bytes(), path.name
 
 
 def test_info_of_a_case_counts_instructions(capsys):
-    assert main(["info", str(CASE)]) == 0
+    assert command("info CASE") == 0
     everything = capsys.readouterr().out
-    assert main(["info", str(CASE), "--want", "effort"]) == 0
+    assert command("info CASE --want effort") == 0
     effort = capsys.readouterr().out
     counts = [
         int(text.split("instructions an instant: ")[1].split()[0]) for text in (effort, everything)
@@ -275,20 +201,20 @@ def test_info_of_a_case_counts_instructions(capsys):
 
 
 def test_info_of_a_file(here, capsys):
-    main(["run", str(CASE), "--t", "0:0.08:41", "--no-figures"])
+    command("run CASE --t 0:0.08:41 --no-figures")
     capsys.readouterr()
-    assert main(["info", "slider_crank.h5"]) == 0
+    assert command("info slider_crank.h5") == 0
     out = capsys.readouterr().out
     assert re.search(r"backend: (lanes|c), double", out)
     assert "section:rod:bending" in out
 
 
 def test_check_fails_a_damaged_file(here, capsys):
-    main(["run", str(CASE), "--t", "0:0.08:41", "--no-figures"])
+    command("run CASE --t 0:0.08:41 --no-figures")
     with forging(Path("slider_crank.h5")) as h:
         h["section/rod/bending"][3, 4] = 7.0
     capsys.readouterr()
-    assert main(["check", "slider_crank.h5"]) == 1
+    assert command("check slider_crank.h5") == 1
     assert "section/rod/bending: differs from its law" in capsys.readouterr().err
 
 
@@ -317,152 +243,112 @@ def scene():
 
 @pytest.mark.quick
 @pytest.mark.parametrize(
-    ("arguments", "status", "says"),
+    ("line", "status", "says"),
     [
-        (["run", "CASE", "--set", "R=1"], 2, "unknown parameter 'R'; valid: r, l, m1, m2, m3"),
+        ("run CASE --set R=1", 2, "unknown parameter 'R'; valid: r, l, m1, m2, m3"),
+        ("run CASE --set r=big", 2, "a number in SI units, as in l=0.25 or phi=30deg, got 'r=big'"),
+        ("run CASE --set r", 2, "expected NAME=VALUE"),
+        ("run CASE --set r=nan", 2, "parameter 'r' must be a finite number, got nan"),
+        ("run CASE --set r=0.1 --set r=0.2", 2, "parameter 'r' is set twice"),
+        ("run CASE --set m2=-1", 2, "parameter 'm2' = -1 kg is out of its range [0, inf]"),
         (
-            ["run", "CASE", "--set", "r=big"],
-            2,
-            "a number in SI units, as in l=0.25 or phi=30deg, got 'r=big'",
-        ),
-        (["run", "CASE", "--set", "r"], 2, "expected NAME=VALUE"),
-        (["run", "CASE", "--set", "r=nan"], 2, "parameter 'r' must be a finite number, got nan"),
-        (["run", "CASE", "--set", "r=0.1", "--set", "r=0.2"], 2, "parameter 'r' is set twice"),
-        (
-            ["run", "CASE", "--set", "m2=-1"],
-            2,
-            "parameter 'm2' = -1 kg is out of its range [0, inf]",
-        ),
-        (
-            ["run", "CASE", "--set", "l=-1", "--set", "r=-2"],
+            "run CASE --set l=-1 --set r=-2",
             2,
             (
                 "'l' = -1 m is out of its range [0, inf]; parameter 'r' = -2 m is out of its range"
                 " [0, inf]"
             ),
         ),
-        (["run", "CASE", "--set", "l=0"], 2, "link 'rod': length must be positive, got 0 m"),
+        ("run CASE --set l=0", 2, "link 'rod': length must be positive, got 0 m"),
         (
-            ["run", "CASE", "--set", "r=0.3"],
+            "run CASE --set r=0.3",
             1,
             "closed by joint 'guide' cannot be closed at t = 0.0093 s, where O = 0.73",
         ),
+        ("run CASE --set m1=0 --set m2=0 --set m3=0", 2, "'slider_crank' has neither mass"),
+        ("run heavy.py --set m=-1", 2, "link 'a': mass must not be negative, got -1 kg"),
         (
-            ["run", "CASE", "--set", "m1=0", "--set", "m2=0", "--set", "m3=0"],
-            2,
-            "'slider_crank' has neither mass",
-        ),
-        (["run", "heavy.py", "--set", "m=-1"], 2, "link 'a': mass must not be negative, got -1 kg"),
-        (
-            ["run", "CASE", "--want", "torque"],
+            "run CASE --want torque",
             2,
             "unknown output 'torque'; valid: all, effort, motion, reaction:O",
         ),
-        (["run", "CASE", "--want", "reaction:X"], 2, "unknown output 'reaction:X'"),
+        ("run CASE --want reaction:X", 2, "unknown output 'reaction:X'"),
+        ("run CASE --want section:slider", 2, "'slider' is not a link and has no sections"),
+        ("run CASE --t 0:1:0", 2, "t: COUNT must be a whole number from 1 to 2^63 - 1, got 0"),
+        ("run CASE --t 0:1", 2, "expected START:STOP:COUNT, as in 0:0.08:801, got '0:1'"),
+        ("run CASE --t 1:0:5", 2, "t: STOP must be after START"),
         (
-            ["run", "CASE", "--want", "section:slider"],
-            2,
-            "'slider' is not a link and has no sections",
-        ),
-        (
-            ["run", "CASE", "--t", "0:1:0"],
-            2,
-            "t: COUNT must be a whole number from 1 to 2^63 - 1, got 0",
-        ),
-        (
-            ["run", "CASE", "--t", "0:1"],
-            2,
-            "expected START:STOP:COUNT, as in 0:0.08:801, got '0:1'",
-        ),
-        (["run", "CASE", "--t", "1:0:5"], 2, "t: STOP must be after START"),
-        (
-            ["run", "CASE", "--over", "O=0:1"],
+            "run CASE --over O=0:1",
             2,
             "expected JOINT=START:STOP:COUNT, as in O=0:720deg:721, got 'O=0:1'",
         ),
-        (["run", "CASE", "--over", "A=0:1:5"], 2, "unknown driven joint in over 'A'; valid: O"),
+        ("run CASE --over A=0:1:5", 2, "unknown driven joint in over 'A'; valid: O"),
         (
-            ["run", "CASE", "--over", "O=0:1lap:5"],
+            "run CASE --over O=0:1lap:5",
             2,
             "expected JOINT=START:STOP:COUNT, as in O=0:720deg:721, got 'O=0:1lap:5'",
         ),
-        (["run", "CASE", "--over", "O=0:1:5", "--t", "0:1:5"], 2, "t and over exclude each other"),
+        ("run CASE --over O=0:1:5 --t 0:1:5", 2, "t and over exclude each other"),
         (
-            ["run", "CASE", "--over", "O=1:0:5"],
+            "run CASE --over O=1:0:5",
             2,
             "the motion of joint 'O' runs opposite to the range from 1 rad",
         ),
-        (["run", "CASE", "--xi", "0:2:5"], 2, "ratios xi/l must lie in [0, 1]"),
-        (["run", "CASE", "--backend", "gpu"], 2, "'gpu' is not one of 'auto', 'lanes', 'c', 'vm'"),
+        ("run CASE --xi 0:2:5", 2, "ratios xi/l must lie in [0, 1]"),
+        ("run CASE --backend gpu", 2, "'gpu' is not one of 'auto', 'lanes', 'c', 'vm'"),
         (
-            ["run", "CASE", "--out", "nowhere/x.h5"],
+            "run CASE --out nowhere/x.h5",
             2,
             "cannot write nowhere/x.h5: folder nowhere does not exist",
         ),
-        (["run", "CASE", "--out", "."], 2, "expected a name that ends in .h5"),
-        (["run", "CASE", "--figures", "raises.py"], 2, "it is a file, not a folder"),
-        (["run", "nothing"], 2, "case nothing: no such file"),
-        (["run", "raises.py"], 2, "case raises.py, line 1: ZeroDivisionError: division by zero"),
-        (["run", "empty.py"], 2, "case empty.py: has no function scene()"),
-        (["run"], 2, "Missing argument 'CASE'"),
+        ("run CASE --out .", 2, "expected a name that ends in .h5"),
+        ("run CASE --figures raises.py", 2, "it is a file, not a folder"),
+        ("run nothing", 2, "case nothing: no such file"),
+        ("run raises.py", 2, "case raises.py, line 1: ZeroDivisionError: division by zero"),
+        ("run empty.py", 2, "case empty.py: has no function scene()"),
+        ("run", 2, "Missing argument 'CASE'"),
         (
-            ["walk"],
+            "walk",
             2,
             (
                 "unknown command 'walk'; valid: run, info, check, cases, new, sweep, best, table,"
                 " optimise, size"
             ),
         ),
-        (["run", "CASE", "--fast"], 2, "No such option"),
-        (["run", "CASE", "--figures", "a", "--no-figures"], 2, "exclude each other"),
-        (["run", "CASE", "--out", "m.txt"], 2, "expected a name that ends in .h5"),
-        (["run", "leaves.py"], 2, "case leaves.py, line 1: SystemExit: 3"),
-        (["run", "draws.py"], 2, "figures() must return a list of specs"),
-        (["info", "."], 2, "case .: has no case.py"),
-        (["check", "nothing.h5"], 2, "nothing.h5: no such file"),
-        (["check", "raises.py"], 1, "raises.py: not a file of this program"),
-        (["plot", "raises.py", "--out", "figures"], 1, "not a file of this program"),
-        (["info", "nothing.h5"], 2, "nothing.h5: no such file"),
-        (["info", "x.h5", "--want", "effort"], 2, "--want goes with a case"),
-        (["export", "CASE"], 2, "Missing option '--out'"),
-        (["export", "CASE", "--out", "raises.py"], 2, "it is a file, not a folder"),
+        ("run CASE --fast", 2, "No such option"),
+        ("run CASE --figures a --no-figures", 2, "exclude each other"),
+        ("run CASE --out m.txt", 2, "expected a name that ends in .h5"),
+        ("run leaves.py", 2, "case leaves.py, line 1: SystemExit: 3"),
+        ("run draws.py", 2, "figures() must return a list of specs"),
+        ("info .", 2, "case .: has no case.py"),
+        ("check nothing.h5", 2, "nothing.h5: no such file"),
+        ("check raises.py", 1, "raises.py: not a file of this program"),
+        ("plot raises.py --out figures", 1, "not a file of this program"),
+        ("info nothing.h5", 2, "nothing.h5: no such file"),
+        ("info x.h5 --want effort", 2, "--want goes with a case"),
+        ("export CASE", 2, "Missing option '--out'"),
+        ("export CASE --out raises.py", 2, "it is a file, not a folder"),
         (
-            ["export", "CASE", "--out", "."],
+            "export CASE --out .",
             2,
             "cannot export into .: it holds other files, 'draws.py' among them",
         ),
-        (
-            ["export", "CASE", "--out", "c", "--precision", "half"],
-            2,
-            "'half' is not one of 'double', 'single'",
-        ),
-        (["export", "CASE", "--out", "c", "--want", "torque"], 2, "unknown output 'torque'"),
-        (
-            ["export", "CASE", "--out", "c", "--set", "r=0.3"],
-            1,
-            "closed by joint 'guide' cannot be closed",
-        ),
-        (
-            ["export", "CASE", "--out", "c", "--table", "64", "--newton", "2"],
-            2,
-            "newton and table exclude each other",
-        ),
-        (
-            ["export", "CASE", "--out", "c", "--table", "4096", "--precision", "single"],
-            1,
-            "and the limit is 64000",
-        ),
-        (["export", "CASE", "--out", "nowhere/c"], 2, "folder nowhere does not exist"),
-        (["export", "CASE", "--out", "raises.py/c"], 2, "folder raises.py is a file"),
-        (["export", "CASE", "--out", "a" * 300], 2, "File name too long"),
-        (["run", "a" * 300], 2, "File name too long"),
+        ("export CASE --out c --precision half", 2, "'half' is not one of 'double', 'single'"),
+        ("export CASE --out c --want torque", 2, "unknown output 'torque'"),
+        ("export CASE --out c --set r=0.3", 1, "closed by joint 'guide' cannot be closed"),
+        ("export CASE --out c --table 64 --newton 2", 2, "newton and table exclude each other"),
+        ("export CASE --out c --table 4096 --precision single", 1, "and the limit is 64000"),
+        ("export CASE --out nowhere/c", 2, "folder nowhere does not exist"),
+        ("export CASE --out raises.py/c", 2, "folder raises.py is a file"),
+        ("export CASE --out " + "a" * 300, 2, "File name too long"),
+        ("run " + "a" * 300, 2, "File name too long"),
     ],
 )
-def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, arguments, status, says):
+def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, line, status, says):
     for name, text in BROKEN.items():
         (here / name).write_text(text)
     before = sorted(os.listdir(here))
-    assert main([str(CASE) if word == "CASE" else word for word in arguments]) == status
+    assert command(line) == status
     out, err = capfd.readouterr()
     assert err.startswith("error: ")
     assert err.count("\n") == 1
@@ -475,7 +361,7 @@ def test_export_says_what_it_wrote_and_how_to_try_it(here, capfd):
     case = here / "float"
     case.mkdir()
     (case / "case.py").write_text(BROKEN["heavy.py"].replace('"m"', '"int"'))
-    assert main(["export", "float", "--out", "c", "--precision", "single", "--want", "effort"]) == 0
+    assert command("export float --out c --precision single --want effort") == 0
     out, err = capfd.readouterr()
     assert err == ""
     assert out.splitlines() == [
@@ -494,7 +380,7 @@ def test_export_to_a_full_disk_is_one_line(here, capfd, monkeypatch):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(Path, "write_bytes", full)
-    assert main(["export", str(CASE), "--out", "c"]) == 1
+    assert command("export CASE --out c") == 1
     assert capfd.readouterr().err == "error: cannot write c: No space left on device\n"
     assert os.listdir(here) == []
 
@@ -508,7 +394,7 @@ def test_a_failing_compiler_is_one_line(here, capfd, monkeypatch, tmp_path_facto
     program.chmod(0o755)
     monkeypatch.setenv("CC", str(program))
     monkeypatch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
-    assert main(["run", str(CASE), "--backend", "c"]) == 1
+    assert command("run CASE --backend c") == 1
     assert "failed with status 1: x.c:1: error: no (whole message in" in capfd.readouterr().err
     assert os.listdir(here) == []
 
@@ -518,9 +404,9 @@ def test_without_a_compiler_one_line_says_so(here, capfd, monkeypatch):
         monkeypatch.delenv(variable, raising=False)
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr("lagrange_casadi.codegen.compiler.importlib.util.find_spec", lambda _: None)
-    assert main(["run", str(CASE), "--t", "0:0.08:11", "--no-figures"]) == 0
+    assert command("run CASE --t 0:0.08:11 --no-figures") == 0
     assert capfd.readouterr().err.startswith("note: no C or C++ compiler found")
-    assert main(["run", str(CASE), "--backend", "c", "--out", "y.h5", "--no-figures"]) == 1
+    assert command("run CASE --backend c --out y.h5 --no-figures") == 1
     assert "backend 'c' needs a C compiler" in capfd.readouterr().err
     assert os.listdir(here) == ["slider_crank.h5"]
 
@@ -542,14 +428,9 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
     case.write_text(SLOW.format(case=str(CASE)))
     command = [
         sys.executable,
-        "-m",
-        "lagrange_casadi",
-        "run",
+        *words("-m lagrange_casadi run"),
         str(case),
-        "--t",
-        "0:0.08:10000000",
-        "--backend",
-        "vm",
+        *words("--t 0:0.08:10000000 --backend vm"),
     ]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "ready\n"
@@ -594,15 +475,15 @@ def test_a_file_that_cannot_grow_is_one_line(released, here, size):
 
 
 def test_no_command_shows_the_help(capsys):
-    assert main([]) == 2
+    assert command("") == 2
     assert "Many designs:\n" in capsys.readouterr().err
 
 
 @pytest.mark.quick
 def test_help_and_version(capsys):
-    assert main(["--version"]) == 0
-    assert main(["--help"]) == 0
-    assert main(["run", "--help"]) == 0
+    assert command("--version") == 0
+    assert command("--help") == 0
+    assert command("run --help") == 0
     out = capsys.readouterr().out
     assert "lagrange-casadi, version" in out
     options, machine = out.partition("Computation:\n")[::2]
@@ -613,7 +494,7 @@ def test_help_and_version(capsys):
 
 @pytest.mark.quick
 def test_help_cuts_nothing_and_has_every_command_in_one_group(capsys):
-    assert main(["--help"]) == 0
+    assert command("--help") == 0
     out = capsys.readouterr().out
     assert "..." not in out.partition("Run:\n")[2]
     listed = re.findall(r"^  (\w+)  +[A-Z]", out.partition("Run:\n")[2], re.MULTILINE)
@@ -649,22 +530,22 @@ def test_a_shell_gets_its_completion(monkeypatch, capsys, shell):
     assert f"_LAGRANGE_CASADI_COMPLETE={shell}_complete" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("case", ["slider_crank", "excavator", "jansen_leg", "stewart_gough"])
+@pytest.mark.parametrize("case", ["slider_crank", "excavator", "stewart_gough"])
 def test_a_run_fits_a_screen(here, capsys, case):
     """The rest is in the whole list, in which no name stands twice."""
-    arguments = ["run", case, "--no-figures", "--backend", "vm", "--no-certificate"]
-    assert main(arguments) == 0
+    line = f"run {case} --no-figures --backend vm --no-certificate"
+    assert command(line) == 0
     short = capsys.readouterr().out.splitlines()
     assert len(short) < 40
-    assert main([*arguments, "--verbose"]) == 0
+    assert command(f"{line} --verbose") == 0
     whole = capsys.readouterr().out
     solution = load(f"{case}.h5")
-    rows = [line for line in whole.splitlines()[2:] if line.startswith("  ")]
-    names = [line.split()[0] for line in rows if ":" in line.split()[0]]
+    rows = [row.split() for row in whole.splitlines()[2:] if row.startswith("  ")]
+    names = [row[0] for row in rows if ":" in row[0]]
     assert len(names) == len(set(names))
     assert set(map(str, ordered(solution))) <= set(names)
     cut = case != "slider_crank"
-    assert any("--verbose lists all" in line for line in short) == cut
+    assert any("--verbose lists all" in row for row in short) == cut
 
 
 def test_rounding_is_zero_and_an_error_is_shown_where_it_reaches_the_digits():
@@ -688,11 +569,11 @@ def test_welds_inside_bent_bars_are_left_out_unless_asked_for(here, capsys):
         "    m.weld('hook', bar.tip, m.link('tip', length=0.1, mass=0.2), angle=0.0)\n"
         "    return Scene(m, {'O': polynomial(0.0, 3.0)}, t=(0.0, 1.0, 11))\n"
     )
-    arguments = ["run", "bell.py", "--no-figures", "--backend", "vm"]
-    assert main(arguments) == 0
+    line = "run bell.py --no-figures --backend vm"
+    assert command(line) == 0
     out = capsys.readouterr().out
     assert "reaction:hook" in out
     assert "reaction:crank_bend_1" not in out
-    for more in (["--verbose"], ["--want", "reaction:crank_bend_1"]):
-        assert main([*arguments, *more]) == 0
+    for more in ("--verbose", "--want reaction:crank_bend_1"):
+        assert command(f"{line} {more}") == 0
         assert "reaction:crank_bend_1:resultant" in capsys.readouterr().out

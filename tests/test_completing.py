@@ -83,10 +83,8 @@ def test_what_knows_equilibrium_alone_leaves_it_open(tmp_path):
 
 
 def test_exports_leave_open_what_goes_through_a_link_without_a_beam(tmp_path):
-    plain, elastic = (
-        three_cranks(made(beams.round_bar(0.01)), elastic=False),
-        three_cranks(made(beams.round_bar(0.01))),
-    )
+    plain = three_cranks(made(beams.round_bar(0.01)), elastic=False)
+    elastic = three_cranks(made(beams.round_bar(0.01)))
     for name, scene in (("plain", plain), ("elastic", elastic)):
         export(scene, tmp_path / name, wanted=["effort", "reaction"])
     outputs = [

@@ -52,11 +52,9 @@ def cut(default=0.0):
 def constraint(default=0.0):
     """A slide whose place is a function of a crank's angle."""
     m = Mechanism("constraint")
-    crank, body, k = (
-        m.link("crank", length=0.1, mass=1.0),
-        m.point_mass("body", 2.0),
-        m.parameter("k", default),
-    )
+    crank = m.link("crank", length=0.1, mass=1.0)
+    body = m.point_mass("body", 2.0)
+    k = m.parameter("k", default)
     turn = m.revolute("turn", m.ground, crank)
     way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
     m.constraint("profile", m.coordinate(way) - bend(m.coordinate(turn), k))
@@ -65,11 +63,9 @@ def constraint(default=0.0):
 
 def disc(default=0.0):
     m = Mechanism("disc")
-    wheel, rod, k = (
-        m.link("wheel", length=0.1, mass=1.0),
-        m.link("rod", length=0.1, mass=1.0),
-        m.parameter("k", default),
-    )
+    wheel = m.link("wheel", length=0.1, mass=1.0)
+    rod = m.link("rod", length=0.1, mass=1.0)
+    k = m.parameter("k", default)
     main = m.revolute("turn", m.ground, wheel)
     lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
     disc_cam(m, "profile", main, lead, lambda x: 0.1 * bend(x, k), base_radius=0.1, roller=0.01)
@@ -78,11 +74,9 @@ def disc(default=0.0):
 
 def drum(default=0.0):
     m = SpatialMechanism("drum")
-    wheel, cart, k = (
-        m.link("wheel", length=0.1, mass=1.0),
-        m.point_mass("cart", 1.0),
-        m.parameter("k", default),
-    )
+    wheel = m.link("wheel", length=0.1, mass=1.0)
+    cart = m.point_mass("cart", 1.0)
+    k = m.parameter("k", default)
     main = m.revolute("turn", m.ground, wheel, axis=(1, 0, 0))
     lead = m.prismatic("lead", m.ground.at(0.0, 0.0, 0.05), cart, axis=(1, 0, 0))
     cylindrical_cam(m, "profile", main, lead, lambda x: 0.1 * bend(x, k))

@@ -341,10 +341,8 @@ def test_a_part_beyond_the_ends_is_refused_by_name():
 def test_an_open_loop_is_told_before_its_curve():
     """Where its links do not reach, there is nothing to put into a curve."""
     m = Mechanism("reaching")
-    crank, rod = (
-        m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.0),
-        m.link("rod", length=0.2, mass=1.0),
-    )
+    crank = m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.0)
+    rod = m.link("rod", length=0.2, mass=1.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     ram = m.point_mass("ram", 1.0)
@@ -407,10 +405,8 @@ def test_a_density_along_a_curve():
         return evaluate(Scene(m, {"J": motion.polynomial(0.2, 3.0, 4.0)}, t=(0, 1, 5)))
 
     u = np.array([0.0, 0.2, 0.5, 0.6, 0.9, 1.0])
-    found, expected = (
-        bar(density.along(curve(u, 4 - 3 * u + u**3))),
-        bar(density.polynomial(4.0, -3.0, 0.0, 1.0)),
-    )
+    found = bar(density.along(curve(u, 4 - 3 * u + u**3)))
+    expected = bar(density.polynomial(4.0, -3.0, 0.0, 1.0))
     for force in ("axial", "shear", "bending"):
         a, b = (getattr(solution.section("bar"), force) for solution in (found, expected))
         np.testing.assert_allclose(a, b, rtol=0, atol=1e-13 * np.abs(b).max())

@@ -68,11 +68,9 @@ def sliding(axis=(0.0, 0.0, 1.0), lift=None, across=(1.0, 0.0, 0.0), **more):
 def rotation(turns):
     found = np.eye(3)
     for axis, degrees in turns:
-        c, s, k = (
-            math.cos(math.radians(degrees)),
-            math.sin(math.radians(degrees)),
-            "xyz".index(axis),
-        )
+        c = math.cos(math.radians(degrees))
+        s = math.sin(math.radians(degrees))
+        k = "xyz".index(axis)
         turn = np.eye(3)
         i, j = (k + 1) % 3, (k + 2) % 3
         turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
@@ -133,10 +131,8 @@ def test_a_carriage_is_pressed_as_textbooks_say(axis, across):
     # The drum takes the opposite: its drive, and its bearing with all moments.
     place = np.array([0.1, 0.2, 0.3])[:, None]
     bearing = solution.reaction("main")
-    shaft, tilt = (
-        np.stack([bearing.fx, bearing.fy, bearing.fz]),
-        np.stack([bearing.mx, bearing.my, bearing.mz]),
-    )
+    shaft = np.stack([bearing.fx, bearing.fy, bearing.fz])
+    tilt = np.stack([bearing.mx, bearing.my, bearing.mz])
     drum, (middle, momentum, spin) = solution.effort("main"), inertia_of_drum(main, u, place)
     assert shaft - push == pytest.approx(momentum - DRUM * g[:, None], abs=1e-9 * size)
     total = (
@@ -204,10 +200,8 @@ def test_an_arm_is_pressed_across_the_way_of_its_roller_on_the_drum(side):
     assert lead.value == pytest.approx(value - 0.25, abs=1e-12)
     angle = lead.value - side * math.pi / 2
     zero = np.zeros_like(angle)
-    along, over = (
-        np.stack([np.cos(angle), np.sin(angle), zero]),
-        np.stack([-np.sin(angle), np.cos(angle), zero]),
-    )
+    along = np.stack([np.cos(angle), np.sin(angle), zero])
+    over = np.stack([-np.sin(angle), np.cos(angle), zero])
     roller = np.array([[0.1], [0.12 * side], [RADIUS]]) + 0.12 * along
     passing = 0.12 * slope * over - np.cross([1.0, 0.0, 0.0], roller, axis=0)
     bearing = solution.reaction("lead")
@@ -293,35 +287,27 @@ def broken(**options):
 
 
 @pytest.mark.parametrize(
-    ("options", "says"),
-    [
+    ("says", "options"),
+    {
+        "cam 'cam': expected a revolute joint whose parent is the ground, in space, got 'lead'": {
+            "follower": "main"
+        },
+        "its point must be on 'cart', which joint 'lead' guides": {"point": "drum"},
+        "joint 'lead' must be along the drum's axis": {"axis": (1, 0.1, 0)},
         (
-            {"follower": "main"},
-            "cam 'cam': expected a revolute joint whose parent is the ground, in space, got 'lead'",
-        ),
-        ({"point": "drum"}, "its point must be on 'cart', which joint 'lead' guides"),
-        ({"axis": (1, 0.1, 0)}, "joint 'lead' must be along the drum's axis"),
+            "cam 'cam': the drum's surface does not pass the roller; expected the roller off"
+            " the"
+            " axis"
+        ): {"place": (0.0, 0.0, 0.0)},
+        "its lift must be the same after a turn of the cam; expected a period of 2 pi": {
+            "lift": lambda x: 0.01 * x
+        },
         (
-            {"place": (0.0, 0.0, 0.0)},
-            (
-                "cam 'cam': the drum's surface does not pass the roller; expected the roller off"
-                " the"
-                " axis"
-            ),
-        ),
-        (
-            {"lift": lambda x: 0.01 * x},
-            "its lift must be the same after a turn of the cam; expected a period of 2 pi",
-        ),
-        (
-            {"lift": math.sin},
-            (
-                "lift is no finite number at 0 deg of the cam; expected a function of CasADi's"
-                " expressions, with casadi"
-            ),
-        ),
-        ({"lift": 0.02}, "lift: expected a function, got 0.02"),
-    ],
+            "lift is no finite number at 0 deg of the cam; expected a function of CasADi's"
+            " expressions, with casadi"
+        ): {"lift": math.sin},
+        "lift: expected a function, got 0.02": {"lift": 0.02},
+    }.items(),
 )
 def test_misuse_is_named(options, says):
     with pytest.raises(DeclarationError, match=says):
@@ -331,10 +317,8 @@ def test_misuse_is_named(options, says):
 def test_planes_have_disc_cams():
     m = Mechanism("flat")
     drum, cart = m.link("drum", length=0.1, mass=1.0), m.point_mass("cart", 1.0)
-    main, lead = (
-        m.revolute("main", m.ground, drum),
-        m.prismatic("lead", m.ground, cart, axis=(1, 0)),
-    )
+    main = m.revolute("main", m.ground, drum)
+    lead = m.prismatic("lead", m.ground, cart, axis=(1, 0))
     with pytest.raises(
         DeclarationError,
         match="expected a revolute joint whose parent is the ground, in space, got 'main'",

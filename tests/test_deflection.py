@@ -8,9 +8,9 @@ import frames
 import numpy as np
 import pytest
 import strong
+from commands import command
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
-from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
@@ -70,10 +70,8 @@ def bridge(shape, *loads):
     """A link on a pin and on a slide, with loads (x, force)."""
     m = Mechanism("bridge")
     m.set_gravity(0.0, 0.0)
-    bar, foot = (
-        m.link("bar", length=LENGTH, beam=beams.Beam(shape, STEEL)),
-        m.point_mass("foot", 0.0),
-    )
+    bar = m.link("bar", length=LENGTH, beam=beams.Beam(shape, STEEL))
+    foot = m.point_mass("foot", 0.0)
     m.revolute("A", m.ground, bar)
     m.prismatic("slide", m.ground.at(LENGTH, 0), foot, axis=(1, 0))
     m.revolute("B", bar.tip, foot)
@@ -256,23 +254,8 @@ def test_a_rod_that_moves_by_fine_sums():
 
 def test_the_command_line_tells_it(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    few = ["--over", "main=90deg:810deg:41"]
-    assert (
-        main(
-            [
-                "run",
-                "connecting_rod",
-                "--want",
-                "deflection:rod",
-                "--no-figures",
-                "--backend",
-                "vm",
-                "--no-certificate",
-                *few,
-            ]
-        )
-        == 0
-    )
+    line = "run connecting_rod --want deflection:rod --over main=90deg:810deg:41"
+    assert command(f"{line} --no-figures --backend vm --no-certificate") == 0
     said = capsys.readouterr().out
     assert "deflection:rod" in said
     assert "from the line between its ends" in said

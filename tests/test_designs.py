@@ -3,26 +3,22 @@ the neighbours.
 """
 
 import math
-import subprocess
 
 import numpy as np
 import pytest
-from compiled import PEDANTIC, SCENES
 from conftest import CASES, PLANAR
-from design_rows import DENSITIES, alone, around, assert_refined, loaded, peaks_of, scales, values
+from design_rows import alone, around, assert_refined, peaks_of, scales, values
 from internals import (
     DesignEngine,
     EvaluationMethod,
-    KeptOutputs,
     Status,
     library,
     refine,
-    stages_of,
 )
-from mechanisms import crank_and_rod, four_bar, parallelogram, pendulum, slider_crank
+from mechanisms import four_bar, parallelogram, pendulum, slider_crank
 from parametric import declared
 
-from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
+from lagrange_casadi import Mechanism, Scene, evaluate, motion
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 
 INSTANTS = 128
@@ -235,31 +231,6 @@ def test_what_is_not_determined_has_no_number():
     found = peaks_of(designs, outcome, 0)
     for peak in refine(scene, solution, names):
         assert found[peak.name][0] == pytest.approx(peak.value, rel=1e-11)
-
-
-@pytest.mark.sampled(7)
-@pytest.mark.parametrize("name", [*SCENES, "stations", "sleigh"])
-def test_emitted_c_is_pedantically_clean(name, tmp_path):
-    made = {
-        "stations": lambda: crank_and_rod(DENSITIES["table"](), loads=loaded),
-        "sleigh": lambda: declared(CASES / "sleigh"),
-    }
-    scene = {**SCENES, **made}[name]()
-    compiler, source = codegen.find_compiler(), tmp_path / "designs.c"
-    program = derive(scene)
-    for method in (
-        EvaluationMethod(),
-        EvaluationMethod(precision="single"),
-        *([EvaluationMethod(newton=2)] if program.newton is not None else []),
-    ):
-        stages, kept = (
-            stages_of(program, method, np.linspace(*scene.span, scene.t[2])),
-            KeptOutputs.of(program, method),
-        )
-        source.write_text(codegen.emit(program, stages, method.newton, kept.reduction))
-        command = [*compiler.command, *PEDANTIC, "-fsyntax-only", source]
-        result = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert result.returncode == 0, result.stderr
 
 
 def test_names_and_units_go_together():

@@ -68,11 +68,9 @@ def test_lengths_about_a_dead_centre(backend):
 @both
 def test_a_dead_centre_on_an_instant(backend):
     m = Mechanism("dead")
-    a, b, p = (
-        m.link("a", length=1.0, mass=1.0),
-        m.link("b", length=m.parameter("l", 1.0), mass=1.0),
-        m.point_mass("p", 1.0),
-    )
+    a = m.link("a", length=1.0, mass=1.0)
+    b = m.link("b", length=m.parameter("l", 1.0), mass=1.0)
+    p = m.point_mass("p", 1.0)
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, p)

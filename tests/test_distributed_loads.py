@@ -320,10 +320,8 @@ def test_a_body_that_has_no_sections_feels_it_too():
         m.line_load("wind", arm, y=lambda xi: 3 * xi**2 - m.rate(pin) * xi, between=(0.3, 1.7))
         return Scene(m, {"wall": motion.polynomial(0.3, 2.0, -1.0)}, t=(0, 1, 5))
 
-    one, other = (
-        evaluate(scene(mass=3.0)),
-        evaluate(scene(mass=3.0, centre=(1.0, 0.0), inertia=1.0)),
-    )
+    one = evaluate(scene(mass=3.0))
+    other = evaluate(scene(mass=3.0, centre=(1.0, 0.0), inertia=1.0))
     assert other.certified
     for name in (
         "effort:wall",

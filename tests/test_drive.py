@@ -25,11 +25,9 @@ def press(law, **options):
     """A slider-crank that presses and weighs, in all of which the inertia has no part."""
     m = Mechanism("press")
     l = m.parameter("l", 0.4, "m")
-    crank, rod, ram = (
-        m.link("crank", length=0.1, mass=1.2),
-        m.link("rod", length=l, mass=2.0),
-        m.point_mass("ram", 15.0),
-    )
+    crank = m.link("crank", length=0.1, mass=1.2)
+    rod = m.link("rod", length=l, mass=2.0)
+    ram = m.point_mass("ram", 15.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, ram)

@@ -63,10 +63,8 @@ def test_a_slide_drives_where_the_crank_moves(slides):
     found = evaluate(scene)
     first = evaluate(Scene(scene.mechanism, scene.motion, posture=scene.posture, t=scene.t))
     assert found.certified
-    work, moved = (
-        found.effort(joint) * found.motion(joint).rate,
-        first.effort("O") * first.motion("O").rate,
-    )
+    work = found.effort(joint) * found.motion(joint).rate
+    moved = first.effort("O") * first.motion("O").rate
     assert np.abs(work - moved).max() < 1e-12 * np.abs(moved).max()
     with pytest.raises(UnknownNameError):
         found.effort("O")
@@ -272,10 +270,8 @@ def test_a_gear_of_any_ratio_holds(ratio, precision):
     less.
     """
     m = Mechanism("geared")
-    arm, wheel = (
-        m.link("arm", length=1.0, mass=2.0),
-        m.link("wheel", length=0.1, mass=0.0, centre=(0.0, 0.0), inertia=0.0),
-    )
+    arm = m.link("arm", length=1.0, mass=2.0)
+    wheel = m.link("wheel", length=0.1, mass=0.0, centre=(0.0, 0.0), inertia=0.0)
     main, motor = m.revolute("main", m.ground, arm), m.revolute("motor", m.ground.at(2, 0), wheel)
     m.gear("mesh", main, motor, ratio=ratio)
     scene = Scene(m, {"main": motion.polynomial(0.3, 1.0)}, t=(0, 1, 11), drives=["motor"])

@@ -120,10 +120,8 @@ def test_a_bar_bent_in_space_bends_and_twists_as_statics_says():
     m.set_gravity(0, 0, 0)
     solution = evaluate(Scene(m, {"O": polynomial(0.0)}, t=(0, 1, 2)))
     assert solution.certified
-    push, places = (
-        np.array([7.0, 0.0, -30.0]),
-        {"bar_1": (0, 0, 0), "bar_2": (0.3, 0, 0), "bar_3": (0.3, 0.2, 0)},
-    )
+    push = np.array([7.0, 0.0, -30.0])
+    places = {"bar_1": (0, 0, 0), "bar_2": (0.3, 0, 0), "bar_3": (0.3, 0.2, 0)}
     for name, way in (("bar_1", (1, 0, 0)), ("bar_2", (0, 1, 0)), ("bar_3", (0, 0, 1))):
         moment = np.cross(np.array([0.3, 0.2, 0.1]) - places[name], push)
         section, along = solution.section(name), np.array(way)
@@ -178,57 +176,45 @@ def declared(make, space=False):
 
 
 @pytest.mark.parametrize(
-    ("make", "says"),
-    [
-        (
-            declared(lambda m: plate(m, "p", [(0, 0), (1, 0)], mass=1.0)),
-            "plate 'p': expected three corners or more",
+    ("says", "make"),
+    {
+        "plate 'p': expected three corners or more": declared(
+            lambda m: plate(m, "p", [(0, 0), (1, 0)], mass=1.0)
         ),
-        (
-            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (2, 0)], mass=1.0)),
-            "plate 'p': its corners lie on a line",
+        "plate 'p': its corners lie on a line": declared(
+            lambda m: plate(m, "p", [(0, 0), (1, 0), (2, 0)], mass=1.0)
         ),
-        (
-            declared(lambda m: plate(m, "p", [(0, 0), (1, 1), (1, 0), (0, 1)], mass=1.0)),
-            "the edges from corners 0 and 2 cross",
+        "the edges from corners 0 and 2 cross": declared(
+            lambda m: plate(m, "p", [(0, 0), (1, 1), (1, 0), (0, 1)], mass=1.0)
         ),
-        (
-            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), 3], mass=1.0)),
-            r"plate 'p': corner 2: expected \(x, y\), got 3",
+        r"plate 'p': corner 2: expected \(x, y\), got 3": declared(
+            lambda m: plate(m, "p", [(0, 0), (1, 0), 3], mass=1.0)
         ),
-        (
-            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)])),
-            "plate 'p': expected mass= or per_area=",
+        "plate 'p': expected mass= or per_area=": declared(
+            lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)])
         ),
-        (
-            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0), space=True),
-            "only a mechanism in a plane has plates",
+        "only a mechanism in a plane has plates": declared(
+            lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0), space=True
         ),
-        (
-            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0).corner(3)),
-            "'p': there is no corner 3, expected 0 to 2",
+        "'p': there is no corner 3, expected 0 to 2": declared(
+            lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0).corner(3)
         ),
-        (
-            declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0)], mass=1.0)),
-            "a straight bar is a link",
+        "a straight bar is a link": declared(
+            lambda m: bent_bar(m, "b", [(0, 0), (1, 0)], mass=1.0)
         ),
-        (
-            declared(lambda m: bent_bar(m, "b", [(0, 0), (0, 0), (1, 0)], mass=1.0)),
-            "corners 0 and 1 coincide",
+        "corners 0 and 1 coincide": declared(
+            lambda m: bent_bar(m, "b", [(0, 0), (0, 0), (1, 0)], mass=1.0)
         ),
-        (
-            declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 0, 0)], mass=1.0)),
-            "corner 2: expected 2 numbers",
+        "corner 2: expected 2 numbers": declared(
+            lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 0, 0)], mass=1.0)
         ),
-        (
-            declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)])),
-            "expected mass= or per_length=",
+        "expected mass= or per_length=": declared(
+            lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)])
         ),
-        (
-            declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)], mass=1.0).corner(-1)),
-            "'b_1': there is no corner -1, expected 0 to 2",
+        "'b_1': there is no corner -1, expected 0 to 2": declared(
+            lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)], mass=1.0).corner(-1)
         ),
-    ],
+    }.items(),
 )
 def test_misuse_is_named(make, says):
     with pytest.raises(DeclarationError, match=says):

@@ -8,10 +8,8 @@ from lagrange_casadi import curve
 
 pytestmark = pytest.mark.quick
 
-ENDED, ROUND = (
-    curve([1.0, 2.0, 3.0, 5.0], [0.0, 1.0, 0.5, 2.0]),
-    curve([0, 1, 2, 3], [0, 1, 2, 0], periodic=True),
-)
+ENDED = curve([1.0, 2.0, 3.0, 5.0], [0.0, 1.0, 0.5, 2.0])
+ROUND = curve([0, 1, 2, 3], [0, 1, 2, 0], periodic=True)
 
 
 def test_every_argument_of_a_curve_with_ends_is_found_once():

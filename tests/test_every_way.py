@@ -90,10 +90,8 @@ def test_designs_have_the_peaks_of_the_api(name):
     scene = SCENES[name]()
     scene = replace(scene, wanted=SOUGHT.get(name, ["all"]))
     for backend in ("c", "lanes"):
-        designs, p = (
-            DesignEngine.of(scene, t=(*scene.span, 97), method=EvaluationMethod(backend)),
-            around(scene, 2),
-        )
+        designs = DesignEngine.of(scene, t=(*scene.span, 97), method=EvaluationMethod(backend))
+        p = around(scene, 2)
         outcome = designs.evaluate(p)
         assert outcome.status.tolist() == [Status.OK] * 2
         for row in range(2):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from compiled import EVALUATED, HARNESS, cc, compilers, present, told
+from compiled import EVALUATED, cc, compilers, present, told
 from conftest import SPATIAL
 from mechanisms import sampled_cam, slider_crank, spline_arm, truss_platform
 from stepped import iterated
@@ -197,110 +197,72 @@ def test_nothing_recurs_allocates_or_is_of_another_precision(tmp_path):
     )
 
 
+UNPREPARED = "status = @_prepare(&model, &parameters);"
+UNTIMELY = "status = @_motion(&model, NAN, &inputs); "
 PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inputs); "
 
 
-@pytest.mark.sampled(9)
-@pytest.mark.parametrize(
-    ("statements", "sentence"),
-    [
-        ("model.seal = 0; inputs.O = 0; " + EVALUATED, "the model was not prepared"),
-        (
-            "parameters.l = -1; status = @_prepare(&model, &parameters);",
-            "a parameter is not finite, or out of its range",
-        ),
-        (
-            "parameters.r = 0; status = @_prepare(&model, &parameters);",
-            "or gives a link no length",
-        ),
-        (
-            "parameters.l = NAN; status = @_prepare(&model, &parameters);",
-            "a parameter is not finite",
-        ),
-        (
-            "parameters.m2 = INFINITY; status = @_prepare(&model, &parameters);",
-            "a parameter is not finite",
-        ),
-        (PREPARED + "inputs.O_rate = NAN; " + EVALUATED, "an input is not finite"),
-        (PREPARED + "inputs.O = INFINITY; " + EVALUATED, "an input is not finite"),
-        (
-            PREPARED + "status = @_motion(&model, NAN, &inputs); " + EVALUATED,
-            "an input is not finite",
-        ),
-        (
-            PREPARED + "status = @_motion(&model, NAN, &inputs); outputs.effort_O = NAN;",
-            "the time is not finite",
-        ),
-        (
-            "parameters.l = 0.05; " + PREPARED + "inputs.O = 1.5; " + EVALUATED,
-            "its links do not reach",
-        ),
-        (
-            "parameters.l = 0.1; " + PREPARED + "inputs.O = 1.5707963267948966; " + EVALUATED,
-            "a loop is at a dead centre",
-        ),
-        (PREPARED + "inputs.O_rate = 1e200; " + EVALUATED, "a result is not finite"),
-        (
-            PREPARED + "outputs.effort_O = NAN; status = (@_status) 99;",
-            "unknown status",
-        ),
-    ],
+FAILURES = [
+    ("model.seal = 0; inputs.O = 0; " + EVALUATED, "the model was not prepared"),
+    ("parameters.l = -1; " + UNPREPARED, "a parameter is not finite, or out of its range"),
+    ("parameters.r = 0; " + UNPREPARED, "or gives a link no length"),
+    ("parameters.l = NAN; " + UNPREPARED, "a parameter is not finite"),
+    ("parameters.m2 = INFINITY; " + UNPREPARED, "a parameter is not finite"),
+    (PREPARED + "inputs.O_rate = NAN; " + EVALUATED, "an input is not finite"),
+    (PREPARED + "inputs.O = INFINITY; " + EVALUATED, "an input is not finite"),
+    (PREPARED + UNTIMELY + EVALUATED, "an input is not finite"),
+    (PREPARED + UNTIMELY + "outputs.effort_O = NAN;", "the time is not finite"),
+    (
+        "parameters.l = 0.05; " + PREPARED + "inputs.O = 1.5; " + EVALUATED,
+        "its links do not reach",
+    ),
+    (
+        "parameters.l = 0.1; " + PREPARED + "inputs.O = 1.5707963267948966; " + EVALUATED,
+        "a loop is at a dead centre",
+    ),
+    (PREPARED + "inputs.O_rate = 1e200; " + EVALUATED, "a result is not finite"),
+    (PREPARED + "outputs.effort_O = NAN; status = (@_status) 99;", "unknown status"),
+]
+SECTION = (
+    "@_forces forces; %s status = @_section(&model, &outputs, SLIDER_CRANK_LINK_ROD, %s, &forces);"
+    " outputs.effort_O = forces.axial;"
 )
-def test_failures_say_so_and_leave_nothing_undefined(statements, sentence, tmp_path):
-    made = export(slider_crank(), tmp_path)
-    status, effort, found = told(tmp_path, made, statements)
-    assert status != 0
-    assert sentence in found
-    assert np.isnan(effort) or "prepare(&model, &parameters);" in statements
 
 
-def test_ratios_outside_a_link(tmp_path):
-    made = export(slider_crank(), tmp_path)
-    call = (
-        "@_forces forces; %s%s status = @_section(&model, &outputs, @_LINK_ROD, %s, &forces);"
-        " outputs.effort_O = forces.axial;"
-    )
-    call = call.replace("@_LINK", "SLIDER_CRANK_LINK")
-    for ratio in ("-0.001", "1.001", "NAN", "INFINITY"):
-        status, axial, sentence = told(tmp_path, made, call % (PREPARED, EVALUATED, ratio))
-        assert sentence == "a ratio xi/l is outside 0 to 1"
-        assert np.isnan(axial)
-    lost = "inputs.O = NAN; "
-    status, axial, sentence = told(tmp_path, made, call % (PREPARED + lost, EVALUATED, "0.5"))
-    assert np.isnan(axial)
-    assert sentence.startswith("a result is not finite")
-    assert status
+def test_failures_say_so_and_leave_nothing_undefined(tmp_path):
+    """Of an evaluation, and of the forces of a link at ratios outside it."""
+    ratios = ("-0.001", "1.001", "NAN", "INFINITY")
+    sections = [SECTION % (PREPARED + EVALUATED, ratio) for ratio in ratios]
+    lost = SECTION % (PREPARED + "inputs.O = NAN; " + EVALUATED, "0.5")
+    tried = [
+        *FAILURES,
+        *((section, "a ratio xi/l is outside 0 to 1") for section in sections),
+        (lost, "a result is not finite"),
+    ]
+    found = told(tmp_path, export(slider_crank(), tmp_path), *(what for what, _ in tried))
+    for (statements, says), (status, value, sentence) in zip(tried, found, strict=True):
+        assert status != 0, statements
+        assert says in sentence, statements
+        assert np.isnan(value) or statements.endswith(UNPREPARED), statements
 
 
 def test_times_outside_the_samples(tmp_path):
-    made = export(spline_arm(), tmp_path)
-    text = HARNESS.replace("effort_O", "effort_J").replace(
-        "@_parameters parameters = @_defaults;", ""
-    )
-    for time, outside in (("0.0", False), ("3.0", False), ("-1e-9", True), ("3.0000001", True)):
-        (tmp_path / "harness.c").write_text(
-            (text % f"@_prepare(&model); status = @_motion(&model, {time}, &inputs);").replace(
-                "@", made.prefix
-            )
-        )
-        assert cc(["cc", "-std=c99"], tmp_path, "harness.c", f"{made.prefix}.c").returncode == 0
-        answer = subprocess.run(
-            [tmp_path / "program"], capture_output=True, text=True, check=True
-        ).stdout
-        assert ("outside the samples" in answer) is outside
+    times = {"0.0": False, "3.0": False, "-1e-9": True, "3.0000001": True}
+    tried = [f"@_prepare(&model); status = @_motion(&model, {time}, &inputs);" for time in times]
+    found = told(tmp_path, export(spline_arm(), tmp_path), *tried)
+    assert ["outside the samples" in sentence for *_, sentence in found] == [*times.values()]
 
 
 def test_iterated_loops_report_failure_and_stay_where_they_were(tmp_path):
     made = export(iterated(), tmp_path, newton=2)
     far = "inputs.O += 2.5; " + EVALUATED
     back = "inputs.O -= 2.5; " + EVALUATED
-    for statements, lost in (
-        (PREPARED + EVALUATED + far, True),
-        (PREPARED + EVALUATED + far + back, False),
-    ):
-        status, effort, _ = told(tmp_path, made, statements)
-        assert np.isnan(effort) is np.bool_(lost)
-        assert (status != 0) is lost
+    tried = (PREPARED + EVALUATED + far, PREPARED + EVALUATED + far + back)
+    (away, lost, _), (again, effort, _) = told(tmp_path, made, *tried)
+    assert away != 0
+    assert np.isnan(lost)
+    assert again == 0
+    assert not np.isnan(effort)
 
 
 def test_twice_the_same_bytes(tmp_path):

@@ -177,10 +177,8 @@ def test_half_iterated_loops_are_in_the_estimate(name, scene):
 
 def test_a_reference_means_whole_turns():
     """The double nearest to a turn would be off by 3e-9 rad after 1.25e7 of them."""
-    program, values = (
-        derive(slider_crank(), ["motion"]),
-        slider_crank().mechanism.values({"change": 0.0}),
-    )
+    program = derive(slider_crank(), ["motion"])
+    values = slider_crank().mechanism.values({"change": 0.0})
     (row,) = reference(program, [1e6], list(values.values()))
     found = dict(zip(program.names, row, strict=True))
     with mp.workdps(50):

@@ -131,10 +131,8 @@ def test_names_of_a_drawing_hide_neither_each_other_nor_leave_it():
     figure.draw_without_rendering()
     for axes in figure.axes:
         # A name alone: the extent of an annotation has its line too, all around it.
-        frame, boxes = (
-            axes.get_window_extent(),
-            [Text.get_window_extent(text) for text in axes.texts],
-        )
+        frame = axes.get_window_extent()
+        boxes = [Text.get_window_extent(text) for text in axes.texts]
         told = {name for text in axes.texts for name in text.get_text().split(", ")}
         assert told == {*described["joints"], *described["paths"]}
         for k, box in enumerate(boxes):

@@ -53,10 +53,8 @@ def test_formulas_to_forty_digits(name, monkeypatch):
             drives = {
                 joint: tuple(order[k] for order in driven) for k, joint in enumerate(program.driven)
             }
-            expected, found = (
-                precise(scene, float(moment), drives),
-                dict(zip(program.names, row, strict=True)),
-            )
+            expected = precise(scene, float(moment), drives)
+            found = dict(zip(program.names, row, strict=True))
             assert_equal(expected, found, scene.mechanism)
 
 

@@ -250,10 +250,8 @@ def test_the_carrier_bears_what_presses_apart():
     m = Mechanism("arm")
     m.set_gravity(0, 0)
     arm = m.link("arm", length=0.1, mass=1.0)
-    first, second = (
-        wheel(m, "first", radius=0.04, mass=1.0),
-        wheel(m, "second", radius=0.06, mass=1.0),
-    )
+    first = wheel(m, "first", radius=0.04, mass=1.0)
+    second = wheel(m, "second", radius=0.06, mass=1.0)
     m.revolute("O", m.ground, arm)
     m.revolute("A", arm, first)
     m.revolute("B", arm.tip, second)

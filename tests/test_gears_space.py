@@ -119,10 +119,8 @@ def test_bevel_gears(seed, angle, moment):
     radii = [0.002 * count for count in z]
     heights = [r / math.tan(one) for r, one in zip(radii, gamma, strict=True)]
     m, load = space(moment, "second", v)
-    first, second = (
-        shaft(m, "first", apex, x, y),
-        shaft(m, "second", apex, v, np.cross(v, np.cross(x, y))),
-    )
+    first = shaft(m, "first", apex, x, y)
+    second = shaft(m, "second", apex, v, np.cross(v, np.cross(x, y)))
     mesh = gears(m, "mesh", first.at(heights[0]), second.at(heights[1]), teeth=z, module=0.004)
     load(second)
     solution = evaluate(
@@ -157,10 +155,8 @@ def test_a_worm_and_its_wheel(hand, moment):
     u, e, v = frame(5)
     r1, r2, base = 0.02, 0.08, np.array([0.0, 0.1, 0.2])
     m, load = space(moment, "wheel", v)
-    worm, turned = (
-        shaft(m, "worm", base, u, e),
-        shaft(m, "wheel", base + 0.1 * u + (r1 + r2) * e - 0.2 * v, v, e),
-    )
+    worm = shaft(m, "worm", base, u, e)
+    turned = shaft(m, "wheel", base + 0.1 * u + (r1 + r2) * e - 0.2 * v, v, e)
     mesh = gears(m, "mesh", worm.at(0.1), turned.at(0.2), radii=(r1, r2), teeth=(2, 40), hand=hand)
     load(turned)
     solution = evaluate(Scene(m, {"worm_bearing": polynomial(0.3, 1.0)}, t=(0, 1, 2)))
@@ -193,10 +189,8 @@ def test_sections_of_a_shaft_feel_the_teeth_where_they_are():
     """
     m = SpatialMechanism("shaft")
     m.set_gravity(0, 0, 0)
-    driver, driven = (
-        shaft(m, "driver", (0, 0, 0), (1, 0, 0), (0, 1, 0)),
-        shaft(m, "driven", (0, 0.1, 0), (1, 0, 0), (0, 1, 0), True),
-    )
+    driver = shaft(m, "driver", (0, 0, 0), (1, 0, 0), (0, 1, 0))
+    driven = shaft(m, "driven", (0, 0.1, 0), (1, 0, 0), (0, 1, 0), True)
     gears(m, "mesh", driver.at(0.2), driven.at(0.2), radii=(0.04, 0.06))
     m.torque("load", driven.tip, x=30.0)
     solution = evaluate(Scene(m, {"driver_bearing": polynomial(0.0)}, t=(0, 1, 2)))
@@ -247,10 +241,8 @@ def test_a_planet_on_a_tilted_arm():
 def test_a_belt_in_space_is_that_of_the_plane():
     m = SpatialMechanism("belt")
     m.set_gravity(0, 0, 0)
-    first, second = (
-        shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0)),
-        shaft(m, "second", (0, 0.3, 0.4), (1, 0, 0), (0, 1, 0)),
-    )
+    first = shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0))
+    second = shaft(m, "second", (0, 0.3, 0.4), (1, 0, 0), (0, 1, 0))
     belt(m, "belt", first.at(0.1), second.at(0.1), radii=(0.05, 0.1), preload=500.0)
     m.torque("load", second, x=20.0)
     solution = evaluate(Scene(m, {"first_bearing": polynomial(0.0)}, t=(0, 1, 2)))
@@ -269,10 +261,8 @@ def test_a_belt_in_space_is_that_of_the_plane():
 @pytest.mark.quick
 def test_bad_gears_in_space_are_refused_by_name():
     m = SpatialMechanism("bad")
-    first, second = (
-        shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0)),
-        shaft(m, "second", (0, 0, 0), (0, 1, 0), (0, 0, 1)),
-    )
+    first = shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0))
+    second = shaft(m, "second", (0, 0, 0), (0, 1, 0), (0, 0, 1))
     third = shaft(m, "third", (0, 0.1, 0), (1, 0, 0), (0, 1, 0))
     worm = shaft(m, "worm", (0, 0, 0.1), (0, 1, 0), (0, 0, 1))
 

@@ -7,6 +7,7 @@ import struct
 
 import numpy as np
 import pytest
+from commands import command
 from drawn_scenes import every_kind
 from internals import (
     Film,
@@ -26,7 +27,6 @@ from internals import places_placed as placed
 from reports import hostile, press, solved
 
 from lagrange_casadi import save
-from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
 
 WIDE = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
@@ -242,25 +242,11 @@ def test_solids_are_closed_and_seen_from_outside(mesh, volume):
 def test_the_command_writes_it_twice_alike_and_says_what_it_cannot_show(tmp_path, capsys):
     save(press(), tmp_path / "press.h5")
     for name in ("a", "b"):
-        assert (
-            main(["animate", str(tmp_path / "press.h5"), "--out", str(tmp_path / f"{name}.glb")])
-            == 0
-        )
+        assert command("animate", tmp_path / "press.h5", "--out", tmp_path / f"{name}.glb") == 0
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
     capsys.readouterr()
-    assert (
-        main(
-            [
-                "animate",
-                str(tmp_path / "press.h5"),
-                "--out",
-                str(tmp_path / "c.glb"),
-                "--section",
-                "bending",
-            ]
-        )
-        == 2
-    )
+    asked = ("animate --section bending", tmp_path / "press.h5", "--out", tmp_path / "c.glb")
+    assert command(*asked) == 2
     assert "a .glb has no section forces; they are in .gif, .mp4, .svg" in capsys.readouterr().err
     assert not (tmp_path / "c.glb").exists()
     with pytest.raises(DeclarationError, match="there is 1 instant; ask for more"):

@@ -9,6 +9,7 @@ import pytest
 import rubbing
 from balance import apart, columns_at, oracle_of, postures
 from click.testing import CliRunner
+from commands import words
 from internals import contents
 from packer import CASE
 from packer import scene as packer
@@ -236,15 +237,7 @@ def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
         found = CliRunner().invoke(program, [command[0], str(tmp_path / "packer.py"), *command[1:]])
         assert found.exit_code == 0, found.output
         assert told in found.output
-    out = [
-        "--grid",
-        "r=0.06,0.08",
-        "--want",
-        "effort",
-        "--quiet",
-        "--out",
-        str(tmp_path / "sweep.h5"),
-    ]
+    out = [*words("--grid r=0.06,0.08 --want effort --quiet --out"), str(tmp_path / "sweep.h5")]
     found = CliRunner().invoke(program, ["sweep", str(tmp_path / "packer.py"), *out])
     assert found.exit_code == 0, found.output
     line = (

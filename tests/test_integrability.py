@@ -21,10 +21,8 @@ def symbols(n):
 
 def course(q, qd, qdd, time=None, tangent=None, drift=None):
     n = qd.numel()
-    tangent, drift = (
-        ca.SX.eye(n) if tangent is None else tangent,
-        ca.SX(q.numel(), 1) if drift is None else drift,
-    )
+    tangent = ca.SX.eye(n) if tangent is None else tangent
+    drift = ca.SX(q.numel(), 1) if drift is None else drift
     return Course(q, qd, qdd, ca.SX(0, 1) if time is None else time, tangent @ qd + drift)
 
 

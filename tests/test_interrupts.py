@@ -16,6 +16,7 @@ from pathlib import Path
 
 import pytest
 import sweeps
+from commands import words
 from internals import interrupts
 
 from lagrange_casadi.cli import progress
@@ -200,26 +201,12 @@ STEPPING = {
     "swept": [
         "sweep",
         ITERATED,
-        "--newton",
-        "1000",
-        "--want",
-        "effort",
-        "--t",
-        "0:6:2000001",
-        "--grid",
-        "r=0.9:1:50",
+        *words("--newton 1000 --want effort --t 0:6:2000001 --grid r=0.9:1:50"),
     ],
     "swept-interpreted": [
         "sweep",
         ITERATED,
-        "--newton",
-        "1000",
-        "--t",
-        "0:6:20001",
-        "--grid",
-        "r=0.9:1:50",
-        "--backend",
-        "vm",
+        *words("--newton 1000 --t 0:6:20001 --grid r=0.9:1:50 --backend vm"),
     ],
 }
 

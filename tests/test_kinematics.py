@@ -123,11 +123,9 @@ def test_a_dead_centre_is_named():
     determined.
     """
     m = Mechanism("dead")
-    a, b, p = (
-        m.link("a", length=1.0, mass=1.0),
-        m.link("b", length=1.0, mass=1.0),
-        m.point_mass("p", 1.0),
-    )
+    a = m.link("a", length=1.0, mass=1.0)
+    b = m.link("b", length=1.0, mass=1.0)
+    p = m.point_mass("p", 1.0)
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, p)
@@ -282,11 +280,9 @@ def test_a_dead_centre_is_passed_in_no_silence_however_often_a_guide_is_declared
     pivot.
     """
     m = Mechanism("scott_russell")
-    crank, bar, foot = (
-        m.link("crank", length=0.2, mass=1.0),
-        m.link("bar", length=0.4, mass=1.0),
-        m.point_mass("foot", 0.1),
-    )
+    crank = m.link("crank", length=0.2, mass=1.0)
+    bar = m.link("bar", length=0.4, mass=1.0)
+    foot = m.point_mass("foot", 0.1)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, bar.at(0.2))
     m.revolute("B", bar, foot)
@@ -373,11 +369,9 @@ def test_a_drive_on_a_link_held_at_a_parameters_angle(kind):
 @pytest.mark.parametrize("size", [1e-9, 1e-6, 1.0, 1e6])
 def test_a_rough_place_tells_the_branch_at_any_size(size):
     m = Mechanism("small")
-    crank, rod, slider = (
-        m.link("crank", length=0.1 * size, mass=1),
-        m.link("rod", length=0.2 * size, mass=1),
-        m.point_mass("s", 1),
-    )
+    crank = m.link("crank", length=0.1 * size, mass=1)
+    rod = m.link("rod", length=0.2 * size, mass=1)
+    slider = m.point_mass("s", 1)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slider)

@@ -191,28 +191,22 @@ def test_one_reverse_sweep_serves_any_number_of_mobilities():
 
 
 @pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        ({"kinetic": lambda s: s.kinetic * s.accelerations[0]}, "accelerations"),
-        ({"force_function": lambda s: s.rates[0]}, "force_function must not depend on rates"),
-        (
-            {"accelerations": lambda s: s.accelerations[0]},
-            "accelerations must have 2 entries, got 1",
-        ),
-        ({"mobility_rates": lambda s: ca.SX(0, 1)}, "mobility_rates must have 1 entries, got 0"),
-        ({"coordinates": lambda s: s.coordinates[0]}, "set 'tangent'"),
-        ({"tangent": lambda s: ca.SX.eye(3)}, "tangent must have shape"),
-        ({"coordinate_rates": lambda s: s.rates[0]}, "coordinate_rates must have 2 entries, got 1"),
-        (
-            {"coordinate_rates": lambda s: s.rates**2},
-            "coordinate_rates must be linear in the rates",
-        ),
-        ({"rates": lambda s: 2 * s.rates}, "rates must be symbols"),
-        ({"forces": lambda s: ca.SX.zeros(3)}, "forces must have 2 entries"),
-        ({"constraints": lambda s: s.coordinates}, "multipliers must have 2 entries"),
-        ({"velocities": lambda s: ca.SX.sym("w")}, "velocity_graphs must have 1 entries, got 0"),
-        ({"velocity_forces": lambda s: s.rates}, "velocity_forces must have 0 entries, got 2"),
-    ],
+    ("says", "change"),
+    {
+        "accelerations": {"kinetic": lambda s: s.kinetic * s.accelerations[0]},
+        "force_function must not depend on rates": {"force_function": lambda s: s.rates[0]},
+        "accelerations must have 2 entries, got 1": {"accelerations": lambda s: s.accelerations[0]},
+        "mobility_rates must have 1 entries, got 0": {"mobility_rates": lambda s: ca.SX(0, 1)},
+        "set 'tangent'": {"coordinates": lambda s: s.coordinates[0]},
+        "tangent must have shape": {"tangent": lambda s: ca.SX.eye(3)},
+        "coordinate_rates must have 2 entries, got 1": {"coordinate_rates": lambda s: s.rates[0]},
+        "coordinate_rates must be linear in the rates": {"coordinate_rates": lambda s: s.rates**2},
+        "rates must be symbols": {"rates": lambda s: 2 * s.rates},
+        "forces must have 2 entries": {"forces": lambda s: ca.SX.zeros(3)},
+        "multipliers must have 2 entries": {"constraints": lambda s: s.coordinates},
+        "velocity_graphs must have 1 entries, got 0": {"velocities": lambda s: ca.SX.sym("w")},
+        "velocity_forces must have 0 entries, got 2": {"velocity_forces": lambda s: s.rates},
+    }.items(),
 )
 def test_misuse_is_named(change, says):
     system, _ = crane()

@@ -205,13 +205,11 @@ def test_a_rheonomic_constraint_bears_what_newton_says():
     """A bead on a straight wire that is turned in a level plane: the wire pushes it by m (2 W r' +
     W' r).
     """
-    q, qd, qdd, lam, t = (
-        ca.SX.sym("q", 2),
-        ca.SX.sym("qd", 2),
-        ca.SX.sym("qdd", 2),
-        ca.SX.sym("lam"),
-        ca.SX.sym("t"),
-    )
+    q = ca.SX.sym("q", 2)
+    qd = ca.SX.sym("qd", 2)
+    qdd = ca.SX.sym("qdd", 2)
+    lam = ca.SX.sym("lam")
+    t = ca.SX.sym("t")
     m, angle = 0.8, 1.5 * t + t**2
     phi = ca.cos(angle) * q[1] - ca.sin(angle) * q[0]  # across the wire
     system = LagrangeSystem(

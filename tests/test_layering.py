@@ -265,54 +265,72 @@ def test_only_the_table_of_methods_names_what_is_above():
 
 
 WITHOUT = """
-import importlib, json, pkgutil, sys
-leaf, case, out, *commands = sys.argv[1:]
-gone = f"lagrange_casadi.{leaf}"
+import importlib, json, os, pkgutil, sys, traceback
 
 class Gone:
     def find_spec(name, path, target=None):
-        if f"{name}.".startswith(f"{gone}."):
+        if name.startswith("lagrange_casadi.") and name.split(".")[1] in gone:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 
+case, leaves = sys.argv[1], json.loads(sys.argv[2])
 sys.meta_path.insert(0, Gone)
+gone = set(leaves)
 import lagrange_casadi
-from lagrange_casadi.errors import MissingPackageError
-from lagrange_casadi.methods import METHODS, method
-lost, refused = [], []
 for found in pkgutil.walk_packages(lagrange_casadi.__path__, "lagrange_casadi."):
-    if not found.name.endswith("__main__") and found.name != gone:
+    if not found.name.endswith("__main__") and found.name.split(".")[1] not in gone:
+        importlib.import_module(found.name)
+
+def without(leaf, commands):
+    global gone
+    gone, name_of_leaf, out = {leaf}, f"lagrange_casadi.{leaf}", "x.h5"
+    from lagrange_casadi.errors import MissingPackageError
+    from lagrange_casadi.methods import METHODS, method
+    lost, refused = [], []
+    for found in pkgutil.walk_packages(lagrange_casadi.__path__, "lagrange_casadi."):
+        if not found.name.endswith("__main__") and found.name != name_of_leaf:
+            try:
+                importlib.import_module(found.name)
+            except ModuleNotFoundError as error:
+                assert error.name.startswith(name_of_leaf), error
+                lost.append(found.name)
+    for look, names in ((method, METHODS), (lagrange_casadi.__getattr__, dir(lagrange_casadi))):
+        for name in names:
+            try:
+                look(name)
+            except MissingPackageError as error:
+                assert name_of_leaf in str(error), error
+                refused.append(name)
+    if leaf == "cli":
+        solution = lagrange_casadi.evaluate(lagrange_casadi.load_case(case).scene, t=(0, 0.1, 5), backend="vm")
+        lagrange_casadi.save(solution, out)
+    else:
+        from lagrange_casadi.cli import main
+        assert main(["run", case, "--no-figures", "--backend", "vm", "--t", "0:0.1:5", "--out", out]) == 0
+        asked = {"animate": [out], "drive": [case], "export": [case, "--out", "c"], "plot": [out, "--out", "p"]}
+        asked |= {"report": [out], "new": ["new", "--from", "model.json"]}
+        asked |= {"free": [case]}
+        asked |= {"loads": [case, "--link", "crank", "--out", "l"]}
+        asked |= {"identify": [case, "data.csv"]}
+        for word in commands:
+            assert main([word, *asked[word]]) == 1
+    print(json.dumps([lost, refused]))
+
+for leaf, commands in leaves.items():
+    if not os.fork():
+        os.mkdir(leaf)
+        os.chdir(leaf)
+        for stream, name in ((1, "out"), (2, "err")):
+            os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT), stream)
         try:
-            importlib.import_module(found.name)
-        except ModuleNotFoundError as error:
-            assert error.name.startswith(gone), error
-            lost.append(found.name)
-for name, answer in METHODS.items():
-    try:
-        method(name)
-    except MissingPackageError as error:
-        assert gone in str(error), error
-        refused.append(name)
-for name in dir(lagrange_casadi):
-    try:
-        getattr(lagrange_casadi, name)
-    except MissingPackageError as error:
-        assert gone in str(error), error
-        refused.append(name)
-if leaf == "cli":
-    solution = lagrange_casadi.evaluate(lagrange_casadi.load_case(case).scene, t=(0, 0.1, 5), backend="vm")
-    lagrange_casadi.save(solution, out)
-else:
-    from lagrange_casadi.cli import main
-    assert main(["run", case, "--no-figures", "--backend", "vm", "--t", "0:0.1:5", "--out", out]) == 0
-    asked = {"animate": [out], "drive": [case], "export": [case, "--out", out + "_c"], "plot": [out, "--out", out + "_p"]}
-    asked |= {"report": [out], "new": [out + "_new", "--from", "model.json"]}
-    asked |= {"free": [case]}
-    asked |= {"loads": [case, "--link", "crank", "--out", out + "_l"]}
-    asked |= {"identify": [case, "data.csv"]}
-    for word in commands:
-        assert main([word, *asked[word]]) == 1
-print(json.dumps([lost, refused]))
+            without(leaf, commands)
+        except BaseException:
+            traceback.print_exc()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
+    os.wait()
 """  # noqa: E501
+"""Read all but the leaves without any of them; then take away each in a process of its own."""
 
 GOES = {
     "exports": (["cli.export"], ["export"], ["export"]),
@@ -351,19 +369,23 @@ what they need.
 """
 
 
-@pytest.mark.parametrize("leaf", LEAVES)
-def test_a_leaf_can_be_taken_away(leaf, tmp_path):
-    """All else imports and a case runs; what the leaf did is refused by an error of ours."""
-    modules_lost, refusing, commands = GOES[leaf]
-    command = [sys.executable, "-c", WITHOUT, leaf, str(CASE), str(tmp_path / "x.h5"), *commands]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
-    assert done.returncode == 0, done.stderr
-    lost, refused = json.loads(done.stdout.splitlines()[-1])
-    assert lost == [f"lagrange_casadi.{name}" for name in modules_lost]
-    assert sorted(refused) == sorted(refusing)
-    assert done.stderr.count(f"needs lagrange_casadi.{leaf}, which this installation lacks") == len(
-        commands
-    )
+def test_every_leaf_can_be_taken_away(tmp_path):
+    """All else imports and a case runs; what the leaf did is refused by an error of ours.
+
+    What is no leaf imports without all of them.
+    """
+    leaves = json.dumps({leaf: GOES[leaf][2] for leaf in LEAVES})
+    command = [sys.executable, "-c", WITHOUT, str(CASE), leaves]
+    subprocess.run(command, check=True, cwd=tmp_path)
+    for leaf in LEAVES:
+        modules_lost, refusing, commands = GOES[leaf]
+        out, err = ((tmp_path / leaf / name).read_text() for name in ("out", "err"))
+        assert "Traceback" not in err, f"{leaf}: {err}"
+        lost, refused = json.loads(out.splitlines()[-1])
+        assert lost == [f"lagrange_casadi.{name}" for name in modules_lost], leaf
+        assert sorted(refused) == sorted(refusing), leaf
+        needs = f"needs lagrange_casadi.{leaf}, which this installation lacks"
+        assert err.count(needs) == len(commands), leaf
 
 
 def for_users() -> set[str]:

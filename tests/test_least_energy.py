@@ -114,10 +114,8 @@ def portal(mass=None):
     m = Mechanism("portal")
     beam = {"mass": mass} if mass else {"beam": made(beams.i_section(0.1, 0.055, 0.0041, 0.0057))}
     left = m.link("left", length=3.0, beam=made(beams.rectangle(0.1, 0.06)))
-    top, right = (
-        m.link("top", length=4.0, **beam),
-        m.link("right", length=2.5, beam=made(beams.round_bar(0.08))),
-    )
+    top = m.link("top", length=4.0, **beam)
+    right = m.link("right", length=2.5, beam=made(beams.round_bar(0.08)))
     m.weld("A", m.ground, left, angle=math.pi / 2)
     m.weld("B", left.tip, top, angle=-math.pi / 2)
     m.weld("C", top.tip, right, angle=-math.pi / 2)
@@ -184,15 +182,13 @@ def test_any_chain_between_two_walls(parts, last, forces, odd, space):
     """Links end to end, welded or pinned, bent any way, of any cross-section, loaded anywhere: all
     reactions are a frame's.
     """
-    m, near, at, before, loads, posture, pins = (
-        (SpatialMechanism if space else Mechanism)("chain"),
-        None,
-        np.zeros(2),
-        0.0,
-        [],
-        {},
-        0,
-    )
+    m = (SpatialMechanism if space else Mechanism)("chain")
+    near = None
+    at = np.zeros(2)
+    before = 0.0
+    loads = []
+    posture = {}
+    pins = 0
     axis = {"axis": (0, 0, 1)} if space else {}
 
     def weld(name, place, child, turn):

@@ -44,10 +44,8 @@ def reaching(leg, posture, height=0.5, carried=False):
 
 
 def telescope(m, foot, reverse=False):
-    cylinder, piston = (
-        m.link("cylinder", length=0.3, mass=1.0),
-        m.link("piston", length=0.3, mass=0.5),
-    )
+    cylinder = m.link("cylinder", length=0.3, mass=1.0)
+    piston = m.link("piston", length=0.3, mass=0.5)
     if reverse:
         # The cylinder is the parent: its first turn is the one about its own axis.
         m.universal("U", cylinder, foot, axis=Y, second=X, turned=((0.0, 0.0, -1.0), Y))
@@ -59,10 +57,8 @@ def telescope(m, foot, reverse=False):
 
 def pins(m, foot, first, second, offset=0.0):
     """Two pins whose axes meet, or pass each other at a distance."""
-    yoke, arm = (
-        m.link("yoke", length=0.1, mass=0.2, inertia=(1e-4, 1e-4, 1e-4), centre=(0.0, 0.0, 0.0)),
-        m.link("arm", length=0.3, mass=1.0),
-    )
+    yoke = m.link("yoke", length=0.1, mass=0.2, inertia=(1e-4, 1e-4, 1e-4), centre=(0.0, 0.0, 0.0))
+    arm = m.link("arm", length=0.3, mass=1.0)
     m.revolute("A", foot, yoke, axis=first)
     m.revolute(
         "B", yoke.at(-offset * first[2], 0.0, offset * first[0]), arm, axis=second, turned=UPRIGHT

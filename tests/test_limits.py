@@ -89,57 +89,44 @@ def test_sums_of_decimals(parts):
         assert law.at("shear", np.ones((3, 1)))[0, 0] == pytest.approx(-20.62)
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize(
-    ("x", "misses"), [(0.3 + 1e-9, True), (-1e-9, True), (0.3 + 1e-14, False), (-1e-14, False)]
-)
-def test_all_programs_draw_the_line_at_the_same_place(x, misses, tmp_path):
+def test_all_programs_draw_the_line_at_the_same_place(tmp_path):
     """The API, sweeps and exported C: a part in 1e9 beyond the end is beyond it."""
     scene = parametric(0.1, 0.3)
-    engine = DesignEngine.of(scene, ["section:arm"])
-    status = engine.evaluate(
-        np.array([[{"x": x, "l": 0.3}[name] for name in engine.parameters]])
-    ).status[0]
-    assert status == (Status.IMPOSSIBLE if misses else Status.OK)
-    made = export(scene, tmp_path)
-    call = (
-        f"parameters.x = {x!r}; status = @_prepare(&model, &parameters); @_motion(&model, 0.5,"
-        " &inputs); " + EVALUATED
-    )
-    if misses:
-        call = (
-            f"parameters.x = {x!r}; status = @_prepare(&model, &parameters); outputs.effort_O = 0;"
-        )
+    places = {0.3 + 1e-9: True, -1e-9: True, 0.3 + 1e-14: False, -1e-14: False}
+    for x, misses in places.items():
+        if not misses:
+            evaluate(scene, parameters={"x": x})
+            continue
         with pytest.raises(ParameterError, match=r"point at .* m is outside link 'arm', 0 to 0\.3"):
             evaluate(scene, parameters={"x": x})
-    else:
-        evaluate(scene, parameters={"x": x})
-    code, _, _ = told(tmp_path, made, call)
-    assert (code != 0) is misses
+    engine = DesignEngine.of(scene, ["section:arm"])
+    rows = np.array([[{"x": x, "l": 0.3}[name] for name in engine.parameters] for x in places])
+    assert engine.evaluate(rows).status.tolist() == [
+        Status.IMPOSSIBLE if misses else Status.OK for misses in places.values()
+    ]
+    prepare = "parameters.x = {!r}; status = @_prepare(&model, &parameters); "
+    evaluated = "@_motion(&model, 0.5, &inputs); " + EVALUATED
+    tried = (
+        prepare.format(x) + ("outputs.effort_O = 0;" if misses else evaluated)
+        for x, misses in places.items()
+    )
+    found = told(tmp_path, export(scene, tmp_path), *tried)
+    assert [code != 0 for code, *_ in found] == [*places.values()]
 
 
 def test_in_single_precision_it_is_the_rounding_of_singles(tmp_path):
     scene = parametric(0.1, 0.3)
     made = export(scene, tmp_path, precision="single")
-    for x, misses in (
-        ("0.1f + 0.2f", False),
-        ("0.3f*(1 + 3e-7f)", False),
-        ("0.3f*(1 + 1e-5f)", True),
-    ):
-        code, _, _ = told(
-            tmp_path,
-            made,
-            f"parameters.x = {x}; status = @_prepare(&model, &parameters); outputs.effort_O = 0;",
-        )
-        assert (code != 0) is misses, x
+    prepare = "parameters.x = {}; status = @_prepare(&model, &parameters); outputs.effort_O = 0;"
+    lengths = {"0.1f + 0.2f": False, "0.3f*(1 + 3e-7f)": False, "0.3f*(1 + 1e-5f)": True}
+    found = told(tmp_path, made, *map(prepare.format, lengths))
+    assert [code != 0 for code, *_ in found] == [*lengths.values()]
 
 
 def plated():
     m = Mechanism("plated")
-    rod, plate = (
-        m.link("rod", length=0.5, mass=1.0),
-        m.link("plate", length=0.5, mass=1.0, centre=(0.1, 0.0), inertia=0.1),
-    )
+    rod = m.link("rod", length=0.5, mass=1.0)
+    plate = m.link("plate", length=0.5, mass=1.0, centre=(0.1, 0.0), inertia=0.1)
     m.revolute("O", m.ground, rod)
     m.revolute("A", rod.tip, plate)
     m.weld("W", plate.tip, m.point_mass("lump", 1.0))

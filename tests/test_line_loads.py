@@ -80,10 +80,8 @@ def test_it_does_not_depend_on_how_the_mass_is_told_or_how_large_it_is():
     for other in solutions[1:]:
         assert other.certified
         for force in ("shear", "bending"):
-            expected_, found = (
-                getattr(solutions[0].section("arm"), force),
-                getattr(other.section("arm"), force),
-            )
+            expected_ = getattr(solutions[0].section("arm"), force)
+            found = getattr(other.section("arm"), force)
             np.testing.assert_allclose(
                 found, expected_, rtol=0, atol=1e-13 * np.abs(expected_).max()
             )
@@ -91,11 +89,9 @@ def test_it_does_not_depend_on_how_the_mass_is_told_or_how_large_it_is():
 
 def test_what_bears_no_line_load_is_refused_by_name():
     m = Mechanism("refused")
-    rod, ball, low = (
-        m.link("rod", length=1.0, mass=1.0),
-        m.point_mass("ball", 1.0),
-        m.parameter("low", 0.2, "m"),
-    )
+    rod = m.link("rod", length=1.0, mass=1.0)
+    ball = m.point_mass("ball", 1.0)
+    low = m.parameter("low", 0.2, "m")
     for place in (ball, m.ground):
         with pytest.raises(
             DeclarationError,

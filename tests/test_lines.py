@@ -44,11 +44,9 @@ def slotted(tilt=0.0):
 def guided(offset=0.0):
     """A slider-crank whose slider may turn about its guide, which the ground holds anyhow."""
     m = SpatialMechanism("guided")
-    crank, rod, slider = (
-        m.link("crank", length=0.1, mass=1.0),
-        m.link("rod", length=0.4, mass=1.0),
-        m.link("slider", length=0.05, mass=1.0),
-    )
+    crank = m.link("crank", length=0.1, mass=1.0)
+    rod = m.link("rod", length=0.4, mass=1.0)
+    slider = m.link("slider", length=0.05, mass=1.0)
     m.revolute(
         "O",
         m.ground.at(*turned(0.0, offset)),
@@ -65,11 +63,9 @@ def guided(offset=0.0):
 def askew(posture, offset=0.03, reach=0.4):
     """A slider that turns about its guide; the rod's pin passes the guide's line at a distance."""
     m = SpatialMechanism("askew")
-    crank, rod, slider = (
-        m.link("crank", length=0.1, mass=1.0),
-        m.link("rod", length=reach, mass=1.0),
-        m.link("slider", length=0.05, mass=1.0),
-    )
+    crank = m.link("crank", length=0.1, mass=1.0)
+    rod = m.link("rod", length=reach, mass=1.0)
+    slider = m.link("slider", length=0.05, mass=1.0)
     m.revolute("O", m.ground.at(0.0, 0.12, 0.13), crank, axis=(0.0, 0.3, 1.0))
     m.spherical("A", crank.tip, rod)
     m.revolute("B", slider.at(0.0, offset, 0.0), rod.tip, axis=(0, 0, 1))

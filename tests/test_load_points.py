@@ -48,10 +48,8 @@ def unique(scene, parameters=None, **method):
     size = max(abs(x) for forces in exact.values() for x in forces)
     for link, force in given:
         assert not open_[link, force], f"{force} of {link} is given, and is not unique"
-        law, true = (
-            solution.section(link).law,
-            np.reshape(exact[link, force], (solution.t.size, -1)),
-        )
+        law = solution.section(link).law
+        true = np.reshape(exact[link, force], (solution.t.size, -1))
         mine = law.on_grid(force, RATIOS)
         assert (
             np.abs(mine - true).max()
@@ -326,10 +324,8 @@ def given(scene, parameters, **method):
     """The forces of the rail that are given, and right beside the same mechanism with one guide,
     which shares nothing.
     """
-    two, one = (
-        evaluate(scene, parameters=parameters, **method),
-        evaluate(rail(("P",)), parameters=parameters),
-    )
+    two = evaluate(scene, parameters=parameters, **method)
+    one = evaluate(rail(("P",)), parameters=parameters)
     found = {force for force in FORCES if two.determined(f"section:rail:{force}")}
     for force in found:
         mine, true = (solution.array(f"section:rail:{force}") for solution in (two, one))

@@ -169,11 +169,9 @@ def two_slots():
     the ground.
     """
     m = Mechanism("two_slots")
-    s, rod, sleeve = (
-        m.link("s", length=0.1, mass=1.0),
-        m.link("rod", length=0.6, mass=1.0),
-        m.link("sleeve", length=0.3, mass=1.0),
-    )
+    s = m.link("s", length=0.1, mass=1.0)
+    rod = m.link("rod", length=0.6, mass=1.0)
+    sleeve = m.link("sleeve", length=0.3, mass=1.0)
     m.prismatic("X", m.ground, s, axis=(1, 0))
     m.revolute("A", s, rod)
     m.prismatic("P", rod, sleeve, axis=(1, 0))
@@ -285,10 +283,8 @@ def test_two_circles_have_a_closed_form_whatever_their_size(size):
     Places are drawn near a metre, and few links reach so far.
     """
     m = Mechanism("lever")
-    crank, lever = (
-        m.link("crank", length=0.05 * size, mass=1.0),
-        m.link("lever", length=0.2 * size, mass=1.0),
-    )
+    crank = m.link("crank", length=0.05 * size, mass=1.0)
+    lever = m.link("lever", length=0.2 * size, mass=1.0)
     m.revolute("O", m.ground, crank)
     m.revolute("P", m.ground.at(0.25 * size, 0.0), lever)
     cylinder(

@@ -85,10 +85,8 @@ def test_with_bearings_that_rub():
     """Both depend on each other: teeth press the bearings, whose friction the teeth pass on."""
     m = Mechanism("rubbing")
     m.set_gravity(0, 0)
-    first, second = (
-        wheel(m, "first", radius=0.03, mass=0.5),
-        wheel(m, "second", radius=0.05, mass=1.0),
-    )
+    first = wheel(m, "first", radius=0.03, mass=0.5)
+    second = wheel(m, "second", radius=0.05, mass=1.0)
     joints = m.revolute("A", m.ground, first), m.revolute("B", m.ground.at(0.08, 0), second)
     for name, joint in zip("ab", joints, strict=True):
         m.friction(name, joint, mu=0.1, radius=0.01)
@@ -159,10 +157,8 @@ def test_a_wheel_drives_its_worm_unless_that_locks_itself():
 def test_numbers_that_cannot_be_are_refused_by_name():
     def refused(told, of=Mechanism, **more):
         m = of("bad")
-        first, second = (
-            wheel(m, "first", radius=0.05, mass=1.0),
-            wheel(m, "second", radius=0.1, mass=1.0),
-        )
+        first = wheel(m, "first", radius=0.05, mass=1.0)
+        second = wheel(m, "second", radius=0.1, mass=1.0)
         m.revolute("A", m.ground, first)
         m.revolute("B", m.ground.at(0.05, 0), second)
         with pytest.raises(DeclarationError) as error:

@@ -176,11 +176,9 @@ def test_a_cam_turns_against_its_follower():
 
 def test_the_first_motor_of_a_scara_is_a_textbooks():
     found = evaluate(shown("SCARA")["scene"])
-    first, bent, second = (
-        found.motion("shoulder"),
-        found.motion("elbow").value,
-        found.motion("motor"),
-    )
+    first = found.motion("shoulder")
+    bent = found.motion("elbow").value
+    second = found.motion("motor")
     lever = 0.35 * (4.0 * 0.15 + 3.0 * 0.3)
     own = 6.0 * 0.35**2 / 3 + (4.0 + 3.0) * 0.35**2
     torque = own * first.acceleration + lever * (
@@ -251,10 +249,8 @@ def test_cylinders_lift_what_goes_up():
     work = sum(along(found.effort(joint), found.motion(joint).value) for joint in scene.drives)
     lifted = 0.0
     for name, body in found.description["bodies"].items():
-        pose, centre = (
-            found.pose(name),
-            body.get("centre", {"x": (body["length"] or 0.0) / 2, "y": 0.0}),
-        )
+        pose = found.pose(name)
+        centre = body.get("centre", {"x": (body["length"] or 0.0) / 2, "y": 0.0})
         turned = (
             0.0
             if pose.angle is None

@@ -37,52 +37,40 @@ def test_lengths_may_be_expressions(m):
 
 
 @pytest.mark.parametrize(
-    ("declare", "says"),
-    [
-        (lambda m: m.link("a b", length=1, mass=1), "link name 'a b' must be"),
-        (lambda m: m.link("", length=1, mass=1), "link name '' must be"),
-        (
-            lambda m: [m.link("a", length=1, mass=1), m.point_mass("a", 1)],
-            "point mass 'a': the name is taken by a link",
+    ("says", "declare"),
+    {
+        "link name 'a b' must be": lambda m: m.link("a b", length=1, mass=1),
+        "link name '' must be": lambda m: m.link("", length=1, mass=1),
+        "point mass 'a': the name is taken by a link": lambda m: [
+            m.link("a", length=1, mass=1),
+            m.point_mass("a", 1),
+        ],
+        "link 'ground': the name is taken by the ground": lambda m: m.link(
+            "ground", length=1, mass=1
         ),
-        (
-            lambda m: m.link("ground", length=1, mass=1),
-            "link 'ground': the name is taken by the ground",
+        "parameter 'r' is declared twice": lambda m: [m.parameter("r", 1), m.parameter("r", 2)],
+        "link 'a': length: expected a finite number": lambda m: m.link("a", length="long", mass=1),
+        "link 'a': length must be finite": lambda m: m.link("a", length=math.nan, mass=1),
+        "link 'a': length depends on 'r', not a parameter of mechanism 'm'": lambda m: m.link(
+            "a", length=ca.SX.sym("r"), mass=1
         ),
-        (lambda m: [m.parameter("r", 1), m.parameter("r", 2)], "parameter 'r' is declared twice"),
-        (
-            lambda m: m.link("a", length="long", mass=1),
-            "link 'a': length: expected a finite number",
+        "must be a scalar": lambda m: m.link("a", length=ca.SX.ones(2), mass=1),
+        "joint 'J' joins 'ground' to itself": lambda m: m.revolute(
+            "J", m.ground, m.ground.at(1, 2)
         ),
-        (lambda m: m.link("a", length=math.nan, mass=1), "link 'a': length must be finite"),
-        (
-            lambda m: m.link("a", length=ca.SX.sym("r"), mass=1),
-            "link 'a': length depends on 'r', not a parameter of mechanism 'm'",
+        "joint 'J': expected a link": lambda m: m.revolute("J", m.ground, "a"),
+        "'a' belongs to another mechanism": lambda m: m.revolute(
+            "J", m.ground, Mechanism("other").link("a", length=1, mass=1)
         ),
-        (lambda m: m.link("a", length=ca.SX.ones(2), mass=1), "must be a scalar"),
-        (
-            lambda m: m.revolute("J", m.ground, m.ground.at(1, 2)),
-            "joint 'J' joins 'ground' to itself",
+        r"axis must not be \(0, 0\)": lambda m: m.prismatic(
+            "P", m.ground, m.point_mass("a", 1), axis=(0, 0)
         ),
-        (
-            lambda m: m.revolute("J", m.ground, "a"),
-            "joint 'J': expected a link",
+        "'a' is a point mass, which has no direction": lambda m: m.prismatic(
+            "P", m.point_mass("a", 1), m.ground, axis=(1, 0)
         ),
-        (
-            lambda m: m.revolute("J", m.ground, Mechanism("other").link("a", length=1, mass=1)),
-            "'a' belongs to another mechanism",
-        ),
-        (
-            lambda m: m.prismatic("P", m.ground, m.point_mass("a", 1), axis=(0, 0)),
-            r"axis must not be \(0, 0\)",
-        ),
-        (
-            lambda m: m.prismatic("P", m.point_mass("a", 1), m.ground, axis=(1, 0)),
-            "'a' is a point mass, which has no direction",
-        ),
-        (lambda m: Mechanism("1st"), "mechanism name '1st' must be"),
-        (lambda m: m.freeze(), "has no link and no point mass"),
-    ],
+        "mechanism name '1st' must be": lambda m: Mechanism("1st"),
+        "has no link and no point mass": lambda m: m.freeze(),
+    }.items(),
 )
 def test_what_a_part_refuses(m, declare, says):
     with pytest.raises(DeclarationError, match=says):

@@ -7,6 +7,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from commands import words
 
 from lagrange_casadi.cli import main
 
@@ -32,143 +33,49 @@ FILES = {
     "designs.csv": "l\n0.2\n0.3\n",
 }
 
-RIGHT = {
-    "run": ["case.py", "--backend", "vm", "--no-figures", "--out", "a.h5"],
-    "sweep": [
-        "case.py",
-        "--backend",
-        "vm",
-        "--grid",
-        "l=0.2:0.3:2",
-        "--want",
-        "effort",
-        "--quiet",
-        "--out",
-        "b.h5",
-        "--force",
-    ],
-    "best": ["sweep.h5", "--minimise", "peak:effort:O"],
-    "table": ["sweep.h5"],
-    "trade": ["case.py", "--want", "effort"],
-    "export": ["case.py", "--out", "c", "--want", "effort", "--force"],
-    "plot": ["run.h5", "--out", "d"],
-    "report": ["run.h5", "--out", "e.html"],
-    "animate": ["run.h5", "--out", "f.svg"],
-    "info": ["case.py"],
-    "check": ["run.h5"],
-    "optimise": [
-        "case.py",
-        "--backend",
-        "vm",
-        "--minimise",
-        "l",
-        "--over",
-        "l=0.2:0.3",
-        "--starts",
-        "1",
-        "--screen",
-        "2",
-        "--force",
-    ],
-    "tolerances": [
-        "case.py",
-        "--backend",
-        "vm",
-        "--tolerance",
-        "l=0.01",
-        "--want",
-        "effort",
-        "--samples",
-        "4",
-    ],
-    "size": ["case.py", "--profiles", "profiles.csv"],
-    "drive": ["case.py", "--motors", "motors.csv"],
-    "new": ["begun"],
+TYPED = {
+    "run": "case.py --backend vm --no-figures --out a.h5",
+    "sweep": "case.py --backend vm --grid l=0.2:0.3:2 --want effort --quiet --out b.h5 --force",
+    "best": "sweep.h5 --minimise peak:effort:O",
+    "table": "sweep.h5",
+    "trade": "case.py --want effort",
+    "export": "case.py --out c --want effort --force",
+    "plot": "run.h5 --out d",
+    "report": "run.h5 --out e.html",
+    "animate": "run.h5 --out f.svg",
+    "info": "case.py",
+    "check": "run.h5",
+    "optimise": "case.py --backend vm --minimise l --over l=0.2:0.3 --starts 1 --screen 2 --force",
+    "tolerances": "case.py --backend vm --tolerance l=0.01 --want effort --samples 4",
+    "size": "case.py --profiles profiles.csv",
+    "drive": "case.py --motors motors.csv",
+    "new": "begun",
 }
+RIGHT = {command: words(options) for command, options in TYPED.items()}
 
-GRID = [
-    "",
-    "l",
-    "l=",
-    "=1:2:3",
-    "l=a:b:c",
-    "q=0.2:0.3:2",
-    "l=0.2:0.3:0",
-    "l=0.2:nan:3",
-    "l=0.2:0.3:1.5",
-    "l=-1:1:3",
-    "l=0.2:0.3:2:9",
-]
+GRID = words(
+    "'' l l= =1:2:3 l=a:b:c q=0.2:0.3:2 l=0.2:0.3:0 l=0.2:nan:3 l=0.2:0.3:1.5"
+    " l=-1:1:3 l=0.2:0.3:2:9"
+)
 TEXTS = ["", "nothing", "effort:Q", "peak:effort:Q", "a b", "effort:O:O:O", "\x07"]
 COUNTS = ["0", "-1", "1.5", "x", "", "nan", "1" + "0" * 40]
 POSITIVE = ["0", "-1", "nan", "inf", "x", "", "1e999"]
-FILE = [
-    "nowhere.h5",
-    "",
-    ".",
-    "/dev/null",
-    "profiles.csv",
-    "text.h5",
-    "cut.h5",
-    "case.py/x",
-    "a" * 5000,
-]
+FILE = [*words("nowhere.h5 '' . /dev/null profiles.csv text.h5 cut.h5 case.py/x"), "a" * 5000]
 WRONG = {
     "FILE": FILE,
     "CASE": [
-        "nowhere",
-        "",
-        "/dev/null",
-        "profiles.csv",
-        "text.h5",
-        "raises.py",
-        "empty.py",
-        "none.py",
+        *words("nowhere '' /dev/null profiles.csv text.h5 raises.py empty.py none.py"),
         "a" * 5000,
     ],
-    "--set": [
-        "",
-        "l",
-        "l=",
-        "=1",
-        "l=x",
-        "l=nan",
-        "l=1e999",
-        "q=1",
-        "l=-1",
-        "l=0.3=4",
-        "l=0.3 kg",
-        "l=3 deg",
-        "l=\u0663",
-        "l=1_0",
-    ],
-    "--t": [
-        "",
-        "0:1",
-        "0:1:0",
-        "0:1:-3",
-        "0:1:2.5",
-        "a:b:c",
-        "0:1:nan",
-        "1:0:5",
-        "0:inf:5",
-        "0:1:5:6",
-        "0:1 deg:5",
-        "0:1:1e99",
-    ],
-    "--over": [
-        "",
-        "O",
-        "O=",
-        "Q=0:1:5",
-        "O=0:1",
-        "O=0:0:5",
-        "O=0:360:37",
-        "=0:1:5",
-        "O=0:1:0",
-        "O=0:nan:5",
-        "O=0:1 m:5",
-    ],
+    "--set": words(
+        "'' l l= =1 l=x l=nan l=1e999 q=1 l=-1 l=0.3=4 'l=0.3 kg' 'l=3 deg' l=\u0663 l=1_0"
+    ),
+    "--t": words(
+        "'' 0:1 0:1:0 0:1:-3 0:1:2.5 a:b:c 0:1:nan 1:0:5 0:inf:5 0:1:5:6 '0:1 deg:5' 0:1:1e99"
+    ),
+    "--over": words(
+        "'' O O= Q=0:1:5 O=0:1 O=0:0:5 O=0:360:37 =0:1:5 O=0:1:0 O=0:nan:5 'O=0:1 m:5'"
+    ),
     "--xi": ["0:2:5", "-1:1:3", "0:1:0", "x", "", "0:nan:3"],
     "--want": TEXTS,
     "--grid": GRID,
@@ -263,16 +170,7 @@ def misuses():
     yield ["sweep", *RIGHT["sweep"], "--designs", "designs.csv"]
     yield ["sweep", *RIGHT["sweep"], "--set", "l=0.3"]
     yield ["optimise", *RIGHT["optimise"], "--resume"]
-    yield [
-        "best",
-        *RIGHT["best"],
-        "--maximise",
-        "l",
-        "--maximise",
-        "peak:effort:O",
-        "--minimise",
-        "l",
-    ]
+    yield ["best", *RIGHT["best"], *words("--maximise l --maximise peak:effort:O --minimise l")]
     yield []
     yield ["--nonsense"]
 

@@ -19,10 +19,8 @@ TURN = math.tau
 
 def reached(law, start, stop, speeds=(10.0,), around=0.0, count=181):
     """The way of a law with the parameter w, and the times of equal steps along it."""
-    law, p = (
-        MotionInverse.of(Laws.of({"J": law}, ca.vertcat(W)), "J"),
-        np.array(speeds, float)[:, None],
-    )
+    law = MotionInverse.of(Laws.of({"J": law}, ca.vertcat(W)), "J")
+    p = np.array(speeds, float)[:, None]
     way = law.passage(
         *(np.full(len(p), float(x)) for x in (start, stop)),
         p,

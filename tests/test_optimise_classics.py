@@ -19,16 +19,12 @@ def hoeken(half):
     where the crank points back.
     """
     m = Mechanism("hoeken")
-    ground, side, level = (
-        m.parameter("ground", 2.3),
-        m.parameter("side", 2.9),
-        m.parameter("level", 5.0),
-    )
-    crank, coupler, rocker = (
-        m.link("crank", length=1.0, mass=1.0),
-        m.link("coupler", length=2 * side, mass=1.0),
-        m.link("rocker", length=side, mass=1.0),
-    )
+    ground = m.parameter("ground", 2.3)
+    side = m.parameter("side", 2.9)
+    level = m.parameter("level", 5.0)
+    crank = m.link("crank", length=1.0, mass=1.0)
+    coupler = m.link("coupler", length=2 * side, mass=1.0)
+    rocker = m.link("rocker", length=side, mass=1.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, coupler)
     m.revolute("C", m.ground.at(ground, 0.0), rocker)

@@ -33,10 +33,8 @@ def test_a_convex_problem_has_one_optimum_from_random_starts():
     from ten random starts.
     """
     m = Mechanism("compressor")
-    weight, piston = (
-        m.parameter("weight", 0.5, "kg", low=0.0),
-        m.parameter("piston", 1.0, "kg", low=0.0),
-    )
+    weight = m.parameter("weight", 0.5, "kg", low=0.0)
+    piston = m.parameter("piston", 1.0, "kg", low=0.0)
     crank, tail = m.link("crank", length=0.05, mass=0.5), m.link("tail", length=0.05, mass=0.0)
     rod, slider = m.link("rod", length=0.2, mass=0.6), m.point_mass("slider", piston)
     m.revolute("O", m.ground, crank)

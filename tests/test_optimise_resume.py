@@ -9,6 +9,7 @@ import zlib
 import h5py
 import pytest
 import sweeps
+from commands import words
 from internals import Search, journal_of, kept, verify
 
 from lagrange_casadi import load_case, optimise
@@ -28,32 +29,10 @@ def scene():
     law = expression(lambda t: (ca.pi - less) * (3 * (t / duration) ** 2 - 2 * (t / duration) ** 3))
     return Scene(m, {"O": law}, t=(0, duration, 41), wanted=["effort"])
 """
-ASKED = [
-    "optimise",
-    "turning.py",
-    "--minimise",
-    "peak:effort:O",
-    "--minimise",
-    "T",
-    "--over",
-    "T=0.5:2",
-    "--over",
-    "c=0:1",
-]
-ASKED += [
-    "--subject-to",
-    "c<=0.5",
-    "--points",
-    "8",
-    "--starts",
-    "2",
-    "--screen",
-    "8",
-    "--backend",
-    "vm",
-    "--figure",
-    "x.svg",
-]
+ASKED = words(
+    "optimise turning.py --minimise peak:effort:O --minimise T --over T=0.5:2 --over c=0:1"
+)
+ASKED += words("--subject-to c<=0.5 --points 8 --starts 2 --screen 8 --backend vm --figure x.svg")
 
 
 def undrawn(_scene, _front, file, _ending):

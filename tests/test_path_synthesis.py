@@ -82,10 +82,8 @@ def errors(design):
 def linkage(design, side=1):
     m = Mechanism("path")
     p = {name: m.parameter(name, value) for name, value in design.items()}
-    crank, rocker = (
-        m.link("crank", length=p["crank"], mass=1.0),
-        m.link("rocker", length=p["rocker"], mass=1.0),
-    )
+    crank = m.link("crank", length=p["crank"], mass=1.0)
+    rocker = m.link("rocker", length=p["rocker"], mass=1.0)
     coupler = m.link("coupler", length=p["coupler"], mass=1.0)
     m.revolute("O", m.ground.at(p["x"], p["y"]), crank)
     m.revolute("A", crank.tip, coupler)

@@ -328,10 +328,8 @@ def test_what_touches_zero_by_rounding_opens_few_steps():
     def slope(t):
         return (t - 1.0137) ** 3 + 6e-30 * np.sin(1e16 * t)
 
-    source, times = (
-        Counted(lambda t: np.cos(t) + np.abs(slope(t)), slope),
-        np.linspace(0.0, 2.0, 51),
-    )
+    source = Counted(lambda t: np.cos(t) + np.abs(slope(t)), slope)
+    times = np.linspace(0.0, 2.0, 51)
     watches = (Watch(Kind.SWITCH, (0.0, 1e-30)),)
     found = peaks(
         source, Curves((0,), (0,), (), watches), times, source.at(times), np.zeros(50, bool)

@@ -1,7 +1,8 @@
-"""How peaks change with parameters: beside closed forms, and beside differences of the peaks
-themselves.
+"""How peaks change with parameters, to first and second order: beside closed forms, and beside
+differences of the peaks themselves and of their slopes.
 """
 
+import itertools
 import math
 
 import casadi as ca
@@ -12,7 +13,7 @@ from conftest import CASES
 from internals import PeakKind
 from parametric import declared
 
-from lagrange_casadi import Mechanism, Scene, load_case, prepare
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sensitivities
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import harmonic, polynomial, samples
@@ -81,6 +82,10 @@ def rotor(**motion):
     return m, speed, l
 
 
+MOMENT = 3.0 / 2 - 1.0 / 3
+"""The first moment of its density, for a length of one."""
+
+
 @pytest.mark.parametrize("backend", ["auto", "c", "vm"])
 def test_a_turning_link_has_the_slopes_of_its_closed_form(backend):
     m, speed, _ = rotor()
@@ -90,77 +95,90 @@ def test_a_turning_link_has_the_slopes_of_its_closed_form(backend):
         backend=backend,
     )
     gradient = f.gradient(speed=30.0, l=0.5)
-    w, l, heavy, taper = 30.0, 0.5, 3.0, -1.0
-    moment = heavy / 2 + taper / 3
+    w, l = 30.0, 0.5
     exact = {
-        "speed": 2 * w * l**2 * moment,
-        "l": 2 * w**2 * l * moment,
+        "speed": 2 * w * l**2 * MOMENT,
+        "l": 2 * w**2 * l * MOMENT,
         "heavy": w**2 * l**2 / 2,
         "taper": w**2 * l**2 / 3,
     }
     for name, slope in gradient["section:arm:axial"].items():
         assert abs(slope - exact[name]) <= 1e-14 * exact["l"]
-    with pytest.raises(UnknownNameError, match="quantity with a peak"):
-        gradient["effort:O"]
+    curvature = f.curvature(speed=w, l=l)
+    bends = curvature["section:arm:axial"]
+    assert bends["speed"]["speed"] == pytest.approx(2 * l**2 * MOMENT, rel=1e-13)
+    assert bends["speed"]["l"] == pytest.approx(4 * w * l * MOMENT, rel=1e-13)
+    assert bends["l"]["l"] == pytest.approx(2 * w**2 * MOMENT, rel=1e-13)
+    for found in (gradient, curvature):
+        with pytest.raises(UnknownNameError, match="quantity with a peak"):
+            found["effort:O"]
 
 
 def test_a_smooth_peak_has_the_slopes_of_its_exact_place():
     """A search by values knows the place to 1e-9 s; an oscillation's effort changes there with its
     frequency at 30 N m/Hz/s.
+
+    Second derivatives are those of the exact peak, whose place moves with every parameter.
     """
     m = Mechanism("arm")
-    l, swing, beat = (
-        m.parameter("l", 0.7, "m"),
-        m.parameter("swing", 0.6, "rad"),
-        m.parameter("beat", 1.3, "Hz"),
-    )
-    arm = m.link("arm", length=l, mass=2.0)
-    m.revolute("O", m.ground, arm)
+    l = m.parameter("l", 0.7, "m")
+    swing = m.parameter("swing", 0.6, "rad")
+    beat = m.parameter("beat", 1.3, "Hz")
+    m.revolute("O", m.ground, m.link("arm", length=l, mass=2.0))
     f = prepare(Scene(m, {"O": harmonic(0.2, swing, beat)}, t=(0, 0.7, 40)), wanted=["effort"])
-    gradient = f.gradient()
+    gradient, curvature = f.gradient(), f.curvature()
 
     def effort(t, l, swing, beat):
         w = 2 * mpmath.mp.pi * beat
-        angle, acceleration = (
-            mpmath.mpf(0.2) + swing * mpmath.sin(w * t),
-            -swing * w * w * mpmath.sin(w * t),
-        )
+        angle = mpmath.mpf(0.2) + swing * mpmath.sin(w * t)
+        acceleration = -swing * w * w * mpmath.sin(w * t)
         return 2 * l**2 / 3 * acceleration + mpmath.mpf(9.81) * l * mpmath.cos(angle)
+
+    def place(*p):
+        near = mpmath.mpf(float(gradient.t[0]))
+        return mpmath.findroot(lambda t: mpmath.diff(lambda x: effort(x, *p), t), near)
+
+    def derivative(function, *by):
+        orders = tuple(by.count(k) for k in range(3))
+        return float(mpmath.diff(function, at, orders))
 
     with mpmath.workdps(40):
         at = [mpmath.mpf(0.7), mpmath.mpf(0.6), mpmath.mpf(1.3)]
-        t = mpmath.findroot(
-            lambda t: mpmath.diff(lambda x: effort(x, *at), t), mpmath.mpf(float(gradient.t[0]))
-        )
-        exact = [
-            float(mpmath.diff(lambda *x: effort(t, *x), at, tuple(int(i == k) for i in range(3))))
-            for k in range(3)
-        ]
-    np.testing.assert_allclose(gradient.slopes[0], exact, rtol=1e-11)
+        t, exact = place(*at), np.empty((3, 3))
+        first = [derivative(lambda *p: effort(t, *p), k) for k in range(3)]
+        for i, k in itertools.combinations_with_replacement(range(3), 2):
+            exact[i, k] = exact[k, i] = derivative(lambda *p: effort(place(*p), *p), i, k)
+    np.testing.assert_allclose(gradient.slopes[0], first, rtol=1e-11)
+    np.testing.assert_allclose(
+        curvature.bends[0], exact, rtol=1e-10, atol=1e-10 * np.abs(exact).max()
+    )
+    assert curvature["effort:O"]["l"]["beat"] == curvature.bends[0, 0, 2]
 
 
-@pytest.mark.parametrize("asked", ["times", "over"])
+@pytest.mark.parametrize("asked", ["times", "over", "samples"])
 def test_a_peak_at_an_end_goes_with_the_end(asked):
-    """The link speeds up as 10 t^2: at the last instant the effort's place and the rate are
-    largest, and that instant moves.
+    """The link speeds up as 10 t^2: at the last instant T its place and rate, 20 T, are largest,
+    and T goes with the speed, or with its root.
     """
     m, speed, _ = rotor()
     law = polynomial(0.0, 0.0, 10.0)
+    if asked == "samples":
+        times = np.linspace(0.0, 1.5, 16)
+        law = samples(times, (10 * times**2).tolist())
     at = {"t": (0.0, speed / 20, 21)} if asked == "times" else {"over": ("O", 0.1, speed / 2, 21)}
     f = prepare(Scene(m, {"O": law}, t=(0.0, 1.0, 21)), wanted=["section", "motion"], **at)
-    gradient = f.gradient()
-    end = 1.0
-    by_speed = 1 / 20 if asked == "times" else 1 / 2 / (2 * 10.0 * end)
+    gradient, bends = f.gradient(), f.curvature()["section:arm:axial"]
     k = f.quantities.index("section:arm:axial")
     assert gradient.kinds[k] == PeakKind.END
-    moment = 0.4**2 * (3.0 / 2 - 1.0 / 3)
-    assert gradient.value[k] == pytest.approx(moment * 400.0, rel=1e-12)
-    assert gradient["section:arm:axial"]["speed"] == pytest.approx(
-        moment * 800.0 * end * by_speed, rel=1e-12
-    )
-    assert gradient["section:arm:axial"]["l"] == pytest.approx(
-        2 * gradient.value[k] / 0.4, rel=1e-12
-    )
+    size = 0.4**2 * MOMENT
+    assert gradient.value[k] == pytest.approx(size * 400.0, rel=1e-12)
+    # The square of the rate is that of the speed, or 20 times the speed.
+    by_speed, by_both, twice = (40.0, 80.0, 2.0) if asked == "times" else (20.0, 40.0, 0.0)
+    slopes = gradient["section:arm:axial"]
+    assert slopes["speed"] == pytest.approx(size * by_speed, rel=1e-12)
+    assert slopes["l"] == pytest.approx(2 * gradient.value[k] / 0.4, rel=1e-12)
+    assert bends["speed"]["speed"] == pytest.approx(size * twice, rel=1e-11, abs=1e-9)
+    assert bends["speed"]["l"] == pytest.approx(size * by_both / 0.4, rel=1e-11)
 
 
 def test_motions_by_samples():
@@ -203,6 +221,10 @@ def test_a_jump_of_the_users_own():
     assert gradient.value[0] == pytest.approx(exact, rel=1e-9)
     assert gradient["effort:O"]["onset"] == pytest.approx(-3.0 * exact / 20.0, rel=1e-9)
     assert gradient["effort:O"]["speed"] == pytest.approx(3.0 * exact * at / 20.0, rel=1e-9)
+    bends = f.curvature()["effort:O"]
+    assert bends["onset"]["onset"] == pytest.approx(9 * exact / 400, rel=1e-8)
+    assert bends["onset"]["speed"] == pytest.approx(exact * (3 - 9 * at) / 400, rel=1e-8)
+    assert bends["speed"]["speed"] == pytest.approx(exact * (9 * at**2 - 6 * at) / 400, rel=1e-8)
 
 
 def test_a_peak_without_bound_has_no_slope():
@@ -270,3 +292,56 @@ def test_a_peak_at_a_jump_has_the_slopes_of_its_own_side(backend):
         # still.
         above, below = (f.peaks(rpm=rpm, cut=cut).value.copy() for cut in (112.9, 110.9))
         np.testing.assert_allclose(gradient.slopes[jumps, 1], (above - below)[jumps] / 2, rtol=1e-5)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "name",
+    [
+        "four_bar",
+        "quick_return",
+        "cardan_shaft",
+        "connecting_rod",
+        "servo_press",
+        "roller_cam",
+        "scara",
+    ],
+)
+def test_second_derivatives_are_differences_of_first_ones(name):
+    """Of all kinds of peaks, also along links, of loops that are iterated, and of instants that
+    move.
+    """
+    scene = load_case(CASES / name).scene
+    f = prepare(scene, wanted=["effort", "reaction", "section"], backend="vm")
+    found, gradient = f.curvature(), f.gradient()
+    p = f._answers.p[0].copy()
+    sizes = (
+        np.abs(gradient.value)
+        + np.nanmax(np.abs(found.bends) * np.abs(p[:, None] * p), axis=(1, 2))
+        + 1e-300
+    )
+    whole = np.abs(gradient.value) > 1e-9 * np.abs(gradient.value).max()
+    for j, parameter in enumerate(f.parameters):
+        step = 1e-4 * (abs(p[j]) or 1.0)
+        four = {k: f.gradient(**{parameter: float(p[j] + k * step)}).slopes for k in (-2, -1, 1, 2)}
+        exact = (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)
+        gaps = (np.abs(found.bends[:, :, j] - exact) * np.abs(p * p[j])).max(axis=1) / sizes
+        assert np.nanmax(gaps[whole]) <= 1e-6, (
+            parameter,
+            f.quantities[int(np.nanargmax(np.where(whole, gaps, 0.0)))],
+        )
+    assert np.isfinite(found.bends[whole]).all()
+
+
+def test_second_derivatives_of_series():
+    m, speed, _ = rotor()
+    scene = Scene(m, {"O": polynomial(0.0, speed, 5.0)}, t=(0.0, 0.1, 5), xi=(0, 1, 3))
+    changes = sensitivities(scene, evaluate(scene, certificate=False, backend="vm"), backend="vm")
+    # The axial force at the base is m l^2 rate^2.
+    rate = 20.0 + 10.0 * changes.solution.t
+    found = changes.curvature("section:arm:axial", "l", "speed")
+    assert found.shape == (5, 3)
+    np.testing.assert_allclose(found[:, 0], 4 * MOMENT * 0.4 * rate, rtol=1e-13)
+    np.testing.assert_allclose(changes.curvature("motion:O_rate", "speed", "l"), 0.0, atol=0.0)
+    with pytest.raises(UnknownNameError, match="parameter"):
+        changes.curvature("effort:O", "l", "r")

@@ -34,11 +34,9 @@ def crank_rocker(lengths, ground, start, count):
 def slider_crank(ratio, count):
     """One turn of a crank, so long beside its rod, from beside a dead centre's quarter on."""
     m = Mechanism("slider_crank")
-    crank, rod, slide = (
-        m.link("crank", length=ratio * 0.3, mass=0.5),
-        m.link("rod", length=0.3, mass=0.7),
-        m.point_mass("slide", 1.0),
-    )
+    crank = m.link("crank", length=ratio * 0.3, mass=0.5)
+    rod = m.link("rod", length=0.3, mass=0.7)
+    slide = m.point_mass("slide", 1.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slide)

@@ -31,11 +31,9 @@ def drawn(seed):
     matter = {}
     m.set_gravity(*(gravity := random.normal(size=3) * 6.0))
     for k in range(int(random.integers(2, 8))):
-        length, mass, slender = (
-            random.uniform(0.1, 0.8),
-            random.uniform(0.2, 4.0),
-            random.random() < 0.7,
-        )
+        length = random.uniform(0.1, 0.8)
+        mass = random.uniform(0.2, 4.0)
+        slender = random.random() < 0.7
         slides = random.random() < 0.5 and (not pieces or bool(matter))
         axis, turned = random.normal(size=3), turned_at_random(random)
         axis, matter = axis / np.linalg.norm(axis), {}
@@ -163,11 +161,9 @@ def stored():
     rows += ((0.0, 1.2, 0.5, 0.4), (0.7, 0.5, 1.0, 0.0), (0.0, 2.0, 0.5, 1.0))
     mean, size, often, phase = np.array(rows).T
     angle = tau * often * 0.7 + phase
-    q, v, a = (
-        mean + size * np.sin(angle),
-        size * tau * often * np.cos(angle),
-        -size * (tau * often) ** 2 * np.sin(angle),
-    )
+    q = mean + size * np.sin(angle)
+    v = size * tau * often * np.cos(angle)
+    a = -size * (tau * often) ** 2 * np.sin(angle)
     found = chain.work(q[:, None], v[:, None], a[:, None])()
     return [*found[chain.efforts, 0].tolist(), *chain.sections(found)[1, 0.5][:, 0].tolist()]
 

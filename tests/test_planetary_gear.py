@@ -53,10 +53,8 @@ def gear(driven, held, planets=1, efficiency=None, load=40.0):
     """A planetary set of which one member is driven, one held, and the third loaded."""
     m = Mechanism("set")
     m.set_gravity(0, 0)
-    sun, ring = (
-        wheel(m, "sun", radius=0.02, mass=1.0),
-        wheel(m, "ring", radius=0.06, bore=0.05, mass=2.0),
-    )
+    sun = wheel(m, "sun", radius=0.02, mass=1.0)
+    ring = wheel(m, "ring", radius=0.06, bore=0.05, mass=2.0)
     carrier = m.link("carrier", length=0.035, mass=1.0, centre=(0, 0), inertia=1e-3)
     bodies = {"sun": sun, "ring": ring, "carrier": carrier}
     for name, body in bodies.items():
@@ -123,10 +121,8 @@ def test_its_efficiency_is_that_of_its_meshes_seen_from_the_carrier(planets, loa
     """
     solution, _ = gear("sun", "ring", planets, 0.97, load)
     assert solution.certified
-    given, taken = (
-        solution.effort("sun_bearing") * 10.0,
-        -load * solution.motion("carrier_bearing").rate,
-    )
+    given = solution.effort("sun_bearing") * 10.0
+    taken = -load * solution.motion("carrier_bearing").rate
     share = (1 + 2.5 * 0.97 ** (2 if load < 0.0 else -2)) / 3.5
     assert taken / given == pytest.approx(np.full(3, share), rel=1e-9)
     lost = solution.output("set_sun_loss") + sum(

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 import sweeps
+from commands import words
 from compiled import fake_compiler
 from internals import cache, compiler, programs
 from mechanisms import slider_crank
@@ -133,16 +134,7 @@ def test_an_interrupt_stops_the_compiler(here, tmp_path_factory, monkeypatch, nu
         folder, monkeypatch, script.format(tells=TELLS, hangs=HANGS.format(pid=folder / "pid"))
     )
     monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
-    command = [
-        sys.executable,
-        "-m",
-        "lagrange_casadi",
-        "run",
-        str(CASE),
-        "--backend",
-        "c",
-        "--no-figures",
-    ]
+    command = [sys.executable, *words("-m lagrange_casadi run CASE --backend c --no-figures")]
     with sweeps.process(*command) as stopped:
         sweeps.wait_for((folder / "pid").exists)
         began = time.monotonic()

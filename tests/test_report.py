@@ -11,6 +11,7 @@ from importlib import resources
 import h5py
 import numpy as np
 import pytest
+from commands import command
 from drawn_scenes import every_kind
 from internals import (
     COMPARISON_SCRIPTS,
@@ -280,23 +281,7 @@ def test_the_command_takes_a_file_or_a_case(tmp_path, monkeypatch, capsys):
     save(solution, "press.h5")
     assert main(["report", "press.h5"]) == 0
     assert capsys.readouterr().out == "wrote press.html: open it in a browser\n"
-    assert (
-        main(
-            [
-                "report",
-                "four_bar",
-                "--t",
-                "0:1:5",
-                "--out",
-                "bar.html",
-                "--want",
-                "effort",
-                "--set",
-                "a=0.11",
-            ]
-        )
-        == 0
-    )
+    assert command("report four_bar --t 0:1:5 --out bar.html --want effort --set a=0.11") == 0
     found, _ = held((tmp_path / "bar.html").read_text())
     assert found["instants"]["total"] == 5
     assert {series["group"] for series in found["series"]} >= {"effort", "motion"}

@@ -11,6 +11,7 @@ import re
 import alive
 import numpy as np
 import pytest
+from commands import command
 from internals import Live
 from internals import report_page as page
 from reports import CASES, held
@@ -202,20 +203,7 @@ def put(one, name, value):
 def crank(chromium, tmp_path_factory):
     """The page that the command line writes, as it is."""
     path = tmp_path_factory.mktemp("live") / "crank.html"
-    assert (
-        main(
-            [
-                "report",
-                str(CASES / "slider_crank"),
-                "--live",
-                "--t",
-                "0:0.08:41",
-                "--out",
-                str(path),
-            ]
-        )
-        == 0
-    )
+    assert command("report CASE --live --t 0:0.08:41 --out", path) == 0
 
     def opened():
         chromium.open(path)

@@ -53,10 +53,8 @@ def test_outputs_are_those_of_a_machine_with_plain_names(solutions):
     assert named.certified
     assert len(named.series) == len(plain.series)
     for output, values in named.outputs.items():
-        part, station = (
-            PLAIN.get(output.part, output.part),
-            STATIONS.get(output.load_point, output.load_point),
-        )
+        part = PLAIN.get(output.part, output.part)
+        station = STATIONS.get(output.load_point, output.load_point)
         np.testing.assert_array_equal(
             values, plain.outputs[Output(output.group, part, output.member, station)]
         )

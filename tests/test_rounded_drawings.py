@@ -189,10 +189,8 @@ def pressing(noise, tilt=None):
     """
     m = drawing(noise, exact=("swing",))("pressing")
     tilt = m.parameter("tilt", 0.0, "rad") if tilt is None else tilt
-    mass, length = (
-        m.parameter("mass", 0.5, "kg", low=0.0),
-        m.parameter("length", 0.1, "m", low=0.02, high=0.15),
-    )
+    mass = m.parameter("mass", 0.5, "kg", low=0.0)
+    length = m.parameter("length", 0.1, "m", low=0.02, high=0.15)
     base = m.link("base", length=0.5, mass=3.0)
     crank, rod, rocker = (
         m.link(n, length=l, mass=mass)

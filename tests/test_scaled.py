@@ -19,11 +19,9 @@ def geared(law, **keywords):
     motion.
     """
     m = Mechanism("geared")
-    ratio, lead, duration = (
-        m.parameter("ratio", 2.0),
-        m.parameter("lead", 0.0, "rad"),
-        m.parameter("duration", 1.0, "s", low=0.1),
-    )
+    ratio = m.parameter("ratio", 2.0)
+    lead = m.parameter("lead", 0.0, "rad")
+    duration = m.parameter("duration", 1.0, "s", low=0.1)
     m.revolute("J", m.ground, m.link("arm", length=0.5, mass=1.0))
     return Scene(m, {"J": law(ratio, lead, duration)}, **{"t": (0, 1, 57)} | keywords)
 
@@ -132,10 +130,8 @@ def test_a_row_is_taken_apart_only_as_far_as_it_is_alike():
 def test_every_law_takes_expressions_of_parameters(law):
     scene = geared(law)
     values = {"ratio": 1.3, "lead": 0.2, "duration": 0.8}
-    found, numbers = (
-        evaluate(scene, parameters=values),
-        evaluate(geared(lambda *_: law(*values.values()))),
-    )
+    found = evaluate(scene, parameters=values)
+    numbers = evaluate(geared(lambda *_: law(*values.values())))
     for name in numbers.names():
         np.testing.assert_allclose(found.array(name), numbers.array(name), rtol=1e-12, atol=1e-12)
 

@@ -43,10 +43,8 @@ def test_the_file_is_as_good_as_the_moves_that_it_was_made_from():
     scene = load_case(CASES / "scara").scene
 
     def played(start, end):
-        out, back = (
-            move(f"{end} deg", time=0.47, law="s_curve"),
-            move(f"{start} deg", time=0.43, law="s_curve"),
-        )
+        out = move(f"{end} deg", time=0.47, law="s_curve")
+        back = move(f"{start} deg", time=0.43, law="s_curve")
         return moves(
             [dwell(0.08), out, dwell(0.12), back, dwell(0.1)], start=f"{start} deg", cyclic=True
         )
@@ -63,9 +61,7 @@ def test_the_file_is_as_good_as_the_moves_that_it_was_made_from():
             np.degrees(np.abs(found.motion(joint).value - expected.motion(joint).value)).max()
             < 0.002
         )
-        gap, size = (
-            found.effort(joint) - expected.effort(joint),
-            np.abs(expected.effort(joint)).max(),
-        )
+        gap = found.effort(joint) - expected.effort(joint)
+        size = np.abs(expected.effort(joint)).max()
         assert np.abs(gap).max() < 0.03 * size
         assert np.sqrt(np.mean(gap**2)) < 0.006 * size

@@ -97,10 +97,8 @@ def test_the_law_of_a_driven_link_is_its_motion():
     the last bit.
     """
     solution = evaluate(slider_crank(), wanted=["motion", "section:crank"])
-    crank, law = (
-        solution.motion("O"),
-        {name: solution.array(f"section:crank:law:{name}") for name in ("n2", "f2")},
-    )
+    crank = solution.motion("O")
+    law = {name: solution.array(f"section:crank:law:{name}") for name in ("n2", "f2")}
     np.testing.assert_array_equal(law["n2"], crank.rate**2)
     np.testing.assert_array_equal(law["f2"], -crank.acceleration)
 
@@ -131,11 +129,9 @@ def test_loops_are_closed_alike_whatever_is_wanted():
     form does not see the cut.
     """
     m = Mechanism("m")
-    a, b, p = (
-        m.link("a", length=0.3, mass=1.0),
-        m.link("b", length=1.0, mass=1.0),
-        m.point_mass("p", 1.0),
-    )
+    a = m.link("a", length=0.3, mass=1.0)
+    b = m.link("b", length=1.0, mass=1.0)
+    p = m.point_mass("p", 1.0)
     m.revolute("O", m.ground, a)
     m.revolute("Q", m.ground.at(0, -0.5), b)
     m.revolute("A", a.tip, p)

@@ -347,10 +347,8 @@ class Numbers(list):
 def test_a_page_has_the_same_forces_beside_load_points(chromium):
     found, numbers = loaded(0.1, [0.5]), Numbers()
     entries = list(section_entries(found, np.arange(2), numbers))
-    law, places = (
-        found.section("bar").law,
-        [0.0, 0.1, 1 / 3, 0.1 / 0.3, 1 / 3 - 3e-12, 1 / 3 + 3e-12, 0.7, 1.0],
-    )
+    law = found.section("bar").law
+    places = [0.0, 0.1, 1 / 3, 0.1 / 0.3, 1 / 3 - 3e-12, 1 / 3 + 3e-12, 0.7, 1.0]
     asked = [(force, u, side) for force in PLANE.forces for u in places for side in SIDES]
     text = resources.files("lagrange_casadi.report").joinpath("assets", "law.js").read_text()
     forces = chromium.run(f"""(() => {{

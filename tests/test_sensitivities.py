@@ -23,11 +23,9 @@ def loaded():
     a station are parameters.
     """
     m = Mechanism("loaded")
-    l, taper, swing = (
-        m.parameter("l", 1.2, "m"),
-        m.parameter("taper", -2.0, "kg/m"),
-        m.parameter("swing", 0.6, "rad"),
-    )
+    l = m.parameter("l", 1.2, "m")
+    taper = m.parameter("taper", -2.0, "kg/m")
+    swing = m.parameter("swing", 0.6, "rad")
     push, place = m.parameter("push", 40.0, "N/m"), m.parameter("place", 0.7, "m")
     beam = m.link("beam", length=l, density=density(5.0, taper))
     m.revolute("O", m.ground, beam)

@@ -131,10 +131,8 @@ def test_second_derivatives_too(name):
         for q in slopes.points.quantities
         for xi in (RATIOS if q.group == "section" else (math.nan,))
     ]
-    chosen, xi = (
-        np.array([slopes.numbers[q] for q, _ in names], np.intc),
-        np.array([xi for _, xi in names]),
-    )
+    chosen = np.array([slopes.numbers[q] for q, _ in names], np.intc)
+    xi = np.array([xi for _, xi in names])
     times = np.full(chosen.size, t)
     z = slopes.iterated(np.linspace(start, t, 20), p, times)
     numbers = [list(values).index(name) for name in (one, other)]

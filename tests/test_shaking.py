@@ -134,11 +134,9 @@ def test_a_four_bar_is_balanced_as_berkof_and_lowen_say(coupler):
     found = []
     for balanced in (False, True):
         m = Mechanism("balanced")
-        crank, rod, rocker = (
-            m.link("crank", length=a, mass=1.0),
-            m.link("rod", length=b, mass=coupler),
-            m.link("rocker", length=c, mass=2.0),
-        )
+        crank = m.link("crank", length=a, mass=1.0)
+        rod = m.link("rod", length=b, mass=coupler)
+        rocker = m.link("rocker", length=c, mass=2.0)
         m.revolute("O", m.ground, crank)
         m.revolute("A", crank.tip, rod)
         m.revolute("B", rod.tip, rocker.tip)

@@ -5,12 +5,12 @@ import re
 import shutil
 import subprocess
 
-import casadi as ca
 import numpy as np
 import pytest
-from compiled import HEADER, PEDANTIC, SCENES
+from compiled import HEADER, SCENES, STRICT
 from internals import FLAGS, LANES_PLACE, compensated, plain
-from operations import EACH, X, Y
+from mechanisms import every_function
+from operations import EACH
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
 from lagrange_casadi.errors import SizeError
@@ -19,19 +19,7 @@ from lagrange_casadi.motion import polynomial
 pytestmark = pytest.mark.usefixtures("released")
 
 
-def every_function():
-    """An arm under a torque that takes every function there is."""
-    m = Mechanism("functions")
-    arm = m.link("arm", length=1, mass=1)
-    joint = m.revolute("J", m.ground, arm)
-    x, y = m.coordinate(joint) * m.rate(joint) / 2, m.rate(joint)
-    each = EACH | {"acosh": ca.acosh(1 + X)}
-    m.torque("t", arm, ca.substitute(sum(each.values()), ca.vertcat(X, Y), ca.vertcat(x, y)))
-    return Scene(m, {"J": polynomial(0.3, 0.4)}, t=(0, 1, 9))
-
-
 WHOLE = SCENES | {"functions": every_function}
-STRICT = [*PEDANTIC, "-Wdouble-promotion", "-Wfloat-conversion"]
 
 
 def built(name, precision, language, folder):
@@ -58,20 +46,6 @@ def built(name, precision, language, folder):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return folder / "scene.o"
-
-
-@pytest.mark.sampled(9)
-@pytest.mark.parametrize(("name", "newton"), [*((name, None) for name in WHOLE), ("iterated", 2)])
-def test_emitted_c_is_pedantically_clean(name, newton, tmp_path):
-    """No double is meant, and none comes in by a promotion; not even CasADi's own text needs an
-    exception.
-    """
-    program = derive(WHOLE[name]())
-    source = tmp_path / "scene.c"
-    source.write_text(codegen.emit(program, compensated(program, "single"), newton))
-    command = [*codegen.find_compiler().command, *STRICT, "-c", source, "-o", tmp_path / "scene.o"]
-    result = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert result.returncode == 0, result.stderr
 
 
 # Arithmetic, comparisons and conversions of doubles, in SSE, AVX and x87; to move or to mask eight

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 
 import pytest
+from commands import command
 from internals import Profile, read_profiles, size
 from internals import equations_derive as derive
 from strong import BARS, arms
@@ -272,20 +273,9 @@ def test_one_command_sizes(here, capsys, sized):
         )
     assert "plate: not sized: diameter is not a dimension of its rectangle\n  plate  " in out
     settings = [f"{name}={value!r}" for name, value in sized.parameters.items()]
-    assert " ".join(f"--set {word}" for word in settings) in out
-    assert (
-        main(
-            [
-                "run",
-                "case.py",
-                "--no-figures",
-                "--want",
-                "safety",
-                *(x for word in settings for x in ("--set", word)),
-            ]
-        )
-        == 0
-    )
+    options = " ".join(f"--set {word}" for word in settings)
+    assert options in out
+    assert command(f"run case.py --no-figures --want safety {options}") == 0
     run = capsys.readouterr().out
     for one in sized.links:
         assert f"  {one.link:<20} {one.safety.utilisation:>8.4g} |" in run

@@ -130,10 +130,8 @@ def test_of_a_massless_carrier_nothing_is_said(tip):
     hangs on its tip.
     """
     m = Mechanism("cross")
-    table, carriage = (
-        m.link("table", length=0.1, mass=0.0),
-        m.link("carriage", length=0.1, mass=0.0),
-    )
+    table = m.link("table", length=0.1, mass=0.0)
+    carriage = m.link("carriage", length=0.1, mass=0.0)
     m.prismatic("X", m.ground, table, axis=(1, 0))
     m.prismatic("Y", table, carriage, axis=(0, 1))
     m.weld("load", carriage.tip if tip else carriage, m.point_mass("p", 1.0))

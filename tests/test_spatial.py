@@ -174,10 +174,8 @@ def test_a_hard_point_may_be_rounded():
     rod = m.link("rod", between=(up, (1.0, 0.1, 0.6)), mass=1.0)
     slider = m.link("slider", between=((1.0, 0.1, 0.6), (1.1, 0.1, 0.6)), mass=1.0)
     m.revolute("O", m.ground, crank, at=(0, 0, 0), axis=Z)
-    first, last = (
-        m.spherical("A", crank, rod, at=(0.1, 0.2, 0.3)),
-        m.spherical("B", rod, slider, at=(1.0, 0.1, 0.2 * 3)),
-    )
+    first = m.spherical("A", crank, rod, at=(0.1, 0.2, 0.3))
+    last = m.spherical("B", rod, slider, at=(1.0, 0.1, 0.2 * 3))
     m.prismatic("G", m.ground, slider, at=(1.0, 0.1, 0.6), axis=(1, 0, 0))
     assert up[2] != 0.3
     assert 0.2 * 3 != 0.6
@@ -297,10 +295,8 @@ def test_a_loop_that_drives_leave_nothing_to_close_is_named():
 
 def test_what_an_idle_spin_makes_of_the_freedoms_is_said():
     m = SpatialMechanism("m")
-    crank, rod = (
-        m.link("crank", length=0.1, mass=1.0),
-        m.link("rod", length=0.3, mass=1.0, centre=(0, 0, 0), inertia=(1, 1, 1)),
-    )
+    crank = m.link("crank", length=0.1, mass=1.0)
+    rod = m.link("rod", length=0.3, mass=1.0, centre=(0, 0, 0), inertia=(1, 1, 1))
     slider = m.link("slider", length=0.1, mass=1.0)
     m.revolute("O", m.ground, crank, axis=(0, 1, 0))
     m.spherical("A", crank.tip, rod)
@@ -312,11 +308,9 @@ def test_what_an_idle_spin_makes_of_the_freedoms_is_said():
 
 def test_a_bar_that_does_not_reach_is_named():
     m = SpatialMechanism("m")
-    crank, rod, slider = (
-        m.link("crank", length=0.1, mass=1.0),
-        m.link("rod", length=0.3, mass=1.0),
-        m.point_mass("slider", 1.0),
-    )
+    crank = m.link("crank", length=0.1, mass=1.0)
+    rod = m.link("rod", length=0.3, mass=1.0)
+    slider = m.point_mass("slider", 1.0)
     m.revolute("O", m.ground, crank, axis=(0, 1, 0))
     m.spherical("A", crank.tip, rod)
     m.spherical("B", rod.tip, slider)

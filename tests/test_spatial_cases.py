@@ -222,11 +222,9 @@ def test_a_delta_at_rest_holds_its_weights():
     scene = scene_of("delta")
     laws = {f"tool:slide_{k}": polynomial(place) for k, place in ((1, 0.0), (2, 0.0), (3, -0.62))}
     found = vm(dataclasses.replace(scene, motion=laws), t=(0, 0, 1), wanted=["effort", "motion"])
-    upper, angle, masses = (
-        0.3,
-        found.motion("motor0").value[0],
-        {"arm": 0.4, "bar": 0.12, "platform": 0.5},
-    )
+    upper = 0.3
+    angle = found.motion("motor0").value[0]
+    masses = {"arm": 0.4, "bar": 0.12, "platform": 0.5}
     out, down = 0.2 + upper * math.cos(angle) - 0.06, -0.62 + upper * math.sin(angle)
     assert math.hypot(out, down) == pytest.approx(0.65, abs=1e-14)
     # out^2 + down^2 stays what it is.

@@ -123,10 +123,8 @@ def constrained():
     a point mass on a slide.
     """
     m = SpatialMechanism("constrained")
-    arm, nut = (
-        m.link("arm", length=0.5, mass=1.0),
-        m.link("nut", length=0.1, mass=0.7, centre=(0, 0.02, 0), inertia=(2e-3, 1e-3, 2e-3)),
-    )
+    arm = m.link("arm", length=0.5, mass=1.0)
+    nut = m.link("nut", length=0.1, mass=0.7, centre=(0, 0.02, 0), inertia=(2e-3, 1e-3, 2e-3))
     bead = m.point_mass("bead", 0.3)
     joint = m.universal("U", m.ground, arm, axis=(0, 0, 1), second=(0, 1, 0))
     screw = m.screw("N", m.ground.at(0, 1, 0), nut, axis=(0, 0.6, 0.8), lead=0.05)
@@ -170,11 +168,9 @@ def hung_on_masses(m):
 
 def on_a_mass(m):
     """A link whose base is at a point mass, turned by the link at its tip."""
-    a, b, c = (
-        m.point_mass("a", 1.0),
-        m.link("b", length=0.5, mass=1.0),
-        m.link("c", length=0.5, mass=1.0),
-    )
+    a = m.point_mass("a", 1.0)
+    b = m.link("b", length=0.5, mass=1.0)
+    c = m.link("c", length=0.5, mass=1.0)
     m.prismatic("P", m.ground, a, axis=(1, 0, 0))
     m.spherical("S", a, b)
     m.revolute("R", m.ground.at(0.3, 0.2, 0.1), c, axis=(0, 0, 1))
@@ -307,10 +303,8 @@ def test_vectors_are_those_of_numpy(seed):
     np.testing.assert_allclose(whole(a.cross(b)), np.cross(p, q), **near)
     np.testing.assert_allclose(np.broadcast_to(a.dot(b), 5), np.sum(p * q, axis=1), **near)
     np.testing.assert_allclose(np.broadcast_to(a.size, 5), np.linalg.norm(p, axis=1), **near)
-    axis, angle = (
-        np.array([(0, 0, 1), (0.6, 0, 0.8), (2 / 3, -1 / 3, 2 / 3)][seed % 3], float),
-        generator.normal(size=5),
-    )
+    axis = np.array([(0, 0, 1), (0.6, 0, 0.8), (2 / 3, -1 / 3, 2 / 3)][seed % 3], float)
+    angle = generator.normal(size=5)
     axes = Axes.about(Vector(*axis.tolist()), angle)
     turned = np.stack([rotation(axis, one) for one in angle])
     np.testing.assert_allclose(whole(axes.turn(b)), (turned @ q[..., None])[..., 0], **near)

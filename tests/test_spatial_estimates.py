@@ -75,10 +75,8 @@ def true_errors(drawn, solution, exact):
                 }
                 for force, value in forces.items():
                     key = f"section:{rod.name}:{force}"
-                    own, unit = (
-                        float(law.at(force, np.full((solution.t.size, 1), u))[i, 0]),
-                        solution.unit(key),
-                    )
+                    own = float(law.at(force, np.full((solution.t.size, 1), u))[i, 0])
+                    unit = solution.unit(key)
                     if solution.determined(key) and not (spins and force[-2:] in ("_y", "_z")):
                         errors[key] = max(errors.get(key, 0.0), abs(float(value - own)))
                         sizes[unit] = max(sizes.get(unit, 0.0), abs(own))

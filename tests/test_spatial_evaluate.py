@@ -118,18 +118,14 @@ def compare_motion(drawn, solution, k, one):
 def compare_sections(drawn, solution, k, one, rod, force, moment):
     section = solution.section(rod)
     for i, xi in enumerate(solution.xi):
-        told, shut = (
-            one.sections[rod].at(float(xi)).astype(float),
-            ~np.array(one.open_section(rod, float(xi))),
-        )
+        told = one.sections[rod].at(float(xi)).astype(float)
+        shut = ~np.array(one.open_section(rod, float(xi)))
         own = np.array([getattr(section, name)[k, i] for name in SECTION])
         if rod in solution.description["bars"]:
             # A bar's cross-section has axes of its own: its spin is anyone's.
-            own, told, shut = (
-                spun(own),
-                spun(told),
-                np.array([shut[0], shut[1:3].all(), shut[3], shut[4:].all()]),
-            )
+            own = spun(own)
+            told = spun(told)
+            shut = np.array([shut[0], shut[1:3].all(), shut[3], shut[4:].all()])
         sizes = (
             (force, force, force, moment, moment, moment)
             if len(own) > 4
@@ -155,11 +151,9 @@ def turning_crank(turns=3, **options):
     joint closes the loop.
     """
     m = SpatialMechanism("crank")
-    crank, rod, ram = (
-        m.link("crank", length=0.1, mass=1.0),
-        m.link("rod", length=0.4, mass=1.5),
-        m.link("ram", length=0.1, mass=2.0),
-    )
+    crank = m.link("crank", length=0.1, mass=1.0)
+    rod = m.link("rod", length=0.4, mass=1.5)
+    ram = m.link("ram", length=0.1, mass=2.0)
     m.revolute("O", m.ground, crank, axis=(0, 0, 1))
     m.cylindrical("A", crank.tip, rod, axis=(0, 0, 1))
     m.revolute("B", rod.tip, ram, axis=(0, 0, 1))
@@ -207,10 +201,8 @@ def test_a_table_of_the_cycle_gives_the_same(made, values):
     does not repeat.
     """
     scene = made()
-    exact, found = (
-        evaluate(scene, parameters=values),
-        evaluate(scene, parameters=values, table=1e-6),
-    )
+    exact = evaluate(scene, parameters=values)
+    found = evaluate(scene, parameters=values, table=1e-6)
     assert found.certified
     assert found.undetermined == exact.undetermined
     assert set(residuals(found.certificate)) == ({"closure"} if found.indeterminate else WHOLE)

@@ -20,10 +20,8 @@ def test_a_torsion_spring_turns_back_about_its_joints_axis(joint):
     for stiffness in (0.0, 7.0):
         m = SpatialMechanism("door")
         if joint == "relative":
-            frame, door = (
-                m.link("frame", length=0.3, mass=1.0),
-                m.link("door", length=0.5, mass=2.0),
-            )
+            frame = m.link("frame", length=0.3, mass=1.0)
+            door = m.link("door", length=0.5, mass=2.0)
             m.revolute("mast", m.ground, frame, axis=(0.0, 0.6, 0.8))
             hinge = m.revolute(
                 "hinge",

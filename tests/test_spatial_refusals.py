@@ -192,10 +192,8 @@ def leaning(second):
 @pytest.mark.parametrize(("second", "what"), [(True, ""), (False, " turned:")])
 def test_axes_that_parameters_set_are_at_right_angles(second, what, tmp_path):
     """Where an evaluation refuses, a sweep and exported C do."""
-    scene, told = (
-        leaning(second),
-        [({}, None), ({"lean": 0.3}, "its axes must be at right angles, and are at 72.8113 deg")],
-    )
+    scene = leaning(second)
+    told = [({}, None), ({"lean": 0.3}, "its axes must be at right angles, and are at 72.8113 deg")]
     told += [
         ({"lean": 1e-3}, "and are at 89.9427 deg"),
         ({"size": 0.0}, "its axes must not be of length zero"),

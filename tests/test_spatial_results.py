@@ -114,10 +114,8 @@ def test_a_sweep_keeps_peaks_along_links(scene, solution):
         law = solution.section(link).law
         for force in SPACE.forces:
             grid = law.on_grid(force, xi)
-            whole, largest = (
-                found[f"history:section:{link}:{force}"][0],
-                found[f"peak_at:section:{link}:{force}"][0],
-            )
+            whole = found[f"history:section:{link}:{force}"][0]
+            largest = found[f"peak_at:section:{link}:{force}"][0]
             np.testing.assert_allclose(whole, grid, rtol=0, atol=1e-12 * (np.abs(grid).max() + 1.0))
             np.testing.assert_allclose(
                 np.abs(largest),
@@ -151,10 +149,8 @@ def test_slides_that_stand_still_are_rounding_beside_what_turns():
     little rounding is.
     """
     m = SpatialMechanism("carried")
-    a, b = (
-        m.link("a", length=0.5, mass=1.0),
-        m.link("b", length=0.4, mass=2.0, centre=(0.1, 0.2, 0.0), inertia=(0.1, 0.1, 0.15)),
-    )
+    a = m.link("a", length=0.5, mass=1.0)
+    b = m.link("b", length=0.4, mass=2.0, centre=(0.1, 0.2, 0.0), inertia=(0.1, 0.1, 0.15))
     m.universal("U", m.ground, a, axis=(0.3, 0.5, 1.0), second=(1.0, 0.4, -0.5))
     m.cylindrical("C", a.tip, b, axis=(0.2, 1.0, -0.4))
     m.planar("P", a.at(0.1, 0.2, 0.1), b.at(0.3, 0.1, -0.2), axis=(1.0, -0.3, 0.5))

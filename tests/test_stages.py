@@ -92,10 +92,8 @@ def exact(program, t, **beside):
 def case(name, later):
     """A case's graph, three instants of its cycle so much later, and every column there."""
     scene = load_case(CASES / name).scene
-    program, t = (
-        derive(scene, ["all"]),
-        np.array([0.13, 0.4, 0.77]) * np.ptp(scene.span) + scene.span[0] + later,
-    )
+    program = derive(scene, ["all"])
+    t = np.array([0.13, 0.4, 0.77]) * np.ptp(scene.span) + scene.span[0] + later
     z = (
         None
         if program.newton is None
@@ -178,11 +176,9 @@ LAWS = {
 def geared(ratio):
     """A crank and a wheel on a gear, the wheel's pin a connecting rod's."""
     m = Mechanism("geared")
-    crank, wheel, rod = (
-        m.link("crank", length=0.1, mass=0.3),
-        m.link("wheel", length=0.06, mass=0.5),
-        m.link("rod", length=0.2, mass=0.1),
-    )
+    crank = m.link("crank", length=0.1, mass=0.3)
+    wheel = m.link("wheel", length=0.06, mass=0.5)
+    rod = m.link("rod", length=0.2, mass=0.1)
     slider = m.point_mass("slider", 0.4)
     first, second = m.revolute("O", m.ground, crank), m.revolute("W", m.ground.at(0.3, 0.0), wheel)
     m.gear("mesh", first, second, ratio=ratio, offset=0.2)

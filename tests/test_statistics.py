@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import words
 from hypothesis import given
 from hypothesis import strategies as st
 from internals import Statistics, resultants
@@ -174,17 +175,7 @@ def test_without_pandas_it_says_so(solution, monkeypatch):
 
 def test_run_writes_rows(here, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    arguments = [
-        "--no-figures",
-        "--t",
-        "0:0.08:5",
-        "--xi",
-        "0:1:3",
-        "--want",
-        "effort",
-        "--want",
-        "section:rod",
-    ]
+    arguments = words("--no-figures --t 0:0.08:5 --xi 0:1:3 --want effort --want section:rod")
     assert main(["run", "slider_crank", *arguments, "--csv", "rows.csv"]) == 0
     assert "wrote slider_crank.h5, and rows.csv" in capsys.readouterr().out
     with open("rows.csv", newline="") as file:

@@ -305,11 +305,9 @@ def test_nothing_is_left_out_without_a_trace(file):
 
     def lose(h):
         name = "section/rod/bending"
-        attributes, scales, shape = (
-            dict(h[name].attrs),
-            [dim[0] for dim in h[name].dims],
-            h[name].shape,
-        )
+        attributes = dict(h[name].attrs)
+        scales = [dim[0] for dim in h[name].dims]
+        shape = h[name].shape
         assert np.isnan(h[name].fillvalue)
         del h[name]
         new = h.create_dataset(

@@ -73,10 +73,8 @@ def test_peaks_are_those_of_finer_instants_and_of_the_graph(name):
     )
     for kind in KINDS:
         for notches in {False, name == "notched"}:
-            peak, below = (
-                refine_stress(scene, coarse, link, kind, notches=notches),
-                fine.stress(link).peak(kind, notches=notches),
-            )
+            peak = refine_stress(scene, coarse, link, kind, notches=notches)
+            below = fine.stress(link).peak(kind, notches=notches)
             assert below.value * (1 - 1e-12) <= peak.value <= below.value * (1 + 5e-4)
             assert abs(coarse.stress(link).peak(kind, notches=notches).value) <= peak.value
     program = evaluate(scene, t=(start, stop, 33), wanted=[f"safety:{link}"], certificate=False)

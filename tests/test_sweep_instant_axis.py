@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import xarray
 from click.testing import CliRunner
+from commands import words
 from internals import Plan, Request, Status, check_sweep, designs_of
 from mechanisms import press, slider_crank, uneven
 
@@ -61,17 +62,9 @@ def test_the_file_is_whole_and_others_read_it(over):
 
 
 def test_tables_have_the_axis_as_a_column(over, tmp_path):
-    words = [
-        "table",
-        str(over.path),
-        "--column",
-        "history:t",
-        "--column",
-        "history:effort:O",
-        "--csv",
-        str(tmp_path / "x.csv"),
-    ]
-    assert CliRunner().invoke(program, words).exit_code == 0
+    columns = words("--column history:t --column history:effort:O")
+    asked = ["table", str(over.path), *columns, "--csv", str(tmp_path / "x.csv")]
+    assert CliRunner().invoke(program, asked).exit_code == 0
     lines = (tmp_path / "x.csv").read_text().splitlines()
     assert lines[0] == "rpm [1/min],l [m],over [rad],history:t [s],history:effort:O [N m]"
     assert len(lines) == 1 + 6 * 37

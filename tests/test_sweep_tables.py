@@ -6,10 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import command
 from internals import Sweep
-from sweeps import ASKED, BENDING, CASE
-
-from lagrange_casadi.cli import main
+from sweeps import ASKED, BENDING
 
 pytestmark = pytest.mark.quick
 
@@ -17,96 +16,37 @@ pytestmark = pytest.mark.quick
 @pytest.fixture
 def file(here, capfd):
     """A small sweep's file."""
-    assert (
-        main(
-            [
-                *ASKED,
-                "--grid",
-                "l=0.06:0.36:4",
-                "--grid",
-                "r=0.05,0.1",
-                "--set",
-                "m3=0.2",
-                "--xi",
-                "0:1:3",
-                "--out",
-                "s.h5",
-            ]
-        )
-        == 0
-    )
+    designs = "--grid l=0.06:0.36:4 --grid r=0.05,0.1 --set m3=0.2 --xi 0:1:3"
+    assert command(f"{ASKED} {designs} --out s.h5") == 0
     capfd.readouterr()
     return Path("s.h5")
 
 
 def test_best(file, capfd):
-    assert (
-        main(
-            [
-                "best",
-                "s.h5",
-                "--minimise",
-                BENDING,
-                "--where",
-                "l>0.2",
-                "--count",
-                "2",
-                "--column",
-                "rms:effort:O",
-            ]
-        )
-        == 0
-    )
+    least = f"best s.h5 --minimise {BENDING}"
+    assert command(f"{least} --where l>0.2 --count 2 --column rms:effort:O") == 0
     head, *rows = capfd.readouterr().out.splitlines()
-    assert head.split() == [
-        "design",
-        "l",
-        "[m]",
-        "r",
-        "[m]",
-        BENDING,
-        "[N",
-        "m]",
-        "rms:effort:O",
-        "[N",
-        "m]",
-    ]
+    assert " ".join(head.split()) == f"design l [m] r [m] {BENDING} [N m] rms:effort:O [N m]"
     found = Sweep.open("s.h5")
     sizes = np.abs(found[BENDING])[found["l"] > 0.2]
     shown = [float(row.split()[3]) for row in rows]
     np.testing.assert_allclose(np.abs(shown), np.sort(sizes.ravel())[:2], rtol=1e-5)
-    assert (
-        main(
-            [
-                "best",
-                "s.h5",
-                "--minimise",
-                BENDING,
-                "--minimise",
-                "peak:effort:O",
-                "--csv",
-                "front.csv",
-            ]
-        )
-        == 0
-    )
+    assert command(f"{least} --minimise peak:effort:O --csv front.csv") == 0
     assert capfd.readouterr().out.endswith("wrote front.csv: 4 designs\n")
     assert (
         Path("front.csv")
         .read_text()
         .startswith(f"design,l [m],r [m],{BENDING} [N m],peak:effort:O [N m]\n")
     )
-    assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l>1"]) == 1
+    assert command(f"{least} --where l>1") == 1
     said = (
         "error: s.h5: no design has a result and meets the conditions: of 8 designs, {}, {} of"
         " these with a result\n"
     )
     assert capfd.readouterr().err == said.format("0 meet them", 0)
-    assert (
-        main(["best", "s.h5", "--minimise", BENDING, "--where", "l<0.1", "--where", "r>0.07"]) == 1
-    )
+    assert command(f"{least} --where l<0.1 --where r>0.07") == 1
     assert capfd.readouterr().err == said.format("1 meet them", 0)
-    assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l==0.1"]) == 1
+    assert command(f"{least} --where l==0.1") == 1
     assert (
         capfd.readouterr().err
         == said.format("0 meet them", 0).rstrip() + "; no design has l = 0.1; nearest: 0.06, 0.16\n"
@@ -114,10 +54,7 @@ def test_best(file, capfd):
 
 
 def test_best_as_csv_names_the_design(file, capfd):
-    assert (
-        main(["best", "s.h5", "--minimise", BENDING, "--column", "status", "--csv", "best.csv"])
-        == 0
-    )
+    assert command(f"best s.h5 --minimise {BENDING} --column status --csv best.csv") == 0
     out = capfd.readouterr().out.splitlines()
     assert out[1].split()[-1] == "ok"
     assert out[2] == "wrote best.csv: 1 design"
@@ -130,9 +67,9 @@ def test_best_as_csv_names_the_design(file, capfd):
     assert row["status"] == "0"
 
 
-@pytest.mark.parametrize("command", [["best", "--minimise", BENDING], ["table"]])
-def test_an_impossible_csv_is_told_first(file, capfd, command):
-    assert main([command[0], "s.h5", *command[1:], "--csv", "nowhere/x.csv"]) == 2
+@pytest.mark.parametrize("asked", [f"best s.h5 --minimise {BENDING}", "table s.h5"])
+def test_an_impossible_csv_is_told_first(file, capfd, asked):
+    assert command(f"{asked} --csv nowhere/x.csv") == 2
     assert capfd.readouterr() == (
         "",
         "error: cannot write nowhere/x.csv: folder nowhere does not exist\n",
@@ -140,7 +77,7 @@ def test_an_impossible_csv_is_told_first(file, capfd, command):
 
 
 def test_table(file, capfd):
-    assert main(["table", "s.h5", "--rows", "3"]) == 0
+    assert command("table s.h5 --rows 3") == 0
     out = capfd.readouterr().out.splitlines()
     assert out[0].split()[:6] == ["design", "l", "[m]", "r", "[m]", "status"]
     assert out[1].split()[3] == "ok"
@@ -148,22 +85,22 @@ def test_table(file, capfd):
     assert (
         out[4] == "... of 8 designs, 7 with a result; --rows N shows more, --csv OUT.csv writes all"
     )
-    assert main(["table", "s.h5", "--column", "rms:effort:O", "--where", "status!=0"]) == 0
+    assert command("table s.h5 --column rms:effort:O --where status!=0") == 0
     assert capfd.readouterr().out.splitlines()[1].split() == ["1", "0.06", "0.1", "nan"]
-    assert main(["table", "s.h5", "--where", "l<0.2", "--rows", "1"]) == 0
+    assert command("table s.h5 --where l<0.2 --rows 1") == 0
     assert (
         capfd.readouterr()
         .out.splitlines()[2]
         .startswith("... of 4 designs that meet the conditions, 3 with a result; ")
     )
-    assert main(["table", "s.h5", "--rows", "8"]) == 0
+    assert command("table s.h5 --rows 8") == 0
     out, err = capfd.readouterr()
     assert len(out.splitlines()) == 9
     assert (
         "note: --column NAME shows other columns over xi, a row for every xi:"
         " peak_at:section:rod:axial, peak" in err
     )
-    assert main(["table", "s.h5", "--column", "q"]) == 2
+    assert command("table s.h5 --column q") == 2
     out, err = capfd.readouterr()
     assert out == ""
     assert err == "error: unknown column 'q'; `lagrange-casadi info s.h5` lists the 19 there are\n"
@@ -173,12 +110,12 @@ AT = [f"peak_at:section:rod:{force}" for force in ("axial", "shear", "bending")]
 
 
 def columns(*names):
-    return [word for name in names for word in ("--column", name)]
+    return " ".join(f"--column {name}" for name in names)
 
 
 def test_columns_over_ratios_are_a_row_for_each(file, capfd):
     """The paper's batch as a table: one line for every design and ratio."""
-    assert main(["table", "s.h5", *columns("peak:effort:O", *AT), "--csv", "long.csv"]) == 0
+    assert command(f"table s.h5 {columns('peak:effort:O', *AT)} --csv long.csv") == 0
     assert capfd.readouterr() == ("wrote long.csv: 24 rows\n", "")
     with open("long.csv", newline="") as text:
         head, *rows = csv.reader(text)
@@ -198,9 +135,7 @@ def test_columns_over_ratios_are_a_row_for_each(file, capfd):
 
 
 def test_columns_over_ratios_on_the_terminal(file, capfd):
-    assert (
-        main(["table", "s.h5", *columns("status", AT[2]), "--where", "xi==0.5", "--rows", "2"]) == 0
-    )
+    assert command(f"table s.h5 {columns('status', AT[2])} --where xi==0.5 --rows 2") == 0
     out, err = capfd.readouterr()
     head, *rows, more = out.splitlines()
     assert head.split() == ["design", "l", "[m]", "r", "[m]", "xi", "status", AT[2], "[N", "m]"]
@@ -215,46 +150,46 @@ def test_columns_over_ratios_on_the_terminal(file, capfd):
     )
     assert err == ""
     limit = float(np.nanmax(np.abs(Sweep.open("s.h5")[AT[2]]))) * 0.999
-    assert main(["table", "s.h5", "--where", f"{AT[2]}>{limit!r}"]) == 0
+    assert command(f"table s.h5 --where {AT[2]}>{limit!r}") == 0
     assert len(capfd.readouterr().out.splitlines()) == 2
 
 
 def test_a_condition_on_an_axis_needs_a_column_over_it(file, capfd):
-    for command in (["table"], ["best", "--minimise", BENDING]):
-        assert main([command[0], "s.h5", *command[1:], "--where", "xi==0.5"]) == 2
+    for asked in ("table s.h5", f"best s.h5 --minimise {BENDING}"):
+        assert command(f"{asked} --where xi==0.5") == 2
         said = f"error: 'xi' is no column but an axis: it needs a column over xi, as {AT[0]} is\n"
         assert capfd.readouterr() == ("", said)
 
 
 def test_unknown_columns_are_told_at_once(file, capfd):
-    assert main(["table", "s.h5", *columns("zz", "l", "yy"), "--where", "xx<1"]) == 2
+    assert command(f"table s.h5 {columns('zz', 'l', 'yy')} --where xx<1") == 2
     assert "error: unknown columns 'zz', 'yy', 'xx'; " in capfd.readouterr().err
 
 
 @pytest.mark.parametrize(
-    ("arguments", "says"),
+    ("options", "says"),
     [
         (
-            [*columns(AT[2]), "--where", "xi==0.505"],
+            f"--column {AT[2]} --where xi==0.505",
             "no row meets the conditions; no design has xi = 0.505; nearest: 0.5, 1",
         ),
         (
-            ["--where", "l=0.3"],
+            "--where l=0.3",
             "no design meets the conditions; no design has l = 0.3; nearest: 0.26, 0.36",
         ),
-        (["--where", "l>1"], "no design meets the conditions"),
+        ("--where l>1", "no design meets the conditions"),
     ],
 )
-def test_a_table_of_nothing_is_refused(file, capfd, arguments, says):
-    for more in ([], ["--csv", "x.csv"]):
-        assert main(["table", "s.h5", *arguments, *more]) == 1
+def test_a_table_of_nothing_is_refused(file, capfd, options, says):
+    for more in ("", "--csv x.csv"):
+        assert command(f"table s.h5 {options} {more}") == 1
         assert capfd.readouterr() == ("", f"error: s.h5: {says}\n")
     assert not Path("x.csv").exists()
 
 
 def test_where_a_figure_stays_is_a_number(file, capfd):
     for value in ("nan", "inf"):
-        assert main(["plot", "s.h5", "--at", f"l={value}", "--out", "figures"]) == 2
+        assert command(f"plot s.h5 --at l={value} --out figures") == 2
         assert capfd.readouterr() == (
             "",
             f"error: Invalid value for '--at': l: expected a finite number, got {value}\n",
@@ -262,20 +197,16 @@ def test_where_a_figure_stays_is_a_number(file, capfd):
 
 
 def test_columns_of_different_axes_need_a_table_each(here, capfd):
-    assert (
-        main(
-            [*ASKED, "--grid", "l=0.2,0.3", "--xi", "0:1:3", "--keep", "histories", "--out", "h.h5"]
-        )
-        == 0
-    )
+    asked = f"{ASKED} --grid l=0.2,0.3 --xi 0:1:3 --keep histories --out h.h5"
+    assert command(asked) == 0
     capfd.readouterr()
-    assert main(["table", "h.h5", *columns(AT[0], "history:effort:O"), "--csv", "x.csv"]) == 2
+    assert command(f"table h.h5 {columns(AT[0], 'history:effort:O')} --csv x.csv") == 2
     said = (
         f"column '{AT[0]}' has a value for every xi, 'history:effort:O' for every t: write a"
         " table for each"
     )
     assert capfd.readouterr() == ("", f"error: {said}\n")
-    assert main(["table", "h.h5", *columns("history:section:rod:bending"), "--csv", "x.csv"]) == 0
+    assert command("table h.h5 --column history:section:rod:bending --csv x.csv") == 0
     assert capfd.readouterr().out == "wrote x.csv: 126 rows\n"
     with open("x.csv", newline="") as text:
         assert next(text) == "l [m],t [s],xi,history:section:rod:bending [N m]\n"
@@ -283,7 +214,7 @@ def test_columns_of_different_axes_need_a_table_each(here, capfd):
     np.testing.assert_array_equal(
         values[:, 3], Sweep.open("h.h5")["history:section:rod:bending"].ravel()
     )
-    assert main(["table", "h.h5", "--csv", "x.csv"]) == 0
+    assert command("table h.h5 --csv x.csv") == 0
     notes = capfd.readouterr().err.splitlines()
     assert [note.partition(":section")[0].partition(": history")[0] for note in notes] == [
         "note: --column NAME shows other columns over xi, a row for every xi: peak_at",
@@ -293,10 +224,10 @@ def test_columns_of_different_axes_need_a_table_each(here, capfd):
 
 
 def test_a_table_of_what_is_kept_of_the_motion(here, capfd):
-    asked = ["sweep", str(CASE), "--t", "0:0.08:21", "--want", "motion", "--grid", "l=0.2,0.3"]
-    assert main([*asked, "--out", "x.h5"]) == 0
+    asked = "sweep CASE --t 0:0.08:21 --want motion --grid l=0.2,0.3"
+    assert command(f"{asked} --out x.h5") == 0
     capfd.readouterr()
-    assert main(["table", "x.h5"]) == 0
+    assert command("table x.h5") == 0
     out, err = capfd.readouterr()
     assert out.splitlines()[0].split()[3:5] == ["status", "peak:motion:A_acceleration"]
     assert re.match(
@@ -304,9 +235,9 @@ def test_a_table_of_what_is_kept_of_the_motion(here, capfd):
         r" info x.h5` lists",
         err,
     )
-    assert main([*asked, "--keep", "histories", "--out", "y.h5"]) == 0
+    assert command(f"{asked} --keep histories --out y.h5") == 0
     capfd.readouterr()
-    assert main(["table", "y.h5"]) == 0
+    assert command("table y.h5") == 0
     assert (
         "note: --column NAME shows other columns over t, a row for every t: history:"
         in capfd.readouterr().err
@@ -314,7 +245,7 @@ def test_a_table_of_what_is_kept_of_the_motion(here, capfd):
 
 
 def test_csv_has_every_digit_and_is_a_list_of_designs_again(file, capfd):
-    assert main(["table", "s.h5", "--csv", "all.csv"]) == 0
+    assert command("table s.h5 --csv all.csv") == 0
     assert capfd.readouterr().out == "wrote all.csv: 8 designs\n"
     with open("all.csv", newline="") as text:
         rows = list(csv.DictReader(text))
@@ -323,17 +254,15 @@ def test_csv_has_every_digit_and_is_a_list_of_designs_again(file, capfd):
         unit = found.unit(name)
         key = name if unit == "1" else f"{name} [{unit}]"
         np.testing.assert_array_equal([float(row[key]) for row in rows], found[name].ravel())
-    assert (
-        main(["table", "s.h5", "--csv", "list.csv", "--column", "l", "--where", "status==0"]) == 0
-    )
+    assert command("table s.h5 --csv list.csv --column l --where status==0") == 0
     assert Path("list.csv").read_text().startswith("l [m],r [m]\n0.06,0.05\n")
-    assert main([*ASKED, "--designs", "list.csv", "--set", "m3=0.2", "--out", "again.h5"]) == 0
+    assert command(f"{ASKED} --designs list.csv --set m3=0.2 --out again.h5") == 0
     there = found["status"] == 0
     np.testing.assert_array_equal(Sweep.open("again.h5")[BENDING], found[BENDING][there])
 
 
 def test_info_check_and_plot_know_sweeps(file, capfd):
-    assert main(["info", "s.h5"]) == 0
+    assert command("info s.h5") == 0
     out = capfd.readouterr().out
     assert "swept l: 0.06:0.36:4" in out
     assert [line for line in out.splitlines() if re.match(r"\d+ design", line)] == [
@@ -343,18 +272,18 @@ def test_info_check_and_plot_know_sweeps(file, capfd):
     assert re.search(
         r"peak:section:rod:bending +N m +largest magnitude over time: bending moment", out
     )
-    assert main(["check", "s.h5"]) == 0
+    assert command("check s.h5") == 0
     assert capfd.readouterr().out == "s.h5: whole and consistent\n"
-    assert main(["plot", "s.h5", "--out", "figures", "--over", "l", "--at", "r=0.05"]) == 0
+    assert command("plot s.h5 --out figures --over l --at r=0.05") == 0
     assert {path.stem for path in Path("figures").iterdir()} >= {
         "peak_effort",
         "peak_section_rod",
         "along_rod",
     }
-    assert main(["run", str(CASE), "--t", "0:0.08:5", "--no-figures", "--out", "run.h5"]) == 0
+    assert command("run CASE --t 0:0.08:5 --no-figures --out run.h5") == 0
     capfd.readouterr()
-    assert main(["plot", "run.h5", "--out", "figures", "--over", "l"]) == 2
+    assert command("plot run.h5 --out figures --over l") == 2
     assert "--over, --at and --against go with a sweep's file" in capfd.readouterr().err
-    for command in ("best", "table"):
-        assert main([command, "run.h5", *(["--minimise", "l"] if command == "best" else [])]) == 1
+    for asked in ("best run.h5 --minimise l", "table run.h5"):
+        assert command(asked) == 1
         assert "run.h5: not the file of a sweep, but that of a run" in capfd.readouterr().err

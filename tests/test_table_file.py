@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import command
 from internals import Sweep, TableFile
 from sweeps import ASKED, BENDING
 
@@ -55,7 +56,7 @@ def test_a_workbook_that_is_too_large_is_told_and_leaves_nothing(here, monkeypat
 
 @pytest.fixture
 def swept(here, capfd):
-    assert main([*ASKED, "--grid", "l=0.2,0.3", "--out", "s.h5"]) == 0
+    assert command(f"{ASKED} --grid l=0.2,0.3 --out s.h5") == 0
     capfd.readouterr()
     return Sweep.open("s.h5")
 
@@ -127,8 +128,8 @@ def test_heads_of_designs_may_have_units(here, head):
 def test_a_table_with_commas_is_a_list_of_designs_again(swept, capfd):
     listed = ["table", "s.h5", "--column", "l", "--csv", "d.csv", "--decimal-comma"]
     assert main(listed) == 0
-    assert main([*ASKED, "--designs", "d.csv", "--out", "again.h5"]) == 0
+    assert command(f"{ASKED} --designs d.csv --out again.h5") == 0
     np.testing.assert_array_equal(Sweep.open("again.h5")[BENDING], swept[BENDING])
     Path("d.csv").write_text("l [kg]\n1\n")
-    assert main([*ASKED, "--designs", "d.csv", "--out", "x.h5"]) == 2
+    assert command(f"{ASKED} --designs d.csv --out x.h5") == 2
     assert "column 'l': expected numbers [m], not numbers [kg]" in capfd.readouterr().err

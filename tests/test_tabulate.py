@@ -52,10 +52,8 @@ def arm(load=None, law=None, **keywords):
 def geared(ratio):
     m = Mechanism("geared")
     wheel, link = m.link("wheel", length=0.05, mass=0.2), m.link("link", length=0.1, mass=0.3)
-    first, second = (
-        m.revolute("first", m.ground.at(-0.2, 0), wheel),
-        m.revolute("second", m.ground, link),
-    )
+    first = m.revolute("first", m.ground.at(-0.2, 0), wheel)
+    second = m.revolute("second", m.ground, link)
     m.gear("mesh", first, second, ratio=ratio)
     return Scene(m, {"first": motion.polynomial(0.2, 3.0)})
 

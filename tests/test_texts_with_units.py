@@ -7,6 +7,7 @@ from decimal import Decimal
 
 import casadi as ca
 import pytest
+from commands import words
 from internals import Values, describe, read_designs, sweep
 
 from lagrange_casadi import (
@@ -134,10 +135,8 @@ def bent(u):
 def cams(u):
     m = Mechanism("cam")
     disc, stem = m.link("disc", length=0.03, mass=0.6), m.link("stem", length=0.1, mass=0.2)
-    main, guide = (
-        m.revolute("main", m.ground, disc),
-        m.prismatic("guide", m.ground, stem, axis=(0, 1), angle=u(1.5, "rad")),
-    )
+    main = m.revolute("main", m.ground, disc)
+    guide = m.prismatic("guide", m.ground, stem, axis=(0, 1), angle=u(1.5, "rad"))
     parts = [
         move(by=u(0.01, "m"), time=u(0.2, "s")),
         dwell(u(0.1, "s")),
@@ -159,10 +158,8 @@ def cams(u):
 
 def rubbing(u):
     m = SpatialMechanism("rubbing")
-    arm, slide = (
-        m.link("arm", length=u(0.3, "m"), mass=1.0),
-        m.link("slide", length=0.1, mass=u(0.5, "kg")),
-    )
+    arm = m.link("arm", length=u(0.3, "m"), mass=1.0)
+    slide = m.link("slide", length=0.1, mass=u(0.5, "kg"))
     pin = m.revolute("O", m.ground, arm)
     way = m.prismatic("S", arm, slide, axis=(1, 0, 0))
     m.friction("pin", pin, mu=0.1, radius=u(0.01, "m"), length=u(0.05, "m"), smooth=u(0.2, "rad/s"))
@@ -284,14 +281,10 @@ def test_a_text_in_another_unit_is_refused(declared):
 
 def crank(u=as_number):
     m = Mechanism("crank")
-    r, lean = (
-        m.parameter("r", u(0.1, "m"), "m", low=u(0.02, "m"), high=u(0.3, "m")),
-        m.parameter("lean", u(0.25, "rad"), "rad"),
-    )
-    arm, hand = (
-        m.link("arm", length=r, mass=m.parameter("mass", u(1.5, "kg"), "kg")),
-        m.link("hand", length=0.1, mass=0.5),
-    )
+    r = m.parameter("r", u(0.1, "m"), "m", low=u(0.02, "m"), high=u(0.3, "m"))
+    lean = m.parameter("lean", u(0.25, "rad"), "rad")
+    arm = m.link("arm", length=r, mass=m.parameter("mass", u(1.5, "kg"), "kg"))
+    hand = m.link("hand", length=0.1, mass=0.5)
     m.revolute("O", m.ground, arm)
     m.weld("fist", arm.tip, hand, angle=lean)
     m.prismatic("S", arm, m.point_mass("p", 0.1), axis=(1, 0))
@@ -358,9 +351,7 @@ COMMANDS = {
         "--quiet",
     ],
     "optimise": lambda u: [
-        "--minimise",
-        "peak:effort:O",
-        "--over",
+        *words("--minimise peak:effort:O --over"),
         f"r={u(0.05, 'm')}:{u(0.2, 'm')}",
         "--set",
         f"lean={u(0.5, 'rad')}",
@@ -369,10 +360,7 @@ COMMANDS = {
     "tolerances": lambda u: [
         "--tolerance",
         f"r={u(0.001, 'm')}",
-        "--samples",
-        "20",
-        "--csv",
-        "x.csv",
+        *words("--samples 20 --csv x.csv"),
     ],
 }
 

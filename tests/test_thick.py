@@ -124,10 +124,8 @@ def test_forces_along_the_link_change_as_they_say_and_peak_where_they_do(plain):
             )
     fine = np.linspace(0, 1, 20001)
     for force in SPACE.forces:
-        largest, steepest = (
-            np.abs(law.on_grid(force, fine)).max(axis=1),
-            np.abs(law.along(force, np.tile(fine, (5, 1)))).max(axis=1),
-        )
+        largest = np.abs(law.on_grid(force, fine)).max(axis=1)
+        steepest = np.abs(law.along(force, np.tile(fine, (5, 1)))).max(axis=1)
         found = np.abs(law.extreme(force)[1])
         assert (found >= largest * (1 - 1e-12)).all(), force
         assert (found <= largest * (1 + 1e-9) + steepest * 5e-5).all(), force

@@ -256,10 +256,8 @@ def test_a_prepared_scene_answers_each_thread(asked, way):
     """By compiled code, with loops iterated, by the virtual machine; and with samples, and instants
     of each design's own.
     """
-    scene, slow = (
-        threaded.press(0, pinned if "newton" in asked else Mechanism.revolute),
-        "backend" in asked,
-    )
+    scene = threaded.press(0, pinned if "newton" in asked else Mechanism.revolute)
+    slow = "backend" in asked
     if "waved" in asked:
         law = samples(TIMES, 0.3 + np.sin(2.0 * TIMES))
         scene = Scene(scene.mechanism, {"O": law}, t=(0.0, 1.0, 9), posture={"rod": 1.5})

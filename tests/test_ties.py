@@ -22,11 +22,9 @@ def pendulum():
     """
     m = Mechanism("pendulum")
     m.set_gravity(0, 0)
-    l, swing, bias = (
-        m.parameter("l", 0.8, "m"),
-        m.parameter("swing", 0.6, "rad"),
-        m.parameter("bias", 0.0, "N m"),
-    )
+    l = m.parameter("l", 0.8, "m")
+    swing = m.parameter("swing", 0.6, "rad")
+    bias = m.parameter("bias", 0.0, "N m")
     arm = m.link("arm", length=l, mass=2.0)
     m.revolute("O", m.ground, arm)
     m.torque("twist", arm, bias)

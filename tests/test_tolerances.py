@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from commands import words
 from conftest import CASES
 from internals import read_tolerance
 
@@ -20,11 +21,9 @@ def rotor():
     """The axial force at the base of a link that turns steadily is m w^2 l/2."""
     m = Mechanism("rotor")
     m.set_gravity(0, 0)
-    l, mass, speed = (
-        m.parameter("l", 0.4, "m", low=0.0),
-        m.parameter("mass", 2.0, "kg"),
-        m.parameter("speed", 30.0, "rad/s"),
-    )
+    l = m.parameter("l", 0.4, "m", low=0.0)
+    mass = m.parameter("mass", 2.0, "kg")
+    speed = m.parameter("speed", 30.0, "rad/s")
     tilt = m.parameter("tilt", 0.2, "rad")
     m.revolute("O", m.ground, m.link("arm", length=l, mass=mass))
     return Scene(m, {"O": polynomial(tilt, speed)}, t=(0, 0.2, 11), wanted=["section"])
@@ -131,10 +130,7 @@ def test_the_command_ranks_and_writes(tmp_path, monkeypatch, capfd):
     asked = [
         "tolerances",
         str(CASES / "slider_crank"),
-        "--want",
-        "effort,section:rod",
-        "--samples",
-        "100",
+        *words("--want effort,section:rod --samples 100"),
     ]
     assert main([*asked, "--tolerance", "l=0.1mm", "--tolerance", "m3=1%", "--csv", "x.csv"]) == 0
     out, err = capfd.readouterr()

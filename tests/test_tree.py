@@ -68,11 +68,9 @@ def test_a_driven_slide_carries_its_mass_whatever_else_is_pinned_to_it():
     wait.
     """
     m = Mechanism("driven_slot")
-    a, b, c = (
-        m.link("a", length=0.3, mass=1.0),
-        m.link("b", length=0.5, mass=1.0),
-        m.link("c", length=0.6, mass=1.0),
-    )
+    a = m.link("a", length=0.3, mass=1.0)
+    b = m.link("b", length=0.5, mass=1.0)
+    c = m.link("c", length=0.6, mass=1.0)
     pin = m.point_mass("pin", 0.1)
     m.revolute("O", m.ground, a)
     m.revolute("P", a.tip, pin)

@@ -193,11 +193,9 @@ def test_all_that_follows_is_about_the_same_axes(asked, tmp_path):
         folder = () if asked in IN_MEMORY else (tmp_path / name,)
         return np.ravel(asked(bar(*told, swing=0.3, push=-200.0), *folder))
 
-    edge, same, flat = (
-        of("edge", UP, EDGE, FLAT),
-        of("same", ACROSS, FLAT, EDGE),
-        of("flat", ACROSS, EDGE, FLAT),
-    )
+    edge = of("edge", UP, EDGE, FLAT)
+    same = of("same", ACROSS, FLAT, EDGE)
+    flat = of("flat", ACROSS, EDGE, FLAT)
     np.testing.assert_allclose(edge, same, rtol=1e-6)
     told = np.isfinite(edge) & np.isfinite(flat)
     assert told.any()
@@ -308,10 +306,8 @@ def test_a_direction_that_no_joint_takes_is_refused():
         ({}, "between= gives its position"),
     ):
         m = SpatialMechanism("arm")
-        base, arm = (
-            m.link("base", length=1.0, mass=1.0),
-            m.link("arm", between=((0, 0, 0), (0, 1, 0)), mass=1.0, **told),
-        )
+        base = m.link("base", length=1.0, mass=1.0)
+        arm = m.link("arm", between=((0, 0, 0), (0, 1, 0)), mass=1.0, **told)
         m.revolute("O", m.ground, base)
         m.revolute("A", base.tip, arm, axis=(1, 0, 0))
         with pytest.raises(
@@ -328,10 +324,8 @@ def test_a_direction_that_no_joint_takes_is_refused():
 @pytest.mark.parametrize("tip", [(0.0, 1.0, 0.0), (0.2, -0.4, 0.9), (1.0, 0.0, 0.0)])
 def test_a_link_lies_between_its_places_however_its_joints_are_told(by_points, told, up, tip):
     m, end = SpatialMechanism("arm"), (0.7, -0.1, 0.4)
-    arm, fore = (
-        m.link("arm", between=((0, 0, 0), tip), mass=1.0, **told),
-        m.link("fore", between=(tip, end), mass=0.5, **told),
-    )
+    arm = m.link("arm", between=((0, 0, 0), tip), mass=1.0, **told)
+    fore = m.link("fore", between=(tip, end), mass=0.5, **told)
     if by_points:
         m.universal("O", m.ground, arm, axis=(1, 0, 0), second=(0, 1, 0))
         m.weld("A", arm.tip, fore)

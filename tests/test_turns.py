@@ -242,8 +242,13 @@ def test_exported_c_refuses_what_might_be_a_turn_further(tmp_path):
     """As the API does; and where it does not, a call knows nothing of the one before."""
     made = export(sprung("C", **DRAG_LINK, parametric=True), tmp_path)
     prepare = "status = @_prepare(&model, &parameters); @_motion(&model, %s, &inputs); "
-    status, effort, sentence = told(
-        tmp_path, made, "parameters.p = 0.05; " + prepare % 0.02 + EVALUATED
+    far = prepare % 1.75 + EVALUATED
+    (_, effort, sentence), *others = told(
+        tmp_path,
+        made,
+        "parameters.p = 0.05; " + prepare % 0.02 + EVALUATED,
+        far,
+        prepare % 0.25 + EVALUATED + far.partition("; ")[2],
     )
     assert (
         sentence
@@ -251,9 +256,7 @@ def test_exported_c_refuses_what_might_be_a_turn_further(tmp_path):
     )
     assert math.isnan(effort)
     solution = evaluate(sprung("C", **DRAG_LINK, parametric=True), t=(0.0, 1.75, 8), backend="c")
-    far = prepare % 1.75 + EVALUATED
-    for statements in (far, prepare % 0.25 + EVALUATED + far.partition("; ")[2]):
-        status, effort, _ = told(tmp_path, made, statements)
+    for status, effort, _ in others:
         assert (status, effort) == (0, pytest.approx(solution.effort("O")[-1], rel=1e-5))
 
 
@@ -411,11 +414,9 @@ def test_what_does_not_tell_turns_apart_is_left_within_one():
     ):
         m = slider_crank().mechanism
         m = Mechanism("seen")
-        a, b, s = (
-            m.link("a", length=0.1, mass=0.3),
-            m.link("b", length=0.3, mass=0.3),
-            m.point_mass("s", 1.0),
-        )
+        a = m.link("a", length=0.1, mass=0.3)
+        b = m.link("b", length=0.3, mass=0.3)
+        s = m.point_mass("s", 1.0)
         m.revolute("O", m.ground, a)
         joint = m.revolute("A", a.tip, b)
         m.revolute("B", b.tip, s)
@@ -460,11 +461,9 @@ def test_whether_an_expression_tells_turns_apart(see, tells):
 def led(span):
     """Two slides lead a pin round the pivot of a slotted link: it goes round, and no drive does."""
     m = Mechanism("led")
-    carriage, pin, b = (
-        m.link("carriage", length=0.1, mass=1.0),
-        m.point_mass("pin", 1.0),
-        m.link("b", length=0.6, mass=0.5),
-    )
+    carriage = m.link("carriage", length=0.1, mass=1.0)
+    pin = m.point_mass("pin", 1.0)
+    b = m.link("b", length=0.6, mass=0.5)
     m.prismatic("X", m.ground, carriage, axis=(1, 0))
     m.prismatic("Y", carriage, pin, axis=(0, 1))
     m.revolute("Q", m.ground, b)

@@ -29,10 +29,8 @@ def engine(rod=None, wanted=("all",), more=lambda m, parts: None, **keywords):
     """
     m = Mechanism("engine")
     r, place = m.parameter("r", 0.1, "m"), m.parameter("place", 0.4)
-    crank, rod = (
-        m.link("crank", length=r, mass=0.8),
-        m.link("rod", length=0.25, **(rod or {"mass": 1.1})),
-    )
+    crank = m.link("crank", length=r, mass=0.8)
+    rod = m.link("rod", length=0.25, **(rod or {"mass": 1.1}))
     piston = m.point_mass("piston", 0.6)
     main = m.revolute("main", m.ground, crank)
     pin = m.revolute("pin", crank.tip, rod)

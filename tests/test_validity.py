@@ -148,11 +148,9 @@ def test_what_bears_a_load_may_be_massless():
     """Forces are then those of statics: by virtual power, the drive gives what the load takes."""
     m = Mechanism("press")
     work = m.parameter("work", 80e3, "N")
-    upper, lower, ram = (
-        m.link("upper", length=0.3, mass=0.0),
-        m.link("lower", length=0.3, mass=0.0),
-        m.point_mass("ram", 0.0),
-    )
+    upper = m.link("upper", length=0.3, mass=0.0)
+    lower = m.link("lower", length=0.3, mass=0.0)
+    ram = m.point_mass("ram", 0.0)
     m.revolute("top", m.ground.at(0.0, 0.6), upper)
     m.revolute("knee", upper.tip, lower)
     m.revolute("elbow", lower.tip, ram)

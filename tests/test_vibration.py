@@ -30,10 +30,8 @@ def shaken(rate, count=65):
     m = Mechanism("shaken")
     m.set_gravity(0.0, 0.0)
     frame = m.link("frame", length=1.0, mass=1.0)
-    bar, foot = (
-        m.link("bar", length=1.0, beam=beams.Beam(SHAPE, strong.STEEL)),
-        m.point_mass("foot", 0.0),
-    )
+    bar = m.link("bar", length=1.0, beam=beams.Beam(SHAPE, strong.STEEL))
+    foot = m.point_mass("foot", 0.0)
     m.prismatic("up", m.ground, frame, axis=(0, 1), angle=0)
     m.revolute("A", frame, bar)
     m.prismatic("slide", frame.tip, foot, axis=(1, 0))

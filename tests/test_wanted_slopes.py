@@ -31,11 +31,9 @@ def two_drives():
     it and one at a station.
     """
     m = Mechanism("drives")
-    l, taper, swing = (
-        m.parameter("l", 1.2, "m"),
-        m.parameter("taper", -2.0, "kg/m"),
-        m.parameter("swing", 0.6, "rad"),
-    )
+    l = m.parameter("l", 1.2, "m")
+    taper = m.parameter("taper", -2.0, "kg/m")
+    swing = m.parameter("swing", 0.6, "rad")
     place = m.parameter("place", 0.7, "m")
     beam = m.link("beam", length=l, density=density(5.0, taper))
     arm = m.link("arm", length=0.4, mass=1.0)
@@ -68,10 +66,8 @@ def test_they_are_those_made_backwards(make, asked):
     changes = sensitivities(scene, solution, backend="vm")
     for parameter, of in scene.mechanism.parameters.items():
         for name in solution.names():
-            found, exact = (
-                solution.sensitivities.array(name, parameter),
-                changes.array(name, parameter),
-            )
+            found = solution.sensitivities.array(name, parameter)
+            exact = changes.array(name, parameter)
             assert found.shape == solution.array(name).shape
             size = np.abs(exact).max() + np.abs(solution.array(name)).max() / abs(of.default)
             np.testing.assert_allclose(
@@ -84,10 +80,8 @@ def test_few_rows_are_made_backwards():
     program = derive(slider_crank(), ["effort", "motion"])
     row = [k for output, k in program.outputs.items() if str(output) == "effort:O"]
     every = list(range(5))
-    backwards, forward = (
-        total(program, row, every),
-        total(program, list(program.outputs.values()), every),
-    )
+    backwards = total(program, row, every)
+    forward = total(program, list(program.outputs.values()), every)
     singles = sum(total(program, row, [k]).n_instructions() for k in every)
     assert backwards.n_instructions() < 0.6 * singles
     given = [0.01, *program.motion(0.01, (values := [0.1, 0.2, 0.1, 0.1, 0.1])), [], values]

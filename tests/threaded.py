@@ -30,10 +30,8 @@ def press(own, pin=Mechanism.revolute):
 
 def _press(m, own, pin):
     l, r = m.parameter("l", 0.5, "m", low=0.0), m.parameter("r", 0.1, "m", low=0.0)
-    crank, rod = (
-        m.link("crank", length=r, mass=1.2 + own / 8),
-        m.link("rod", length=2 * l - l, mass=l * 4),
-    )
+    crank = m.link("crank", length=r, mass=1.2 + own / 8)
+    rod = m.link("rod", length=2 * l - l, mass=l * 4)
     ram = m.point_mass("ram", 15.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)

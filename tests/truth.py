@@ -83,10 +83,8 @@ def true_errors(solution, exact):
     ]
     angles = {name for name in names if _is_angle(solution, name)}
     size = {name: float(np.max(np.abs(solution.series[name]))) or 1.0 for name in names}
-    gaps, looked = (
-        {},
-        {link: _looked_at(solution.section(link).law) for link in solution.links_with_sections},
-    )
+    gaps = {}
+    looked = {link: _looked_at(solution.section(link).law) for link in solution.links_with_sections}
     matter = {link: matter_of(exact.mechanism, exact.values, link) for link in looked}
     for i, sides in enumerate(exact.sides):
         found = [

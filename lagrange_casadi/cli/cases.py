@@ -54,7 +54,7 @@ def new(folder: Path, like: str | None, source: Path | None) -> None:
             raise DeclarationError("--like and --from exclude each other")
         _translated(folder, source)
         return
-    like, found = like or SIMPLE, shipped_cases()
+    like, found = SIMPLE if like is None else like, shipped_cases()
     if like not in found:
         raise UnknownNameError("case", like, found)
     if os.path.lexists(folder):

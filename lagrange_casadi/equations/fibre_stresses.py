@@ -147,11 +147,14 @@ class FibrePart(Graphs):
         """
         n, k, t = members.shape
         if still:
-            rows = self._matrices(members[:, :, 0], numbers, x).reshape(n, -1, self.count, k)
+            places = x.shape[1]
+            rows = self._matrices(members[:, :, 0], numbers, x).reshape(n, places, self.count, k)
             if chosen is not None:
                 rows = np.take_along_axis(rows, chosen[:, None, :, None], axis=2)
-            found = np.asarray(np.matmul(rows.reshape(n, -1, k), np.ascontiguousarray(members)))
-            return found.reshape(n, x.shape[1], -1, t)
+            count = rows.shape[2]
+            rows = rows.reshape(n, places * count, k)
+            found = np.asarray(np.matmul(rows, np.ascontiguousarray(members)))
+            return found.reshape(n, places, count, t)
         found = np.empty((n, self.count, x.shape[1], t))
         for i in range(n):
             given = [[*members[i]], [*numbers[i]], [x[i][:, None]]]

@@ -13,12 +13,10 @@ from lagrange_casadi.case import load_case
 from lagrange_casadi.exports import export
 
 HERE = Path(__file__).parent
-COMPILER, NM, SIZE, EMULATOR = (
-    "arm-none-eabi-gcc",
-    "arm-none-eabi-nm",
-    "arm-none-eabi-size",
-    "qemu-system-arm",
-)
+COMPILER = "arm-none-eabi-gcc"
+NM = "arm-none-eabi-nm"
+SIZE = "arm-none-eabi-size"
+EMULATOR = "qemu-system-arm"
 CORE = ("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16")
 FLAGS = (*CORE, "-ffp-contract=off", "-fno-math-errno")
 # One instruction a nanosecond of the board's time, so that its SysTick, of 25 MHz, counts 40 of
