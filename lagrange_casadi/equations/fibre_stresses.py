@@ -152,9 +152,9 @@ class FibrePart(Graphs):
             if chosen is not None:
                 rows = np.take_along_axis(rows, chosen[:, None, :, None], axis=2)
             count = rows.shape[2]
-            rows = rows.reshape(n, places * count, k)
-            found = np.asarray(np.matmul(rows, np.ascontiguousarray(members)))
-            return found.reshape(n, places, count, t)
+            flat = rows.reshape(n, places * count, k)
+            stresses = np.asarray(np.matmul(flat, np.ascontiguousarray(members)))
+            return stresses.reshape(n, places, count, t)
         found = np.empty((n, self.count, x.shape[1], t))
         for i in range(n):
             given = [[*members[i]], [*numbers[i]], [x[i][:, None]]]
