@@ -33,7 +33,7 @@ from .iteration import NewtonLoop
 from .least_energy import Completion
 from .model_data import ModelData
 from .section_function import SectionInputs, section
-from .status import beside_of, bounds_of, rules_of, status_of
+from .status import Bound, Rule, beside_of, bounds_of, rules_of, status_of
 
 Turns: TypeAlias = tuple[tuple[int, int], ...]
 """Numbers of parts of an angle, and the sign of each."""
@@ -99,10 +99,29 @@ class Program(Graphs):
             for angle, signs in self.loop_angles.items()
         )
 
-    bounds = cached_property(bounds_of)
-    rules = cached_property(rules_of)
-    status = symbolic_property(status_of)
-    beside = symbolic_property(beside_of)
+    @cached_property
+    def bounds(self) -> tuple[Bound, ...]:
+        """Limits of columns."""
+        return bounds_of(self)
+
+    @cached_property
+    def rules(self) -> tuple[Rule, ...]:
+        """The rules of an instant, in the order in which they are reported."""
+        return rules_of(self)
+
+    @symbolic_property
+    def status(self) -> ca.Function:
+        """The function ``status(checks, limits, beside, iterated)``: the number of the first of
+        :attr:`rules` that is broken.
+        """
+        return status_of(self)
+
+    @symbolic_property
+    def beside(self) -> ca.Function:
+        """The function ``beside(before, checks, next, after, most)``: what :attr:`status` sees of
+        other instants.
+        """
+        return beside_of(self)
 
     def seen(self, constraint: str, out: Array) -> Array:
         """Symbols, (..., symbols, t), of a constraint that may have kinks, from columns ``out``
