@@ -93,11 +93,14 @@ class DriveEnergy:
 
     def _nodes(self, p: Array) -> _Nodes | None:
         """Samples of a design; None without a result."""
-        if (key := p.tobytes()) not in self.kept:
+        key = p.tobytes()
+        try:
+            return self.kept[key]
+        except KeyError:  # of another design, perhaps of another thread
             nodes = self._nodes_of(p)
-            self.kept.clear()
-            self.kept[key] = nodes
-        return self.kept[key]
+        self.kept.clear()
+        self.kept[key] = nodes
+        return nodes
 
     def _nodes_of(self, p: Array) -> _Nodes | None:
         engine, instants = self.engine, self._instants(p)
