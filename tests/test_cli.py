@@ -411,6 +411,22 @@ def test_without_a_compiler_one_line_says_so(here, capfd, monkeypatch):
     assert os.listdir(here) == ["slider_crank.h5"]
 
 
+WITHIN_TEXT = """
+import os, signal
+def scene():
+    exec("os.kill(os.getpid(), signal.SIGINT)")
+"""
+
+
+def test_ctrl_c_while_python_executes_text_ends_with_its_status(here):
+    """Python would end the program by the signal itself, as it does while a dataclass is made."""
+    Path("text.py").write_text(WITHIN_TEXT)
+    command = [sys.executable, *words("-m lagrange_casadi run text.py")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr == "error: interrupted; no file was left incomplete\n"
+
+
 SLOW = """
 import time
 from lagrange_casadi import load_case
@@ -440,7 +456,7 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
         out, err = process.communicate(timeout=60)
     finally:
         process.kill()
-    assert process.returncode == 130
+    assert process.returncode == 130, err
     assert re.fullmatch(
         r"(note: 10 000 000 instants take about .*\n)?error: interrupted; no file was left"
         r" incomplete\n",

@@ -54,6 +54,18 @@ def _end(_number: int, _frame: FrameType | None) -> None:
     os._exit(STATUS)
 
 
-if is_program():
+def keep_status() -> None:
+    """Let the program that was interrupted end with the status it gives.
+
+    If an interrupt came while Python executed text, as when a dataclass is made, Python ends the
+    program by SIGINT, whatever became of the exception. If SIGINT is blocked, Python cannot.
+    """
+    if _PROGRAM and hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+
+
+_PROGRAM = is_program()
+
+if _PROGRAM:
     for _signal in interrupts():
         signal.signal(_signal, _end)

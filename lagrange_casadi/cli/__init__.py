@@ -17,7 +17,7 @@ from typing import Any
 
 import click
 
-from ..base.interrupts import SENTENCE, STATUS, interrupts
+from ..base.interrupts import SENTENCE, STATUS, interrupts, keep_status
 from ..base.standard_streams import lead_nowhere
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
 from ..methods import missing
@@ -64,7 +64,7 @@ class _Commands(click.Group):
         write_commands(GROUPS, formatter)
 
     def invoke(self, ctx: click.Context) -> int | None:
-        with _read(), _insistent():
+        with _read(), _Insistent():
             status: int | None = super().invoke(ctx)
             return status
 
@@ -128,6 +128,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except click.ClickException as error:
             return _fail(error.format_message(), error.exit_code)
         except _Interrupted:
+            keep_status()
             return _fail(SENTENCE, STATUS)
         except _Unread:
             lead_nowhere()
@@ -159,8 +160,7 @@ def _read() -> Iterator[None]:
         raise _Unread from None
 
 
-@contextmanager
-def _insistent() -> Iterator[None]:
+class _Insistent:
     """Make an interrupt arrive: as :class:`_Interrupted`, whatever a library in between makes of
     it.
 
@@ -168,44 +168,46 @@ def _insistent() -> Iterator[None]:
     moment is lost, or comes back as another error. So it waits a little for CasADi to come back, is
     repeated every second until it arrives, and what fails after it is taken for it.
     """
-    noticed = threading.Event()
-    waits, process = itertools.count(1), os.getpid()
 
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        if os.getpid() != process:  # a case may have others work for it: they end as they would
+    def __enter__(self) -> None:
+        self._noticed = threading.Event()
+        self._waits, self._process = itertools.count(1), os.getpid()
+        self._able = threading.current_thread() is threading.main_thread() and hasattr(
+            signal, "setitimer"
+        )
+        # What Python ignores, as in a callback of a weak reference, arrives a second later, and is
+        # no one's concern.
+        self._ignored = sys.unraisablehook
+        sys.unraisablehook = _unless_interrupted(self._ignored)
+        caught = (*interrupts(), signal.SIGALRM) if self._able else ()
+        self._before = [(number, signal.signal(number, self._interrupt)) for number in caught]
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        sys.unraisablehook = self._ignored
+        if self._able:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        for number, handler in self._before:
+            signal.signal(number, handler)
+        if kind is not None and (
+            issubclass(kind, KeyboardInterrupt)
+            or (issubclass(kind, Exception) and self._noticed.is_set())
+        ):
+            raise _Interrupted from None
+
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
+        if os.getpid() != self._process:  # a case may have others work for it: they end as they do
             signal.signal(number, signal.SIG_DFL)
             os.kill(os.getpid(), number)
             return
-        noticed.set()
-        if _in_casadi(frame) and next(waits) % _WAITS:
+        self._noticed.set()
+        callers = list(_callers(frame))
+        if any(caller.f_code is _Insistent.__exit__.__code__ for caller in callers):
+            return  # it has arrived
+        if any(_of_casadi(caller) for caller in callers) and next(self._waits) % _WAITS:
             signal.setitimer(signal.ITIMER_REAL, _MOMENT)
             return
         signal.setitimer(signal.ITIMER_REAL, 1.0)
         raise KeyboardInterrupt
-
-    able = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
-    # What Python ignores, as in a callback of a weak reference, arrives a second later, and is no
-    # one's concern.
-    ignored, sys.unraisablehook = sys.unraisablehook, _unless_interrupted(sys.unraisablehook)
-    before = (
-        [(number, signal.signal(number, interrupt)) for number in (*interrupts(), signal.SIGALRM)]
-        if able
-        else []
-    )
-    try:
-        yield
-    except KeyboardInterrupt:
-        raise _Interrupted from None
-    except Exception:
-        if noticed.is_set():
-            raise _Interrupted from None
-        raise
-    finally:
-        sys.unraisablehook = ignored
-        if able:
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
-        for number, handler in before:
-            signal.signal(number, handler)
 
 
 def _unless_interrupted(
@@ -217,13 +219,15 @@ def _unless_interrupted(
     )
 
 
-def _in_casadi(frame: FrameType | None) -> bool:
-    """Return whether CasADi called this frame, or is called by it."""
+def _callers(frame: FrameType | None) -> Iterator[FrameType]:
+    """Give this frame and those that called it."""
     while frame is not None:
-        if frame.f_globals.get("__name__", "").partition(".")[0] == "casadi":
-            return True
+        yield frame
         frame = frame.f_back
-    return False
+
+
+def _of_casadi(frame: FrameType) -> bool:
+    return bool(frame.f_globals.get("__name__", "").partition(".")[0] == "casadi")
 
 
 def _fail(message: str, status: int) -> int:
