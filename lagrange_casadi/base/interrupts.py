@@ -55,17 +55,15 @@ def _end(_number: int, _frame: FrameType | None) -> None:
 
 
 def keep_status() -> None:
-    """Let the program that was interrupted end with the status it gives.
+    """Let a program that was interrupted end with the status it gives.
 
     If an interrupt came while Python executed text, as when a dataclass is made, Python ends the
-    program by SIGINT, whatever became of the exception. If SIGINT is blocked, Python cannot.
+    program by SIGINT, whatever became of the exception. It forgets that when it executes another
+    text.
     """
-    if _PROGRAM and hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    exec("")
 
 
-_PROGRAM = is_program()
-
-if _PROGRAM:
+if is_program():
     for _signal in interrupts():
         signal.signal(_signal, _end)
