@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+
+import numpy as np
 
 from ..arguments import public
 from ..base.csv_rows import csv_text
@@ -15,30 +15,27 @@ from ..base.publish import filling
 from ..base.vocabulary import LOAD_FORMATS
 from ..errors import UnknownNameError
 from .beam_model import beam_model
-from .loads import LoadCase, node_sets
+from .loads import Load, LoadCase, node_sets
 from .solver_text import calculix, nastran
 
-_SOLVERS = {
-    "inp": (calculix, "inp"),
-    "nas": (nastran, "nas"),
-    "beam": (beam_model, "beam.inp"),
+_FIELDS = {
+    "t": ("s", "t"),
+    "at": ("m", "x, y, z"),
+    "force": ("N", "fx, fy, fz"),
+    "moment": ("N m", "mx, my, mz"),
+    "acceleration": ("m/s^2", "ax, ay, az"),
+    "omega": ("rad/s", "omega_x, omega_y, omega_z"),
+    "alpha": ("rad/s^2", "alpha_x, alpha_y, alpha_z"),
+    "gravity": ("m/s^2", "gx, gy, gz"),
+    "mass": ("kg", "mass"),
+    "centre": ("m", "centre_x, centre_y, centre_z"),
+    "inertia": ("kg m^2", ""),
+    "residual": ("1", "residual of forces, residual of moments"),
 }
-"""Writers of a file for one load case, and endings of its name, by format."""
+"""Units of the fields of loads and load cases, and heads of their columns."""
 
-_UNITS = {
-    "t": "s",
-    "at": "m",
-    "force": "N",
-    "moment": "N m",
-    "acceleration": "m/s^2",
-    "omega": "rad/s",
-    "alpha": "rad/s^2",
-    "gravity": "m/s^2",
-    "mass": "kg",
-    "centre": "m",
-    "inertia": "kg m^2",
-    "residual": "1",
-}
+_LOAD = ("at", "force", "moment")
+_INERTIA = ("acceleration", "omega", "alpha", "gravity", "centre", "mass", "residual")
 
 
 @public
@@ -81,70 +78,66 @@ def write_load_cases(
     """
     if unknown := [name for name in formats if name not in LOAD_FORMATS]:
         raise UnknownNameError("format", unknown, LOAD_FORMATS)
-    links, chosen = dict.fromkeys(case.link for case in cases), dict(nodes or {})
-    loaded = dict.fromkeys(
-        name
-        for case in cases
-        for name in (*(node.name for _, node in node_sets(case, {})), case.link)
-    )
+    chosen, by_link, loaded = dict(nodes or {}), dict[str, list[LoadCase]](), dict[str, None]()
+    for case in cases:
+        by_link.setdefault(case.link, []).append(case)
+        loaded |= dict.fromkeys([*(node.name for node in node_sets(case, {}).values()), case.link])
     if unknown := [name for name in chosen if name not in loaded]:
         raise UnknownNameError("load", unknown, loaded)
     files: dict[str, str] = {}
-    for link in links:
-        own = [case for case in cases if case.link == link]
-        for name in dict.fromkeys(formats):
-            files |= _files(name, own, chosen)
+    for link, own in by_link.items():
+        for name in formats:
+            if name in _OF_LINK:
+                files |= {f"{link}.{end}": text(own) for end, text in _OF_LINK[name].items()}
+            else:
+                end, lines = _OF_CASE[name]
+                for number, case in enumerate(own, 1):
+                    text = "\n".join(lines(case, number, chosen))
+                    files[f"{link}_{number}.{end}"] = f"{text}\n"
     with filling(Path(folder)) as draft:
         for file, text in files.items():
             (draft / file).write_text(text, encoding="utf-8", newline="\n")
     return tuple(files)
 
 
-def _files(name: str, cases: Sequence[LoadCase], nodes: Mapping[str, str]) -> dict[str, str]:
-    """Return the texts of the files of a link in a format, by their names."""
-    link = cases[0].link
-    if name == "json":
-        return {f"{link}.json": _json(link, cases)}
-    if name == "csv":
-        return {f"{link}.csv": _csv_of_loads(cases), f"{link}.inertia.csv": _csv_of_inertia(cases)}
-    lines, ending = _SOLVERS[name]
-    return {
-        f"{link}_{number}.{ending}": "\n".join(lines(case, number, nodes)) + "\n"
-        for number, case in enumerate(cases, 1)
-    }
-
-
-def _json(link: str, cases: Sequence[LoadCase]) -> str:
-    every = [asdict(replace(case, rod=None)) for case in cases]
-    for numbers in every:
-        del numbers["rod"]
-    content = {"link": link, "axes": "of the link, from its origin", "units": _UNITS}
-    return json.dumps({**content, "cases": every}, indent=1) + "\n"
+def _json(cases: Sequence[LoadCase]) -> str:
+    units = {field: unit for field, (unit, _) in _FIELDS.items()}
+    content = {"link": cases[0].link, "axes": "of the link, from its origin", "units": units}
+    every = [{name: x for name, x in vars(case).items() if name != "rod"} for case in cases]
+    return json.dumps({**content, "cases": every}, indent=1, default=vars) + "\n"
 
 
 def _csv_of_loads(cases: Sequence[LoadCase]) -> str:
-    heads = ["case", "t [s]", "name", *_columns(at="{}", force="f{}", moment="m{}")]
-    rows = (
-        [number, case.t, load.name, *load.at, *load.force, *load.moment]
-        for number, case in enumerate(cases, 1)
-        for load in case.loads
-    )
-    return csv_text([heads, *rows])
+    each = enumerate(cases, 1)
+    return _csv("name", _LOAD, ((k, one, load.name, load) for k, one in each for load in one.loads))
 
 
 def _csv_of_inertia(cases: Sequence[LoadCase]) -> str:
-    heads = _columns(
-        acceleration="a{}", omega="omega_{}", alpha="alpha_{}", gravity="g{}", centre="centre_{}"
+    each = enumerate(cases, 1)
+    return _csv("governs", _INERTIA, ((k, one, " ".join(one.governs), one) for k, one in each))
+
+
+def _csv(
+    head: str,
+    fields: Sequence[str],
+    parts: Iterable[tuple[int, LoadCase, str, Load | LoadCase]],
+) -> str:
+    """Return a table of fields, a row for each part of a load case that has a number and a name."""
+    units = (_FIELDS[field] for field in fields)
+    columns = [f"{name} [{unit}]" for unit, names in units for name in names.split(", ")]
+    rows = (
+        [number, case.t, name, *np.hstack([getattr(part, field) for field in fields]).tolist()]
+        for number, case, name, part in parts
     )
-    last = ["mass [kg]", "residual of forces [1]", "residual of moments [1]"]
-    rows: list[list[object]] = [["case", "t [s]", "governs", *heads, *last]]
-    for number, case in enumerate(cases, 1):
-        vectors = (case.acceleration, case.omega, case.alpha, case.gravity, case.centre)
-        numbers = itertools.chain(*vectors, [case.mass], case.residual)
-        rows.append([number, case.t, " ".join(case.governs), *numbers])
-    return csv_text(rows)
+    return csv_text([["case", "t [s]", head, *columns], *rows])
 
 
-def _columns(**names: str) -> list[str]:
-    """Return heads of the columns of vectors."""
-    return [f"{name.format(x)} [{_UNITS[field]}]" for field, name in names.items() for x in "xyz"]
+_OF_LINK = {"json": {"json": _json}, "csv": {"csv": _csv_of_loads, "inertia.csv": _csv_of_inertia}}
+"""Texts of all load cases of a link, by format and by ending of the file's name."""
+
+_OF_CASE = {
+    "inp": ("inp", calculix),
+    "nas": ("nas", nastran),
+    "beam": ("beam.inp", beam_model),
+}
+"""Endings of files of one load case, and their lines, by format."""

@@ -125,10 +125,8 @@ def write_spectrum(
     if not np.isfinite(history).all():
         raise DeclarationError(f"spectrum of '{name}': it is indeterminate at some instants")
     number = count("spectrum: classes", classes, 0)
-    cycles = np.array(
-        [(one.size, one.mean, one.times) for one in counted(history, repeating=repeating)]
-    ).reshape(-1, 3)
-    size, mean, times = cycles[cycles[:, 0] > 0.0].T
+    cycles = [one[:3] for one in counted(history, repeating=repeating) if one.size > 0.0]
+    size, mean, times = np.array(cycles).reshape(-1, 3).T
     if number:
         lowest, widest = float(history.min()), float(np.ptp(history))
         ranges, means = (np.linspace(x, x + widest, number + 1) for x in (0.0, lowest))
