@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import astuple
 from pathlib import Path
 
 import click
 
 from ..base.publish import check_writable
+from ..base.table_file import TableFile
 from ..base.vocabulary import LOAD_FORMATS
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.scene import kinds
 from ..declare.times import Over
 from ..errors import CertificateError
-from ..load_cases import (
-    bearing_loads,
-    link_load_cases,
-    write_bearing_loads,
-    write_load_cases,
-    write_spectrum,
-)
+from ..load_cases import link_load_cases, write_load_cases, write_spectrum
+from ..strength.bearings import bearing_loads
 from ..studies.evaluate import evaluate
 from ..verification.certificate import failure, summary
 from .echo import echo
@@ -72,7 +69,9 @@ def loads_command(
         write_spectrum(solution, name, file, classes=classes)
         echo(f"wrote {file}")
     if bearings:
-        file = out / "bearings.csv"
-        write_bearing_loads([bearing_loads(solution, one, exponent) for one in bearings], file)
+        file, each = out / "bearings.csv", ("radial [N]", "axial [N]", "speed [1/min]")
+        heads = ["joint", *each, *(f"largest {name}" for name in each)]
+        rows = [astuple(bearing_loads(solution, one, exponent)) for one in bearings]
+        TableFile(file).write(heads, rows)
         echo(f"wrote {file}")
     echo(summary(solution.certificate))
