@@ -18,9 +18,8 @@ from ..base.arrays import Array
 from ..beams.beam import Beam, beam_from_numbers
 from ..beams.shape import Shape, between
 from ..declare.description import Description, density_of, slice_densities
-from ..errors import DeclarationError
 from ..verification.vectors import Axes, Vector
-from .loads import LoadCase, listed, node_sets, on_own_axes, title, turning, unlike
+from .loads import LoadCase, listed, nodes_of, on_own_axes, refused, title, turning, unlike
 
 _ELEMENTS = 16
 """Elements of a link, where no load point and no step of the section asks for more."""
@@ -36,48 +35,46 @@ _COUPLES = np.array([(1 - _POINTS) / 2, 0 * _POINTS, (1 + _POINTS) / 2])
 """Linear ones, for couples: CalculiX takes none at nodes in the middle."""
 
 
+def modelled(case: LoadCase) -> tuple[Description, Beam, float, float]:
+    """Return what a model is made of: the link and its beam, modulus of elasticity [Pa] and
+    Poisson's ratio. Raises :class:`.DeclarationError` where something is missing.
+    """
+    if case.rod is None:
+        raise refused(case.link, "format 'beam' needs a link with a beam")
+    beam = beam_from_numbers(case.rod["beam"])
+    material = beam.material
+    young, shear = material.needs("a model for finite elements", "elasticity", "shear_modulus")
+    poisson = young / (2.0 * shear) - 1.0
+    if not -1.0 < poisson < 0.5:
+        why = f"material '{material.name}' has Poisson's ratio {poisson:.4g} by its moduli"
+        raise refused(case.link, f"{why}, but solids have -1 to 0.5")
+    return case.rod, beam, young, poisson
+
+
 def beam_model(case: LoadCase, _number: int, nodes: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of an input file; ``nodes`` are names of node sets, by those of the loads."""
-    if case.rod is None:
-        raise DeclarationError(
-            f"load cases of link '{case.link}': format 'beam' needs a link with a beam"
-        )
-    beam = beam_from_numbers(case.rod["beam"])
-    elastic = beam.material.needs("a model for finite elements", "elasticity", "shear_modulus")
-    poisson = elastic[0] / (2.0 * elastic[1]) - 1.0
-    if not -1.0 < poisson < 0.5:
-        raise DeclarationError(
-            f"load case of link '{case.link}': material '{beam.material.name}' has Poisson's"
-            f" ratio {poisson:.4g} by its moduli, but solids have -1 to 0.5"
-        )
-    bearing = node_sets(case, nodes)
-    x = _mesh(case.rod, beam, (node.at[0] for node in bearing.values()))
-    loads, sets = _inertia(case, case.rod, x), dict[str, int]()
-    for name, node in bearing.items():
-        k = sets[name] = int(np.argmin(np.abs(x - node.at[0])))
-        moment = np.array(node.moment) + np.cross(
-            np.subtract(node.at, [x[k], 0.0, 0.0]), node.force
-        )
-        loads[k] += [*node.force, *moment]
+    (rod, beam, young, poisson), bearing = modelled(case), nodes_of(case, nodes)
+    x = _mesh(rod, beam, [node.at[0] for node in bearing])
+    loads, sets = _inertia(case, rod, x), dict[str, int]()
+    for node in bearing:
+        k = sets[node.set] = int(np.argmin(np.abs(x - node.at[0])))
+        loads[k] += node.wrench
+        loads[k, 3:] += np.cross(np.subtract(node.at, [x[k], 0.0, 0.0]), node.wrench[:3])
     every, base, tip, within = (unlike(name, sets) for name in ("NODES", "BASE", "TIP", "WITHIN"))
     # CalculiX holds no node against twisting that bears a moment: one within an element bears none.
     sets |= {base: 0, tip: x.size - 1, within: x.size // 4 * 2 + 1}
-    yield "*HEADING"
-    yield title(case)
+    yield from ("*HEADING", title(case))
     yield "** SI units, on the axes of the link: x leads from its base to its tip."
     yield f"*NODE, NSET={every}"
     yield from (f"{k}, {listed([at, 0.0, 0.0])}" for k, at in enumerate(x, 1))
-    yield from _elements(case.link, beam, x / case.rod["length"])
-    for name, k in sets.items():
-        if not name.isdigit():
-            yield from (f"*NSET, NSET={name}", f"{k + 1}")
-    yield from ("*MATERIAL, NAME=MATERIAL", f"** {beam.material.name}")
-    yield from ("*ELASTIC", listed([elastic[0], poisson]))
-    yield from ("*DENSITY", listed([beam.material.density]))
+    yield from _elements(case.link, beam, x / rod["length"])
+    named = [(name, k + 1) for name, k in sets.items() if not name.isdecimal()]
+    yield from (f"*NSET, NSET={name}\n{number}" for name, number in named)
+    yield from ("*MATERIAL, NAME=MATERIAL", f"** {beam.material.name}", "*ELASTIC")
+    yield from (listed([young, poisson]), "*DENSITY", listed([beam.material.density]))
     yield "** The supports carry no load: the loads are in equilibrium."
     yield from ("*BOUNDARY", f"{base}, 1, 3", f"{tip}, 2, 3", f"{within}, 4", "*STEP", "*STATIC")
-    yield "** Loads of joints, with inertia and weight as forces of nodes"
-    yield "*CLOAD"
+    yield from ("** Loads of joints, with inertia and weight as forces of nodes", "*CLOAD")
     for number, row in enumerate(loads.tolist(), 1):
         yield from (f"{number}, {k}, {value:.12g}" for k, value in enumerate(row, 1) if value)
     yield from ("*NODE FILE", "U", "*EL FILE", "S", "*END STEP")
@@ -111,10 +108,9 @@ def _inertia(case: LoadCase, rod: Description, x: Array) -> Array:
     loads = np.zeros((x.size, 6))
     for shapes, first, vector in ((_FORCES, 0, force), (_COUPLES, 3, -turning(moved, slices))):
         for column, component in enumerate(vector.components, first):
+            along = np.broadcast_to(component, at.shape)
             for node, shape in enumerate(shapes):
-                loads[node : x.size - 2 + node : 2, column] += (
-                    np.broadcast_to(component, at.shape) @ shape
-                )
+                loads[node : x.size - 2 + node : 2, column] += along @ shape
     return loads
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +24,7 @@ from ..verification.balance import Action, all_actions, forces_needed
 from ..verification.certificate import placed_of, reported_of
 from ..verification.placing import Moving, Placed
 from ..verification.vectors import NIL, Axes, Scalar, Vector, most, total
-from .loads import Load, LoadCase, on_own_axes, turning
+from .loads import Load, LoadCase, on_own_axes, refused, turning
 
 _SLIGHT = 1e-9
 """Share of the largest load below which a peak is rounding, and governs nothing."""
@@ -33,7 +32,7 @@ _SLIGHT = 1e-9
 _NEAR = 1e-9
 """Distance of a time from an instant, as a share of the last instant, that counts as none."""
 
-_Instants: TypeAlias = npt.NDArray[np.bool_]
+_Instants = npt.NDArray[np.bool_]
 """Some instants, as a mask of all."""
 
 
@@ -84,19 +83,19 @@ def link_load_cases(
     if missing := [f"{one.group}:{one.part}" for one in needed if one not in solution.outputs]:
         raise DeclarationError(
             f"load cases of link '{link}' need {', '.join(missing)}, which the solution does not"
-            " have; evaluate with wanted='all'"
+            " have; evaluate with wanted=['all']"
         )
     if (placed := placed_of(declared, reported_of(solution, {}))) is None:
-        why = "the motion is missing; evaluate with wanted=['motion', ...], or 'all'"
-        raise _refused(link, why)
+        why = "the motion is missing; evaluate with wanted=['motion', ...], or ['all']"
+        raise refused(link, why)
     numbers = None if t is None else _numbers(solution, link, t)
     loads, body = _loads_on(placed, link), declared.bodies[link]
     known = _known(solution, link, loads, numbers)
-    ground, gravity = placed.bodies[link], Vector(*declared.gravity)
-    vectors = ground.change, ground.rate, ground.acceleration, gravity
-    *moved, gravity = map(ground.axes.resolve, vectors)
+    placing = placed.bodies[link]
+    vectors = placing.change, placing.rate, placing.acceleration, Vector(*declared.gravity)
+    *moved, gravity = map(placing.axes.resolve, vectors)
     motion = on_own_axes(*moved)
-    residual, largest = _residual(body, motion, gravity, loads.values(), known)
+    residual, largest = _residual(body, motion, gravity, loads, known)
     if numbers is None:
         scales = {"N": largest, "N m": largest * declared.size, "Pa": 0.0}
         governing = _governing(_peaks(solution, link, loads), known, scales)
@@ -109,8 +108,8 @@ def link_load_cases(
             t=float(solution.t[i]),
             governs=tuple(governs),
             loads=tuple(
-                Load(name, _at(one.at, i), _at(one.force, i), _at(one.couple, i))
-                for name, one in loads.items()
+                Load(one.name, _at(one.at, i), _at(one.force, i), _at(one.couple, i))
+                for one in loads
             ),
             acceleration=_at(motion.change, i),
             omega=_at(motion.rate, i),
@@ -132,10 +131,6 @@ def link_load_cases(
     return tuple(found)
 
 
-def _refused(link: str, why: str) -> DeclarationError:
-    return DeclarationError(f"load cases of link '{link}': {why}")
-
-
 def _declared(solution: Solution, link: str, scene: Scene | Case | None) -> Declared:
     """Return the mechanism in numbers, with its constraints where there are some."""
     declared = Declared.of(solution.description)
@@ -145,18 +140,18 @@ def _declared(solution: Solution, link: str, scene: Scene | Case | None) -> Decl
     if scene is None:
         names = ", ".join(declared.multipliers)
         why = f"a solution does not say along which directions {names} act; {expected}"
-        raise _refused(link, why)
+        raise refused(link, why)
     values = values_of(solution.description)
     if [*scene_of(scene).parameters] == [*values]:
         program = compile_scene(scene_of(scene), ["motion"], parameters=values)
         stated = program.data.declared(list(values.values()))
         if (stated.bodies, stated.joints) == (declared.bodies, declared.joints):
             return stated
-    raise _refused(link, f"{expected}; the one given has other parameters, bodies or joints")
+    raise refused(link, f"{expected}; the one given has other parameters, bodies or joints")
 
 
-def _loads_on(placed: Placed, link: str) -> dict[str, Action]:
-    """Return loads on a link by name, on its axes; of one name, those at one place are added up."""
+def _loads_on(placed: Placed, link: str) -> list[Action]:
+    """Return loads on a link, on its axes; of one name, those at one place are added up."""
     motion, found = placed.bodies[link], dict[str, Action]()
     resolve = motion.axes.resolve
     for one in all_actions(placed):
@@ -169,7 +164,7 @@ def _loads_on(placed: Placed, link: str) -> dict[str, Action]:
         if name in found:
             force, couple = found[name].force + force, found[name].couple + couple
         found[name] = Action(name, link, at, force, couple)
-    return found
+    return [*found.values()]
 
 
 def _numbers(solution: Solution, link: str, times: Sequence[float]) -> list[int]:
@@ -179,34 +174,32 @@ def _numbers(solution: Solution, link: str, times: Sequence[float]) -> list[int]
     for time, nearest in zip(times, instants[numbers], strict=True):
         if not abs(nearest - time) <= _NEAR * np.abs(instants).max():
             why = f"t = {time:.9g} s is no instant of the solution; the nearest is {nearest:.9g} s"
-            raise _refused(link, why)
+            raise refused(link, why)
     return numbers
 
 
 def _known(
-    solution: Solution, link: str, loads: Mapping[str, Action], numbers: Sequence[int] | None
+    solution: Solution, link: str, loads: Sequence[Action], numbers: Sequence[int] | None
 ) -> _Instants:
     """Return the instants at which all loads are known: those of the numbers, or some, must be."""
-    finite = {
-        name: np.isfinite(np.broadcast_to(total(*load.sizes), solution.t.shape))
-        for name, load in loads.items()
-    }
-    known: _Instants = np.all([*finite.values()], axis=0)
-    asked = np.arange(known.size) if numbers is None else np.array(numbers, dtype=int)
-    unknown = asked[~known[asked]]
-    if not unknown.size or (numbers is None and known.any()):
+    finite = np.isfinite([np.broadcast_to(total(*x.sizes), solution.t.shape) for x in loads])
+    known: _Instants = finite.all(axis=0)
+    if known.any() if numbers is None else known[numbers].all():
         return known
-    names = ", ".join(name for name, there in finite.items() if not there[unknown].all())
+    unknown = [i for i in (range(known.size) if numbers is None else numbers) if not known[i]]
+    names = ", ".join(
+        load.name for load, at in zip(loads, finite, strict=True) if not at[unknown].all()
+    )
     cure = "give the links beams and evaluate with elastic=True, or release a joint"
     why = f"equilibrium does not determine {names}; {cure}"
     if solution.resting[unknown].any():
         rest = f"a joint with friction is at rest at t = {solution.t[unknown[0]]:.6g} s"
         why = f"{rest}, which leaves {names} indeterminate"
-    raise _refused(link, why)
+    raise refused(link, why)
 
 
 def _residual(
-    body: BodyNumbers, motion: Moving, gravity: Vector, loads: Iterable[Action], known: _Instants
+    body: BodyNumbers, motion: Moving, gravity: Vector, loads: Sequence[Action], known: _Instants
 ) -> tuple[Vector, float]:
     """Return the residuals of forces and of moments about the centre, and the largest force."""
     centre, force, moment = Vector(*body.centre), NIL, NIL
@@ -216,9 +209,7 @@ def _residual(
         force = force + one.force
         moment = moment + one.couple + (one.at - centre).cross(one.force)
     sizes = zip(*((*one.sizes, (one.at - centre).size) for one in acting), strict=True)
-    push, twist, reach = (
-        float(np.max(np.broadcast_to(most(each), known.shape)[known])) for each in sizes
-    )
+    push, twist, reach = (float(np.broadcast_to(most(x), known.shape)[known].max()) for x in sizes)
     scale = max(twist, push * max(reach, body.length or 0.0)) or 1.0
     turns = 0.0 if body.length is None else moment.size / scale
     return Vector(force.size / (push or 1.0), turns, 0.0), push
@@ -240,7 +231,7 @@ def _governing(
 
 
 def _peaks(
-    solution: Solution, link: str, loads: Mapping[str, Action]
+    solution: Solution, link: str, loads: Sequence[Action]
 ) -> Iterator[tuple[str, Scalar, str]]:
     """Yield quantities whose peaks govern, over time, with their units."""
     if link in solution.links_with_sections:
@@ -251,10 +242,11 @@ def _peaks(
             stress = solution.stress(link)
             for kind in ("normal", "shear", "von_mises"):
                 yield f"stress:{link}:{kind}", stress.largest(kind).value, "Pa"
-    for name, load in loads.items():
-        if name.startswith("reaction:"):
-            yield f"{name}:resultant", load.sizes[0], "N"
-            yield f"{name}:moment", load.sizes[1], "N m"
+    members = (*solution.table.reactions, "mz")[:2]  # a plane has no resultant of moments
+    for load in loads:
+        if load.name.startswith("reaction:"):
+            for member, size, unit in zip(members, load.sizes, ("N", "N m"), strict=True):
+                yield f"{load.name}:{member}", size, unit
 
 
 def _at(vector: Vector, i: int) -> Triple:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,16 @@ from ..arguments import public
 from ..base.csv_rows import csv_text
 from ..base.publish import filling
 from ..base.vocabulary import LOAD_FORMATS
-from ..errors import UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, shown
 from .beam_model import beam_model
-from .loads import Load, LoadCase, node_sets
+from .loads import Load, LoadCase, nodes_of
 from .solver_text import calculix, nastran
+
+_NAME = re.compile(r"[^\s,*][^\r\n,]*")
+"""What input files take for a name: no comma, and no beginning of a keyword or a comment."""
+
+_SOLVERS = {"inp": ("inp", calculix), "nas": ("nas", nastran), "beam": ("beam.inp", beam_model)}
+"""Endings of files of one load case, and their lines, by format."""
 
 _FIELDS = {
     "t": ("s", "t"),
@@ -43,7 +50,7 @@ def write_load_cases(
     cases: Sequence[LoadCase],
     folder: str | os.PathLike[str],
     formats: Sequence[str] = ("json",),
-    nodes: Mapping[str, str] | None = None,
+    nodes: Mapping[str, str | int] | None = None,
 ) -> tuple[str, ...]:
     """Write load cases of one or several links.
 
@@ -78,66 +85,57 @@ def write_load_cases(
     """
     if unknown := [name for name in formats if name not in LOAD_FORMATS]:
         raise UnknownNameError("format", unknown, LOAD_FORMATS)
-    chosen, by_link, loaded = dict(nodes or {}), dict[str, list[LoadCase]](), dict[str, None]()
-    for case in cases:
-        by_link.setdefault(case.link, []).append(case)
-        loaded |= dict.fromkeys([*(node.name for node in node_sets(case, {}).values()), case.link])
+    links = dict.fromkeys(case.link for case in cases)
+    chosen = {name: str(node) for name, node in (nodes or {}).items()}
+    loads = (node.name for case in cases for node in nodes_of(case, {}))
+    loaded = dict.fromkeys([*loads, *links])
     if unknown := [name for name in chosen if name not in loaded]:
         raise UnknownNameError("load", unknown, loaded)
-    files: dict[str, str] = {}
-    for link, own in by_link.items():
-        for name in formats:
-            if name in _OF_LINK:
-                files |= {f"{link}.{end}": text(own) for end, text in _OF_LINK[name].items()}
-            else:
-                end, lines = _OF_CASE[name]
-                for number, case in enumerate(own, 1):
-                    text = "\n".join(lines(case, number, chosen))
-                    files[f"{link}_{number}.{end}"] = f"{text}\n"
+    if wrong := [node for node in chosen.values() if not _NAME.fullmatch(node)]:
+        raise DeclarationError(f"nodes: expected names or numbers of nodes, got {shown(wrong[0])}")
+    files = {
+        f"{link}{ending}": text
+        for link in links
+        for name in formats
+        for ending, text in _texts(name, [case for case in cases if case.link == link], chosen)
+    }
     with filling(Path(folder)) as draft:
         for file, text in files.items():
             (draft / file).write_text(text, encoding="utf-8", newline="\n")
     return tuple(files)
 
 
-def _json(cases: Sequence[LoadCase]) -> str:
-    units = {field: unit for field, (unit, _) in _FIELDS.items()}
-    content = {"link": cases[0].link, "axes": "of the link, from its origin", "units": units}
-    every = [{name: x for name, x in vars(case).items() if name != "rod"} for case in cases]
-    return json.dumps({**content, "cases": every}, indent=1, default=vars) + "\n"
-
-
-def _csv_of_loads(cases: Sequence[LoadCase]) -> str:
-    each = enumerate(cases, 1)
-    return _csv("name", _LOAD, ((k, one, load.name, load) for k, one in each for load in one.loads))
-
-
-def _csv_of_inertia(cases: Sequence[LoadCase]) -> str:
-    each = enumerate(cases, 1)
-    return _csv("governs", _INERTIA, ((k, one, " ".join(one.governs), one) for k, one in each))
+def _texts(
+    name: str, cases: Sequence[LoadCase], nodes: Mapping[str, str]
+) -> Iterator[tuple[str, str]]:
+    """Yield files of a link's load cases in a format: endings of their names, and texts."""
+    if name == "json":
+        units = {field: unit for field, (unit, _) in _FIELDS.items()}
+        content = {"link": cases[0].link, "axes": "of the link, from its origin", "units": units}
+        every = [{name: x for name, x in vars(case).items() if name != "rod"} for case in cases]
+        yield ".json", json.dumps({**content, "cases": every}, indent=1, default=vars) + "\n"
+    elif name == "csv":
+        yield ".csv", _csv(cases, "name", _LOAD, lambda case: [(x.name, x) for x in case.loads])
+        governs = _csv(cases, "governs", _INERTIA, lambda case: [(" ".join(case.governs), case)])
+        yield ".inertia.csv", governs
+    else:
+        ending, lines = _SOLVERS[name]
+        for number, case in enumerate(cases, 1):
+            yield f"_{number}.{ending}", "\n".join([*lines(case, number, nodes), ""])
 
 
 def _csv(
+    cases: Sequence[LoadCase],
     head: str,
     fields: Sequence[str],
-    parts: Iterable[tuple[int, LoadCase, str, Load | LoadCase]],
+    parts: Callable[[LoadCase], Iterable[tuple[str, Load | LoadCase]]],
 ) -> str:
-    """Return a table of fields, a row for each part of a load case that has a number and a name."""
+    """Return a table of fields, a row for each of the named parts of a load case."""
     units = (_FIELDS[field] for field in fields)
     columns = [f"{name} [{unit}]" for unit, names in units for name in names.split(", ")]
     rows = (
         [number, case.t, name, *np.hstack([getattr(part, field) for field in fields]).tolist()]
-        for number, case, name, part in parts
+        for number, case in enumerate(cases, 1)
+        for name, part in parts(case)
     )
     return csv_text([["case", "t [s]", head, *columns], *rows])
-
-
-_OF_LINK = {"json": {"json": _json}, "csv": {"csv": _csv_of_loads, "inertia.csv": _csv_of_inertia}}
-"""Texts of all load cases of a link, by format and by ending of the file's name."""
-
-_OF_CASE = {
-    "inp": ("inp", calculix),
-    "nas": ("nas", nastran),
-    "beam": ("beam.inp", beam_model),
-}
-"""Endings of files of one load case, and their lines, by format."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..base.arrays import Array
 from ..declare.description import Description
 from ..declare.stated import Triple
 from ..errors import DeclarationError
@@ -75,32 +76,41 @@ def title(case: LoadCase) -> str:
     return f"{case.link} at t = {case.t:.9g} s: {', '.join(case.governs) or 'as asked'}"
 
 
-def node_sets(case: LoadCase, chosen: Mapping[str, str]) -> dict[str, Load]:
-    """Return what each node bears, by the name of its set: two loads at one place are one node's.
-
-    The name is that which was ``chosen``, else that of the load, which is without its kind.
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A node at the place ``at``: the ``name`` of the first load there, that of its ``set`` in a
+    mesh, and the sum of force and moment of all loads there (6).
     """
-    nodes: dict[str, Load] = {}
+
+    name: str
+    set: str
+    at: Triple
+    wrench: Array
+
+
+def nodes_of(case: LoadCase, chosen: Mapping[str, str]) -> list[Node]:
+    """Return the nodes that take the loads; their sets have the names that were ``chosen``, else
+    those of the loads, which are without their kinds.
+    """
+    found: list[Node] = []
     for load in case.loads:
-        for name, node in nodes.items():
-            if math.dist(node.at, load.at) <= _SAME:
-                pairs = (node.force, load.force), (node.moment, load.moment)
-                force, moment = (tuple(np.add(*pair).tolist()) for pair in pairs)
-                nodes[name] = replace(node, force=force, moment=moment)
-                break
-        else:
-            name = unlike(load.name.partition(":")[2].replace(":", "_"), nodes)
-            nodes[name] = replace(load, name=name)
-    sets: dict[str, Load] = {}
-    for name, node in nodes.items():
-        given = chosen.get(name, name)
-        if unlike(given, sets) != given:
-            raise DeclarationError(
-                f"load cases of link '{case.link}': node '{given}' would take the loads of several"
-                f" places, that of '{name}' too; expected a node for each of {', '.join(nodes)}"
-            )
-        sets[given] = node
-    return sets
+        wrench = np.array([*load.force, *load.moment])
+        if same := [node for node in found if math.dist(node.at, load.at) <= _SAME]:
+            same[0].wrench[:] += wrench
+            continue
+        name = load.name.partition(":")[2].replace(":", "_")
+        name = unlike(name, [node.name for node in found])
+        found.append(Node(name, chosen.get(name, name), load.at, wrench))
+    sets = [node.set.upper() for node in found]
+    if one := [node for node in found if sets.count(node.set.upper()) > 1]:
+        why = f"{' and '.join(node.name for node in one)} are at several places, but each has the"
+        raise refused(case.link, f"{why} node '{one[0].set}'; expected a node for each")
+    return found
+
+
+def refused(link: str, why: str) -> DeclarationError:
+    """Return the error that says why a link has no load cases of a kind."""
+    return DeclarationError(f"load cases of link '{link}': {why}")
 
 
 def unlike(name: str, taken: Collection[str]) -> str:
