@@ -183,7 +183,7 @@ def _known(
 ) -> _Instants:
     """Return the instants at which all loads are known: those of the numbers, or some, must be."""
     finite = np.isfinite([np.broadcast_to(total(*x.sizes), solution.t.shape) for x in loads])
-    known: _Instants = finite.all(axis=0)
+    known = np.asarray(finite.all(axis=0))
     if known.any() if numbers is None else known[numbers].all():
         return known
     unknown = [i for i in (range(known.size) if numbers is None else numbers) if not known[i]]

@@ -20,7 +20,7 @@ from .loads import Load, LoadCase, nodes_of
 from .solver_text import calculix, nastran
 
 _NAME = re.compile(r"[^\s,*][^\r\n,]*")
-"""What input files take for a name: no comma, and no beginning of a keyword or a comment."""
+"""Names of nodes in input files: no comma, and no beginning of a keyword or a comment."""
 
 _SOLVERS = {"inp": ("inp", calculix), "nas": ("nas", nastran), "beam": ("beam.inp", beam_model)}
 """Endings of files of one load case, and their lines, by format."""
