@@ -251,5 +251,5 @@ def _peaks(
 
 def _at(vector: Vector, i: int) -> Triple:
     """Return a vector at an instant, without zeros of a negative sign."""
-    x, y, z = (float(one[i] if np.ndim(one) else one) + 0.0 for one in vector.components)
-    return x, y, z
+    x, y, z = (one[i] if isinstance(one, np.ndarray) else one for one in vector.components)
+    return float(x) + 0.0, float(y) + 0.0, float(z) + 0.0

@@ -79,7 +79,8 @@ def write_load_cases(
     UnknownNameError
         For another format, and for ``nodes`` of a part that loads no link.
     DeclarationError
-        For ``beam`` of a link without one, or whose material has no moduli.
+        For ``beam`` of a link without one, or whose material has no moduli; for one node at several
+        places, and for what cannot name one.
     PathError
         If the folder cannot be written.
     """

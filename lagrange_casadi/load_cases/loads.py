@@ -101,15 +101,16 @@ def nodes_of(case: LoadCase, chosen: Mapping[str, str]) -> list[Node]:
         name = load.name.partition(":")[2].replace(":", "_")
         name = unlike(name, [node.name for node in found])
         found.append(Node(name, chosen.get(name, name), load.at, wrench))
-    sets = [node.set.upper() for node in found]
-    if one := [node for node in found if sets.count(node.set.upper()) > 1]:
-        why = f"{' and '.join(node.name for node in one)} are at several places, but each has the"
-        raise refused(case.link, f"{why} node '{one[0].set}'; expected a node for each")
+    for own in found:
+        if len(same := [node for node in found if node.set.upper() == own.set.upper()]) > 1:
+            names = " and ".join(node.name for node in same)
+            why = f"{names} are at several places, but each has the node '{own.set}'"
+            raise refused(case.link, f"{why}; expected a node for each")
     return found
 
 
 def refused(link: str, why: str) -> DeclarationError:
-    """Return the error that says why a link has no load cases of a kind."""
+    """Return the error of what is asked of a link's load cases."""
     return DeclarationError(f"load cases of link '{link}': {why}")
 
 
