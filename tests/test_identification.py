@@ -1,6 +1,7 @@
 """Parameters from measurements are the true ones, as far as measurements tell them."""
 
 import runpy
+from pathlib import Path
 
 import casadi as ca
 import h5py
@@ -438,8 +439,26 @@ def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
     assert 5.0 < given.cutoff("A") < 100.0
     assert given.quantities(["A", "B"]) == ("effort:A",)
     path.write_text("\n".join([lines[0], "0,1,x,3"]))
-    with pytest.raises(DeclarationError, match=r"line 2: expected a number, got 'x'"):
+    with pytest.raises(DeclarationError, match=r"line 2: expected a finite number, got 'x' in col"):
         read_measurements(path, counts_per_turn=4096)
+
+
+def test_each_encoder_has_its_counts(tmp_path):
+    path, turn = tmp_path / "run.csv", np.arange(9) / 10
+    rows = [f"{k},{4096 * x:.0f},{1000 * x:.0f}" for k, x in enumerate(turn)]
+    path.write_text("\n".join(["t [s],A [counts],slow [counts]", *rows]))
+    given = read_measurements(path, names={"B": "slow"}, counts_per_turn={"A": 4096, "B": 1000})
+    for name, counts in (("A", 4096), ("B", 1000)):
+        np.testing.assert_allclose(given.columns[name], 2 * np.pi * turn, atol=np.pi / counts)
+        assert given.noise[name] == pytest.approx(2 * np.pi / counts / 12**0.5)
+    for wrong, words in (
+        ({"A": 4096}, r"run\.csv: column slow is in counts; expected counts_per_turn="),
+        ({"A": 4096, "B": 0}, "column slow is in counts; .* a number above 0, got 0"),
+        ({"A": 4096, "slow": 9}, "unknown column in counts, .* 'slow'; valid: A, B"),
+        (None, "column A is in counts; expected counts_per_turn="),
+    ):
+        with pytest.raises(DeclarationError, match=words):
+            read_measurements(path, names={"B": "slow"}, counts_per_turn=wrong)
 
 
 def test_a_file_of_a_logger_is_read_as_it_is(tmp_path):
@@ -468,7 +487,7 @@ def test_heads_and_units_of_a_file_may_stand_in_two_lines(tmp_path):
     assert given.columns["A"][3] == pytest.approx(np.radians(3.0))
     assert given.units == {"t": "ms", "A": "deg", "effort:A": "N m"}
     path.write_text("\n".join(rows))
-    with pytest.raises(DeclarationError, match=r"line 1: expected names of columns, .* got '0'"):
+    with pytest.raises(DeclarationError, match="expected names of columns in the first line"):
         read_measurements(path)
     path.write_text("\n".join(["time,A,effort:A", *rows]))
     with pytest.raises(UnknownNameError, match="unknown column of times 't'"):
@@ -598,6 +617,35 @@ def test_what_cannot_be_is_refused_by_name():
     far["d0"] = far["d0"] + np.linspace(0.0, 3.0, far["d0"].size)
     with pytest.raises(AssemblyError, match="cannot be closed at row"):
         identify(platform(), Measurements(np.linspace(0, 2, 201), far))
+
+
+def test_the_command_takes_counts_of_each_encoder(tmp_path, monkeypatch, capsys):
+    """The record of the arm, as encoders of two kinds count its angles."""
+    monkeypatch.chdir(tmp_path)
+    folder, turns = CASES / "parallelogram_arm", {"shoulder": 65536, "motor": 40000}
+    head, *rows = (folder / "run.csv").read_text().splitlines()
+    table = np.loadtxt(rows, delimiter=",")
+    for name, turn in turns.items():
+        place = head.split(",").index(f"{name} [deg]")
+        table[:, place] = np.round(table[:, place] / 360.0 * turn)
+    heads = head.replace("[deg]", "[counts]")
+    rows = [",".join(f"{x:.17g}" for x in row) for row in table]
+    Path("run.csv").write_text("\n".join([heads, *rows]))
+    each = [f"--counts-per-turn={name}={turn}" for name, turn in turns.items()]
+    assert main(["identify", "parallelogram_arm", "run.csv", "--trim", "0.1", *each]) == 0
+    given = read_measurements("run.csv", counts_per_turn=turns)
+    found = identify(load_case(folder), given, trim=0.1)
+    assert capsys.readouterr().out.endswith(
+        " ".join(f"--set {word}" for word in found.setting.split()) + "\n"
+    )
+    for wrong, words in (
+        (["4096", "motor=9"], "one NUMBER for all columns in counts, or NAME=NUMBER for each"),
+        (["motor=x"], "expected NUMBER or NAME=NUMBER, as in 4096 or O=4096, got 'motor=x'"),
+        (["=9"], "expected NUMBER or NAME=NUMBER, as in 4096 or O=4096, got '=9'"),
+    ):
+        options = [word for number in wrong for word in ("--counts-per-turn", number)]
+        assert main(["identify", "parallelogram_arm", "run.csv", *options]) == 2
+        assert words in capsys.readouterr().err
 
 
 def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, capsys):
