@@ -585,6 +585,16 @@ def test_an_excitation_keeps_within_limits_and_tells_more():
         assert 0.99 < max(shares) <= 1.0
 
 
+def test_an_excitation_is_a_drawn_one_if_none_that_is_improved_can_be_followed(monkeypatch):
+    place = "lagrange_casadi.identification.excitation._Search._improved"
+    monkeypatch.setattr(place, lambda _, starts, steps: [20.0 * one.series for one in starts])
+    middles = {f"d{i}": 2 * np.pi * i / 3 + 7 * np.pi / 6 - 0.8 for i in range(3)}
+    limits = {name: (middle - 0.2, middle + 0.2, 1.0, 5.0) for name, middle in middles.items()}
+    found = excite(platform(), limits, period=4.0, harmonics=2)
+    assert found.error == 1.0
+    assert found.condition == found.first
+
+
 def test_what_cannot_be_is_refused_by_name():
     scene = two_links()
     given = record(scene, ARM, "effort:A", "effort:B")

@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 
 from ..arguments import Count, Positive, public
+from ..arithmetic.ipopt import ipopt
 from ..base.arrays import Array, Expression
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Backend
@@ -24,7 +25,7 @@ from ..declare.motion import Motion, expression
 from ..declare.scene import Scene
 from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..instants.evaluation_method import EvaluationMethod
-from .base import Base, Ranking, base_of, triangle
+from .base import Base, base_of, triangle
 from .regressor import DrivenMotion, Regressor
 
 _SAMPLES, _HELD = 64, 32
@@ -39,8 +40,7 @@ _INSTANTS = 96
 _DRAWN, _STARTS = 64, 3
 """Motions that are drawn, and how many of the best are improved."""
 
-_QUIET = ("print_time", "error_on_fail", "show_eval_warnings")
-_IPOPT = {"print_level": 0, "sb": "yes", "tol": 1e-4, "hessian_approximation": "limited-memory"}
+_OPTIONS = {"tol": 1e-4, "hessian_approximation": "limited-memory"}
 
 
 @public
@@ -145,7 +145,7 @@ def excite(
         raise UnknownNameError("drive of limits=", lost, limits)
     bounds = np.array([_limits(drive, limits[drive]) for drive in drives])
     p = np.array(list(values.values()))
-    search = _Search(regressor, names, bounds, p, float(period), harmonics)
+    search = _Search(regressor, bounds, p, float(period), harmonics)
     return search.run(steps)
 
 
@@ -179,7 +179,6 @@ class _Search:
     """A search among series within the limits (drives, 4)."""
 
     regressor: Regressor
-    names: tuple[str, ...]
     limits: Array
     p: Array
     period: float
@@ -199,7 +198,7 @@ class _Search:
                 " random motions within the limits; expected narrower limits"
             )
         improved = [self._judged(series) for series in self._improved(drawn[:_STARTS], steps)]
-        best = min(drawn[0], *filter(None, improved), key=lambda one: one.order)
+        best = min([drawn[0], *filter(None, improved)], key=lambda one: one.order)
         sines, cosines = np.split(best.series[1:], 2)
         return Excitation(
             self.period,
@@ -208,7 +207,7 @@ class _Search:
             dict(zip(drives, cosines.T, strict=True)),
             best.base.condition,
             drawn[0].base.condition,
-            best.base.words(self.names),
+            best.base.words(self.regressor.unknown),
             best.error / drawn[0].error,
         )
 
@@ -262,14 +261,11 @@ class _Search:
             slopes = self.regressor.at(*self._followed(series), self.p)[1]
         except AssemblyError:
             return None
-        slopes = slopes.reshape(-1, len(self.names))
+        slopes = slopes.reshape(-1, len(self.regressor.unknown))
         slopes = slopes[np.isfinite(slopes).all(axis=1)]
-        if len(slopes) < len(self.names):
+        if len(slopes) < len(self.regressor.unknown):
             return None
-        parameters = self.regressor.program.data.parameters
-        numbers = [list(parameters).index(name) for name in self.names]
-        units = [parameters[name].unit for name in self.names]
-        base = base_of(slopes, Ranking.of(self.p[numbers], units))
+        base = base_of(slopes, self.regressor.ranking(self.p))
         sizes = np.abs(np.diag(triangle(slopes[:, list(base.chosen)])))
         return _Judged(series, base, float(np.exp(-np.log(sizes).mean())))
 
@@ -286,7 +282,7 @@ class _Search:
         motion = [ca.mtimes(ca.DM(rows), x * size).T for rows in self._rows(t.size)]
         given, p = ca.DM(t).T, ca.repmat(ca.DM(self.p), 1, t.size)
         found = self.regressor.batch.function.map(t.size)(given, *motion, z, p)
-        slopes = ca.reshape(found, 1 + len(self.names), -1)
+        slopes = ca.reshape(found, 1 + len(self.regressor.unknown), -1)
         slopes = slopes[[1 + k for k in starts[0].base.chosen], :]
         square = ca.SX.sym("square", slopes.size1(), slopes.size1())
         roots = ca.log(ca.diag(ca.chol(square)))
@@ -302,10 +298,8 @@ class _Search:
             below.append(np.zeros(z.numel()))
             above.append(np.zeros(z.numel()))
         program = {"x": ca.veccat(x, z), "f": error(ca.mtimes(slopes, slopes.T))}
-        options: dict[str, object] = dict.fromkeys(_QUIET, False)
-        options |= {"ipopt": {**_IPOPT, "max_iter": steps}}
         program["g"] = ca.veccat(*limited)
-        solver = ca.nlpsol("excitation", "ipopt", program, options)
+        solver = ipopt("excite", program, **_OPTIONS, max_iter=steps)
         bounds = {"lbg": np.concatenate(below), "ubg": np.concatenate(above)}
         improved = []
         for start in starts:

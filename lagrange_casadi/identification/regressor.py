@@ -33,6 +33,7 @@ from ..instants.backends import begun
 from ..instants.evaluation_method import EvaluationMethod
 from ..sensitivity.jacobian import total
 from ..sensitivity.slopes import Batch
+from .base import Ranking
 
 _ALONG = re.compile(r"(section|strain):([^:@]+):([^:@]+)@([0-9.eE+-]+)")
 _FORCES = ("effort", "reaction", "multiplier", "load", "friction", "output")
@@ -131,6 +132,16 @@ class Regressor(Graphs):
         return cls(program, tuple(quantities), units, tuple(unknown), batch)
 
     @property
+    def numbers(self) -> list[int]:
+        """Places of the unknown parameters among all."""
+        return [list(self.program.data.parameters).index(name) for name in self.unknown]
+
+    def ranking(self, p: Array) -> Ranking:
+        """Rank the unknown parameters by their units, with sizes of values ``p`` of all."""
+        parameters = self.program.data.parameters
+        return Ranking.of(p[self.numbers], [parameters[name].unit for name in self.unknown])
+
+    @property
     def expected(self) -> dict[str, str]:
         """SI units of all that may be measured: the motion of the drives, and the quantities."""
         moving = [f"{drive}{end}" for drive in self.program.driven for end in MOTION]
@@ -197,22 +208,22 @@ def _wanted(scene: Scene, quantities: Sequence[str]) -> list[str]:
 
     Raises :class:`.UnknownNameError` for a quantity whose part there is not.
     """
-    wanted = []
+    wanted: dict[str, None] = {}
     for name in quantities:
         kind, _, part = name.partition(":")
-        kind = "section" if kind == "strain" else kind
-        wanted.append("effort" if kind == "effort" else f"{kind}:{part.partition(':')[0]}")
-    for name, want in zip(quantities, wanted, strict=True):
-        if want.partition(":")[0] not in (*_FORCES, "section") or want not in scene.outputs:
+        group = "section" if kind == "strain" else kind
+        want = group if group == "effort" else f"{group}:{part.partition(':')[0]}"
+        if group not in (*_FORCES, "section") or want not in scene.outputs:
             forces = [one for one in scene.outputs if one.partition(":")[0] in _FORCES[1:]]
             forces = [f"effort:{drive}" for drive in scene.laws] + forces
             raise UnknownNameError("measured quantity", name, forces)
-        if want.startswith("section") and along(name) is None:
+        if group == "section" and along(name) is None:
             raise DeclarationError(
                 f"measured quantity '{name}': expected a force or a fibre, and a place xi/l"
                 f" from 0 to 1, as {want}:bending@0.5"
             )
-    return list(dict.fromkeys(wanted))
+        wanted[want] = None
+    return list(wanted)
 
 
 def along(name: str) -> Along | None:
