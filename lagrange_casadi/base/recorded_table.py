@@ -129,13 +129,25 @@ def for_each(
 
 
 def count_sizes(
-    place: str, columns: Mapping[str, str | int], counts_per_turn: object
+    place: str,
+    columns: Mapping[str, str | int],
+    units: Mapping[str, str],
+    counts_per_turn: object,
 ) -> dict[str, float]:
-    """Return the size of a count [rad] for each name of a column in counts, by how many counts of
-    its encoder are a turn: one number for all, or numbers by name.
+    """Return the size of a count [rad] for each name of a column whose unit is counts, by how many
+    counts of its encoder are a turn: one number for all, or numbers by name.
     """
-    what, sizes = "column in counts, of counts_per_turn=,", {}
-    for name, turn in for_each(place, columns, what, counts_per_turn, None).items():
+    turns = for_each(place, columns, "column of counts_per_turn=", counts_per_turn, None)
+    sizes = {}
+    for name, turn in turns.items():
+        if units[name] not in COUNTS:
+            if isinstance(counts_per_turn, Mapping) and name in counts_per_turn:
+                unit = units[name] or "no unit"
+                raise DeclarationError(
+                    f"{place}: column {columns[name]} is in {unit}; expected counts, of which"
+                    f" counts_per_turn= says {turn!r} are a turn"
+                )
+            continue
         try:
             per_turn = number(turn)
         except NumberError:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.recorded_table import COUNTS, RecordedTable, count_sizes, for_each
+from ..base.recorded_table import RecordedTable, count_sizes, for_each
 from ..base.units import UNITS, count, number
 from ..errors import DeclarationError, NumberError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
@@ -260,8 +260,7 @@ def _recordings(
     second = _known(path, time_unit or table.units[at] or "s", _TIMES, "time unit")
     stated = for_each(path.name, named, "coordinate of unit=", unit, None)
     units = {name: stated[name] or table.units[k] or "rad" for name, k in places.items()}
-    counted = {name: named[name] for name, word in units.items() if word in COUNTS}
-    turns = count_sizes(path.name, counted, counts_per_turn)
+    turns = count_sizes(path.name, named, units, counts_per_turn)
     t, *series = table.columns(at, list(places.values()))
     if t.size < _LEAST:
         raise DeclarationError(

@@ -52,7 +52,7 @@ class Consistency(Graphs):
 
     @classmethod
     @symbolic
-    def of(cls, regressor: Regressor, defaults: Array, scales: Array) -> Consistency:
+    def of(cls, regressor: Regressor, defaults: Array) -> Consistency:
         """Make the conditions of the bodies whose mass properties depend on unknown parameters."""
         program, numbers = regressor.program, regressor.numbers
         theta, p = ca.SX.sym("theta", len(numbers)), ca.SX(ca.DM(defaults))
@@ -69,7 +69,7 @@ class Consistency(Graphs):
             ca.Function("matrices", [theta], list(found.values())),
             tuple(found),
             first,
-            scales,
+            regressor.ranking(defaults).scales,
             np.array([one.low for one in parameters]),
             np.array([one.high for one in parameters]),
         )

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -88,29 +89,48 @@ class Rows(NamedTuple):
 class Data:
     """Measured values (n, quantities) along a motion, and the model of them.
 
-    ``defaults`` are values of all parameters, and ``prior`` the places among the unknown ones of
-    those about whose values something is known.
+    ``defaults`` are values of all parameters. ``noise`` are standard deviations of the quantities,
+    NaN if they are to be estimated, and ``prior`` those of first values, by the place of a
+    parameter among the unknown ones.
     """
 
     regressor: Regressor
     motion: DrivenMotion
     measured: Array
     defaults: Array
-    prior: tuple[int, ...] = ()
-    low_pass: Filter | None = None
+    noise: tuple[float, ...]
+    prior: Mapping[int, float]
+    low_pass: Filter | None
 
     @classmethod
     def of(
-        cls, regressor: Regressor, measurements: Measurements, trim: float, defaults: Array
+        cls,
+        regressor: Regressor,
+        measurements: Measurements,
+        trim: float,
+        defaults: Array,
+        prior: Mapping[str, float] | None = None,
+        cutoff: float | None = None,
     ) -> Data:
         """Take the motion and the quantities of measurements, whose units are checked."""
         check_units(measurements, regressor.expected)
         columns, names = measurements.columns, regressor.quantities
         if lost := [name for name in names if name not in columns]:
             raise UnknownNameError("column", lost, columns, place=measurements.name)
-        measured = np.stack([columns[name] for name in names], axis=1)
-        motion = measurements.motion(regressor.program.driven, trim)
-        return cls(regressor, motion, measured, defaults)
+        return cls(
+            regressor,
+            measurements.motion(regressor.program.driven, trim),
+            np.stack([columns[name] for name in names], axis=1),
+            defaults,
+            tuple(measurements.noise.get(name, math.nan) for name in names),
+            {regressor.unknown.index(name): spread for name, spread in (prior or {}).items()},
+            None if cutoff is None else Filter(measurements.t, cutoff),
+        )
+
+    @cached_property
+    def ranking(self) -> Ranking:
+        """Ranking of the unknown parameters, with the sizes of their first values."""
+        return self.regressor.ranking(self.defaults)
 
     def parameters(self, theta: Array) -> Array:
         """Return the values of all parameters."""
@@ -170,7 +190,7 @@ class Data:
         return found
 
 
-def nonlinear(data: Data, z: Array, scales: Array) -> dict[str, tuple[str, ...]]:
+def nonlinear(data: Data, z: Array) -> dict[str, tuple[str, ...]]:
     """Return the parameters in which the quantities are not linear while the others are, and by
     what: derivatives by the latter change with the former.
 
@@ -181,7 +201,7 @@ def nonlinear(data: Data, z: Array, scales: Array) -> dict[str, tuple[str, ...]]
     known = np.flatnonzero(np.isfinite(data.motion.acceleration).all(axis=1))
     few = np.sort(generator.permutation(known)[:_LOOKED])
     some, z = data.some(few), z[few]
-    theta, names = data.theta, data.regressor.unknown
+    theta, names, scales = data.theta, data.regressor.unknown, data.ranking.scales
     before = _slopes(some, theta, z)
     changes = np.zeros((theta.size, theta.size), bool)
     moved = theta + _MOVED * np.where(theta == 0.0, 1.0, theta)
@@ -233,16 +253,16 @@ class System(NamedTuple):
     sure: Base
 
     @classmethod
-    def of(cls, rows: Rows, root: Array, quantities: int, ranking: Ranking) -> System:
-        """Reduce rows, each times its ``root`` (r,)."""
+    def of(cls, rows: Rows, root: Array, quantities: int, ranking: Ranking, total: float) -> System:
+        """Reduce rows, each times its ``root`` (r,), of measurements whose norm is ``total``."""
         both = np.column_stack([rows.columns, rows.residual]) * root[:, None]
         measured = rows.quantity < quantities
         part = triangle(both[measured])
-        base = sure = base_of(part[:, :-1], ranking)
+        base = sure = base_of(part[:, :-1], ranking, total)
         part[:, list(base.absent)] = 0.0  # else their rounding counts
         whole = np.vstack([part, both[~measured]])
         if not measured.all():
-            sure = base_of(whole[:, :-1], ranking)
+            sure = base_of(whole[:, :-1], ranking, total)
         return cls(whole[:, :-1], whole[:, -1], base, sure)
 
     @property
@@ -278,20 +298,13 @@ class Fit:
         return found
 
 
-def fit(
-    data: Data,
-    z: Array,
-    ranking: Ranking,
-    given: Array,
-    robust: bool,
-    consistency: Consistency | None,
-) -> Fit:
+def fit(data: Data, z: Array, robust: bool, consistency: Consistency | None) -> Fit:
     """Solve by Gauss and Newton's method, with exact derivatives; what is linear takes one step.
 
-    ``given`` are standard deviations of quantities, NaN for those that are to be estimated, and of
-    prior values. Raises :class:`.DeclarationError` if nothing measured depends on the unknown
-    parameters, and :class:`.AccuracyError` if steps do not settle.
+    Raises :class:`.DeclarationError` if nothing measured depends on the unknown parameters, and
+    :class:`.AccuracyError` if steps do not settle.
     """
+    given, ranking = np.array([*data.noise, *data.prior.values()]), data.ranking
     theta, rows, quantities = data.theta, data.rows(data.theta, z), data.measured.shape[1]
     size = np.array([*map(_rms, data.measured.T), *(1.0 for _ in data.prior)])
     size[~(size > 0.0)] = 1.0
@@ -301,12 +314,9 @@ def fit(
     for rounds in range(1, _ROUNDS + 1):
         total = float(np.sqrt(np.nansum((data.measured / noise[:quantities]) ** 2)))
         root = np.sqrt(weights) / noise[rows.quantity]
-        system = System.of(rows, root, quantities, ranking)
+        system = System.of(rows, root, quantities, ranking, total)
         if not system.base.chosen:
-            raise DeclarationError(
-                "nothing that is measured depends on the unknown parameters"
-                f" {', '.join(data.regressor.unknown)}"
-            )
+            raise data.regressor.unchanged
         if rows.raw.size <= len(system.sure.chosen) and free:
             raise DeclarationError(
                 f"{rows.raw.size - len(data.prior)} measured values do not determine"
@@ -322,10 +332,13 @@ def fit(
         moved = float(np.linalg.norm(system.columns @ step))
         freedom = rows.raw.size - len(data.prior) - len(system.base.chosen)
         last, noise = noise, _noise(rows, given, floor * size, robust, freedom)
-        weights = _weights(rows.raw / noise[rows.quantity], robust)
+        if robust:
+            scaled = np.abs(rows.raw / noise[rows.quantity])
+            weights = np.minimum(1.0, _HUBER / np.maximum(scaled, _HUBER))
         same = bool(np.allclose(noise, last, rtol=rough, atol=0.0))
         if same and moved <= max(_SURE, still * total):
-            system = System.of(rows, 1.0 / noise[rows.quantity], quantities, ranking)
+            root = 1.0 / noise[rows.quantity]
+            system = System.of(rows, root, quantities, ranking, total)
             covariance = _covariance(data, rows, noise, system, robust)
             return Fit(theta, z, system, covariance, noise[:quantities], weights, rows, rounds)
     raise AccuracyError(
@@ -337,13 +350,6 @@ def fit(
 def _rms(values: Array) -> float:
     known = values[np.isfinite(values)]
     return float(np.sqrt(np.mean(known**2))) if known.size else math.nan
-
-
-def _weights(scaled: Array, robust: bool) -> Array:
-    """Return Huber's weights of residuals over their standard deviation."""
-    if not robust:
-        return np.ones(scaled.size)
-    return np.minimum(1.0, _HUBER / np.maximum(np.abs(scaled), _HUBER))
 
 
 def _noise(rows: Rows, given: Array, least: Array, robust: bool, freedom: int) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,10 +15,10 @@ from ..case import Case, scene_of
 from ..declare.scene import Scene
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.evaluation_method import EvaluationMethod
-from .base import RANK, Ranking, base_of
+from .base import RANK, base_of
 from .consistency import Consistency
 from .fit import Comparison, Data, Fit, fit, nonlinear
-from .measurements import Filter, Measurements
+from .measurements import Measurements
 from .regressor import DrivenMotion, Regressor
 
 _OPPOSITE = -0.7
@@ -232,10 +232,10 @@ def identify(
     """
     scene = scene_of(scene)
     names = tuple(scene.parameters) if unknown is None else tuple(dict.fromkeys(unknown))
-    if not names:
-        raise DeclarationError("identify: expected at least one unknown parameter, got none")
     if lost := [name for name in prior or {} if name not in names]:
         raise UnknownNameError("parameter of prior=", lost, names)
+    if wrong := [name for name, spread in (prior or {}).items() if not 0.0 < spread < math.inf]:
+        raise DeclarationError(f"prior of '{wrong[0]}': expected a finite number above 0")
     drives = tuple(scene.laws)
     quantities = measurements.quantities(drives)
     if not quantities:
@@ -246,22 +246,15 @@ def identify(
     values = scene.values(parameters)
     regressor = Regressor.of(scene, quantities, names, EvaluationMethod(backend))
     p = np.array(list(values.values()))
-    spreads = {names.index(name): spread for name, spread in (prior or {}).items()}
-    low_pass = None if cutoff is None else Filter(measurements.t, cutoff)
-    data = Data.of(regressor, measurements, trim, p)
-    data = replace(data, prior=tuple(spreads), low_pass=low_pass)
-    noise = [measurements.noise.get(name, math.nan) for name in quantities]
-    if 0.0 in noise:
+    data = Data.of(regressor, measurements, trim, p, prior, cutoff)
+    if 0.0 in data.noise:
         raise DeclarationError(
-            f"{measurements.name}: noise of '{quantities[noise.index(0.0)]}': expected a number"
-            " above 0"
+            f"{measurements.name}: noise of '{quantities[data.noise.index(0.0)]}': expected a"
+            " number above 0"
         )
-    z, ranking = regressor.follow(data.motion, p), regressor.ranking(p)
-    before = data.compared(data.theta, z)
-    consistency = Consistency.of(regressor, p, ranking.scales)
-    curved = nonlinear(data, z, ranking.scales)
-    given = np.array([*noise, *spreads.values()])
-    found = fit(data, z, ranking, given, robust, consistency if consistent else None)
+    z, consistency = regressor.follow(data.motion, p), Consistency.of(regressor, p)
+    before, curved = data.compared(data.theta, z), nonlinear(data, z)
+    found = fit(data, z, robust, consistency if consistent else None)
     base, units = found.system.base, {name: scene.parameters[name].unit for name in names}
     rows = base.rows(len(names))
     covariance = rows @ found.covariance @ rows.T
@@ -279,7 +272,7 @@ def identify(
                 base.chosen, base.words(names), *combined, strict=True
             )
         ),
-        unexcited=_unexcited(data, found, ranking),
+        unexcited=_unexcited(data, found),
         absent=tuple(names[k] for k in base.absent),
         nonlinear=curved,
         condition=base.condition,
@@ -312,7 +305,7 @@ def _opposite(compared: Comparison) -> dict[str, float]:
     return found
 
 
-def _unexcited(data: Data, found: Fit, ranking: Ranking) -> tuple[str, ...]:
+def _unexcited(data: Data, found: Fit) -> tuple[str, ...]:
     """Return combinations that other rates and accelerations would determine beside the base."""
     generator, motion, names = np.random.default_rng(0), data.motion, data.regressor.unknown
     known = np.flatnonzero(np.isfinite(motion.acceleration).all(axis=1))
@@ -329,6 +322,7 @@ def _unexcited(data: Data, found: Fit, ranking: Ranking) -> tuple[str, ...]:
     more[:, chosen] = 0.0
     more[:, dependent] -= rows[:, chosen] @ base.weights
     sizes[dependent] += sizes[chosen] @ np.abs(base.weights)
-    least = RANK * (sizes * ranking.scales).max() / ranking.scales
+    scales = data.ranking.scales
+    least = RANK * (sizes * scales).max() / scales
     more[:, np.linalg.norm(more, axis=0) <= np.maximum(_ROUNDED * sizes, least)] = 0.0
-    return base_of(more, ranking).words(names)
+    return base_of(more, data.ranking).words(names)

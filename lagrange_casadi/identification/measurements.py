@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ..arguments import NotNegative, public
 from ..base.arrays import Array
-from ..base.recorded_table import COUNTS, MEASURED, SIZES, RecordedTable, count_sizes
+from ..base.recorded_table import MEASURED, SIZES, RecordedTable, count_sizes
 from ..base.units import UNITS
 from ..declare.curves import curve, derivatives
 from ..errors import DeclarationError, UnknownNameError
@@ -295,14 +295,15 @@ def read_measurements(
     places = dict(sorted(places.items(), key=itemgetter(1)))
 
     units = {name: table.units[k] for name, k in places.items()}
-    counted = {name: table.names[places[name]] for name, unit in units.items() if unit in COUNTS}
+    heads = {name: table.names[k] for name, k in places.items()}
+    counts = count_sizes(path.name, heads, units, counts_per_turn)
     sizes = {name: SIZES[unit][1] if unit in SIZES else 1.0 for name, unit in units.items()}
-    sizes |= count_sizes(path.name, counted, counts_per_turn)
-    units |= dict.fromkeys(counted, "rad")
+    sizes |= counts
+    units |= dict.fromkeys(counts, "rad")
     t, *series = table.columns(at, list(places.values()), gaps=True)
     columns = {name: sizes[name] * values for name, values in zip(places, series, strict=True)}
     columns |= {name: _going_on(columns[name]) for name in places if units[name] in UNITS["rad"]}
-    deviations = dict.fromkeys(counted, _QUANTUM) | dict(noise or {})
+    deviations = dict.fromkeys(counts, _QUANTUM) | dict(noise or {})
     found = Measurements(
         t * SIZES.get(table.units[at], ("s", 1.0))[1],
         columns,
