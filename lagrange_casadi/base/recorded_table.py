@@ -13,10 +13,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..errors import DeclarationError, NumberError, UnknownNameError
+from ..errors import DeclarationError, UnknownNameError
 from .arrays import Array
 from .csv_rows import Row, headings, read_rows
-from .units import UNITS, number
+from .units import UNITS, double
 
 MEASURED: dict[str, dict[str, float]] = {
     **UNITS,
@@ -148,11 +148,8 @@ def count_sizes(
                     f" counts_per_turn= says {turn!r} are a turn"
                 )
             continue
-        try:
-            per_turn = number(turn)
-        except NumberError:
-            per_turn = 0.0
-        if not per_turn > 0.0:
+        per_turn = double(turn) or 0.0
+        if not 0.0 < per_turn < math.inf:
             raise DeclarationError(
                 f"{place}: column {columns[name]} is in counts; expected counts_per_turn=, a number"
                 f" above 0, got {turn!r}"

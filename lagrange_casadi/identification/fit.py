@@ -328,7 +328,9 @@ def fit(data: Data, z: Array, robust: bool, consistency: Consistency | None) -> 
             step[list(system.sure.chosen)] = system.inverse @ system.right
         else:
             step = consistency.step(system.columns, system.right, theta)
-        theta, z, rows, step = _taken(data, (theta, z, rows), step, root, total, free)
+        most = np.linalg.norm(rows.residual * root) * (1.0 + _SETTLED) + _STILL * total
+        step, z, rows = _taken(data, theta, z, step, root, most if free else math.inf)
+        theta = theta + step
         moved = float(np.linalg.norm(system.columns @ step))
         freedom = rows.raw.size - len(data.prior) - len(system.base.chosen)
         last, noise = noise, _noise(rows, given, floor * size, robust, freedom)
@@ -364,23 +366,16 @@ def _noise(rows: Rows, given: Array, least: Array, robust: bool, freedom: int) -
 
 
 def _taken(
-    data: Data,
-    place: tuple[Array, Array, Rows],
-    step: Array,
-    root: Array,
-    total: float,
-    free: bool,
-) -> tuple[Array, Array, Rows, Array]:
-    """Take a step, or a half of it as often as it makes residuals larger, beside a ``total``."""
-    theta, z, rows = place
-    most = np.linalg.norm(rows.residual * root) * (1.0 + _SETTLED) + _STILL * total
+    data: Data, theta: Array, z: Array, step: Array, root: Array, most: float
+) -> tuple[Array, Array, Rows]:
+    """Return a step, or a half of it as often as that makes the norm of the residuals, each times
+    its ``root``, larger than the ``most``; and the iterated coordinates and rows there.
+    """
     for _ in range(_HALVINGS):
         there = data.regressor.follow(data.motion, data.parameters(theta + step), z)
         rows = data.rows(theta + step, there)
-        if rows.residual.size == root.size and (
-            not free or np.linalg.norm(rows.residual * root) <= most
-        ):
-            return theta + step, there, rows, step
+        if rows.residual.size == root.size and np.linalg.norm(rows.residual * root) <= most:
+            return step, there, rows
         step = step / 2.0
     raise AccuracyError(
         "no step of the unknown parameters was found that reduces the difference to the"
