@@ -53,6 +53,7 @@ def test_each_encoder_has_its_counts(tmp_path):
         ({"A": 4096, "B": 0}, "column slow is in counts; .* a number above 0, got 0"),
         ({"A": 4096, "slow": 9}, "unknown column of counts_per_turn= 'slow'; valid: A, B"),
         (None, "column A is in counts; expected counts_per_turn="),
+        (0, "counts_per_turn: expected a positive number or values by name"),
     ):
         with pytest.raises(DeclarationError, match=words):
             read_measurements(path, names={"B": "slow"}, counts_per_turn=wrong)

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import NotNegative, public
+from ..arguments import NotNegative, Positive, public
 from ..base.arrays import Array
 from ..base.recorded_table import MEASURED, SIZES, RecordedTable, count_sizes
 from ..base.units import UNITS
@@ -239,7 +239,7 @@ def read_measurements(
     *,
     names: Mapping[str, str] | None = None,
     noise: Mapping[str, NotNegative] | None = None,
-    counts_per_turn: float | Mapping[str, float] | None = None,
+    counts_per_turn: Positive | Mapping[str, float] | None = None,
     time: str = "t",
 ) -> Measurements:
     """Read measurements from a CSV file.
