@@ -31,6 +31,7 @@ from .options import (
     bounds,
     choice,
     conditions,
+    counts,
     even_points,
     file,
     flag,
@@ -453,7 +454,12 @@ def trade(**given: Any) -> None:
     "Set the standard deviation of the first value of a parameter; repeatable.",
     kind=place,
 )
-@value("--counts-per-turn", float, "NUMBER", "Set the number of counts of an encoder in one turn.")
+@several(
+    "--counts-per-turn",
+    "NUMBER|NAME=NUMBER",
+    "Set the counts in one turn of all encoders, or of a column's; repeatable.",
+    kind=counts,
+)
 @flag("--robust", "Reduce the weight of outliers, by Huber's loss.")
 @flag(
     "--consistent",

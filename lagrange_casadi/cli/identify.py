@@ -6,6 +6,8 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
+import click
+
 from ..base.publish import check_writable
 from ..case import load_case
 from ..identification import Comparison, Identification, identify, read_measurements
@@ -25,7 +27,7 @@ def identify_command(
     names: Sequence[tuple[str, str]],
     noise: Sequence[tuple[str, float]],
     prior: Sequence[tuple[str, float]],
-    counts_per_turn: float | None,
+    counts_per_turn: Sequence[tuple[str, float]],
     robust: bool,
     consistent: bool,
     cutoff: float | None,
@@ -44,9 +46,8 @@ def identify_command(
     if report is not None:
         check_page(report)
 
-    read = partial(
-        read_measurements, names=dict(names), noise=dict(noise), counts_per_turn=counts_per_turn
-    )
+    turns = _turns(counts_per_turn)
+    read = partial(read_measurements, names=dict(names), noise=dict(noise), counts_per_turn=turns)
     record, other = read(data), None if validate is None else read(validate)
     found = identify(
         loaded.scene,
@@ -71,6 +72,19 @@ def identify_command(
         report_identification(found, report, second)
         echo(f"wrote {report}")
     echo(" ".join(f"--set {word}" for word in found.setting.split()))
+
+
+def _turns(given: Sequence[tuple[str, float]]) -> float | dict[str, float] | None:
+    """Return counts in one turn by column, or those of all, which have no name."""
+    named = dict(given)
+    if "" not in named:
+        return named or None
+    if len(given) > 1:
+        raise click.UsageError(
+            "--counts-per-turn: expected one NUMBER for all columns in counts, or NAME=NUMBER for"
+            " each"
+        )
+    return named[""]
 
 
 def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:

@@ -158,6 +158,15 @@ def pair(text: str) -> tuple[str, str]:
     return name, other
 
 
+def counts(text: str) -> tuple[str, float]:
+    """NAME=NUMBER; or NUMBER, which is for all names, as the empty one."""
+    name, equals, word = (part.strip() for part in text.rpartition("="))
+    with suppress(ValueError):
+        if bool(name) == bool(equals):
+            return name, real(word)
+    raise click.BadParameter(f"expected NUMBER or NAME=NUMBER, as in 4096 or O=4096, got '{text}'")
+
+
 def place(text: str) -> tuple[str, float | str]:
     """NAME=VALUE, the value finite."""
     name, value = setting(text)
