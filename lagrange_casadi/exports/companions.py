@@ -26,7 +26,6 @@ def companions(source: Source) -> dict[str, str]:
     words, (drive, effort) = source.words, c.shown
     link = c.links[0] if c.links else None
     rest = f", {literal(c.precision)(0.0)}" if c.rests else ""
-    null = ", 0" if c.settings else ""
     data = source.exported.program.data
     (start, stop), count = data.span, data.timing.count
     steps = max(1, round((count - 1) / _ROWS)) if source.iterated else 1
@@ -38,7 +37,6 @@ def companions(source: Source) -> dict[str, str]:
             "example.c": template(
                 "example.c",
                 **words,
-                null=null,
                 rest=rest,
                 start=number(start),
                 step=number((stop - start) / (_ROWS * steps)),
@@ -141,7 +139,6 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         + ("  check_sensitivity(&model, k);\n" if source.slopes else ""),
         first_input=c.shown[0].name,
         first_output=c.outputs[0].name,
-        null=", 0" if c.settings else "",
         time_rest=f", ({c.prefix}_real) times[k][1]" if c.rests else "",
         no_rest=", 0" if c.rests else "",
         bad_parameter=(

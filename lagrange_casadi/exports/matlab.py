@@ -36,7 +36,7 @@ def matlab(source: Source) -> dict[str, str]:
             parameters=_members(c, "parameters", c.settings),
             links=", ".join(f'"{link.name}"' for link in c.links) or "0",
             prepare=_prepare(c, words),
-            time_rest=f", ({c.prefix}_real) (t - (double) ({c.prefix}_real) t)" if c.rests else "",
+            time=", ".join(c.split("t")),
             section=_section(c, words) if c.links else template("mex_no_section.c", **words),
             matrices=f"{', '.join(c.table.forces[:-1])} and {c.table.forces[-1]}",
         ),

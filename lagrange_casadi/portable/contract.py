@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
-from ..base.quantities import Output
+from ..base.quantities import Output, motion_names, motions_of
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, table_of
 from ..base.vocabulary import Precision
@@ -148,21 +148,39 @@ class Contract:
             if link.constant != usual[link.name]
         }
 
-    def input_of(self, name: str) -> str:
-        """The member for the input of a full name, such as ``motion:O_rate`` or ``time``."""
-        return next(member.name for member in self.inputs if member.source == name)
-
     def parts_of(self, name: str) -> list[str]:
-        """The members that add up to the input of a full name: its own, and its rest, if any."""
+        """The members that add up to the input of a full name, such as ``motion:O_rate`` or
+        ``time``: its own, and its rest, if any.
+        """
         return [m.name for m in self.inputs if m.source in (name, f"{REST}{name}")]
+
+    def split(self, value: str) -> list[str]:
+        """A variable of C that is a double as numbers of the precision: one, or in single precision
+        two that add up to it.
+        """
+        first = f"({self.prefix}_real) {value}"
+        rest = f"({self.prefix}_real) ({value} - (double) {first})"
+        return [first, rest] if self.rests else [first]
+
+    @property
+    def moved(self) -> list[list[str]]:
+        """Full names of the coordinates, the rates and the accelerations, each by drive."""
+        return motion_names(self.drives)
 
     @property
     def motion(self) -> list[list[str]]:
         """The members for coordinates, rates and accelerations, each by drive."""
-        return [
-            [self.input_of(f"motion:{drive}{order}") for drive in self.drives]
-            for order in ("", "_rate", "_acceleration")
-        ]
+        return [[self.parts_of(name)[0] for name in names] for names in self.moved]
+
+    @property
+    def moment(self) -> list[str]:
+        """The members for the time and the coordinates, and in single precision for the rest of
+        each; the time is empty where nothing depends on it.
+        """
+        names = ["time", *self.moved[0]]
+        names += [f"{REST}{name}" for name in names] if self.rests else []
+        given = {m.source: m.name for m in self.inputs}
+        return [given.get(name, "") for name in names]
 
 
 def _short(source: str, kind: str = "") -> str:
@@ -269,8 +287,7 @@ def _inputs(program: Program, precision: Precision, timed: bool) -> dict[str, Me
         if rests:
             add(f"{REST}time", "s", rest.format("the time"))
     for joint in program.driven:
-        for member in ("", "rate", "acceleration"):
-            output = Output("motion", joint, member)
+        for output in motions_of(joint):
             key, unit = str(output), output.unit(program.data.kinds)
             add(
                 key,
@@ -278,7 +295,7 @@ def _inputs(program: Program, precision: Precision, timed: bool) -> dict[str, Me
                 f"{_where(output)}: {_brief(output.quantity.long_name)}",
                 _sign(program, output),
             )
-            if rests and not member:
+            if rests and not output.member:
                 add(f"{REST}{key}", unit, rest.format("it"))
     return found
 

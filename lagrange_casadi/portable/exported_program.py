@@ -5,7 +5,7 @@ from what constants.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -47,6 +47,10 @@ class ExportedProgram:
     cycle: CycleTable | None
     still: Mapping[Output, float]
     sections: Mapping[str, tuple[str, SectionInputs]]
+
+    def called(self, calls: Iterable[str]) -> list[str]:
+        """Return those of some functions that it has, in order."""
+        return [name for name in calls if name in self.functions]
 
     @property
     def text(self) -> str:

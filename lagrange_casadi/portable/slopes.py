@@ -19,6 +19,7 @@ from ..errors import DeclarationError
 from ..instants.evaluation_method import EvaluationMethod
 from ..sensitivity.jacobian import total
 from ..sensitivity.series import at_instants
+from .calls import CalledInC
 from .contract import Contract, Setting
 from .text import comment, indented, member, number_rows, numbers, template
 
@@ -89,7 +90,7 @@ def types(c: Contract, slopes: ExportedSlopes) -> str:
     return template("sensitivity_types.h", p=c.prefix, **words)
 
 
-def code(c: Contract, slopes: ExportedSlopes, drives: int, loops: bool) -> str:
+def code(c: Contract, slopes: ExportedSlopes) -> str:
     """The function, for the source."""
     pairs = itertools.product(c.outputs, slopes.by)
     put = (f"sensitivities->{m.name}.{s.name} = s[{k}];" for k, (m, s) in enumerate(pairs))
@@ -98,16 +99,16 @@ def code(c: Contract, slopes: ExportedSlopes, drives: int, loops: bool) -> str:
         p=c.prefix,
         P=c.prefix.upper(),
         many=len(c.outputs) * len(slopes.by),
-        drives=max(1, drives),
+        drives=len(c.drives),
         put=indented(put),
-        given=indented(f"  {line}" for line in _given(c)),
-        loops="model->loops" if loops else "0",
+        given=indented(f"  {line}" for line in _given(c, slopes)),
     )
 
 
-def _given(c: Contract) -> Iterator[str]:
+def _given(c: Contract, slopes: ExportedSlopes) -> Iterator[str]:
     for name, members in zip(("d", "rate", "acceleration"), c.motion, strict=True):
         yield from (f"{name}[{k}] = inputs->{member};" for k, member in enumerate(members))
+    yield from CalledInC({FUNCTION: slopes.function}).call(FUNCTION)
 
 
 def selftest_numbers(slopes: ExportedSlopes) -> str:
