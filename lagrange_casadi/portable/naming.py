@@ -10,6 +10,9 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 
+_LONGEST = 200
+"""Letters of a prefix: names of files, which are longer by up to 17, may have 255."""
+
 
 @functools.cache
 def taken_words(kind: str) -> frozenset[str]:
@@ -28,9 +31,9 @@ def reserved(word: str) -> bool:
 
 def prefix(name: str) -> str:
     """First part of the names of all files, symbols and targets of a mechanism: its name, with
-    underscores for what C does not allow.
+    underscores for what C does not allow, and without what is too long for a file.
     """
-    word = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "mechanism"
+    word = re.sub(r"[^A-Za-z0-9]+", "_", name)[:_LONGEST].strip("_") or "mechanism"
     word = word if word[0].isalpha() else f"mechanism_{word}"
     taken = word.lower() in taken_words("files") or word in taken_words("cmake") or reserved(word)
     return f"{word}_mechanism" if taken else word
