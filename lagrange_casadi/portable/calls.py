@@ -17,6 +17,13 @@ class Call:
     takes: tuple[str, ...]
     fills: tuple[str, ...]
 
+    def places(self, function: ca.Function) -> Iterator[tuple[str, str, int]]:
+        """Yield of each vector its place in C, its name, and its length by the function."""
+        for k, vector in enumerate(self.takes):
+            yield f"arg[{k}]", vector, function.size1_in(k)
+        for k, vector in enumerate(self.fills):
+            yield f"res[{k}]", vector, function.size1_out(k)
+
 
 PREPARE = {
     "sound": Call(("parameters",), ("sound_of",)),
@@ -49,7 +56,10 @@ SLOPES = {
 
 CALLS = PREPARE | MOTION | INSTANT | SLOPES
 
-_POINTERS = {name: f"model->{name}" for name in ("parameters", "constants", "matter", "loops")}
+MODEL = ("parameters", "constants", "matter", "loops")
+"""Vectors that a model keeps between calls."""
+
+_POINTERS = {name: f"model->{name}" for name in MODEL}
 _POINTERS |= {name: f"&{name}" for name in ("size", "iterated", "rule", "time")}
 """Vectors of C that are no arrays of the function that calls."""
 
@@ -71,13 +81,9 @@ class CalledInC:
 
     def given(self, name: str) -> Iterator[str]:
         """Yield the statements before a call: a vector without elements is 0."""
-        called, function, known = CALLS[name], self.functions[name], _POINTERS | self.pointers
-        for array, vectors, size in (
-            ("arg", called.takes, function.size1_in),
-            ("res", called.fills, function.size1_out),
-        ):
-            for k, vector in enumerate(vectors):
-                pointer = known.get(vector, vector) if size(k) else "0"
-                if self._set.get(f"{array}[{k}]") != pointer:
-                    self._set[f"{array}[{k}]"] = pointer
-                    yield f"{array}[{k}] = {pointer};"
+        known = _POINTERS | self.pointers
+        for place, vector, size in CALLS[name].places(self.functions[name]):
+            pointer = known.get(vector, vector) if size else "0"
+            if self._set.get(place) != pointer:
+                self._set[place] = pointer
+                yield f"{place} = {pointer};"

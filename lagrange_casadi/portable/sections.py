@@ -50,7 +50,7 @@ def functions(c: Contract, exported: ExportedProgram) -> str:
     """The C functions that give the forces inside links."""
     names = {Output.of(m.source): m.name for m in c.outputs}
     links: list[str] = []
-    place = exported.sizes["gapped"]
+    place = int(exported.extent_first)
     for link in c.links:
         function, inputs = exported.sections[link.name]
         links.append(f"  case {link.constant}:")

@@ -18,7 +18,7 @@ from ..codegen.emit import newton_rule
 from ..codegen.printer import Format, function_name, literal
 from ..declare.ends import BEYOND
 from ..version import __version__
-from .calls import INSTANT, PREPARE, CalledInC
+from .calls import INSTANT, MODEL, PREPARE, CalledInC
 from .contract import Contract, Member
 from .data import table_call, table_text
 from .exported_program import ExportedProgram
@@ -67,7 +67,7 @@ class Source:
             prepare=indented(self._prepare()),
             motion=indented(self._motion()),
             instant=indented(self._instant()),
-            rows=self.exported.sizes["rows"],
+            rows=len(self.exported.columns),
             sections=sections,
             messages="\n".join(
                 f'  case {self._upper}_{key}:\n    return "{text}";'
@@ -135,14 +135,11 @@ class Source:
         of it.
         """
         sizes = self.exported.sizes
-        vectors = {"parameters": sizes["p"]} | {
-            name: sizes[name] for name in ("constants", "matter", "loops")
-        }
         closed = [("closed", "int", 1)] if self.exported.newton is not None else []
         return [
             ("seal", "unsigned", 1),
             *closed,
-            *((name, "real", size) for name, size in vectors.items() if size),
+            *((name, "real", sizes[name]) for name in MODEL if sizes[name]),
         ]
 
     @property
@@ -224,8 +221,8 @@ class Source:
                 f"const {c.prefix}_parameters* values = parameters ? parameters :"
                 f" &{c.prefix}_defaults;"
             )
-        if sizes["sound"]:
-            yield f"casadi_real sound_of[{sizes['sound']}];"
+        if sizes["sound_of"]:
+            yield f"casadi_real sound_of[{sizes['sound_of']}];"
             yield "int k;"
         if self.exported.called(PREPARE):
             yield "const casadi_real* arg[1];"
@@ -251,8 +248,7 @@ class Source:
 
     def _refused_parts(self) -> Iterable[str]:
         """Refuse parameters for which a margin is not positive, or a later one negative."""
-        sizes = self.exported.sizes
-        ends = (0, sizes["positive"], sizes["sound"])
+        ends = (0, self.exported.positive, self.exported.sizes["sound_of"])
         for (start, stop), test in zip(itertools.pairwise(ends), (">", ">="), strict=True):
             if stop > start:
                 yield f"for (k = {start}; k < {stop}; ++k) {{"
@@ -263,7 +259,7 @@ class Source:
                 yield "}"
 
     def _motion(self) -> Iterable[str]:
-        c, drives = self.contract, self.exported.sizes["drives"]
+        c, drives = self.contract, len(self.contract.drives)
         calls = CalledInC(self.exported.functions)
         at = ["time", "time_rest"] if c.rests else ["time"]
         ends = self.exported.functions.get("beyond")
@@ -314,7 +310,7 @@ class Source:
 
     def _instant(self) -> Iterable[str]:
         c, P, sizes, table = self.contract, self._upper, self.exported.sizes, self.exported.cycle
-        drives, called = sizes["drives"], self.exported.called(INSTANT)
+        drives, called = len(c.drives), self.exported.called(INSTANT)
         evaluated = "y" if table is None else "drive"
         calls = CalledInC(self.exported.functions, {"evaluated": evaluated})
         if "count" in called:
