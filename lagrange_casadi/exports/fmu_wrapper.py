@@ -82,7 +82,7 @@ def _given(description: Description) -> Iterable[str]:
     for m in c.inputs:
         if not m.rest_of:
             yield from _put(c, m.source, values[m.source])
-    yield f"return {c.prefix.upper()}_OK;"
+    yield f"return {c.words['P']}_OK;"
 
 
 def _put(c: Contract, name: str, value: str) -> Iterable[str]:

@@ -115,6 +115,11 @@ class Contract:
         return "float" if self.precision == "single" else "double"
 
     @property
+    def words(self) -> dict[str, str]:
+        """Words of every template: the prefix of names, and that of constants."""
+        return {"p": self.prefix, "P": self.prefix.upper()}
+
+    @property
     def shown(self) -> tuple[Member, Member]:
         """An input and an output for examples: a coordinate, and an effort, if there is one."""
         efforts = (m for m in self.outputs if m.source.startswith("effort:"))

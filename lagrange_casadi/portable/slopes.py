@@ -87,7 +87,7 @@ def types(c: Contract, slopes: ExportedSlopes) -> str:
         for m, unit in zip(c.outputs, units, strict=True)
     )
     words = {"rows": "\n".join(rows), "members": "\n".join(members)}
-    return template("sensitivity_types.h", p=c.prefix, **words)
+    return template("sensitivity_types.h", **c.words, **words)
 
 
 def code(c: Contract, slopes: ExportedSlopes) -> str:
@@ -96,8 +96,7 @@ def code(c: Contract, slopes: ExportedSlopes) -> str:
     put = (f"sensitivities->{m.name}.{s.name} = s[{k}];" for k, (m, s) in enumerate(pairs))
     return template(
         "sensitivity.c",
-        p=c.prefix,
-        P=c.prefix.upper(),
+        **c.words,
         many=len(c.outputs) * len(slopes.by),
         drives=len(c.drives),
         put=indented(put),
@@ -133,8 +132,7 @@ def selftest_function(c: Contract, slopes: ExportedSlopes) -> str:
     first, by = c.outputs[0].name, slopes.by[0].name
     return template(
         "selftest_sensitivity.c",
-        p=c.prefix,
-        P=c.prefix.upper(),
+        **c.words,
         compared=indented(compared),
         first=f"{first}.{by}",
     )

@@ -77,17 +77,15 @@ class Source:
 
     @property
     def _upper(self) -> str:
-        return self.contract.prefix.upper()
+        return self.contract.words["P"]
 
     @property
     def words(self) -> dict[str, str]:
         """Values of every template."""
         c = self.contract
-        return {
+        return c.words | {
             "name": comment(c.name),
             "called": printed(c.name),
-            "p": c.prefix,
-            "P": self._upper,
             "space": " " * (2 * len(c.prefix) + 9),
             "and_parameters": f", const {c.prefix}_parameters* parameters" if c.settings else "",
             "and_defaults": ", 0" if c.settings else "",
@@ -154,15 +152,16 @@ class Source:
     def _value(self, member: Member) -> str:
         still = self.exported.still.get(Output.of(member.source))
         if still is not None:
-            return self._number(still)
+            return self.number(still)
         return f"direction({self.column(member)})" if member.wrapped else self.column(member)
 
     @property
-    def _number(self) -> Format:
+    def number(self) -> Format:
+        """Literal of C for a number of the precision."""
         return literal(self.contract.precision)
 
     def _helpers(self) -> str:
-        number, found = self._number, ""
+        number, found = self.number, ""
         if self.exported.program.loop_angles:
             turn = number(math.tau)
             found += (
@@ -210,11 +209,11 @@ class Source:
         c, p = self.contract, self.contract.prefix
         if not c.settings:
             return ""
-        rows = ",\n".join(f"  {self._number(m.default)} /* {m.name} */" for m in c.settings)
+        rows = ",\n".join(f"  {self.number(m.default)} /* {m.name} */" for m in c.settings)
         return f"\nconst {p}_parameters {p}_defaults = {{\n{rows}\n}};\n"
 
     def _prepare(self) -> Iterable[str]:
-        c, P, sizes, number = self.contract, self._upper, self.exported.sizes, self._number
+        c, P, sizes, number = self.contract, self._upper, self.exported.sizes, self.number
         calls = CalledInC(self.exported.functions)
         if c.settings:
             yield (
@@ -276,7 +275,7 @@ class Source:
         yield from (f"at[{k}] = {time};" for k, time in enumerate(at))
         yield from calls.call("law")
         if ends is not None:
-            limit = self._number(BEYOND[self.contract.precision])
+            limit = self.number(BEYOND[self.contract.precision])
             yield from calls.call("beyond")
             yield from self._refused(
                 " || ".join(f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0))), "BAD_TIME"
@@ -304,8 +303,8 @@ class Source:
         moment = "time + time_rest" if self.contract.rests else "time"
         low, high = self.span
         bad = [f"!is_finite({moment})"]
-        bad += [f"{moment} < {self._number(low)}"] if math.isfinite(low) else []
-        bad += [f"{moment} > {self._number(high)}"] if math.isfinite(high) else []
+        bad += [f"{moment} < {self.number(low)}"] if math.isfinite(low) else []
+        bad += [f"{moment} > {self.number(high)}"] if math.isfinite(high) else []
         return " || ".join(bad)
 
     def _instant(self) -> Iterable[str]:
@@ -341,7 +340,7 @@ class Source:
         yield f"if (!all_finite(y, {len(self.exported.columns)})) return {P}_NOT_FINITE;"
 
     def _close(self) -> Iterable[str]:
-        P, rule, number = self._upper, self.exported.rule, self._number
+        P, rule, number = self._upper, self.exported.rule, self.number
         done, lost, most = number(rule["done"]), number(rule["lost"]), int(rule["steps"])
         if self.exported.newton is not None:
             full = newton_rule(self.contract.precision, None)
