@@ -21,7 +21,7 @@ from ..instants.backends import run
 from ..instants.evaluation_method import EvaluationMethod
 from ..instants.solution import Solution
 from ..verification.accuracy import estimate
-from .contract import FAINT, REST, Contract, Member
+from .contract import FAINT, REST, Contract, Member, largest_of
 
 INSTANTS = 9
 RATIOS = (0.0, 0.5, 1.0)
@@ -122,10 +122,7 @@ def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, s
     others of its unit.
     """
     peaks = [float(np.abs(exact.series[m.source]).max()) for m in contract.outputs]
-    largest = {
-        unit: max(p for p, m in zip(peaks, contract.outputs, strict=True) if m.unit == unit)
-        for unit in contract.units
-    }
+    largest = largest_of((m.unit for m in contract.outputs), peaks)
     rows = zip(errors, peaks, contract.outputs, strict=True)
     return max(
         ((float(e) / p, m.name) for e, p, m in rows if p > FAINT * largest[m.unit]),
