@@ -27,7 +27,7 @@ def companions(source: Source) -> dict[str, str]:
     data = source.exported.program.data
     (start, stop), count = data.span, data.timing.count
     steps = max(1, round((count - 1) / _ROWS)) if source.iterated else 1
-    number = source.number
+    number = source.exported.number
     return (
         {
             "CMakeLists.txt": template("CMakeLists.txt", **words),

@@ -55,17 +55,17 @@ def structured_text(source: Source) -> dict[str, str]:
     Raises :class:`.DeclarationError` for what the language lacks: single precision, a table of the
     cycle, a function that has no name in it.
     """
-    c, last = source.contract, len(source.exported.columns) - 1
-    if c.rests or source.exported.cycle is not None:
+    c, exported, golden = source.contract, source.exported, source.golden
+    if c.rests or exported.cycle is not None:
         raise DeclarationError("structured text: expected double precision and no table")
     given = _identifiers("in", (m.name for m in c.inputs))
     taken = _identifiers("out", (m.name for m in c.outputs))
     instant, motion = _Block.of(source, given), _Block.of(source, given)
     body, moved = list(instant.instant()), list(motion.call("law"))
     moved += [f"{given[c.moment[0]]} := t;"] if c.timed else []
-    golden = source.golden
+    last = len(exported.columns) - 1
     outputs = np.where(np.abs(golden.outputs) > _LEAST, golden.outputs, 0.0)
-    filled = (f"{taken[m.name]} := {_turned(m, source.column(m))};" for m in c.outputs)
+    filled = (f"{taken[m.name]} := {_turned(m, exported.column(m.source))};" for m in c.outputs)
     words = source.words | {
         "name": re.sub(r"[^ -~]|\(\*|\*\)", "?", c.name),
         "block": _identifiers("mechanism", [c.prefix])[c.prefix],
@@ -134,7 +134,7 @@ class _Block:
             if name == "count":
                 yield from ("iterated := 0.0;", "valid := TRUE;")
             elif name == "status":
-                allowed = (k for k, answer in enumerate(self.source.answers()) if answer == "OK")
+                allowed = (k for k, answer in enumerate(exported.answers()) if answer == "OK")
                 tests = " OR ".join(f"rule = {_number(k)}" for k in allowed)
                 yield f"valid := valid AND ({tests});"
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..codegen.emit import hoisted, newton_rule
-from ..codegen.printer import print_functions
+from ..codegen.printer import Format, literal, print_functions
 from ..codegen.stages import controlled
 from ..declare.limits import END
 from ..equations.checks import Check, Column
@@ -28,6 +28,7 @@ from ..instants.cycle_table import CycleTable
 from ..instants.rules import limits
 from ..instants.tabulate import still
 from .calls import CALLS
+from .statuses import ANSWERS
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +64,25 @@ class ExportedProgram:
     def called(self, calls: Iterable[str]) -> list[str]:
         """Return those of some functions that it has, in order."""
         return [name for name in calls if name in self.functions]
+
+    @property
+    def number(self) -> Format:
+        """Literal of C for a number of the precision."""
+        return literal(self.precision)
+
+    def column(self, output: str) -> str:
+        """The column of an output, by its full name, as C and other languages write it."""
+        return f"y[{self.columns.index(Output.of(output))}]"
+
+    def answers(self) -> Iterator[str]:
+        """Answer for each rule that may be broken, by its number."""
+        program = self.program
+        yield "OK"
+        for rule in program.rules:
+            indeterminate = rule.bound is not None and program.bounds[rule.bound].kind.startswith(
+                "OPEN"
+            )
+            yield "UNDETERMINED" if indeterminate else ANSWERS.get(rule.status, "OK")
 
     @property
     def text(self) -> str:
