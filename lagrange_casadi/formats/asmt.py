@@ -127,9 +127,11 @@ def _tree(model: Model, text: str) -> _Line:
         del above[depth + 1 :]
         above[-1].inside.append(one := _Line(model, data.strip(), at))
         above.append(one)
-    for one in above[0].inside[1:]:
-        one.ignore()
-    return above[0].needed("Assembly")
+    root = above[0].needed("Assembly")
+    for one in above[0].inside:
+        if one is not root:
+            one.ignore()
+    return root
 
 
 class _Reader:
@@ -157,16 +159,15 @@ class _Reader:
         sets = root.needed("ConstraintSets")
         for joint in sets.below("Joints"):
             self.joint(joint)
-        motions = list(sets.below("Motions"))
-        for motion in motions:
-            if motion.name != "AllowRotation":
+        for motion in sets.below("Motions"):
+            if motion.name == "AllowRotation":
+                motion.ignore()
+            else:
                 self.motion(motion)
-        for one in (
-            *(motion for motion in motions if motion.name == "AllowRotation"),
-            *sets.below("Limits"),
-            *sets.below("GeneralConstraintSets"),
-            *root.below("ForceTorques"),
-        ):
+        for name in ("Limits", "GeneralConstraintSets"):
+            for one in sets.below(name):
+                one.ignore()
+        for one in root.below("ForceTorques"):
             one.ignore()
         self.times()
 
@@ -209,8 +210,7 @@ class _Reader:
             one, other = (
                 model.frame_of(body).then(at) for body, at in zip(bodies, (near, far), strict=True)
             )
-            half_turn = _half_turn(KINDS[kind], one.relative(other).axes)
-            far = far.then(Frame(axes=half_turn))
+            far = far.then(Frame(axes=_half_turn(KINDS[kind], one.relative(other).axes)))
             name = model.add(Joint, stated, where, KINDS[kind], *bodies, near, far)
         else:
             if kind == "GearJoint":

@@ -86,7 +86,7 @@ def _connected(model: Model) -> None:
     for tie in model.ties.values():
         for one, other in ((tie.parent, tie.child), (tie.child, tie.parent)):
             if one not in reached and other in reached:
-                model.hang(one, GROUND, "free", tie.where)
+                model.attach(one, GROUND, "free", tie.where)
                 _connected(model)
                 return
     for body in model.bodies.values():

@@ -119,7 +119,7 @@ class _Reader:
         self.bodies[k], above = name, self.bodies[int(m.body_parentid[k])]
         first, count = int(m.body_jntadr[k]), int(m.body_jntnum[k])
         if not count:
-            model.hang(name, above, "weld", where)
+            model.attach(name, above, "weld", where)
         for j in range(first, first + count):
             below = name
             if j < first + count - 1:

@@ -214,9 +214,7 @@ class Model:
         return stated
 
     def number(self, where: str, given: object, what: str) -> float:
-        """Return a number of the file. Raises :class:`.ModelFileError` for what is none, and for
-        one that no machine has.
-        """
+        """Return a number of the file, which a machine may have."""
         try:
             found = float(given)  # type: ignore[arg-type]
         except (TypeError, ValueError, OverflowError):
@@ -247,8 +245,9 @@ class Model:
         exact = right_angled(axes)
         off = float(np.abs(exact - axes).max())
         if off > 1e-4 or np.linalg.det(exact) < 0:
-            words = "axes: expected three directions at right angles, right-handed"
-            raise self.refuse(where, words)
+            raise self.refuse(
+                where, "axes: expected three directions at right angles, right-handed"
+            )
         if off > max(1e-9, self.rounded[0]):
             self.rounded = off, where
         return exact
@@ -284,8 +283,8 @@ class Model:
         first, second = (self.find("joint", one, where) for one in joints)
         self.add(Coupling, stated, where, first, second, ratio, offset)
 
-    def hang(self, body: str, parent: str, kind: str, where: str) -> None:
-        """Add a joint of a body as it is: a ``weld``, or a ``free`` one."""
+    def attach(self, body: str, parent: str, kind: str, where: str) -> None:
+        """Attach a body as it is: by a ``weld``, or by a ``free`` joint."""
         near = self.frame_of(parent).relative(self.frame_of(body))
         name = f"{body}_{'fixed' if kind == 'weld' else kind}"
         self.add(Joint, name, where, kind, parent, body, near, Frame())

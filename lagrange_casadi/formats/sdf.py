@@ -67,7 +67,7 @@ class _Reader:
         hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
         if GROUND not in hung and model.bodies:
             first = next(iter(model.bodies.values()))
-            model.hang(first.name, GROUND, "weld", first.where)
+            model.attach(first.name, GROUND, "weld", first.where)
             model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
         for one in self.line.inside:
             if one.name in ("model", "include"):
