@@ -346,6 +346,11 @@ def test_friction_stops_a_block_where_it_must_and_holds_it():
     assert found.ended.angle == pytest.approx(3.0 * stop / 2.0, rel=1e-10)
     assert found.t.size == 1 + int(stop / 0.01)
     assert found.solution.certified
+    for mu in (0.5, 0.75):  # it stops at an instant, which has no friction of its own
+        found = free(plane(0.0, mu, mu * 9.81))
+        assert found.ended.t == pytest.approx(1.0, rel=1e-12)
+        assert found.t[-1] == 0.99
+        assert found.solution.certified
     slope = math.atan(0.3)
     with pytest.raises(LagrangeCasadiError, match="held at t = 0 s"):
         free(plane(0.99 * slope, 0.3, 0.0))

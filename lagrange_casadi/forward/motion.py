@@ -158,7 +158,9 @@ def follow(
         raise DeclarationError("t: a free machine needs two instants or more")
     machine.begin(float(times[0]), start.angle)
     y, events = _integrated(machine, start, times, accuracy)
-    times = times[: y.shape[1]]
+    # An instant at which friction stops the machine has no friction of its own.
+    stops = bool(events) and events[-1].kind == "held" and abs(y[1, -1]) < machine.slow
+    times, y = (row[..., : y.shape[1] - stops] for row in (times, y))
     if times.size < 2:
         raise LagrangeCasadiError(
             f"free machine '{machine.name}': the run ended before the second instant: {events[-1]}"
