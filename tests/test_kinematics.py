@@ -1,5 +1,6 @@
 """Loops: closure, rates, branches, and what is said where they cannot be closed."""
 
+import dataclasses
 import math
 
 import casadi as ca
@@ -20,9 +21,9 @@ from mechanisms import (
 )
 from stepped import pinned
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
 from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi.motion import expression, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -106,6 +107,15 @@ def test_a_loop_that_cannot_close_at_the_start_is_named():
         ),
     ):
         derive(four_bar(lengths=(0.1, 0.1, 0.1), frame=(1.0, 0.0)))
+
+
+@pytest.mark.parametrize("case", ["slider_crank", "spatial_slider_crank"])
+def test_a_motion_that_is_no_number_at_the_start_is_named(case):
+    scene = load_case(case).scene
+    (drive,) = scene.motion
+    motion = {drive: expression(lambda t: ca.log(t - 5.0))}
+    with pytest.raises(DeclarationError, match=rf"no number where it starts.* {drive} = nan rad"):
+        derive(dataclasses.replace(scene, motion=motion))
 
 
 def test_a_loop_that_opens_on_the_way_is_named_with_its_angle():

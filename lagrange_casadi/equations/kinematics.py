@@ -20,7 +20,7 @@ import casadi as ca
 
 from ..arithmetic.scalars import column, graph
 from ..declare.directions import most_across
-from ..errors import AssemblyError
+from ..errors import AssemblyError, DeclarationError
 from ..geometry.vectors import AXES
 from .blocks import Block, solving_order
 from .iteration import Iterated, NewtonLoop, place_roughly
@@ -91,9 +91,15 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
     ``posture`` gives rough directions of links [rad] and coordinates of joints [rad or m], by the
     link's or the joint's name. Raises :class:`MobilityError` where drives and degrees of freedom do
     not match, :class:`PostureError` for a posture that leaves branches open, :class:`AssemblyError`
-    where the mechanism cannot be assembled at the start.
+    where the mechanism cannot be assembled at the start, :class:`DeclarationError` for a motion
+    that is no number there.
     """
     solver = _Solver(multibody, dict(posture), start)
+    if multibody.loop_equations and not all(map(math.isfinite, start.driven)):
+        raise DeclarationError(
+            f"the motion is no number where it starts, at t = {start.t:.9g} s{solver.where()};"
+            " loops cannot be closed there"
+        )
     blocks = solving_order(multibody, solver.beginning())
     waiting: list[tuple[int, ...]] = []
     for tried in range(_WAYS):
@@ -254,8 +260,7 @@ class _Solver:
                 else "cannot be closed"
             )
             raise AssemblyError(
-                f"the loop closed by {block.joints} {what} at the start of the"
-                f" motion{self._where()}"
+                f"the loop closed by {block.joints} {what} at the start of the motion{self.where()}"
             )
         distance = {signs: self._distance(form, found) for signs, found in values.items()}
         least = min(distance.values())
@@ -386,10 +391,11 @@ class _Solver:
                 return
         raise AssemblyError(
             f"the loops closed by {loop.joints} cannot be assembled from the given posture at the"
-            f" start of the motion{self._where()}"
+            f" start of the motion{self.where()}"
         )
 
-    def _where(self) -> str:
+    def where(self) -> str:
+        """Return the values of drives at the start, in words."""
         driven = [c for c in self.multibody.coordinates if c.driven]
         return where((c.name, c.kind, v) for c, v in zip(driven, self.start.driven, strict=True))
 

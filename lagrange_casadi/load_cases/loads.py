@@ -115,7 +115,7 @@ def refused(link: str, why: str) -> DeclarationError:
 
 
 def unlike(name: str, taken: Collection[str]) -> str:
-    """Return a name, with underscores if it is taken: capitals and small letters are one to solvers."""
+    """Return a name, with underscores if it is taken: to solvers, capitals are small letters."""
     while name.upper() in map(str.upper, taken):
         name += "_"
     return name
