@@ -15,7 +15,8 @@ from lagrange_casadi import evaluate, export
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
 
-pytestmark = [alive.NEEDS_BROWSER, alive.NEEDS_ENGINE]
+# Where ziglang has no C library yet, it builds one.
+pytestmark = [alive.NEEDS_BROWSER, alive.NEEDS_ENGINE, pytest.mark.early]
 
 chromium = alive.chromium
 
