@@ -23,6 +23,8 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
 from lagrange_casadi.motion import expression, harmonic
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 
 def swinging(middle, *amplitudes, rate=4.0):
     """A law of several sines."""
