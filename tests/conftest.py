@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import importlib
 import json
 import os
 import shutil
@@ -10,6 +11,7 @@ import signal
 import sys
 import zlib
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -83,6 +85,16 @@ def _quick_to_build():
                 compiler.FLAGS, language, tuple("-O0" if flag == "-O3" else flag for flag in flags)
             )
         yield released
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _no_wait_for_the_disk():
+    """Leave files to the system, which writes them when it likes: thousands of them would each wait
+    for the disk, and only a loss of power shows a difference.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", lambda _: None)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -205,15 +217,29 @@ def pytest_collection(session):
     before, kept = (sys.dont_write_bytecode, sys.pycache_prefix), bytecode(session.config)
     if kept is not None:
         sys.dont_write_bytecode, sys.pycache_prefix = False, str(kept)
+    if session.config.args == session.config.getini("testpaths"):
+        import_share()
     yield
     sys.dont_write_bytecode, sys.pycache_prefix = before
     gc.freeze()  # no need to look for circles in it again and again
 
 
+def import_share():
+    """Import every so many of all test modules, each process others, so that none is compiled by
+    all. What fails is reported where it is collected.
+    """
+    process = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
+    count = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    for path in sorted(Path(__file__).parent.glob("test_*.py"))[int(process) :: count]:
+        with suppress(Exception, pytest.skip.Exception):
+            importlib.import_module(path.stem)
+
+
 def pytest_collection_modifyitems(config, items):
     """Leave out long tests, and parameters of those that are sampled, unless they are asked for,
-    all or by name.
+    all or by name. What is early begins the order.
     """
+    items.sort(key=lambda item: item.get_closest_marker("early") is None)
     if config.getoption("--long") or any("::" in argument for argument in config.args):
         return
     counts = Counter(item.nodeid.partition("[")[0] for item in items)

@@ -133,8 +133,8 @@ def sleeve():
 
 
 CASES = {
-    "connecting_rod": (lambda: load_case("connecting_rod").scene, ("rod", "crank")),
-    "press": (press, ("crank", "rod")),
+    "connecting_rod": (lambda: load_case("connecting_rod").scene, ("rod",)),
+    "press": (press, ("rod",)),
     "four_bar": (four_bar, ("crank", "coupler", "rocker")),
     "sleeve": (sleeve, ("arm",)),
     "robot": (lambda: robot(beams.rectangle(0.25, 0.2)), ("upper",)),  # in space

@@ -43,7 +43,7 @@ def test_what_fails_on_the_machine_fails_here(tmp_path):
         target.selftest()
 
 
-@pytest.mark.sampled(29)
+@pytest.mark.sampled(34)
 @pytest.mark.parametrize(("name", "method"), [pair for pair in PAIRS if pair[1] != "double"])
 def test_single_precision_asks_for_no_arithmetic_of_doubles(name, method, tmp_path):
     target = exported(name, method, tmp_path / name)

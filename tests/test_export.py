@@ -52,7 +52,7 @@ def test_the_source_is_clean(name, options, tmp_path):
     clean(SCENES[name](), tmp_path, options, compilers())
 
 
-@pytest.mark.sampled(35)
+@pytest.mark.sampled(37)
 @pytest.mark.parametrize("options", ARITHMETIC[:2], ids=str)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_the_source_of_every_case_is_clean(case, options, tmp_path):

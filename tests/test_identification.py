@@ -35,6 +35,8 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import expression
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 LOADING = ("mass", "k", "preload", "c", "mu")
 """The pin's friction goes with the size of its load, which is not linear in what loads it."""
 

@@ -104,6 +104,12 @@ def tree_of(path: Path) -> ast.Module:
     return ast.parse(path.read_text())
 
 
+@cache
+def nodes_of(path: Path) -> tuple[ast.AST, ...]:
+    """All nodes of a file, which many tests look at; to find them takes the time."""
+    return tuple(ast.walk(tree_of(path)))
+
+
 def room(module: str) -> str:
     return module.partition(".")[0]
 
@@ -118,18 +124,17 @@ def imported(name: str) -> list[tuple[str, int]]:
 
 def _imported(name: str) -> Iterator[tuple[str, int]]:
     path, known = modules()[name], modules()
-    tree = tree_of(path)
     package = [
         "lagrange_casadi",
         *(name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]),
     ]
     checked = [
         node
-        for node in ast.walk(tree)
+        for node in nodes_of(path)
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
     ]
     typed = {inner for node in checked for inner in ast.walk(node)}
-    for node in ast.walk(tree):
+    for node in nodes_of(path):
         found: list[str] = []
         if isinstance(node, ast.ImportFrom) and node not in typed:
             above = ".".join(package[: len(package) - node.level + 1]) if node.level else ""
@@ -193,14 +198,13 @@ def test_what_is_compiled_is_not_declared_again():
     an error, hand over theirs.
     """
     for name, path in modules().items():
-        tree = tree_of(path)
         loads = [
             node
-            for node in ast.walk(tree)
+            for node in nodes_of(path)
             if isinstance(node, ast.Assign) and "load_case(" in ast.unparse(node.value)
         ]
         handed = {ast.unparse(target) for node in loads for target in node.targets} | {"error"}
-        for node in ast.walk(tree) if room(name) not in (*DECLARED, "case") else ():
+        for node in nodes_of(path) if room(name) not in (*DECLARED, "case") else ():
             if isinstance(node, ast.Attribute) and node.attr in ("scene", "mechanism"):
                 owner = ast.unparse(node.value)
                 assert owner in handed or owner.startswith("load_case("), f"{name}:{node.lineno}"
@@ -238,12 +242,13 @@ def test_only_the_table_of_methods_names_what_is_above():
     """
     asked: dict[str, str] = {}
     for name, path in modules().items():
-        for node in ast.walk(tree_of(path)):
-            called = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
-            if called == "method":
+        for node in nodes_of(path):
+            called = node.func if isinstance(node, ast.Call) else None
+            if isinstance(called, ast.Name) and called.id == "method":
                 (word,) = (argument.value for argument in node.args)
                 asked[word] = name
-            if called.endswith(("import_module", "__import__")) and name != "methods":
+            last = getattr(called, "attr", getattr(called, "id", ""))
+            if last.endswith(("import_module", "__import__")) and name != "methods":
                 assert ast.unparse(node.args[0]).startswith("'distributed"), f"{name}:{node.lineno}"
     assert asked.keys() == METHODS.keys()
     for word, answer in METHODS.items():
@@ -387,9 +392,9 @@ def test_every_leaf_can_be_taken_away(tmp_path):
 
 def for_users() -> set[str]:
     """Functions and classes that the façade or a command imports."""
-    facade = ast.walk(tree_of(PACKAGE / "__init__.pyi"))
-    files = [tree_of(modules()[f"cli.{name}"]) for name in ("commands", "design_commands")]
-    commands = (node for tree in files for node in ast.walk(tree))
+    facade = nodes_of(PACKAGE / "__init__.pyi")
+    files = [modules()[f"cli.{name}"] for name in ("commands", "design_commands")]
+    commands = (node for path in files for node in nodes_of(path))
     imports = [*((node, "") for node in facade), *((node, "cli.") for node in commands)]
     return {
         f"{package}{node.module}.{alias.name}"
@@ -406,10 +411,9 @@ def test_no_function_takes_more_than_eight_arguments():
     """
     users = for_users()
     for name, path in modules().items():
-        tree = tree_of(path)
-        classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+        classes = [node for node in nodes_of(path) if isinstance(node, ast.ClassDef)]
         owners = {member: owner.name for owner in classes for member in owner.body}
-        for node in ast.walk(tree):
+        for node in nodes_of(path):
             if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
                 continue
             taken = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
@@ -427,7 +431,7 @@ def test_types_say_something():
     """Few parameters and results are of the type ``Any``; the number may only fall."""
     untold = []
     for name, path in modules().items():
-        for node in ast.walk(tree_of(path)):
+        for node in nodes_of(path):
             if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
                 continue
             taken = node.args
@@ -463,7 +467,7 @@ def test_the_engine_knows_no_mechanism():
 def test_only_the_command_line_speaks_of_its_options():
     """Words that are an option and nothing else are no message: a rung's, a compiler's."""
     for name, path in modules().items():
-        for node in ast.walk(tree_of(path)) if room(name) != "cli" else ():
+        for node in nodes_of(path) if room(name) != "cli" else ():
             if (
                 isinstance(node, ast.Constant)
                 and isinstance(node.value, str)
@@ -474,25 +478,26 @@ def test_only_the_command_line_speaks_of_its_options():
                 )
 
 
+DOUBTFUL = re.compile(
+    rf"^ *(from|import) +(test_|lagrange_casadi\.(?!({'|'.join(PUBLIC)}) import))", re.MULTILINE
+)
+"""A line that may be an import of a test, or of an inner module."""
+
+
 @pytest.mark.quick
-def test_tests_reach_inner_modules_by_one_file():
-    """A module that moves is then a change of one line of the tests."""
+def test_tests_take_inner_modules_from_one_file_and_nothing_from_other_tests():
+    """A module that moves is then a change of one line of the tests; what several tests need has a
+    place of its own, as mechanisms have.
+    """
     for path in sorted(Path(__file__).parent.glob("*.py")):
-        if path.name == "internals.py":
-            continue
-        for node in ast.walk(tree_of(path)):
+        # Few files have such a line, and to parse them all takes seconds.
+        for node in nodes_of(path) if DOUBTFUL.search(path.read_text()) else ():
             parts = (node.module or "").split(".") if isinstance(node, ast.ImportFrom) else []
             inner = parts[:1] == ["lagrange_casadi"] and len(parts) > 1
-            assert not inner or (len(parts) == 2 and parts[1] in PUBLIC), (
-                f"{path.name}:{node.lineno}: from {node.module}: take it from internals"
-            )
-
-
-def test_tests_take_nothing_from_other_tests():
-    """What several need has a place of its own, as mechanisms have."""
-    for path in sorted(Path(__file__).parent.glob("*.py")):
-        for node in ast.walk(tree_of(path)):
-            taken = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            assert (
+                path.name == "internals.py" or not inner or (len(parts) == 2 and parts[1] in PUBLIC)
+            ), f"{path.name}:{node.lineno}: from {node.module}: take it from internals"
+            taken = [parts[0]] if parts else []
             taken += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             assert not [name for name in taken if name.startswith("test_")], (
                 f"{path.name}:{node.lineno}"
@@ -503,7 +508,7 @@ def length_of_code(path: Path) -> int:
     """Lines beside docstrings."""
     documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     length = len(path.read_text().splitlines())
-    for node in ast.walk(tree_of(path)):
+    for node in nodes_of(path):
         if isinstance(node, documented) and ast.get_docstring(node) is not None:
             text = node.body[0]
             length -= text.end_lineno - text.lineno + 1

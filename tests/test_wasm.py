@@ -16,7 +16,8 @@ from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.motion import polynomial
 
-pytestmark = [alive.NEEDS_BROWSER, alive.NEEDS_ENGINE]
+# Where ziglang has no C library yet, it builds one.
+pytestmark = [alive.NEEDS_BROWSER, alive.NEEDS_ENGINE, pytest.mark.early]
 
 chromium = alive.chromium
 
