@@ -10,11 +10,12 @@ import click
 from ..errors import escaped
 
 
-def echo(line: str, err: bool = False) -> None:
-    """Print a line on standard output, or on standard error; control characters
-    in it are escaped.
+def echo(*lines: str, err: bool = False) -> None:
+    """Print lines on standard output, or on standard error; control characters in them are
+    escaped.
     """
-    click.echo(escaped(line), err=err)
+    for line in lines:
+        click.echo(escaped(line), err=err)
 
 
 def say_step(number: int, what: str) -> None:
