@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from ..errors import DeclarationError
 from .parts import Body, Expression, Point, Vector
 
 JointKind = Literal[
@@ -213,3 +214,16 @@ class Joint:
         """
         axes = self.axes
         return axes[0].kind if len(axes) == 1 else None
+
+
+def check_ends(what: str, kind: JointKind, parent: Point, child: Point) -> None:
+    """Raise :class:`DeclarationError` for a joint of a body with itself, and for a parent that has
+    no direction for what the joint holds.
+    """
+    if parent.body is child.body:
+        raise DeclarationError(f"{what} joins '{parent.body.name}' to itself")
+    if kind not in ("revolute", "spherical") and not parent.body.oriented:
+        raise DeclarationError(
+            f"{what}: its parent '{parent.body.name}' is a point mass, which has no direction for"
+            f" {'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
+        )
