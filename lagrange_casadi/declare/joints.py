@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from ..base.brief import Brief
 from ..errors import DeclarationError
 from .parts import Body, Expression, Point, Vector
 
@@ -98,8 +99,8 @@ class Axis:
         return "slide" if self.move == "slide" else "angle"
 
 
-@dataclass(frozen=True, eq=False)
-class Joint:
+@dataclass(frozen=True, eq=False, repr=False)
+class Joint(Brief):
     """A joint between a point of its parent and a point of its child.
 
     - ``revolute`` holds the two points together; the coordinate is the child's direction less the

@@ -17,6 +17,7 @@ import casadi as ca
 
 from ..arguments import public
 from ..arithmetic.scalars import column
+from ..base.brief import listed
 from ..base.symbolic import Graphs, symbolic
 from ..base.units import Number
 from ..beams.beam import Beam
@@ -97,11 +98,9 @@ class Mechanism(Graphs):
         self.bodies["ground"] = Ground("ground")
 
     def __repr__(self) -> str:
-        names = ", ".join(body.name for body in self.moving)
-        return (
-            f"<Mechanism {self.name}: {names or 'no body yet'}; joints:"
-            f" {', '.join(self.joints) or 'none yet'}>"
-        )
+        bodies = listed((body.name for body in self.moving), "no body yet")
+        joints = listed(self.joints, "none yet")
+        return f"<{type(self).__name__} {self.name}: {bodies}; joints: {joints}>"
 
     @property
     def ground(self) -> Ground:

@@ -42,7 +42,7 @@ Or the directions of the child's x and y axes, in the parent's axes.
 
 @public
 @symbolic
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class SpatialMechanism(Mechanism):
     """A mechanism under declaration whose links lie in space.
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..arguments import Count, Positive, public
 from ..base.arrays import Array, Expression
+from ..base.brief import Brief
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Backend
 from ..case import Case, scene_of
@@ -44,8 +45,8 @@ _IPOPT = {"print_level": 0, "sb": "yes", "tol": 1e-4, "hessian_approximation": "
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Excitation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Excitation(Brief):
     """A periodic motion of drives, and how well it determines the parameters.
 
     ``sines`` and ``cosines`` are amplitudes of each harmonic, and ``centres`` the means, by drive

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arguments import NotNegative, Positive, public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..base.vocabulary import Backend
 from ..case import Case, scene_of
 from ..declare.scene import Scene
@@ -49,8 +50,8 @@ class BaseParameter:
         return abs(self.value) / self.error if self.error > 0.0 else math.inf
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Brief):
     """Measured quantities beside the model of them, each (t,); NaN where one is missing."""
 
     t: Array
@@ -75,8 +76,8 @@ class Comparison:
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Identification:
+@dataclass(frozen=True, eq=False, repr=False)
+class Identification(Brief):
     """Parameters that were found, and their standard errors.
 
     ``name`` is that of the mechanism. ``values`` and ``errors`` are those of the unknown

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ..arguments import NotNegative, Positive, public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..base.csv_rows import Row, headings, read_rows
 from ..base.units import UNITS
 from ..declare.curves import curve
@@ -53,8 +54,8 @@ _REACH = 4.0
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Measurements:
+@dataclass(frozen=True, eq=False, repr=False)
+class Measurements(Brief):
     """Columns over time.
 
     Parameters

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..beams.beam import Beam
 from ..declare.density import NumericDensity
 from ..declare.stated import Triple
@@ -17,8 +18,8 @@ _SAME = 1e-9
 """Distance of two places [m] that are one node."""
 
 
-@dataclass(frozen=True, eq=False)
-class Rod:
+@dataclass(frozen=True, eq=False, repr=False)
+class Rod(Brief):
     """A link along x: its length [m], its mass and the second moments yy, zz, yz of its slices,
     each by the ratio x/length, and its beam.
     """
@@ -43,8 +44,8 @@ class Load:
     moment: Triple
 
 
-@dataclass(frozen=True)
-class LoadCase:
+@dataclass(frozen=True, repr=False)
+class LoadCase(Brief):
     """Everything that loads a link at time ``t`` [s], on its own axes, from its origin.
 
     ``governs`` are the quantities that are largest at this instant. ``rod`` is the link as a bar,

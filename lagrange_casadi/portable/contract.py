@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
+from ..base.brief import Brief
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, table_of
@@ -82,8 +83,8 @@ class LinkContract:
     constant: str
 
 
-@dataclass(frozen=True)
-class Contract:
+@dataclass(frozen=True, repr=False)
+class Contract(Brief):
     """An exported program's interface.
 
     ``inputs`` and ``outputs`` are the members of these structs in order; ``rests`` is true if each
