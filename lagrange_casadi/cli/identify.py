@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..base.publish import check_writable
 from ..case import load_case
 from ..identification import Comparison, Identification, read_measurements
 from ..identification import identify as estimate
@@ -15,6 +14,8 @@ from ..identification.file import save_identification
 from ..identification.page import check_page, report_identification
 from ..identification.plot import plot_identification
 from ..shapes.pictures import check_picture
+from ..store.opening import IDENTIFICATION
+from ..store.runs import check_target
 from .echo import echo
 from .options import HDF5, target
 
@@ -35,7 +36,7 @@ def identify(
     """See :func:`.design_commands.identify`."""
     loaded = load_case(case)
     out = target("--out", out, f"{loaded.name}_identified.h5", HDF5)
-    check_writable(out, hdf5=True)
+    check_target(out, IDENTIFICATION)
     if figure is not None:
         check_picture(figure)
     if report is not None:
