@@ -51,6 +51,12 @@ def free(
         raise click.UsageError("--fluctuation finds the flywheel; expected it without --inertia")
     if fluctuation is not None and t is not None:
         raise click.UsageError("--fluctuation computes a steady cycle; expected it without --t")
+    if drive is None and geared != 1.0:
+        raise click.UsageError("--geared goes with --drive")
+    if not math.isfinite(given["load"]):
+        raise click.UsageError(f"--load: expected a finite number, got {given['load']:g}")
+    if not 0.0 < cycle < math.inf:
+        raise click.UsageError(f"--cycle: expected a positive number of turns, got {cycle:g}")
     if plot is not None:
         check_picture(plot)
     loaded = load_case(case)
@@ -96,8 +102,9 @@ def _numbers(what: str, text: str, many: int) -> list[float]:
         found = [real(word) for word in text.split(",")]
     except ValueError:
         found = []
-    if len(found) != many:
-        raise click.UsageError(f"{what}: expected {many} numbers with commas between, got '{text}'")
+    if len(found) != many or not all(map(math.isfinite, found)):
+        numbers = "a finite number" if many == 1 else f"{many} finite numbers with commas between"
+        raise click.UsageError(f"{what}: expected {numbers}, got '{text}'")
     return found
 
 

@@ -265,6 +265,11 @@ def identify(
         raise DeclarationError("identify: expected at least one unknown parameter, got none")
     if lost := [name for name in prior or {} if name not in names]:
         raise UnknownNameError("parameter of prior=", lost, names)
+    for name, spread in (prior or {}).items():
+        if not 0.0 < spread < math.inf:
+            raise DeclarationError(
+                f"prior of '{name}': expected a finite number above 0, got {spread:g}"
+            )
     drives = tuple(scene.laws)
     quantities = measurements.quantities(drives)
     if not quantities:
