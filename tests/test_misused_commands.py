@@ -161,7 +161,7 @@ def misuses():
             one
             for parameter in main_options(command)
             for one in parameter.opts
-            if one.startswith("--")
+            if one.startswith("--") and not getattr(parameter, "is_flag", False)
         }
         for value in (
             WRONG["FILE" if command in (*SWEPT, *RUN) else "CASE"]
