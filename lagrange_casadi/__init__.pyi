@@ -39,15 +39,9 @@ from .identification import (
 )
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
-from .load_cases import (
-    BearingLoads,
-    LoadCase,
-    bearing_loads,
-    link_load_cases,
-    write_load_cases,
-    write_spectrum,
-)
+from .load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
 from .store.runs import check, load, save
+from .strength.bearings import BearingLoads, bearing_loads
 from .studies.designs.prepared import Prepared, prepare
 from .studies.evaluate import evaluate
 from .studies.optimise import Front, Optimum, optimise

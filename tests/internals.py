@@ -34,6 +34,7 @@ from lagrange_casadi.base.numerals import readable as numerals_readable
 from lagrange_casadi.base.numerals import real, whole
 from lagrange_casadi.base.publish import check_writable, filling, replacing, uninterrupted, writing
 from lagrange_casadi.base.quantities import FORCES, Output, quotient
+from lagrange_casadi.base.recorded_table import RecordedTable
 from lagrange_casadi.base.seal import SIZE, kind_of, verify
 from lagrange_casadi.base.seal import seal as seal_seal
 from lagrange_casadi.base.space import cores
@@ -95,7 +96,6 @@ from lagrange_casadi.declare.parts import (
     Torque,
 )
 from lagrange_casadi.declare.polynomials import lowest, powers
-from lagrange_casadi.declare.recordings import _read
 from lagrange_casadi.declare.rest_laws import (
     LAWS,
     Limits,

@@ -67,6 +67,16 @@ def elsewhere():
     return replace(rolling(), drives={"main": 1.0, "pin": 2.0})
 
 
+def called_as_rates():
+    """An arm whose second drive is called as the rate of the first."""
+    m = Mechanism("arm")
+    upper, lower = (m.link(name, length=0.4, mass=1.0) for name in ("upper", "lower"))
+    m.revolute("pin", m.ground, upper)
+    m.revolute("pin_rate", upper.tip, lower)
+    moved = {"pin": motion.polynomial(0.1, 2.0), "pin_rate": motion.polynomial(0.2, 3.0)}
+    return Scene(m, moved, t=(0.0, 1.0, 11))
+
+
 SCENES = {
     title.replace(" ", "_").lower(): (lambda title=title: shown(title)["scene"])
     for title in ("V-twin", "Scissor lift", "Toggle press", "Cam", "SCARA", "Geneva drive")

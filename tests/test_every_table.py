@@ -3,13 +3,14 @@ table is of.
 """
 
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, example, given, settings
 from hypothesis import strategies as st
 from internals import ListingListed as Listed
-from internals import _read, read_designs, read_profile
+from internals import RecordedTable, read_designs, read_profile
 
 from lagrange_casadi.actuators import read_motors
 from lagrange_casadi.beams import read_profiles
@@ -37,8 +38,7 @@ HEADS = {
 
 
 def samples(path):
-    found = _read(path, 1, 2, "mm", 1.0)
-    return found.t, found.values
+    return RecordedTable.read(Path(path), "times and values").columns(0, [1])
 
 
 def designs(path):

@@ -34,6 +34,7 @@ WICKED = [
     "Kurbel\u2013Presse \u00b5m\u00b2 \U0001f600",
     "%{ %} '); system('touch PWNED'); ('",
     "</title><script>alert(1)</script>",
+    "long" * 75,
 ]
 LINES = st.text(
     st.characters(exclude_categories=["C", "Zs", "Zl", "Zp"], include_characters=" "), max_size=12

@@ -14,7 +14,7 @@ import pytest
 from conftest import CASES, SPATIAL
 from importer import Instance, refusing, robot, signals, simulated, windy
 from internals import ALLOWED, export, find_compiler
-from machines import elsewhere
+from machines import called_as_rates, elsewhere
 from mechanisms import sampled_cam
 from mechanisms import slider_crank as free
 
@@ -39,6 +39,7 @@ SCENES = {
     "free": free,
     "cam": sampled_cam,
     "planetary": elsewhere,
+    "rates": called_as_rates,
 }
 GUIDED = {name: lambda name=name: load_case(CASES / name).scene for name in ("excavator", *SPATIAL)}
 
@@ -457,7 +458,8 @@ def test_the_motion_is_inside_by_the_angle_of_a_crank(unit, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("name", "by"), [("robot", True), ("windy", "time"), ("slider_crank", "O")]
+    ("name", "by"),
+    [("robot", True), ("windy", "time"), ("slider_crank", "O"), ("rates", "pin_rate")],
 )
 def test_a_script_compares_a_unit_with_its_golden_vectors(unit, name, by, tmp_path):
     """The first iterates its loops; each number that is changed is noticed."""

@@ -2,11 +2,23 @@
 
 import runpy
 
-import casadi as ca
 import h5py
 import numpy as np
 import pytest
 from conftest import CASES
+from measured_machines import (
+    ARM,
+    PLATE,
+    RUBBING,
+    combined,
+    noisy,
+    platform,
+    record,
+    rubbing,
+    spatial_arm,
+    swinging,
+    two_links,
+)
 
 from lagrange_casadi import (
     Measurements,
@@ -20,176 +32,11 @@ from lagrange_casadi import (
     read_measurements,
 )
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
-from lagrange_casadi.motion import expression, harmonic
-
-
-def swinging(middle, *amplitudes, rate=4.0):
-    """A law of several sines."""
-
-    def law(t):
-        each = enumerate(amplitudes, 1)
-        return middle + sum(a * ca.sin(k * rate * t + 0.7 * k * k) for k, a in each)
-
-    return expression(law)
-
-
-def record(scene, truth, *quantities, noise=0.0, seed=0):
-    """Motion and forces of a scene with true parameters, with or without noise."""
-    solution = evaluate(scene, parameters=truth, wanted=["all"], certificate=False)
-    columns = {}
-    for drive in scene.laws:
-        for end in ("", "_rate", "_acceleration"):
-            columns[f"{drive}{end}"] = solution.array(f"motion:{drive}{end}")
-    generator, deviations = np.random.default_rng(seed), {}
-    for name in quantities:
-        values = solution.array(name)
-        columns[name] = values + noise * generator.standard_normal(values.size)
-        if noise:
-            deviations[name] = noise
-    return Measurements(solution.t, columns, deviations)
-
-
-def two_links(length=0.5):
-    """A planar arm in moments about its joints, in which forces are linear."""
-    m = Mechanism("arm")
-    links = []
-    for k, (mass, moment, inertia) in enumerate([(3.0, 0.6, 0.3), (2.0, 0.3, 0.1)], 1):
-        mass = m.parameter(f"m{k}", mass, "kg")
-        moment = m.parameter(f"h{k}", moment, "kg m")
-        inertia = m.parameter(f"J{k}", inertia, "kg m^2")
-        centre = (moment / mass, 0.0)
-        about = inertia - moment**2 / mass
-        links.append(m.link(f"l{k}", length=length, mass=mass, centre=centre, inertia=about))
-    first, second = links
-    m.revolute("A", m.ground, first)
-    m.revolute("B", first.tip, second)
-    motion = {"A": swinging(0.3, 0.5, 0.2), "B": swinging(0.8, 0.4, 0.3, rate=5.0)}
-    return Scene(m, motion, t=(0, 3, 301))
-
-
-ARM = {"m1": 2.5, "h1": 0.5, "J1": 0.25, "m2": 1.7, "h2": 0.4, "J2": 0.16}
-
-
-def spatial_arm():
-    """Three links in space, ten parameters each, about their joints."""
-    m = SpatialMechanism("arm3")
-    link, axes, truth, motion = m.ground, [(0, 0, 1), (0, 1, 0), (0, 1, 0)], {}, {}
-    generator = np.random.default_rng(3)
-    for k, axis in enumerate(axes, 1):
-        mass = m.parameter(f"m{k}", 4.0 - k, "kg", low=0.0)
-        h = [m.parameter(f"h{x}{k}", 0.2, "kg m") for x in "xyz"]
-        names = ("xx", "xy", "xz", "yy", "yz", "zz")
-        entries = [m.parameter(f"J{n}{k}", 0.5 * (n[0] == n[1]), "kg m^2") for n in names]
-        xx, xy, xz, yy, yz, zz = entries
-        square = sum(x * x for x in h)
-        about = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
-        for i in range(3):
-            for j in range(3):
-                about[i][j] = about[i][j] - ((i == j) * square - h[i] * h[j]) / mass
-        inertia = tuple(map(tuple, about))
-        body = m.link(
-            f"l{k}", length=0.4, mass=mass, centre=tuple(x / mass for x in h), inertia=inertia
-        )
-        m.revolute(f"q{k}", link if k == 1 else link.tip, body, axis=axis)
-        motion[f"q{k}"] = swinging(0.2 * k, 0.5, 0.3, 0.2, rate=3.0 + k)
-        link = body
-        centre = generator.uniform(0.05, 0.2, 3)
-        weight = generator.uniform(1.0, 3.0)
-        spread = generator.uniform(0.01, 0.05, (3, 3))
-        moments = spread @ spread.T + 0.02 * np.eye(3)
-        moments += weight * (centre @ centre * np.eye(3) - np.outer(centre, centre))
-        truth |= {
-            f"m{k}": weight,
-            **{f"h{x}{k}": weight * c for x, c in zip("xyz", centre, strict=True)},
-        }
-        truth |= {f"J{n}{k}": moments["xyz".index(n[0]), "xyz".index(n[1])] for n in names}
-    return Scene(m, motion, t=(0, 4, 401)), truth
-
-
-def rubbing():
-    """A four-bar with a spring, friction by speed, by a torque, and by a pin's load."""
-    m = Mechanism("rubbing")
-    given = {"mass": (2.0, "kg"), "k": (100.0, "N/m"), "preload": (20.0, "N"), "c": (3.0, "N s/m")}
-    given |= {"dry": (0.2, "N m"), "mu": (0.1, "1"), "rotor": (0.02, "kg m^2")}
-    p = {name: m.parameter(name, value, unit) for name, (value, unit) in given.items()}
-    crank = m.link("crank", length=0.1, mass=1.0, centre=(0.05, 0.0), inertia=0.01 + p["rotor"])
-    coupler, rocker = (
-        m.link("coupler", length=0.4, mass=p["mass"]),
-        m.link("rocker", length=0.3, mass=1.0),
-    )
-    o = m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, coupler)
-    m.revolute("B", coupler.tip, rocker.tip)
-    c = m.revolute("C", m.ground.at(0.35, 0), rocker)
-    length = 0.2 - p["preload"] / p["k"]
-    m.spring("s", m.ground.at(0, 0.6), rocker.tip, stiffness=p["k"], length=length, damping=p["c"])
-    m.torque("dry", crank, -p["dry"] * ca.sign(m.rate(o)))
-    m.friction("pin", c, mu=p["mu"], radius=0.02)
-    return Scene(m, {"O": swinging(1.0, 0.6, 0.3)}, t=(0, 2, 402), posture={"coupler": 0.5})
-
-
-RUBBING = {
-    "mass": 2.4,
-    "k": 130.0,
-    "preload": 24.0,
-    "c": 2.0,
-    "dry": 0.35,
-    "mu": 0.17,
-    "rotor": 0.03,
-}
-
+from lagrange_casadi.errors import UnknownNameError
+from lagrange_casadi.motion import expression
 
 LOADING = ("mass", "k", "preload", "c", "mu")
 """The pin's friction goes with the size of its load, which is not linear in what loads it."""
-
-
-def platform():
-    """Staicu's kind of robot: three legs, six masses, and loops that are iterated."""
-    m = Mechanism("rrr")
-    mass = m.parameter("plate", 1.5, "kg")
-    plate = m.link(
-        "plate", length=0.2, mass=mass, centre=(0.0, 0.0), inertia=m.parameter("J", 0.01, "kg m^2")
-    )
-    posture, motion = {"plate": 0.0}, {}
-    for i in range(3):
-        at = 2 * np.pi * i / 3 + np.pi / 6
-        upper = m.link(f"u{i}", length=0.28, mass=m.parameter(f"mu{i}", 0.8, "kg"))
-        lower = m.link(f"l{i}", length=0.28, mass=m.parameter(f"ml{i}", 0.5, "kg"))
-        m.revolute(f"d{i}", m.ground.at(0.5 * np.cos(at), 0.5 * np.sin(at)), upper)
-        m.revolute(f"k{i}", upper.tip, lower)
-        m.revolute(f"f{i}", lower.tip, plate.at(0.12 * np.cos(at), 0.12 * np.sin(at)))
-        posture[f"u{i}"], posture[f"l{i}"] = at + np.pi - 0.8, at + np.pi + 0.8
-        motion[f"d{i}"] = harmonic(at + np.pi - 0.8, 0.2, 1.0 + 0.3 * i, i)
-    return Scene(m, motion, t=(0, 2, 201), posture=posture)
-
-
-PLATE = {
-    "plate": 1.9,
-    "J": 0.013,
-    "mu0": 0.7,
-    "mu1": 0.9,
-    "mu2": 0.85,
-    "ml0": 0.4,
-    "ml1": 0.55,
-    "ml2": 0.6,
-}
-
-
-def combined(result, truth):
-    """The true values of base parameters, by their words."""
-    found = []
-    for parameter in result.base:
-        total, sign, factor = 0.0, 1.0, 1.0
-        for word in parameter.words.split():
-            if word in truth:
-                total, sign, factor = total + sign * factor * truth[word], 1.0, 1.0
-            elif word in "+-":
-                sign = -1.0 if word == "-" else 1.0
-            else:
-                factor = float(word)
-        found.append(total)
-    return np.array(found)
 
 
 def test_base_parameters_of_a_planar_arm_are_those_of_the_textbook():
@@ -264,16 +111,6 @@ def test_errors_are_as_large_as_stated():
         assert abs(result.noise["effort:A"] / 0.3 - 1.0) < 0.2
     assert 0.92 <= np.mean(within) <= 0.98
     assert 3.0 <= np.mean(squares) <= 5.0  # 4 degrees of freedom: 4 +- 0.28
-
-
-def noisy(scene, truth, names, noise, seed=0, **columns):
-    exact = record(scene, truth, *names)
-    generator = np.random.default_rng(seed)
-    found = {
-        name: exact.columns[name] + noise * generator.standard_normal(exact.t.size)
-        for name in names
-    }
-    return Measurements(exact.t, {**exact.columns, **found, **columns})
 
 
 def test_outliers_count_little_in_hubers_loss():
@@ -414,118 +251,6 @@ def test_strain_gauges_tell_a_spring():
     assert result.values["k"] == pytest.approx(140.0, rel=1e-9)
 
 
-def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
-    path = tmp_path / "run.csv"
-    t = np.arange(200) * 5.0 + np.random.default_rng(0).uniform(0, 2, 200)  # ms
-    angle = 30.0 * np.sin(2 * np.pi * t / 1000.0)  # deg
-    counts = np.round(angle / 360.0 * 4096)
-    lines = ["t [ms],A [deg],B [counts],torque [mN m]"]
-    for k, (at, a, n) in enumerate(zip(t, angle, counts, strict=True)):
-        lines.append(f"{at:.6f},{a:.9f},{n:.0f},{'' if k == 7 else 1000 + k}")
-    path.write_text("\n".join(lines) + "\n")
-    given = read_measurements(
-        path, names={"effort:A": "torque"}, noise={"A": 0.01}, counts_per_turn=4096
-    )
-    assert np.isnan(given.columns["effort:A"][7])
-    assert given.columns["effort:A"][8] == pytest.approx(1.008)
-    assert given.noise == pytest.approx({"A": np.radians(0.01), "B": 2 * np.pi / 4096 / 12**0.5})
-    motion = given.motion(["A", "B"], trim=0.05)
-    inner = np.isfinite(motion.acceleration[:, 0])
-    true = -np.radians(30.0) * (2 * np.pi) ** 2 * np.sin(2 * np.pi * given.t)
-    off = np.abs(motion.acceleration[inner] - true[inner, None]).max(axis=0) / true.max()
-    assert off[0] < 0.1
-    assert off[1] < 0.3
-    assert 5.0 < given.cutoff("A") < 100.0
-    assert given.quantities(["A", "B"]) == ("effort:A",)
-    path.write_text("\n".join([lines[0], "0,1,x,3"]))
-    with pytest.raises(DeclarationError, match=r"line 2: expected a number, got 'x'"):
-        read_measurements(path, counts_per_turn=4096)
-
-
-def test_a_file_of_a_logger_is_read_as_it_is(tmp_path):
-    """Its angle begins again after each turn, and it has columns that no one needs."""
-    path, t = tmp_path / "log.csv", np.arange(60) * 0.01
-    counts = np.round(np.linspace(300.0, 900.0, 60)) % 400
-    rows = zip(t, counts, 0.0 * t + 21.0, 0.0 * t, np.cos(t), strict=True)
-    heads = "clock [s],position [counts],temperature [C],A [deg],effort:A [N m]"
-    path.write_text("\n".join([heads, *(",".join(f"{x:.6g}" for x in row) for row in rows)]))
-    given = read_measurements(path, names={"t": "clock", "A": "position"}, counts_per_turn=400)
-    away = given.columns["A"] - np.linspace(1.5 * np.pi, 4.5 * np.pi, 60)
-    assert np.abs(away).max() <= np.pi / 400 + 1e-9
-    assert given.quantities(["A"]) == ("effort:A",)
-    motion = given.motion(["A"])  # at constant speed, as far as counts tell
-    assert not motion.acceleration.any()
-    assert motion.rate == pytest.approx(3.0 * np.pi / 0.59, rel=1e-2)
-    assert given.cutoff("A") == 0.0
-
-
-def test_heads_and_units_of_a_file_may_stand_in_two_lines(tmp_path):
-    path = tmp_path / "log.csv"
-    rows = [f"{k},{k},{10 * k}" for k in range(9)]
-    path.write_text("\n".join(["t,A,effort:A", "ms,deg,(N m)", *rows]))
-    given = read_measurements(path, noise={"A": 1.0})
-    assert given.t[3] == pytest.approx(0.003)
-    assert given.columns["A"][3] == pytest.approx(np.radians(3.0))
-    assert given.units == {"t": "ms", "A": "deg", "effort:A": "N m"}
-    path.write_text("\n".join(rows))
-    with pytest.raises(DeclarationError, match=r"line 1: expected names of columns, .* got '0'"):
-        read_measurements(path)
-    path.write_text("\n".join(["time,A,effort:A", *rows]))
-    with pytest.raises(UnknownNameError, match="unknown column of times 't'"):
-        read_measurements(path)
-    with pytest.raises(DeclarationError, match="noise of 'A': expected a number that is not neg"):
-        read_measurements(path, noise={"A": -1.0}, time="time")
-
-
-def test_a_drive_at_rest_and_a_wrong_sign_are_said():
-    scene = two_links()
-    given = record(scene, ARM, "effort:A")
-    columns = {name: given.columns[name] for name in ("A", "effort:A")}
-    columns |= {"B": np.full(given.t.size, 0.8), "index": given.t}
-    rest = identify(scene, Measurements(given.t, columns, {"B": 1e-3}))
-    assert "B is a straight line within its noise" in rest.notes
-    assert "columns that are not used: index" in rest.notes
-    assert rest.unexcited
-    assert not any("J2" in note for note in rest.notes if note.startswith("nothing"))
-    turned = Measurements(given.t, dict(given.columns) | {"effort:A": -given.columns["effort:A"]})
-    assert identify(scene, turned).opposite["effort:A"] < -0.9
-    assert not rest.opposite
-
-
-def test_a_measured_rate_does_not_keep_a_coordinate_from_being_smoothed():
-    scene = two_links()
-    given = record(scene, ARM, "effort:A")
-    rough = given.columns["A"] + 1e-3 * np.random.default_rng(0).standard_normal(given.t.size)
-    smoothed = Measurements(given.t, dict(given.columns) | {"A": rough}, {"A": 1e-3})
-    motion = smoothed.motion(["A", "B"])
-    off = motion.d[:, 0] - given.columns["A"]
-    assert np.sqrt(np.mean(off**2)) < 7e-4
-    np.testing.assert_array_equal(motion.rate[:, 0], given.columns["A_rate"])
-    np.testing.assert_array_equal(motion.d[:, 1], given.columns["B"])
-
-
-def test_a_unit_of_another_quantity_is_refused(tmp_path):
-    scene, path = two_links(), tmp_path / "run.csv"
-    given = record(scene, ARM, "effort:A", "effort:B")
-    columns = [given.t, *(given.columns[name] for name in ("A", "B", "effort:A"))]
-    rows = [",".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True)]
-
-    def read(*heads):
-        path.write_text("\n".join([",".join(heads), *rows]))
-        return read_measurements(path)
-
-    good = ("t [s]", "A [rad]", "B", "effort:A [N m]")
-    found = identify(scene, read(*good), ["J2"])
-    for k, head, unit in ((1, "A [mm]", "rad"), (3, "effort:A [mm]", "N m")):
-        wrong = read(*(head if k == place else one for place, one in enumerate(good)))
-        name, word = head[:-1].split(" [")
-        for refused in (lambda given: identify(scene, given), found.validate):
-            with pytest.raises(DeclarationError, match=f"'{name}' is in {word}; expected {unit}"):
-                refused(wrong)
-    with pytest.raises(DeclarationError, match="'t' is in deg; expected s"):
-        read("t [deg]", *good[1:])
-
-
 def test_the_shipped_records_are_those_of_the_arm_that_is_measured():
     """An arm with a parallelogram, a spring and friction: truth within the stated errors."""
     folder = CASES / "parallelogram_arm"
@@ -566,38 +291,14 @@ def test_an_excitation_keeps_within_limits_and_tells_more():
         assert 0.99 < max(shares) <= 1.0
 
 
-def test_what_cannot_be_is_refused_by_name():
-    scene = two_links()
-    given = record(scene, ARM, "effort:A", "effort:B")
-    with pytest.raises(UnknownNameError, match="unknown parameter 'mass'"):
-        identify(scene, given, ["mass"])
-    with pytest.raises(UnknownNameError, match="unknown measured quantity 'effort:C'"):
-        identify(scene, Measurements(given.t, {**given.columns, "effort:C": given.t}))
-    with pytest.raises(DeclarationError, match="nothing that is measured depends"):
-        identify(scene, given, ["m1"])
-    for place in ("1.5", "e", "-0.1"):
-        name = f"section:l1:bending@{place}"
-        with pytest.raises(DeclarationError, match=r"place xi/l from 0 to 1|measured quantity"):
-            identify(scene, Measurements(given.t, {**given.columns, name: given.t}))
-    with pytest.raises(UnknownNameError, match="column of a drive 'B'"):
-        identify(scene, Measurements(given.t, {"A": given.columns["A"], "effort:A": given.t}))
-    for bad, words in (
-        ({"t": given.t[::-1]}, "times that increase, got 3 s and then 2.99 s in rows 1 and 2"),
-        ({"t": given.t[:0]}, "at least 8 rows of measurements, got 0"),
-        ({"columns": {"A": np.full(301, np.nan)}}, "column 'A' has no values"),
-    ):
-        with pytest.raises(DeclarationError, match=words):
-            Measurements(**{"t": given.t, "columns": {}} | bad)
-    few = {name: given.columns[name][:8] for name in ("A", "B", "effort:A")}
-    few["effort:A"] = np.where(np.arange(8) < 4, few["effort:A"], np.nan)
-    with pytest.raises(DeclarationError, match="4 measured values do not determine 5 unknown"):
-        identify(scene, Measurements(given.t[:8], few))
-    with pytest.raises(DeclarationError, match="trim=5: expected less than half of the 3 s"):
-        identify(scene, given, trim=5.0)
-    far = dict(record(platform(), PLATE, "effort:d0").columns)
-    far["d0"] = far["d0"] + np.linspace(0.0, 3.0, far["d0"].size)
-    with pytest.raises(AssemblyError, match="cannot be closed at row"):
-        identify(platform(), Measurements(np.linspace(0, 2, 201), far))
+def test_an_excitation_is_a_drawn_one_if_none_that_is_improved_can_be_followed(monkeypatch):
+    place = "lagrange_casadi.identification.excitation._Search._improved"
+    monkeypatch.setattr(place, lambda _, starts, steps: [20.0 * one.series for one in starts])
+    middles = {f"d{i}": 2 * np.pi * i / 3 + 7 * np.pi / 6 - 0.8 for i in range(3)}
+    limits = {name: (middle - 0.2, middle + 0.2, 1.0, 5.0) for name, middle in middles.items()}
+    found = excite(platform(), limits, period=4.0, harmonics=2)
+    assert found.error == 1.0
+    assert found.condition == found.first
 
 
 def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, capsys):

@@ -350,10 +350,7 @@ GOES = {
     "formats": ([], ["read", "save_model"], ["new"]),
     "load_cases": (
         ["cli.loads"],
-        [
-            *("BearingLoads", "LoadCase", "bearing_loads", "link_load_cases"),
-            *("write_load_cases", "write_spectrum"),
-        ],
+        ["LoadCase", "link_load_cases", "write_load_cases", "write_spectrum"],
         ["loads"],
     ),
     "identification": (

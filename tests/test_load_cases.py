@@ -4,6 +4,7 @@ import csv
 import dataclasses
 import json
 import math
+import re
 import shutil
 import subprocess
 
@@ -14,6 +15,7 @@ from mechanisms import parallelogram
 from lagrange_casadi import (
     Mechanism,
     Scene,
+    beams,
     errors,
     evaluate,
     link_load_cases,
@@ -21,7 +23,7 @@ from lagrange_casadi import (
     write_load_cases,
 )
 from lagrange_casadi.cli import main
-from lagrange_casadi.motion import dwell, move, moves
+from lagrange_casadi.motion import dwell, move, moves, polynomial
 
 
 @pytest.fixture(scope="module")
@@ -115,13 +117,32 @@ def test_instants_are_those_that_govern(crank_rod):
     assert [case.t for case in cases] == sorted({case.t for case in cases})
 
 
+@pytest.mark.parametrize(
+    ("name", "link", "moment"),
+    [("sleigh", "cross", "reaction:X:mz"), ("arm6", "link5", "reaction:pitch:moment")],
+)
+def test_what_governs_is_a_quantity_of_the_solution(name, link, moment):
+    """Moments of reactions have another name in a plane than in space."""
+    scene = load_case(name).scene
+    solution = evaluate(scene, wanted=["all"], backend="vm")
+    cases = link_load_cases(solution, link, scene=scene)
+    named = {name: case.t for case in cases for name in case.governs}
+    assert moment in named
+    for name, t in named.items():
+        values, _ = solution.extremes(name)
+        (value,) = values[solution.t == t]
+        assert abs(value) >= abs(solution.peak(name).value) * (1 - 1e-12)
+
+
 def test_what_is_not_known_is_named(crank_rod):
     with pytest.raises(errors.UnknownNameError, match=r"unknown link 'rood'.*'rod'"):
         link_load_cases(crank_rod, "rood")
     with pytest.raises(errors.DeclarationError, match=r"t = 9 s is no instant.*nearest is"):
         link_load_cases(crank_rod, "rod", [9.0])
     lean = evaluate(load_case("slider_crank").scene, wanted=["motion", "reaction:A"], backend="vm")
-    with pytest.raises(errors.DeclarationError, match="link 'rod' need reaction:B, which"):
+    with pytest.raises(
+        errors.DeclarationError, match=r"link 'rod' need reaction:B, which.*\['all'\]"
+    ):
         link_load_cases(lean, "rod")
     sleigh = evaluate(load_case("sleigh").scene, wanted=["all"], t=(0, 1, 5), backend="vm")
     with pytest.raises(errors.DeclarationError, match="along which directions blade act"):
@@ -239,7 +260,7 @@ def test_bulk_data_of_nastran_is_in_equilibrium(tmp_path):
 
 def test_nodes_have_names_of_the_mesh(crank_rod, tmp_path):
     cases = link_load_cases(crank_rod, "rod")[:1]
-    write_load_cases(cases, tmp_path, ["inp", "nas"], {"A": "PIN", "B": "7", "rod": "ALL"})
+    write_load_cases(cases, tmp_path, ["inp", "nas"], {"A": "PIN", "B": 7, "rod": "ALL"})
     text = (tmp_path / "rod_1.inp").read_text()
     assert "\n*CLOAD\nPIN, 1, " in text
     assert "\n7, 1, " in text
@@ -249,6 +270,81 @@ def test_nodes_have_names_of_the_mesh(crank_rod, tmp_path):
         write_load_cases(cases, tmp_path, ["inp"], {"C": "PIN"})
     with pytest.raises(errors.DeclarationError, match="format 'beam' needs a link with a beam"):
         write_load_cases(cases, tmp_path, ["beam"])
+
+
+@pytest.mark.parametrize(
+    ("nodes", "words"),
+    [
+        ({"A": "pin", "B": "PIN"}, "A and B are at several places, but each has the node 'pin'"),
+        ({"A": "b"}, "A and B are at several places, but each has the node 'b'"),
+        ({"A": 7, "B": "7"}, "each has the node '7'; expected a node for each"),
+        ({"A": "PIN, 2"}, "expected names or numbers of nodes, got 'PIN, 2'"),
+        ({"A": ""}, "expected names or numbers of nodes, got ''"),
+    ],
+)
+def test_every_place_needs_a_node_of_its_own(crank_rod, nodes, words, tmp_path):
+    cases = link_load_cases(crank_rod, "rod")[:1]
+    with pytest.raises(errors.DeclarationError, match=words):
+        write_load_cases(cases, tmp_path / "loads", ["inp"], nodes)
+    assert not (tmp_path / "loads").exists()
+
+
+def press(material):
+    """A slider-crank whose joints have names of node sets of a model."""
+    m = Mechanism("press")
+    crank = m.link("crank", length=0.1, mass=1.0)
+    rod = m.link("rod", length=0.4, beam=beams.Beam(beams.rectangle(0.06, 0.03), material))
+    ram = m.point_mass("ram", 15.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("tip", crank.tip, rod)
+    m.revolute("Tip", rod.tip, ram)
+    m.prismatic("guide", m.ground, ram, axis=(0, 1))
+    m.force("base", rod.at(0.13, 0.02), x=-3000.0, y=500.0)
+    return Scene(m, {"O": polynomial(0, 30.0)}, t=(0, 0.2, 21), posture={"rod": 1.5})
+
+
+def test_node_sets_of_a_model_are_told_apart(tmp_path):
+    """CalculiX adds nodes to a set of the same name, be it in capitals or not."""
+    solution = evaluate(press(beams.material("S355")), wanted=["all"], backend="vm")
+    cases = link_load_cases(solution, "rod")
+    assert cases == link_load_cases(solution, "rod")
+    write_load_cases(cases[:1], tmp_path, ["beam"])
+    text = (tmp_path / "rod_1.beam.inp").read_text()
+    sets = dict(re.findall(r"^\*NSET, NSET=(\w+)\n(\d+)$", text, re.MULTILINE))
+    assert len({name.upper() for name in sets}) == len(sets) == 6
+    base, tip, within = re.findall(r"^(\w+), \d(?:, 3)?$", text.partition("*BOUNDARY")[2], re.M)[:3]
+    x = {number: float(at) for number, at in re.findall(r"^(\d+), (\S+), 0, 0$", text, re.M)}
+    assert (x[sets[base]], x[sets[tip]]) == (0.0, 0.4)
+    assert 0.0 < x[sets[within]] < 0.4
+    assert abs(x[sets["base"]] - 0.13) < 1e-12
+
+
+CASE = """from test_load_cases import beams, press
+
+
+def scene():
+    return press(beams.Material("spruce", 450.0{}))
+"""
+
+
+@pytest.mark.parametrize(
+    ("moduli", "why"),
+    [
+        ("", "material 'spruce' has no elasticity"),
+        (", elasticity=11e9, shear_modulus=0.7e9", "has Poisson's ratio 6.857 by its moduli"),
+    ],
+)
+def test_the_command_leaves_out_a_model_that_cannot_be_made(moduli, why, tmp_path, capfd):
+    case, out = tmp_path / "press.py", tmp_path / "out"
+    case.write_text(CASE.format(moduli))
+    asked = ["loads", str(case), "--link", "rod", "--out", str(out)]
+    assert main(asked) == 0
+    printed = capfd.readouterr().out
+    assert "format beam is left out" in printed
+    assert why in printed
+    assert {path.suffix for path in out.iterdir()} == {".json", ".csv", ".inp", ".nas"}
+    assert main([*asked, "--format", "beam"]) == 2
+    assert why in capfd.readouterr().err
 
 
 def test_the_command_writes_load_cases(tmp_path, monkeypatch, capfd):

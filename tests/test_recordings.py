@@ -303,6 +303,32 @@ def test_counts_of_an_encoder_are_turns(here):
     same(law, curve(TIMES, 0.1 * math.tau / 4096 * counts), AT)
 
 
+def test_encoders_may_have_other_counts(here):
+    rows = np.column_stack([TIMES, np.round(4096 / 360 * KNEE), np.round(1000 / 360 * HIP)])
+    file = write(here / "encoders.csv", ["t", "a [counts]", "b [counts]"], rows)
+    turns = {"a": 4096, "b": 1000}
+    found = read_motion(file, counts_per_turn=turns)
+    one = read_samples(file, value="b", counts_per_turn=1000)
+    for law, place in ((found["a"], 1), (found["b"], 2), (one, 2)):
+        same(law, curve(TIMES, math.tau / (4096, 1000)[place - 1] * rows[:, place]), AT)
+    with pytest.raises(DeclarationError, match="column b is in counts; expected counts_per_turn="):
+        read_motion(file, counts_per_turn={"a": 4096})
+    with pytest.raises(DeclarationError, match="column a is in deg; expected counts, of which"):
+        read_motion(file, unit={"a": "deg"}, counts_per_turn=turns)
+
+
+def test_units_of_a_file_are_those_of_a_motion_too(here):
+    """In the head, whose column is called with it or without it, or in a row below."""
+    file = write(here / "axis.csv", ["t [ms]", "q [deg]"], np.column_stack([1e3 * TIMES, KNEE]))
+    expected = curve(TIMES, np.radians(np.round(KNEE, 13)))
+    for value in (2, "q", "q [deg]"):
+        same(read_samples(file, value=value), expected, AT)
+    file.write_text(file.read_text().replace("t [ms],q [deg]", "t,q\nms,deg"))
+    same(read_samples(file), expected, AT)
+    with pytest.raises(DeclarationError, match=r"axis\.csv: expected one column 'q', got 2"):
+        read_samples(write(file, ["t", "q", "q"], np.column_stack([TIMES, KNEE, KNEE])), value="q")
+
+
 def test_a_scene_takes_motions_of_several_joints(here):
     file = write(here / "arm.csv", ["t", "A [deg]", "B"], np.column_stack([TIMES, KNEE, SLIDE]))
     m = Mechanism("arm")

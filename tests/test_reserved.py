@@ -7,6 +7,7 @@ import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
 from internals import Output, check, load
 from internals import runs_save as save
+from machines import called_as_rates
 
 from lagrange_casadi import Mechanism, Scene, Sweep, evaluate, refine, sweep
 from lagrange_casadi.motion import harmonic, polynomial
@@ -129,3 +130,14 @@ def test_exported_c_knows_them(scenes, tmp_path):
     assert {"O_rate", "motion_O_rate_coordinate"} <= {
         member.name for member in (*made.inputs, *made.outputs)
     }
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_exported_c_tells_a_drive_from_the_rate_that_is_called_so(precision, tmp_path):
+    scene = called_as_rates()
+    made, told = exported(scene, tmp_path, precision=precision)
+    solution = solve(scene, precision)
+    found = by_c99(tmp_path, told, instants(solution.t, precision))
+    compare(found, expected(scene, told, solution), told, made, solution)
+    names = [member.name for member in made.inputs if not member.rest_of]
+    assert names[3:] == ["pin_rate_coordinate", "pin_rate_rate", "pin_rate_acceleration"]

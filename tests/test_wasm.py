@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 from reports import CASES
 
-from lagrange_casadi import evaluate, export
+from lagrange_casadi import Mechanism, Scene, evaluate, export
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
+from lagrange_casadi.motion import polynomial
 
 pytestmark = [alive.NEEDS_BROWSER, alive.NEEDS_ENGINE]
 
@@ -140,3 +141,15 @@ def test_a_failure_is_a_status_and_a_sentence_and_types_name_every_member(
     before = {path.name: path.read_bytes() for path in out.iterdir()}
     assert main(["export", str(CASES / "slider_crank"), "--out", str(out), "--wasm"]) == 0
     assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+
+
+def test_what_every_object_of_javascript_has_is_no_parameter(chromium, tmp_path):
+    """A parameter and a joint that are called so have their default, and 0."""
+    m = Mechanism("arm")
+    length = m.parameter("constructor", 0.5, "m", low=0.0)
+    m.revolute("toString", m.ground, m.link("arm", length=length, mass=1.0))
+    scene = Scene(m, {"toString": polynomial(0.0, 2.0)}, t=(0.0, 1.0, 5))
+    export(scene, tmp_path / "out", wasm=True)
+    loaded(chromium, tmp_path / "out", "arm")
+    effort = "mechanism.prepare({}); return mechanism.evaluate({}).effort_toString;"
+    assert chromium.run(f"(() => {{ {effort} }})()") == pytest.approx(9.81 * 0.25, rel=1e-12)

@@ -9,7 +9,7 @@ takes a name apart.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -166,6 +166,17 @@ class Output:
             else None
         )
         return self.quantity.unit_for(found or "angle")
+
+
+def motions_of(coordinate: str) -> tuple[Output, ...]:
+    """The outputs of a coordinate's motion: its value, its rate and its acceleration."""
+    return tuple(Output("motion", coordinate, member) for member in ("", *_ENDINGS))
+
+
+def motion_names(coordinates: Iterable[str]) -> list[list[str]]:
+    """Full names of the values, of the rates and of the accelerations of coordinates."""
+    by_coordinate = (map(str, motions_of(coordinate)) for coordinate in coordinates)
+    return [list(names) for names in zip(*by_coordinate, strict=True)]
 
 
 def quotient(unit: str, by: str) -> str:

@@ -29,6 +29,7 @@ from .options import (
     bounds,
     choice,
     conditions,
+    counts,
     even_points,
     file,
     flag,
@@ -462,7 +463,12 @@ def trade() -> Body:
     kind=place,
     into="prior",
 )
-@value("--counts-per-turn", float, "NUMBER", "Set the number of counts of an encoder in one turn.")
+@several(
+    "--counts-per-turn",
+    "NUMBER|NAME=NUMBER",
+    "Set the counts in one turn of all encoders, or of a column's; repeatable.",
+    kind=counts,
+)
 @flag("--robust", "Reduce the weight of outliers, by Huber's loss.")
 @flag(
     "--consistent",

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
+
+import click
 
 from ..case import load_case
 from ..identification import Comparison, Identification, read_measurements
@@ -25,7 +27,7 @@ def identify(
     data: Path,
     names: Mapping[str, str],
     noise: Mapping[str, float],
-    counts_per_turn: float | None,
+    counts_per_turn: Sequence[tuple[str, float]],
     trim: float,
     validate: Path | None,
     out: Path | None,
@@ -42,7 +44,8 @@ def identify(
     if report is not None:
         check_page(report)
 
-    read = partial(read_measurements, names=names, noise=noise, counts_per_turn=counts_per_turn)
+    turns = _turns(counts_per_turn)
+    read = partial(read_measurements, names=names, noise=noise, counts_per_turn=turns)
     record, other = read(data), None if validate is None else read(validate)
     found = estimate(loaded.scene, record, trim=trim, **given)
     second = None if other is None else found.validate(other, trim)
@@ -56,6 +59,19 @@ def identify(
         report_identification(found, report, second)
         echo(f"wrote {report}")
     echo(" ".join(f"--set {word}" for word in found.setting.split()))
+
+
+def _turns(given: Sequence[tuple[str, float]]) -> float | dict[str, float] | None:
+    """Return counts in one turn by column, or those of all, which have no name."""
+    named = dict(given)
+    if "" not in named:
+        return named or None
+    if len(given) > 1:
+        raise click.UsageError(
+            "--counts-per-turn: expected one NUMBER for all columns in counts, or NAME=NUMBER for"
+            " each"
+        )
+    return named[""]
 
 
 def _lines(found: Identification, second: Comparison | None) -> Iterator[str]:

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
 import click
 
 from ..base.publish import check_writable
+from ..base.table_file import TableFile
 from ..base.vocabulary import LOAD_FORMATS
 from ..case import load_case
-from ..load_cases import (
-    bearing_loads,
-    link_load_cases,
-    write_bearing_loads,
-    write_load_cases,
-    write_spectrum,
-)
+from ..errors import DeclarationError
+from ..load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
+from ..load_cases.beam_model import modelled
+from ..strength.bearings import bearing_loads
 from ..studies.evaluate import evaluate
 from ..verification.certificate import certified_outputs, refuse_failed, summary
 from .echo import echo
@@ -53,9 +52,7 @@ def loads(
         governs = f": {', '.join(one.governs)}" if one.governs else ""
         echo(f"{one.link} at t = {one.t:.6g} s, residual {max(one.residual):.1e}{governs}")
     if cases:
-        beams = all(case.rod is not None for case in cases)
-        known = [name for name in LOAD_FORMATS if beams or name != "beam"]
-        files = write_load_cases(cases, out, formats or known, nodes)
+        files = write_load_cases(cases, out, formats or _formats(cases), nodes)
         echo(f"wrote {out}: {len(cases)} load cases in {len(files)} files")
     out.mkdir(parents=True, exist_ok=True)
     for name in spectra:
@@ -63,7 +60,23 @@ def loads(
         write_spectrum(solution, name, file, classes=classes)
         echo(f"wrote {file}")
     if bearings:
-        file = out / "bearings.csv"
-        write_bearing_loads([bearing_loads(solution, one, exponent) for one in bearings], file)
+        file, each = out / "bearings.csv", ("radial [N]", "axial [N]", "speed [1/min]")
+        heads = ["joint", *each, *(f"largest {name}" for name in each)]
+        rows = [astuple(bearing_loads(solution, one, exponent)) for one in bearings]
+        TableFile(file).write(heads, rows)
         echo(f"wrote {file}")
     echo(summary(solution.certificate))
+
+
+def _formats(cases: Sequence[LoadCase]) -> list[str]:
+    """Return all formats that the links have; say why there is no model of a beam."""
+    others = [name for name in LOAD_FORMATS if name != "beam"]
+    if any(case.rod is None for case in cases):
+        return others
+    try:
+        for case in cases:
+            modelled(case)
+    except DeclarationError as error:
+        echo(f"format beam is left out: {error}")
+        return others
+    return [*LOAD_FORMATS]

@@ -142,6 +142,13 @@ def setting(text: str) -> tuple[str, float | str]:
         return name, _value(word)
 
 
+def counts(text: str) -> tuple[str, float]:
+    """NAME=NUMBER; or NUMBER, which is for all names, as the empty one."""
+    with _expected("NUMBER or NAME=NUMBER, as in 4096 or O=4096", text):
+        name, word = _named(text) if "=" in text else ("", text)
+        return name, real(word)
+
+
 def place(text: str) -> tuple[str, float | str]:
     """NAME=VALUE, the value finite."""
     name, value = setting(text)

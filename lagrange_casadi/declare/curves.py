@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arguments import fitting, public
 from ..arithmetic import lookups
-from ..base.arrays import Expression
+from ..base.arrays import Array, Expression
 from ..base.units import number
 from ..errors import DeclarationError, NumberError, shown
 
@@ -132,14 +132,7 @@ class Curve:
             raise DeclarationError(
                 f"curve: {x!r} is outside its range, {self.low:g} to {self.high:g}"
             )
-        within = numbers - self.origin
-        if self.periodic:
-            within = within - (self.high - self.low) * np.rint(within / (self.high - self.low))
-        cell = np.clip(
-            np.searchsorted(self.starts, within, side="right") - 1, 0, len(self.cells) - 1
-        )
-        u, c = within - np.array(self.starts)[cell], np.array(self.cells)[cell]
-        found = c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
+        found = derivatives(self, numbers)[0]
         return found if np.ndim(x) else float(found)
 
     def __repr__(self) -> str:
@@ -161,6 +154,18 @@ class Curve:
         for k in (2, 1, 0):
             found = found * u + lookups.entries([cell[k] for cell in self.cells], number)
         return found
+
+
+def derivatives(curve: Curve, x: Array) -> Array:
+    """Return value, slope and second derivative (3, ...) of a curve at numbers in its range."""
+    within = x - curve.origin
+    if curve.periodic:
+        within = within - (curve.high - curve.low) * np.rint(within / (curve.high - curve.low))
+    cell = np.searchsorted(curve.starts, within, side="right") - 1
+    cell = np.clip(cell, 0, len(curve.cells) - 1)
+    u, (a, b, c, d) = within - np.array(curve.starts)[cell], np.array(curve.cells).T[:, cell]
+    slope, bend = b + u * (2.0 * c + 3.0 * u * d), 2.0 * c + 6.0 * u * d
+    return np.array([a + u * (b + u * (c + u * d)), slope, bend])
 
 
 @public

@@ -137,12 +137,20 @@ def oriented(description: Description, body: str) -> bool:
     return body == "ground" or description["bodies"][body]["length"] is not None
 
 
+def slice_densities(body: Description) -> tuple[NumericDensity, ...]:
+    """The second moments yy, zz and yz of slices along a described link, each like a density; none
+    of a link whose slices have no rotary inertia.
+    """
+    slices = body["density"].get("slices")
+    return tuple(_density(slices[name]) for name in ("yy", "zz", "yz")) if slices else ()
+
+
 def slices_of(body: Description) -> tuple[float, float, float]:
     """The second moments yy, zz, yz of all slices of a described link [kg m^2]."""
-    slices = body["density"].get("slices")
-    if slices is None:
+    if not (moments := slice_densities(body)):
         return 0.0, 0.0, 0.0
-    return _density(slices["yy"]).mass, _density(slices["zz"]).mass, _density(slices["yz"]).mass
+    yy, zz, yz = (moment.mass for moment in moments)
+    return yy, zz, yz
 
 
 def _density(entry: Description) -> NumericDensity:

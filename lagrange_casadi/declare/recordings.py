@@ -5,17 +5,15 @@ smoothed, as one smooth curve.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..base.csv_rows import Row, headings, read_rows
+from ..base.recorded_table import RecordedTable, count_sizes, for_each
 from ..base.units import UNITS, count, number
 from ..errors import DeclarationError, NumberError, PathError, UnknownNameError, one_line
 from .curves import Curve, curve
@@ -34,7 +32,6 @@ _CLOSES = 6.0
 _SAME = 1e-9
 """Largest relative difference of the ends if nothing is smoothed."""
 
-_COUNTS = ("count", "counts")
 _LONGEST = 200
 """Lines of a header of OpenSim's, at most."""
 
@@ -78,8 +75,9 @@ def read_samples(
     *,
     value: str | int = 2,
     time: str | int = 1,
-    unit: str = "rad",
-    time_unit: str = "s",
+    unit: str | None = None,
+    time_unit: str | None = None,
+    counts_per_turn: float | None = None,
     smoothing: float | str = 0.0,
     points: int | None = None,
     periodic: bool = False,
@@ -101,8 +99,11 @@ def read_samples(
         The columns of the values and of the times: by their name in the first line, or by their
         number, from 1.
     unit, time_unit
-        The units in the file: ``rad``, ``deg``, ``turn``, or ``m``, ``cm``, ``mm``, ``um``; ``s``,
-        ``ms`` or ``us``.
+        The units in the file: ``rad``, ``deg``, ``turn``, or ``m``, ``cm``, ``mm``, ``um``, or
+        ``counts``; ``s``, ``ms`` or ``us``. By default those that the file states, as
+        :func:`read_motion` reads them; without these, rad and s.
+    counts_per_turn
+        Counts of an encoder for a turn, for a column in ``counts``.
     smoothing
         The noise of the values, in their unit: the law is the least bent curve whose distance from
         them, in the root mean square, is so much. Zero passes through all of them; ``"estimated"``
@@ -135,15 +136,11 @@ def read_samples(
         For unknown columns and units.
     """
     path = Path(path)
-    for name, valid, what in ((unit, _UNITS, "unit"), (time_unit, _TIMES, "time unit")):
-        _known(path, name, valid, what)
-    second = _TIMES[time_unit]
-    recording = _read(path, time, value, unit, second)
+    (recording,), second = _recordings(
+        _table(path), {"value": value}, time, unit, time_unit, counts_per_turn
+    )
     law = _Fit(smoothing, points, periodic, period, advance, ratio, offset, stretch)
-    return _motion(recording, law, second)
-
-
-Given = TypeVar("Given")
+    return _motion(replace(recording, name=path.name), law, second)
 
 
 @public
@@ -203,10 +200,10 @@ def read_motion(
         As :func:`read_samples`; and for counts without a number for a turn.
     """
     path = Path(path)
-    table = _Table.read(path)
-    at = table.column(time)
+    table = _table(path)
     if columns is None:
-        columns = [name for k, name in enumerate(table.heads) if k != at]
+        at = table.place(time)
+        columns = [name for k, name in enumerate(table.names) if name and k != at]
         if not columns:
             raise DeclarationError(
                 f"{path.name}: the file has no column heads; name the columns with columns="
@@ -214,21 +211,16 @@ def read_motion(
     named = dict(columns) if isinstance(columns, Mapping) else {name: name for name in columns}
     if not named:
         raise DeclarationError(f"{path.name}: columns= expected at least one coordinate")
-    places = [at, *(table.column(column) for column in named.values())]
-    second_unit = time_unit or table.units[at] or "s"
-    second = _known(path, second_unit, _TIMES, "time unit")
-    t, *series = _numbers(path, table.rows, places)
-
-    units: dict[str, str | None] = _each(path, named, "unit", unit, None)
-    counts: dict[str, float | None] = _each(path, named, "counts_per_turn", counts_per_turn, None)
-    noises: dict[str, float | str] = _each(path, named, "smoothing", smoothing, 0.0)
-    advances: dict[str, float] = _each(path, named, "advance", advance, 0.0)
-    ratios: dict[str, Expression] = _each(path, named, "ratio", ratio, 1.0)
-    offsets: dict[str, Expression] = _each(path, named, "offset", offset, 0.0)
+    recordings, second = _recordings(table, named, time, unit, time_unit, counts_per_turn)
+    place = path.name
+    noises: dict[str, float | str] = for_each(
+        place, named, "coordinate of smoothing=", smoothing, 0.0
+    )
+    advances = for_each(place, named, "coordinate of advance=", advance, 0.0)
+    ratios = for_each(place, named, "coordinate of ratio=", ratio, 1.0)
+    offsets = for_each(place, named, "coordinate of offset=", offset, 0.0)
     found = {}
-    for place, name, values in zip(places[1:], named, series, strict=True):
-        word = units[name] or table.units[place] or "rad"
-        size = _size(path, named[name], word, counts[name])
+    for name, recording in zip(named, recordings, strict=True):
         law = _Fit(
             noises[name],
             points,
@@ -239,41 +231,47 @@ def read_motion(
             offsets[name],
             stretch,
         )
-        called = f"{path.name}, column {named[name]}"
-        found[name] = _motion(Recording(called, word, t * second, values, size), law, second)
+        found[name] = _motion(recording, law, second)
     return found
 
 
-def _each(
-    path: Path,
+def _table(path: Path) -> RecordedTable:
+    """Read a table's heads, and its units: those that it states, or those of OpenSim."""
+    skip, described = _header(path)
+    table = RecordedTable.read(path, "columns of times and values", skip)
+    if not skip:
+        return table
+    angle = "deg" if described.get("indegrees", "no").lower() == "yes" else "rad"
+    units = ("s" if n == "time" else "m" if n.endswith(_SLIDES) else angle for n in table.names)
+    return replace(table, units=tuple(units))
+
+
+def _recordings(
+    table: RecordedTable,
     named: Mapping[str, str | int],
-    what: str,
-    given: Mapping[str, Given] | Given,
-    usual: Given,
-) -> dict[str, Given]:
-    """An option for each coordinate, of one for all or of a mapping."""
-    if not isinstance(given, Mapping):
-        return dict.fromkeys(named, given)
-    for key in given:
-        if key not in named:
-            raise UnknownNameError(f"coordinate of {what}=", key, named, place=path.name)
-    return {name: given.get(name, usual) for name in named}
-
-
-def _size(path: Path, column: str | int, unit: str, turn: float | None) -> float:
-    """The size of a unit in rad or m; of the counts of an encoder by how many are a turn."""
-    if unit not in _COUNTS:
-        return _known(path, unit, {**_UNITS, "counts": 0.0}, "unit")
-    try:
-        per_turn = number(turn)
-    except NumberError:
-        per_turn = 0.0
-    if not per_turn > 0.0:
+    time: str | int,
+    unit: str | Mapping[str, str] | None,
+    time_unit: str | None,
+    counts_per_turn: float | Mapping[str, float] | None,
+) -> tuple[list[Recording], float]:
+    """Read columns by name, and the unit of the times in s."""
+    path, at = table.path, table.place(time)
+    places = {name: table.place(column) for name, column in named.items()}
+    second = _known(path, time_unit or table.units[at] or "s", _TIMES, "time unit")
+    stated = for_each(path.name, named, "coordinate of unit=", unit, None)
+    units = {name: stated[name] or table.units[k] or "rad" for name, k in places.items()}
+    turns = count_sizes(path.name, named, units, counts_per_turn)
+    t, *series = table.columns(at, list(places.values()))
+    if t.size < _LEAST:
         raise DeclarationError(
-            f"{path.name}: column {column} is in counts; expected counts_per_turn=, a number above"
-            f" 0, got {turn!r}"
+            f"{path.name}: expected at least {_LEAST} rows of numbers, got {t.size}"
         )
-    return math.tau / per_turn
+    found = []
+    for (name, word), values in zip(units.items(), series, strict=True):
+        size = turns.get(name) or _known(path, word, {**_UNITS, "counts": 0.0}, "unit")
+        called = f"{path.name}, column {named[name]}"
+        found.append(Recording(called, word, t * second, values, size))
+    return found, second
 
 
 def _known(path: Path, word: str, valid: Mapping[str, float], what: str) -> float:
@@ -306,51 +304,6 @@ def _motion(recording: Recording, law: _Fit, second: float) -> Motion:
     return _law(recording, noise, law.points, cyclic, law.advance, scales, unit_in)
 
 
-def _is_meant(cell: str) -> bool:
-    """Return whether a cell that is no finite number is no word of a head either: ``nan``, ``1_0``,
-    or digits of another script.
-    """
-    endless = cell.lower().lstrip("+-") in ("nan", "inf", "infinity")
-    return endless or (any(map(str.isdigit, cell)) and not any(map(str.isalpha, cell)))
-
-
-@dataclass(frozen=True, eq=False)
-class _Table:
-    """A table of numbers: heads, if it has any, with the units that it states of its columns, and
-    its rows.
-    """
-
-    path: Path
-    heads: tuple[str, ...]
-    units: tuple[str, ...]
-    rows: Iterator[Row]
-
-    @classmethod
-    def read(cls, path: Path) -> _Table:
-        """A table with its units: in the heads, in a row below them, or as OpenSim states them."""
-        skip, described = _header(path)
-        heads, rows, many = _opened(path, skip)
-        parted = headings(heads)
-        heads, units = tuple(name for name, _ in parted), [unit for _, unit in parted]
-        if skip:
-            angle = "deg" if described.get("indegrees", "no").lower() == "yes" else "rad"
-            units = [
-                "s" if head == "time" else "m" if head.endswith(_SLIDES) else angle
-                for head in heads
-            ]
-        elif heads and (first := next(rows, None)) is not None:
-            below = [cell.strip("[]()") for cell in first.cells]
-            if all(not cell or cell in (*_UNITS, *_TIMES, *_COUNTS) for cell in below):
-                units = [inside or cell for inside, cell in zip(units, below, strict=True)]
-            else:
-                rows = chain([first], rows)
-        return cls(path, heads, tuple(units) or ("",) * many, rows)
-
-    def column(self, column: str | int) -> int:
-        """The place of a column, from 0."""
-        return _column(self.path.name, column, self.heads, len(self.units))
-
-
 def _header(path: Path) -> tuple[int, dict[str, str]]:
     """The number of lines of a header as OpenSim writes it, and what it states by words in small
     letters; no lines for another file.
@@ -368,64 +321,6 @@ def _header(path: Path) -> tuple[int, dict[str, str]]:
     except (OSError, UnicodeDecodeError) as error:
         raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
     raise DeclarationError(f"{path.name}: expected a header that ends in the line 'endheader'")
-
-
-def _opened(path: Path, skip: int = 0) -> tuple[tuple[str, ...], Iterator[Row], int]:
-    """The heads of a table, none where its first row is of numbers; its rows; and how many columns
-    it has.
-    """
-    rows = read_rows(path, "columns of times and values", skip)
-    first = next(rows)
-    unread = [cell for cell in first.cells if math.isnan(first.number(cell))]
-    if meant := [cell for cell in unread if _is_meant(cell)]:
-        raise DeclarationError(f"{first.where}: expected a finite number, got {meant[0]!r}")
-    if unread:
-        return first.cells, rows, len(first.cells)
-    return (), chain([first], rows), len(first.cells)
-
-
-def _numbers(path: Path, rows: Iterator[Row], places: Sequence[int]) -> Array:
-    """Columns of a table by their places, the times first: (columns, rows)."""
-    found: list[list[float]] = []
-    for row in rows:
-        cells = [row.cells[column] for column in places]
-        numbers = [row.number(cell) for cell in cells]
-        for cell, found_number in zip(cells, numbers, strict=True):
-            if math.isnan(found_number):
-                raise DeclarationError(f"{row.where}: expected a finite number, got {cell!r}")
-        if found and not numbers[0] > found[-1][0]:
-            raise DeclarationError(
-                f"{row.where}: times must increase, but {cells[0]} follows {found[-1][0]:g}"
-            )
-        found.append(numbers)
-    if len(found) < _LEAST:
-        raise DeclarationError(
-            f"{path.name}: expected at least {_LEAST} rows of numbers, got {len(found)}"
-        )
-    columns: Array = np.array(found).T
-    return columns
-
-
-def _read(path: Path, time: str | int, value: str | int, unit: str, second: float) -> Recording:
-    """The two columns of a file."""
-    heads, rows, many = _opened(path)
-    places = [_column(path.name, column, heads, many) for column in (time, value)]
-    t, values = _numbers(path, rows, places)
-    return Recording(path.name, unit, t * second, values, _UNITS[unit])
-
-
-def _column(place: str, column: str | int, heads: Sequence[str], many: int) -> int:
-    if isinstance(column, str):
-        if heads.count(column) != 1:
-            raise UnknownNameError(
-                "column", column, heads or [f"the numbers 1 to {many}"], place=place
-            )
-        return heads.index(column)
-    if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= many:
-        raise DeclarationError(
-            f"{place}: column {column!r} is not one of its {many} columns, numbered from 1"
-        )
-    return column - 1
 
 
 def _closed(recording: Recording, period: float | None, advance: float) -> Recording:

@@ -13,7 +13,7 @@ import casadi as ca
 
 from ..arithmetic.scalars import column
 from ..base.arrays import Expression
-from ..base.quantities import Output, force_members
+from ..base.quantities import Output, force_members, motions_of
 from ..base.tables import ANGLE
 from ..declare.description import kinds_of_described
 from ..declare.ends import beyond_ends
@@ -279,11 +279,7 @@ def _unmeasured_angles(body: Multibody, motions: Collection[Output]) -> dict[Col
     for spherical in body.sphericals:
         revolutions = [axis.coordinate for axis in spherical.joint.axes if axis.kind == "angle"]
         locked = body.turns_of(spherical).locked
-        outputs = (
-            Output("motion", name, member)
-            for name in revolutions
-            for member in ("", "rate", "acceleration")
-        )
+        outputs = (output for name in revolutions for output in motions_of(name))
         columns |= {
             Check("open", output): locked
             for output in outputs
@@ -304,8 +300,7 @@ def _motion_columns(
             continue
         else:
             motion = body.motion_along(joint, axis)
-        members = (Output("motion", name, member) for member in ("", "rate", "acceleration"))
-        columns |= dict(zip(members, motion, strict=True))
+        columns |= dict(zip(motions_of(name), motion, strict=True))
     for part in mechanism.moving:
         frame = body.frames[part.name]
         place = zip("xyz" if mechanism.space else "xy", frame.place_of(ZERO), strict=False)

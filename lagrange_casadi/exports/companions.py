@@ -6,13 +6,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..codegen.printer import literal
 from ..portable.contract import CORNERS, REST, Contract, Member
 from ..portable.golden import RATIOS
-from ..portable.sections import comparisons, in_words
+from ..portable.sections import comparisons
 from ..portable.slopes import in_readme, selftest_function, selftest_numbers
 from ..portable.source import Source
-from ..portable.text import markdown, number_rows, numbers, quoted, template
+from ..portable.text import listed, markdown, number_rows, numbers, quoted, template
 from .fatigue import counting
 from .matlab import matlab
 
@@ -25,12 +24,10 @@ def companions(source: Source) -> dict[str, str]:
     c = source.contract
     words, (drive, effort) = source.words, c.shown
     link = c.links[0] if c.links else None
-    rest = f", {literal(c.precision)(0.0)}" if c.rests else ""
-    null = ", 0" if c.settings else ""
     data = source.exported.program.data
     (start, stop), count = data.span, data.timing.count
     steps = max(1, round((count - 1) / _ROWS)) if source.iterated else 1
-    number = literal(c.precision)
+    number = source.exported.number
     return (
         {
             "CMakeLists.txt": template("CMakeLists.txt", **words),
@@ -38,8 +35,7 @@ def companions(source: Source) -> dict[str, str]:
             "example.c": template(
                 "example.c",
                 **words,
-                null=null,
-                rest=rest,
+                rest=f", {number(0.0)}" if c.rests else "",
                 start=number(start),
                 step=number((stop - start) / (_ROWS * steps)),
                 skip=(
@@ -141,7 +137,6 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         + ("  check_sensitivity(&model, k);\n" if source.slopes else ""),
         first_input=c.shown[0].name,
         first_output=c.outputs[0].name,
-        null=", 0" if c.settings else "",
         time_rest=f", ({c.prefix}_real) times[k][1]" if c.rests else "",
         no_rest=", 0" if c.rests else "",
         bad_parameter=(
@@ -176,7 +171,7 @@ def _taken(c: Contract, m: Member, coordinates: dict[str, int]) -> str:
 def _forces(source: Source) -> str:
     """Expected values of section forces."""
     golden, table = source.golden, source.contract.table
-    words = in_words(table)
+    words = listed(table.row("section", force).long_name for force in table.forces)
     return template(
         "selftest_forces.c",
         forces=f"{words[0].upper()}{words[1:]}",

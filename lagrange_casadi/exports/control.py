@@ -73,9 +73,8 @@ def _parts(source: Source, value: str) -> list[str]:
 
 def _moved(c: Contract) -> Iterator[tuple[str, str]]:
     """Yield positions, rates and accelerations in C++, each with the full name of its input."""
-    for values, order in (("q", ""), ("dq", "_rate"), ("ddq", "_acceleration")):
-        for k, drive in enumerate(c.drives):
-            yield f"{values}[{k}]", f"motion:{drive}{order}"
+    for values, names in zip(("q", "dq", "ddq"), c.moved, strict=True):
+        yield from ((f"{values}[{k}]", name) for k, name in enumerate(names))
 
 
 def _to_inputs(source: Source) -> Iterator[str]:

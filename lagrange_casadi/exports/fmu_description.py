@@ -5,7 +5,6 @@ dependencies.
 from __future__ import annotations
 
 import hashlib
-import itertools
 import math
 import uuid
 from collections.abc import Sequence
@@ -17,10 +16,10 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..base.arrays import Array
-from ..base.quantities import Output
+from ..base.quantities import Output, motion_names
 from ..equations.program import Program
 from ..portable.contract import Contract, Member, Setting
+from ..portable.golden import motions_at
 from ..portable.source import Source
 from ..portable.text import template
 from ..version import __version__
@@ -49,15 +48,13 @@ class Variable:
 
 @dataclass(frozen=True, eq=False)
 class Description:
-    """A unit's ``modelDescription.xml``, for parameters ``p``; ``sources`` are the files to
-    compile.
+    """A unit's ``modelDescription.xml``; ``sources`` are the files to compile.
 
     ``by`` is empty where the motion of the drives is an input, ``time`` where the scene's motion is
     inside, or the coordinate that is an input in place of the time.
     """
 
     source: Source
-    p: Array
     sources: tuple[str, ...]
     by: str = ""
 
@@ -71,13 +68,17 @@ class Description:
         """True if anything depends on the importer's time."""
         return self.by == "time" or (self.contract.timed and not self.by)
 
+    @property
+    def place(self) -> str:
+        """Full name of the coordinate that is an input in place of the time, empty if none is."""
+        return "" if self.by in ("", "time") else str(Output("motion", self.by))
+
     @cached_property
     def start(self) -> dict[str, float]:
         """Start values of inputs: the scene's motion at its first instant."""
         program = self.source.exported.program
-        rows = program.motion(program.data.span[0], self.p)
-        values = np.concatenate([row.full().ravel() for row in rows])
-        return dict(zip(itertools.chain(*_motions(program)), values.tolist(), strict=True))
+        moved = motions_at(program, np.array(program.data.span[:1]), self.source.p)
+        return {name: float(values[0]) for name, values in moved.items()}
 
     @cached_property
     def variables(self) -> tuple[Variable, ...]:
@@ -90,7 +91,7 @@ class Description:
         found += [
             Variable(m, "input", m.source, start[m.source])
             for m in c.inputs
-            if m.source in start and self.by in ("", m.source.removeprefix("motion:"))
+            if m.source in start and (not self.by or m.source == self.place)
         ]
         found += [Variable(m, "output") for m in c.outputs]
         if self.timed:
@@ -122,7 +123,7 @@ class Description:
         found = {one.name: k for k, one in enumerate(self.variables, 1) if one.name}
         if not self.by:
             return found
-        inside = found["time"] if self.by == "time" else found[f"motion:{self.by}"]
+        inside = found["time" if self.by == "time" else self.place]
         return found | dict.fromkeys(["time", *self.start], inside)
 
     def _root(self, guid: str) -> ElementTree.Element:
@@ -222,7 +223,7 @@ def reached(program: Program) -> dict[str, frozenset[str]]:
     """
     named = [
         ["time"],
-        *_motions(program),
+        *motion_names(program.driven),
         [f"parameter:{name}" for name in program.data.parameters],
     ]
     _, coordinate, rate, acceleration, z, p = range(6)
@@ -238,12 +239,6 @@ def reached(program: Program) -> dict[str, frozenset[str]]:
     for row, _ in _entries(program.instant, z):
         found[row] |= loops
     return {name: frozenset(names) for name, names in zip(program.names, found, strict=True)}
-
-
-def _motions(program: Program) -> list[list[str]]:
-    """Full names of coordinates, rates and accelerations, each by drive."""
-    orders = ("", "rate", "acceleration")
-    return [[str(Output("motion", joint, order)) for joint in program.driven] for order in orders]
 
 
 def _entries(function: ca.Function, place: int) -> list[tuple[int, int]]:

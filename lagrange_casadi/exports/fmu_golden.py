@@ -7,6 +7,7 @@ import itertools
 import numpy as np
 
 from ..base.csv_rows import csv_text
+from ..portable.golden import motions_at
 from ..portable.text import template
 from .fmu_description import Description
 
@@ -27,15 +28,15 @@ def golden_vectors(description: Description) -> str:
     for start, stop in itertools.pairwise(golden.times):
         times.append(np.linspace(start, stop, golden.steps + 1)[1:])
     instants = np.concatenate(times)
-    moved = np.vstack([order.full() for order in program.motion(instants[None, :], description.p)])
-    given = moved[[list(description.start).index(m.source) for m in inputs]].T
+    moved = motions_at(program, instants, source.p)
+    given = [moved[m.source].tolist() for m in inputs]
     heads = [m.path for m in (*inputs, *description.contract.outputs)]
     rows: list[list[object]] = [["time", *heads]]
     rows.append(["within", *("" for _ in inputs), *golden.outputs_off.tolist()])
-    for k, (t, row) in enumerate(zip(instants.tolist(), given.tolist(), strict=True)):
+    for k, t in enumerate(instants.tolist()):
         at, between = divmod(k, golden.steps)
         found = [""] * golden.outputs_off.size if between else golden.outputs[at].tolist()
-        rows.append([t, *row, *found])
+        rows.append([t, *(values[k] for values in given), *found])
     return csv_text(rows)
 
 

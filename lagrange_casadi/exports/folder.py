@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import casadi as ca
-import numpy as np
 
 from ..arguments import LATER, Outputs, public
 from ..base.arrays import Json
@@ -146,7 +145,7 @@ def export(
         )
     if fmu:
         by = fmu if isinstance(fmu, str) else ""
-        files |= archive(source, np.array(list(source.values.values())), by)
+        files |= archive(source, by)
     with MANIFEST.filling(folder, _manifest(source), alone=True, **allowed) as draft:
         for file, content in files.items():
             (draft / file).write_bytes(content)

@@ -8,7 +8,7 @@ from ..codegen.printer import literal
 from ..portable.contract import Contract, Member
 from ..portable.naming import taken_words
 from ..portable.source import Source
-from ..portable.text import octave, octave_printed, template
+from ..portable.text import listed, octave, octave_printed, template
 
 _RESTS = """
    Numbers are doubles here: what single precision would round off a coordinate or a time is kept,
@@ -36,9 +36,9 @@ def matlab(source: Source) -> dict[str, str]:
             parameters=_members(c, "parameters", c.settings),
             links=", ".join(f'"{link.name}"' for link in c.links) or "0",
             prepare=_prepare(c, words),
-            time_rest=f", ({c.prefix}_real) (t - (double) ({c.prefix}_real) t)" if c.rests else "",
+            time=", ".join(c.split("t")),
             section=_section(c, words) if c.links else template("mex_no_section.c", **words),
-            matrices=f"{', '.join(c.table.forces[:-1])} and {c.table.forces[-1]}",
+            matrices=listed(c.table.forces),
         ),
         "build_mex.m": template("build_mex.m", **words),
         "mex_example.m": template(

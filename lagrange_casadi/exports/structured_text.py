@@ -4,35 +4,31 @@ tests them against golden vectors.
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.interpret import INFIX, operation_name, steps
+from ..arithmetic.interpret import INFIX, codes, operation_name, steps
 from ..arithmetic.lookups import Lookup
-from ..base.quantities import Output
 from ..base.status import Status
 from ..errors import DeclarationError
+from ..portable.calls import CALLS, INSTANT, PREPARE
+from ..portable.contract import Member
+from ..portable.naming import distinct
 from ..portable.source import Source
 from ..portable.text import indented, template
 
-_ONE = {
-    **{name: name.upper() for name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "exp")},
-    "fabs": "ABS",
-    "log": "LN",
-    "floor": "LC_FLOOR",
-    "ceil": "LC_CEIL",
-}
-_TWO = {"pow": "EXPT", "constpow": "EXPT", "fmin": "MIN", "fmax": "MAX"}
-_TWO |= {name: f"LC_{name.upper()}" for name in ("atan2", "fmod", "remainder", "copysign")}
+_STANDARD = codes("sqrt sin cos tan asin acos atan exp")
+_WRITTEN_HERE = codes("floor ceil atan2 fmod remainder copysign")
+_LIBRARY = {code: name.upper() for code, name in _STANDARD.items()}
+_LIBRARY |= {code: f"LC_{name.upper()}" for code, name in _WRITTEN_HERE.items()}
+_LIBRARY |= {ca.OP_FABS: "ABS", ca.OP_LOG: "LN", ca.OP_FMIN: "MIN", ca.OP_FMAX: "MAX"}
+_LIBRARY |= dict.fromkeys((ca.OP_POW, ca.OP_CONSTPOW), "EXPT")
 _WRITTEN = {
-    **{getattr(ca, f"OP_{name.upper()}"): f"{own}({{0}})" for name, own in _ONE.items()},
-    **{getattr(ca, f"OP_{name.upper()}"): f"{own}({{0}}, {{1}})" for name, own in _TWO.items()},
     **INFIX,
     ca.OP_INV: "1.0 / {0}",
     ca.OP_HYPOT: "SQRT({0} * {0} + {1} * {1})",
@@ -59,143 +55,117 @@ def structured_text(source: Source) -> dict[str, str]:
     Raises :class:`.DeclarationError` for what the language lacks: single precision, a table of the
     cycle, a function that has no name in it.
     """
-    c = source.contract
-    if c.rests or source.exported.cycle is not None:
+    c, exported, golden = source.contract, source.exported, source.golden
+    if c.rests or exported.cycle is not None:
         raise DeclarationError("structured text: expected double precision and no table")
     given = _identifiers("in", (m.name for m in c.inputs))
     taken = _identifiers("out", (m.name for m in c.outputs))
-    called = {m.name: name for m, name in zip(c.inputs, given, strict=True)}
-    time = called[c.input_of("time")] if c.timed else "0.0"
-    moved = [[called[member] for member in members] for members in c.motion]
-    instant, drive = _Block(source, time, moved), _Block(source, time, moved)
-    body, motion = list(instant.instant()), list(drive.motion())
-    outputs = []
-    for name, m in zip(taken, c.outputs, strict=True):
-        value = f"y[{source.exported.columns.index(Output.of(m.source))}]"
-        outputs.append(f"  {name} := {f'LC_DIRECTION({value})' if m.wrapped else value};")
-    words = {
+    instant, motion = _Block.of(source, given), _Block.of(source, given)
+    body, moved = list(instant.instant()), list(motion.call("law"))
+    moved += [f"{given[c.moment[0]]} := t;"] if c.timed else []
+    last = len(exported.columns) - 1
+    outputs = np.where(np.abs(golden.outputs) > _LEAST, golden.outputs, 0.0)
+    filled = (f"{taken[m.name]} := {_turned(m, exported.column(m.source))};" for m in c.outputs)
+    words = source.words | {
         "name": re.sub(r"[^ -~]|\(\*|\*\)", "?", c.name),
-        "block": _identifiers("mechanism", [c.prefix])[0],
-        "version": source.words["version"],
-        "scene": source.identity,
-        "inputs": indented(f"{name} : LREAL;" for name in given),
-        "outputs": indented(f"{name} : LREAL;" for name in taken),
-        "columns": len(source.exported.columns) - 1,
-        "finite": "\n".join(_loop("n", 0, len(source.exported.columns) - 1, _FINITE)),
+        "block": _identifiers("mechanism", [c.prefix])[c.prefix],
+        "inputs": indented(f"{name} : LREAL;" for name in given.values()),
+        "outputs": indented(f"{name} : LREAL;" for name in taken.values()),
+        "columns": last,
+        "finite": "\n".join(_loop("n", 0, last, _FINITE)),
         "registers": indented(instant.declared()),
-        "motion_registers": indented(drive.declared()),
+        "motion_registers": indented(motion.declared()),
         "body": "\n".join(body),
-        "motion": "\n".join(motion),
-        "taken": "\n".join(outputs),
+        "motion": "\n".join(moved),
+        "taken": indented(filled),
+        "start": _number(golden.times[0]),
+        "golden": indented([*_table("times", golden.times), *_table("golden", outputs.ravel())]),
+        "test": "\n".join(_test(source, given, taken)),
     }
-    words |= _test(source, given, taken)
     return {f"{c.prefix}.st": template("structured.st", **words)}
 
 
 @dataclass(eq=False)
 class _Block:
-    """A function block under way: the names of the time and of coordinates, rates and
-    accelerations, its arrays by their sizes, and its tables.
+    """A function block under way: the elements of vectors that functions take and fill, its arrays
+    by their sizes, and the names of its tables.
     """
 
     source: Source
-    time: str
-    moved: list[list[str]]
+    vectors: dict[str, list[str]]
     arrays: dict[str, int] = field(default_factory=dict)
-    tables: dict[str, Sequence[float]] = field(default_factory=dict)
+    tables: dict[tuple[float, ...], str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, source: Source, given: Mapping[str, str]) -> _Block:
+        """Begin a block; its inputs are named as they are ``given``, and parameters are numbers."""
+        c, exported = source.contract, source.exported
+        vectors = {"at": ["t"], "moment": [given.get(member, "0.0") for member in c.moment]}
+        for name, members in zip(("d", "rate", "acceleration"), c.motion, strict=True):
+            vectors[name] = [given[member] for member in members]
+        vectors["parameters"] = [_number(value) for value in source.p]
+        for name in exported.called(PREPARE):
+            found = np.ravel(exported.functions[name](source.p).full())
+            vectors[CALLS[name].fills[0]] = [_number(value) for value in found]
+        vectors["y"] = vectors["evaluated"] = [f"y[{k}]" for k in range(len(exported.columns))]
+        return cls(source, vectors | {name: [name] for name in ("size", "iterated", "rule")})
 
     def declared(self) -> Iterator[str]:
         """Yield declarations of variables."""
         for name, size in self.arrays.items():
             start = f" := [{', '.join(map(_number, self.source.guess))}]" if name == "z" else ""
-            yield f"{name} : ARRAY[0..{max(size, 1) - 1}] OF LREAL{start};"
+            yield f"{name} : ARRAY[0..{size - 1}] OF LREAL{start};"
         if "z" in self.arrays:
             yield from ("k : DINT;", "size : LREAL;", "before : LREAL;")
-        for name, numbers in self.tables.items():
+        for numbers, name in self.tables.items():
             yield from _table(name, numbers)
 
     def array(self, name: str, size: int) -> list[str]:
-        """Declare an array; return its elements."""
+        """Declare an array, and a vector of its name; return its elements."""
         self.arrays[name] = size
-        return [f"{name}[{k}]" for k in range(size)]
-
-    def motion(self) -> Iterator[str]:
-        """Yield the statements of the scene's motion at t."""
-        law = self.source.exported.functions["law"]
-        yield from self.lines(law, [["t"], self.parameters()], self.moved)
-        if self.source.contract.timed:
-            yield f"{self.time} := t;"
+        return self.vectors.setdefault(name, [f"{name}[{k}]" for k in range(size)])
 
     def instant(self) -> Iterator[str]:
         """Yield the statements of an instant, up to whether it is valid."""
-        exported, (coordinates, *rates) = self.source.exported, self.moved
-        functions, sizes = exported.functions, exported.sizes
-        counted = self.array("counted", sizes["counted"])
-        if counted:
-            given = [[self.time, *coordinates], self.parameters()]
-            yield from self.lines(functions["count"], given, [counted])
-        z: list[str] = []
-        yield from ("iterated := 0.0;", "valid := TRUE;")
-        if self.source.iterated:
-            z = self.array("w", sizes["loops"])
-            yield from self.closing(z, counted)
-        columns = [f"y[{k}]" for k in range(sizes["evaluated"])]
-        given = [counted, *rates, z, self.fixed("constants_of")]
-        yield from self.lines(functions["instant"], given, [columns])
-        if "status" in functions:
-            rows = [f"y[{k}]" for k in range(len(exported.columns))]
-            given = [rows, self.fixed("matter")[: sizes["gapped"]], ["iterated"]]
-            yield from self.lines(functions["status"], given, [["rule"]])
-            allowed = [k for k, answer in enumerate(self.source.answers()) if answer == "OK"]
-            tests = " OR ".join(f"rule = {_number(float(k))}" for k in allowed)
-            yield f"valid := valid AND ({tests});"
+        exported = self.source.exported
+        self.array("counted", exported.sizes["counted"])
+        for name in exported.called(INSTANT):
+            yield from self.closing() if name == "loops" else self.call(name)
+            if name == "count":
+                yield from ("iterated := 0.0;", "valid := TRUE;")
+            elif name == "status":
+                allowed = (k for k, answer in enumerate(exported.answers()) if answer == "OK")
+                tests = " OR ".join(f"rule = {_number(k)}" for k in allowed)
+                yield f"valid := valid AND ({tests});"
 
-    def closing(self, z: Sequence[str], counted: Sequence[str]) -> Iterator[str]:
+    def closing(self) -> Iterator[str]:
         """Yield the statements that close loops from where they stood."""
         exported, newton = self.source.exported, self.source.exported.program.newton
         assert newton is not None
-        stood, c, turn = self.array("z", len(z)), self.array("c", len(z)), _number(math.tau)
-        step, given = exported.functions["loops"], [z, counted, self.parameters()]
-        moved = [f"{now} := {now} + {more};" for now, more in zip(z, c, strict=True)]
+        z, stood, c = (self.array(name, exported.sizes["loops"]) for name in ("w", "z", "c"))
+        self.vectors |= {"z": z, "loops": z, "correction": c}
+        turn, rule = _number(math.tau), {key: _number(x) for key, x in exported.rule.items()}
         whole = [
             f" - {turn} * LC_FLOOR({now} / {turn} + 0.5)" if turning else ""
             for now, turning in zip(z, newton.turning, strict=True)
         ]
-        rule = {key: _number(float(value)) for key, value in exported.rule.items()}
         body = [f"IF NOT (size < {rule['done']}) THEN", "before := size;"]
-        body += [*self.lines(step, given, [c, ["size"]], within="k"), *moved, "END_IF;"]
+        body += self.call("loops", within="k")
+        body += [*map("{0} := {0} + {1};".format, z, c), "END_IF;"]
         yield template(
             "structured_loops.st",
             **rule,
-            begin="\n".join(f"{now} := {then};" for now, then in zip(z, stood, strict=True)),
+            begin="\n".join(map("{} := {};".format, z, stood)),
             iterate="\n".join(_loop("n", 1, int(exported.rule["steps"]), body)),
             keep="\n".join(map("{} := {}{};".format, stood, z, whole)),
-            slow=_number(float(Status.SLOW)),
+            slow=_number(Status.SLOW),
         ).rstrip()
 
-    def parameters(self) -> list[str]:
-        """Return the parameters as numbers."""
-        return [_number(value) for value in self.source.values.values()]
-
-    def fixed(self, name: str) -> list[str]:
-        """Return what a function of parameters alone gives, as numbers."""
-        function = self.source.exported.functions.get(name)
-        if function is None:
-            return []
-        values = function(list(self.source.values.values()))
-        return [_number(float(x)) for x in np.ravel(values.full())]
-
-    def lines(
-        self,
-        function: ca.Function,
-        inputs: Sequence[Sequence[str]],
-        outputs: Sequence[Sequence[str]],
-        within: str = "n",
-    ) -> Iterator[str]:
+    def call(self, name: str, within: str = "n") -> Iterator[str]:
         """Yield the instructions of a function, one statement each; ``within`` counts in tables."""
-        computed = [step for step in steps(function) if step.operation != ca.OP_OUTPUT]
-        size = 1 + max(step.results[0] for step in computed)
-        self.arrays["a"] = max(size, self.arrays.get("a", 0))
+        function, called = self.source.exported.functions[name], CALLS[name]
+        written = {step.results[0] for step in steps(function) if step.operation != ca.OP_OUTPUT}
+        self.arrays["a"] = max(1 + max(written), self.arrays.get("a", 0))
         for step in steps(function):
             target, given = f"a[{step.results[0]}]", [f"a[{place}]" for place in step.arguments]
             if step.looked_up is not None:
@@ -203,12 +173,14 @@ class _Block:
                 continue
             if step.operation == ca.OP_OUTPUT:
                 i, k = step.results
-                target, value = outputs[i][k], given[0]
+                target, value = self.vectors[called.fills[i]][k], given[0]
             elif step.operation == ca.OP_INPUT:
                 i, k = step.arguments
-                value = inputs[i][k]
+                value = self.vectors[called.takes[i]][k]
             elif step.operation == ca.OP_CONST:
                 value = _number(step.constant)
+            elif step.operation in _LIBRARY:
+                value = f"{_LIBRARY[step.operation]}({', '.join(given)})"
             elif step.operation in _WRITTEN:
                 value = _WRITTEN[step.operation].format(*given)
             else:
@@ -221,10 +193,8 @@ class _Block:
     def looked_up(self, target: str, given: str, table: Lookup, counter: str) -> Iterator[str]:
         """Yield statements that look a number up: its entry, or by counting its cell."""
         cell = table.kind == "cell"
-        numbers = (table.numbers[1:-1] if cell else table.numbers).tolist()
-        name = next((one for one, held in self.tables.items() if held == numbers), "")
-        name = name or f"table_{len(self.tables)}"
-        self.tables[name] = numbers
+        numbers = tuple((table.numbers[1:-1] if cell else table.numbers).tolist())
+        name = self.tables.setdefault(numbers, f"table_{len(self.tables)}")
         if not cell:
             yield f"{target} := {name}[LREAL_TO_DINT({given})];"
             return
@@ -233,9 +203,30 @@ class _Block:
         yield from _loop(counter, 0, len(numbers) - 1, test)
 
 
+def _test(source: Source, given: Mapping[str, str], taken: Mapping[str, str]) -> list[str]:
+    """Return statements that follow the motion and compare outputs at golden instants."""
+    g, outputs = source.golden, source.contract.outputs
+    inputs = ", ".join(f"{name} := drive.{name}" for name in given.values())
+    share = f"DINT_TO_LREAL(n) / {_number(g.steps)}"
+    step = f"t := SEL(n = {g.steps}, before + {share} * (times[k] - before), times[k]);"
+    body = [step, "drive(t := t);", f"unit({inputs});"]
+    body = [*_loop("n", 1, g.steps, body), "before := t;"]
+    body += ["IF NOT unit.valid THEN", "failed := failed + 1;", "END_IF;"]
+    for j, (m, off) in enumerate(zip(outputs, g.outputs_off, strict=True)):
+        gap = _turned(m, f"unit.{taken[m.name]} - golden[k * {len(outputs)} + {j}]")
+        body.append(f"IF NOT (ABS({gap}) <= {_number(max(off, _LEAST))}) THEN")
+        body += ["failed := failed + 1;", "END_IF;"]
+    return _loop("k", 0, g.times.size - 1, body)
+
+
+def _turned(member: Member, value: str) -> str:
+    """Return the value of an output, without whole turns where these do not count."""
+    return f"LC_DIRECTION({value})" if member.wrapped else value
+
+
 def _table(name: str, numbers: Iterable[float]) -> Iterator[str]:
     """Yield the declaration of an array of numbers."""
-    texts = [_number(float(one)) for one in numbers]
+    texts = [_number(one) for one in numbers]
     yield f"{name} : ARRAY[0..{len(texts) - 1}] OF LREAL := ["
     rows = (", ".join(texts[k : k + 6]) for k in range(0, len(texts), 6))
     yield ",\n    ".join(f"  {row}" for row in rows) + "];"
@@ -247,46 +238,19 @@ def _loop(counter: str, first: int, last: int, body: Sequence[str]) -> list[str]
     return [f"{counter} := {first};", *body] if last == first else [head, *body, "END_FOR;"]
 
 
-def _test(source: Source, given: Sequence[str], taken: Sequence[str]) -> dict[str, str]:
-    """Return words of a program that follows the motion and compares outputs at golden instants."""
-    g, c, count = source.golden, source.contract, len(taken)
-    numbers = np.where(np.abs(g.outputs) > _LEAST, g.outputs, 0.0)
-    inputs = ", ".join(f"{name} := drive.{name}" for name in given)
-    share = f"DINT_TO_LREAL(n) / {_number(float(g.steps))}"
-    step = f"t := SEL(n = {g.steps}, before + {share} * (times[k] - before), times[k]);"
-    body = [step, "drive(t := t);", f"unit({inputs});"]
-    body = [*_loop("n", 1, g.steps, body), "before := t;"]
-    body += ["IF NOT unit.valid THEN", "failed := failed + 1;", "END_IF;"]
-    for j, (name, m) in enumerate(zip(taken, c.outputs, strict=True)):
-        gap = f"unit.{name} - golden[k * {count} + {j}]"
-        gap = f"LC_DIRECTION({gap})" if m.wrapped else gap
-        off = _number(max(float(g.outputs_off[j]), _LEAST))
-        body += [f"IF NOT (ABS({gap}) <= {off}) THEN", "failed := failed + 1;", "END_IF;"]
-    return {
-        "start": _number(float(g.times[0])),
-        "golden": indented([*_table("times", g.times), *_table("golden", numbers.ravel())]),
-        "test": "\n".join(_loop("k", 0, g.times.size - 1, body)),
-    }
-
-
 def _number(value: float) -> str:
     """Return a number of LREAL."""
     if math.isnan(value):
         raise DeclarationError("structured text has no number for NaN, which the scene needs")
-    value = max(-1.7976931348623157e308, min(value, 1.7976931348623157e308))
+    value = max(-1.7976931348623157e308, min(float(value), 1.7976931348623157e308))
     mantissa, _, power = f"{value:.17g}".partition("e")
     mantissa += "" if "." in mantissa else ".0"
     return f"{mantissa}E{power}" if power else mantissa
 
 
-def _identifiers(first: str, names: Iterable[str]) -> list[str]:
+def _identifiers(first: str, names: Iterable[str]) -> dict[str, str]:
     """Return names that differ where capitals do not count; with a first word none is the
     language's.
     """
-    found: dict[str, str] = {}
-    for name in names:
-        plain = re.sub("_+", "_", f"{first}_{name}").rstrip("_")
-        tries = itertools.chain([plain], (f"{plain}_{k}" for k in itertools.count(2)))
-        chosen = next(one for one in tries if one.lower() not in found)
-        found[chosen.lower()] = chosen
-    return list(found.values())
+    plain = {name: re.sub("_+", "_", f"{first}_{name}").rstrip("_") for name in names}
+    return distinct(plain, compared=str.lower)

@@ -1,7 +1,8 @@
 """Parameters of a machine from measurements: regressors, base parameters, least squares."""
 
 from .excitation import Excitation, excite
-from .identification import BaseParameter, Comparison, Identification, identify
+from .fit import Comparison
+from .identification import BaseParameter, Identification, identify
 from .measurements import Measurements, read_measurements
 
 __all__ = [

@@ -18,6 +18,9 @@ from ..base.arrays import Array
 RANK = 1e-10
 """Least distance of a column from those before it, relative to its norm, that is not rounding."""
 
+_ROUNDING = 1e-13
+"""Largest share of a quantity in what a parameter changes that is rounding."""
+
 _WORSE = 100.0
 """Factor by which the condition may be worse with the parameters that rank first."""
 
@@ -88,15 +91,16 @@ def inverse(columns: Array) -> Array:
     return np.asarray(np.linalg.pinv(columns / scale) / scale[:, None])
 
 
-def base_of(columns: Array, ranking: Ranking) -> Base:
+def base_of(columns: Array, ranking: Ranking, whole: float = 0.0) -> Base:
     """Return the base of the columns (n, k) of parameters.
 
-    A column that is rounding beside the others, each times its scale, is absent. The first of the
-    ranking stand for combinations, unless others make a far better condition.
+    A column that is rounding beside the others, each times its scale, or beside the norm of the
+    ``whole`` of which they are derivatives, is absent. The first of the ranking stand for
+    combinations, unless others make a far better condition.
     """
     norms = np.linalg.norm(columns, axis=0)
     sizes = norms * ranking.scales
-    present = np.flatnonzero(sizes > RANK * sizes.max(initial=0.0))
+    present = np.flatnonzero(sizes > max(RANK * sizes.max(initial=0.0), _ROUNDING * whole))
     left = triangle(columns[:, present] / norms[present])
     order = _independent(left)
     plain = _independent(left, np.argsort(np.argsort(ranking.order)[present]).tolist())

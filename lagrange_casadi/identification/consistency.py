@@ -9,18 +9,19 @@ constraints are quadratic, and every start is inside.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.ipopt import ipopt
 from ..base.arrays import Array, Expression
 from ..base.symbolic import Graphs, symbolic, symbolic_property
-from ..equations.program import Program
 from ..errors import AccuracyError, DeclarationError
 from .base import triangle
+from .regressor import Regressor
 
 _PULL, _OPEN = 0.2, 1e-9
 """Weight of first values of combinations that the measurements leave open, as if those were known
@@ -33,12 +34,6 @@ _LEAST = 1e-3
 
 _EMPTY = 1e-12
 """Largest share of a matrix in a row that is none, as that of a rod's moment about its own axis."""
-
-_OPTIONS = {
-    "print_time": False,
-    "error_on_fail": False,
-    "ipopt": {"print_level": 0, "sb": "yes", "nlp_scaling_method": "none"},
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +52,12 @@ class Consistency(Graphs):
 
     @classmethod
     @symbolic
-    def of(
-        cls, program: Program, defaults: Array, numbers: Sequence[int], scales: Array
-    ) -> Consistency:
+    def of(cls, regressor: Regressor, defaults: Array) -> Consistency:
         """Make the conditions of the bodies whose mass properties depend on unknown parameters."""
+        program, numbers = regressor.program, regressor.numbers
         theta, p = ca.SX.sym("theta", len(numbers)), ca.SX(ca.DM(defaults))
-        p[list(numbers)] = theta
-        first, found = defaults[list(numbers)], {}
+        p[numbers] = theta
+        first, found = defaults[numbers], {}
         content = program.data.template.content["bodies"]
         for name, mass in zip(content, ca.vertsplit(program.data.masses(p)), strict=False):
             centre = program.data.template.placed(content[name], p).get("centre")
@@ -75,7 +69,7 @@ class Consistency(Graphs):
             ca.Function("matrices", [theta], list(found.values())),
             tuple(found),
             first,
-            scales,
+            regressor.ranking(defaults).scales,
             np.array([one.low for one in parameters]),
             np.array([one.high for one in parameters]),
         )
@@ -115,7 +109,7 @@ class Consistency(Graphs):
             begin.append(np.equal(*shape.get_triplet()).astype(float))
         program = {"x": ca.veccat(y, *entries), "p": rows, "f": ca.sumsqr(y) / 2.0}
         program["g"] = ca.veccat(x, *apart)
-        return ca.nlpsol("consistent", "ipopt", program, _OPTIONS), np.concatenate(begin)
+        return ipopt("consistent", program, nlp_scaling_method="none"), np.concatenate(begin)
 
     @symbolic
     def step(self, columns: Array, right: Array, theta: Array) -> Array:

@@ -16,16 +16,18 @@ import casadi as ca
 import numpy as np
 
 from ..arguments import Count, Positive, public
+from ..arithmetic.ipopt import ipopt
 from ..base.arrays import Array, Expression
 from ..base.brief import Brief
 from ..base.symbolic import symbolic
+from ..base.units import number
 from ..base.vocabulary import Backend
 from ..case import Case, scene_of
 from ..declare.motion import Motion, expression
 from ..declare.scene import Scene
-from ..errors import AssemblyError, DeclarationError, UnknownNameError
+from ..errors import AssemblyError, DeclarationError, NumberError, UnknownNameError, shown
 from ..instants.evaluation_method import EvaluationMethod
-from .base import Base, Ranking, base_of, triangle
+from .base import Base, base_of, triangle
 from .regressor import DrivenMotion, Regressor
 
 _SAMPLES, _HELD = 64, 32
@@ -40,8 +42,7 @@ _INSTANTS = 96
 _DRAWN, _STARTS = 64, 3
 """Motions that are drawn, and how many of the best are improved."""
 
-_QUIET = ("print_time", "error_on_fail", "show_eval_warnings")
-_IPOPT = {"print_level": 0, "sb": "yes", "tol": 1e-4, "hessian_approximation": "limited-memory"}
+_OPTIONS = {"tol": 1e-4, "hessian_approximation": "limited-memory"}
 
 
 @public
@@ -142,20 +143,26 @@ def excite(
         quantities = [f"effort:{drive}" for drive in efforts]
     regressor = Regressor.of(scene, tuple(quantities), names, EvaluationMethod(backend))
     drives = regressor.program.driven
+    if unknown_drives := [drive for drive in limits if drive not in drives]:
+        raise UnknownNameError("drive of limits=", unknown_drives, drives)
     if lost := [drive for drive in drives if drive not in limits]:
-        raise UnknownNameError("drive of limits=", lost, limits)
-    bounds = np.array([_limits(drive, limits[drive]) for drive in drives])
+        raise DeclarationError(f"limits=: expected those of drive '{lost[0]}' too")
     p = np.array(list(values.values()))
-    search = _Search(regressor, names, bounds, p, float(period), harmonics)
-    return search.run(steps)
+    low, high, speed, most = np.array([_limits(drive, limits[drive]) for drive in drives]).T
+    ends = np.array([[low, -speed, -most], [high, speed, most]])
+    return _Search(regressor, ends, p, float(period), harmonics).run(steps)
 
 
 def _limits(drive: str, given: Sequence[float]) -> list[float]:
-    numbers = [float(number) for number in given]
-    if len(numbers) != 4 or not (numbers[0] < numbers[1] and numbers[2] > 0.0 < numbers[3]):
+    try:
+        numbers = [number(one) for one in given]
+        valid = len(numbers) == 4 and numbers[0] < numbers[1] and numbers[2] > 0.0 < numbers[3]
+    except (TypeError, NumberError):
+        valid = False
+    if not valid:
         raise DeclarationError(
             f"limits of '{drive}': expected the least and the largest coordinate, a speed and an"
-            f" acceleration above 0, got {', '.join(f'{x:g}' for x in numbers)}"
+            f" acceleration above 0, got {shown(given)}"
         )
     return numbers
 
@@ -177,11 +184,12 @@ class _Judged(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Search:
-    """A search among series within the limits (drives, 4)."""
+    """A search among series whose coordinates, rates and accelerations are between the least and
+    the largest (2, 3, drives).
+    """
 
     regressor: Regressor
-    names: tuple[str, ...]
-    limits: Array
+    ends: Array
     p: Array
     period: float
     harmonics: int
@@ -200,7 +208,7 @@ class _Search:
                 " random motions within the limits; expected narrower limits"
             )
         improved = [self._judged(series) for series in self._improved(drawn[:_STARTS], steps)]
-        best = min(drawn[0], *filter(None, improved), key=lambda one: one.order)
+        best = min([drawn[0], *filter(None, improved)], key=lambda one: one.order)
         sines, cosines = np.split(best.series[1:], 2)
         return Excitation(
             self.period,
@@ -209,7 +217,7 @@ class _Search:
             dict(zip(drives, cosines.T, strict=True)),
             best.base.condition,
             drawn[0].base.condition,
-            best.base.words(self.names),
+            best.base.words(self.regressor.unknown),
             best.error / drawn[0].error,
         )
 
@@ -236,7 +244,7 @@ class _Search:
         x = x / np.arange(1, self.harmonics + 1)
         series = np.vstack([np.zeros((1, len(x))), x[:, 0].T, x[:, 1].T])
         d = self._rows(_SAMPLES * self.harmonics)[0] @ series
-        low, high = self.limits.T[:2]
+        low, high = self.ends[:, 0]
         scale = (high - low) / np.ptp(d, axis=0)
         series *= scale
         series[0] = (low + high) / 2.0 - scale * (d.max(axis=0) + d.min(axis=0)) / 2.0
@@ -244,12 +252,11 @@ class _Search:
 
     def _within(self, series: Array) -> Array:
         """Return a series whose amplitudes are reduced to the limits."""
-        d, rate, acceleration = self._rows(_SAMPLES * self.harmonics) @ series
-        low, high, speed, most = self.limits.T
-        away, mean = d - series[0], series[0]
-        shares = [np.abs(rate) / speed, np.abs(acceleration) / most]
-        shares += [away / (high - mean), away / (low - mean)]
-        series[1:] /= np.maximum(np.max(shares, axis=(0, 1)) / _MARGIN, 1.0)
+        away, ends = self._rows(_SAMPLES * self.harmonics) @ series, self.ends.copy()
+        away[0] -= series[0]
+        ends[:, 0] -= series[0]
+        shares = (away / ends[:, :, None]).max(axis=(0, 1, 2))
+        series[1:] /= np.maximum(shares / _MARGIN, 1.0)
         return series
 
     def _followed(self, series: Array) -> tuple[DrivenMotion, Array]:
@@ -260,17 +267,17 @@ class _Search:
     def _judged(self, series: Array) -> _Judged | None:
         """Return how well a motion determines parameters; None if it cannot be followed."""
         try:
-            slopes = self.regressor.at(*self._followed(series), self.p)[1]
+            values, slopes = self.regressor.at(*self._followed(series), self.p)
         except AssemblyError:
             return None
-        slopes = slopes.reshape(-1, len(self.names))
+        slopes = slopes.reshape(-1, len(self.regressor.unknown))
         slopes = slopes[np.isfinite(slopes).all(axis=1)]
-        if len(slopes) < len(self.names):
+        if len(slopes) < len(self.regressor.unknown):
             return None
-        parameters = self.regressor.program.data.parameters
-        numbers = [list(parameters).index(name) for name in self.names]
-        units = [parameters[name].unit for name in self.names]
-        base = base_of(slopes, Ranking.of(self.p[numbers], units))
+        whole = float(np.linalg.norm(values[np.isfinite(values)]))
+        base = base_of(slopes, self.regressor.ranking(self.p), whole)
+        if not base.chosen:
+            raise self.regressor.unchanged
         sizes = np.abs(np.diag(triangle(slopes[:, list(base.chosen)])))
         return _Judged(series, base, float(np.exp(-np.log(sizes).mean())))
 
@@ -280,34 +287,31 @@ class _Search:
         loops need not close on the way.
         """
         t, loop = self._times(_INSTANTS), self.regressor.program.newton
-        low, high, speed, most = self.limits.T
-        size = np.tile((high - low) / 2.0, (1 + 2 * self.harmonics, 1))
+        (least, largest), held = self.ends, self._rows(_HELD * self.harmonics)
+        span = largest - least
+        size = np.tile(span[0] / 2.0, (1 + 2 * self.harmonics, 1))
         x = ca.MX.sym("x", *size.shape)
         z = ca.MX.sym("z", 0 if loop is None else len(loop.guess), t.size)
         motion = [ca.mtimes(ca.DM(rows), x * size).T for rows in self._rows(t.size)]
         given, p = ca.DM(t).T, ca.repmat(ca.DM(self.p), 1, t.size)
         found = self.regressor.batch.function.map(t.size)(given, *motion, z, p)
-        slopes = ca.reshape(found, 1 + len(self.names), -1)
+        slopes = ca.reshape(found, 1 + len(self.regressor.unknown), -1)
         slopes = slopes[[1 + k for k in starts[0].base.chosen], :]
         square = ca.SX.sym("square", slopes.size1(), slopes.size1())
         roots = ca.log(ca.diag(ca.chol(square)))
         error = ca.Function("error", [square], [-ca.sum1(roots) / slopes.size1()])
-        limited, below, above = [], [], []
-        ends = (low, high), (-speed, speed), (-most, most)
-        for rows, (least, largest) in zip(self._rows(_HELD * self.harmonics), ends, strict=True):
-            limited.append(ca.mtimes(ca.DM(rows), x * (size / (largest - least))))
-            below.append(np.repeat(least / (largest - least), len(rows)))
-            above.append(np.repeat(largest / (largest - least), len(rows)))
+        limited = [
+            ca.mtimes(ca.DM(rows), x * (size / s)) for rows, s in zip(held, span, strict=True)
+        ]
         if loop is not None:
             limited.append(loop.step.map(t.size)(z, given, motion[0], p)[0])
-            below.append(np.zeros(z.numel()))
-            above.append(np.zeros(z.numel()))
         program = {"x": ca.veccat(x, z), "f": error(ca.mtimes(slopes, slopes.T))}
-        options: dict[str, object] = dict.fromkeys(_QUIET, False)
-        options |= {"ipopt": {**_IPOPT, "max_iter": steps}}
         program["g"] = ca.veccat(*limited)
-        solver = ca.nlpsol("excitation", "ipopt", program, options)
-        bounds = {"lbg": np.concatenate(below), "ubg": np.concatenate(above)}
+        solver = ipopt("excite", program, **_OPTIONS, max_iter=steps)
+        bounds = {
+            name: np.append(np.repeat(ends / span, held.shape[1]), np.zeros(z.numel()))
+            for name, ends in (("lbg", least), ("ubg", largest))
+        }
         improved = []
         for start in starts:
             begun = self._followed(start.series)[1].ravel()

@@ -4,18 +4,21 @@ parameters are linear.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
-from ..errors import AccuracyError, DeclarationError
+from ..base.brief import Brief
+from ..errors import AccuracyError, DeclarationError, UnknownNameError
 from .base import Base, Ranking, base_of, inverse, triangle
 from .consistency import Consistency
-from .measurements import Filter
+from .measurements import Filter, Measurements, check_units
 from .regressor import DrivenMotion, Regressor
 
 _HUBER = 1.345
@@ -43,6 +46,31 @@ derivative that is rounding, over its size, or over this share of the largest of
 """
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Brief):
+    """Measured quantities beside the model of them, each (t,); NaN where one is missing."""
+
+    t: Array
+    measured: Mapping[str, Array]
+    model: Mapping[str, Array]
+    units: Mapping[str, str]
+
+    @property
+    def residual(self) -> dict[str, float]:
+        """Root mean square of measured less model, by quantity."""
+        return {name: _rms(self.measured[name] - self.model[name]) for name in self.measured}
+
+    @property
+    def relative(self) -> dict[str, float]:
+        """Residuals over the root mean square of what is measured."""
+        found = {}
+        for name, residual in self.residual.items():
+            both = np.where(np.isfinite(self.model[name]), self.measured[name], np.nan)
+            size = _rms(both)
+            found[name] = residual / size if size else math.nan
+        return found
+
+
 class Rows(NamedTuple):
     """Residuals (r,) of all that is measured, less the model, their derivatives by the unknown
     parameters (r, k), numbers of quantity and instant (r,), and residuals that are not filtered
@@ -62,28 +90,66 @@ class Rows(NamedTuple):
 class Data:
     """Measured values (n, quantities) along a motion, and the model of them.
 
-    ``defaults`` are values of all parameters, ``numbers`` of which are unknown, and ``prior`` the
-    places among the unknown ones of those about whose values something is known.
+    ``defaults`` are values of all parameters. ``noise`` are standard deviations of the quantities,
+    NaN if they are to be estimated, and ``prior`` those of first values, by the place of a
+    parameter among the unknown ones.
     """
 
     regressor: Regressor
     motion: DrivenMotion
     measured: Array
     defaults: Array
-    numbers: tuple[int, ...]
-    prior: tuple[int, ...]
+    noise: tuple[float, ...]
+    prior: Mapping[int, float]
     low_pass: Filter | None
+
+    @classmethod
+    def of(
+        cls,
+        regressor: Regressor,
+        measurements: Measurements,
+        trim: float,
+        defaults: Array,
+        prior: Mapping[str, float] | None = None,
+        cutoff: float | None = None,
+    ) -> Data:
+        """Take the motion and the quantities of measurements, whose units are checked."""
+        check_units(measurements, regressor.expected)
+        columns, names = measurements.columns, regressor.quantities
+        if lost := [name for name in names if name not in columns]:
+            raise UnknownNameError("column", lost, columns, place=measurements.name)
+        return cls(
+            regressor,
+            measurements.motion(regressor.program.driven, trim),
+            np.stack([columns[name] for name in names], axis=1),
+            defaults,
+            tuple(measurements.noise.get(name, math.nan) for name in names),
+            {regressor.unknown.index(name): spread for name, spread in (prior or {}).items()},
+            None if cutoff is None else Filter(measurements.t, cutoff),
+        )
+
+    @cached_property
+    def ranking(self) -> Ranking:
+        """Ranking of the unknown parameters, with the sizes of their first values."""
+        return self.regressor.ranking(self.defaults)
 
     def parameters(self, theta: Array) -> Array:
         """Return the values of all parameters."""
         p: Array = self.defaults.copy()
-        p[list(self.numbers)] = theta
+        p[self.regressor.numbers] = theta
         return p
 
     @property
     def theta(self) -> Array:
         """Values of the unknown parameters from which a search begins."""
-        return np.asarray(self.defaults[list(self.numbers)])
+        return np.asarray(self.defaults[self.regressor.numbers])
+
+    def compared(self, theta: Array, z: Array) -> Comparison:
+        """Return what is measured beside the model."""
+        model = self.regressor.at(self.motion, z, self.parameters(theta))[0]
+        each = self.measured.T, model.T, self.regressor.units
+        names = self.regressor.quantities
+        return Comparison(self.motion.t, *(dict(zip(names, x, strict=True)) for x in each))
 
     def some(self, rows: npt.NDArray[np.intp]) -> Data:
         """Return the data of some of the instants, not filtered."""
@@ -95,38 +161,37 @@ class Data:
         of the parameters.
         """
         model, slopes = self.regressor.at(self.motion, z, self.parameters(theta))
-        parts = []
-        for k in range(model.shape[1]):
-            raw = self.measured[:, k] - model[:, k]
-            known = np.isfinite(raw) & np.isfinite(slopes[:, k]).all(axis=1)
-            both = np.column_stack([raw, slopes[:, k]])
-            if self.low_pass is not None:
-                both = self.low_pass(both, known)
-            instants = np.flatnonzero(known)
-            quantity = np.full(instants.size, k)
-            parts.append((both[known, 0], both[known, 1:], quantity, instants, raw[known]))
+        raw = self.measured - model
+        known = np.isfinite(raw) & np.isfinite(slopes).all(axis=2)
+        both = np.concatenate([raw[..., None], slopes], axis=2)
+        if self.low_pass is not None:
+            both = self.low_pass(both, known)
+        quantity, instant = np.nonzero(known.T)
         prior, numbers = list(self.prior), np.arange(len(self.prior))
-        away, unit = (self.theta - theta)[prior], np.eye(theta.size)[prior]
-        parts.append((away, unit, model.shape[1] + numbers, 0 * numbers, away))
-        return Rows(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+        away = (self.theta - theta)[prior]
+        return Rows(
+            np.concatenate([both[instant, quantity, 0], away]),
+            np.concatenate([both[instant, quantity, 1:], np.eye(theta.size)[prior]]),
+            np.concatenate([quantity, model.shape[1] + numbers]),
+            np.concatenate([instant, 0 * numbers]),
+            np.concatenate([raw[instant, quantity], away]),
+        )
 
     def filtered(self, rows: Rows) -> Array:
         """Filter the derivatives of rows once more."""
         if self.low_pass is None:
             return rows.columns
         found: Array = rows.columns.copy()
-        for k in range(self.measured.shape[1]):
-            some = rows.quantity == k
-            whole, known = np.zeros((len(self.measured), found.shape[1])), rows.instant[some]
-            whole[known] = rows.columns[some]
-            counts = np.isin(np.arange(len(whole)), known)
-            found[some] = self.low_pass(whole, counts)[known]
+        some = rows.quantity < self.measured.shape[1]
+        known = np.zeros(self.measured.shape, bool)
+        whole: Array = np.zeros((*known.shape, found.shape[1]))
+        at = rows.instant[some], rows.quantity[some]
+        known[at], whole[at] = True, found[some]
+        found[some] = self.low_pass(whole, known)[at]
         return found
 
 
-def nonlinear(
-    data: Data, z: Array, names: Sequence[str], scales: Array
-) -> dict[str, tuple[str, ...]]:
+def nonlinear(data: Data, z: Array) -> dict[str, tuple[str, ...]]:
     """Return the parameters in which the quantities are not linear while the others are, and by
     what: derivatives by the latter change with the former.
 
@@ -137,7 +202,7 @@ def nonlinear(
     known = np.flatnonzero(np.isfinite(data.motion.acceleration).all(axis=1))
     few = np.sort(generator.permutation(known)[:_LOOKED])
     some, z = data.some(few), z[few]
-    theta = data.theta
+    theta, names, scales = data.theta, data.regressor.unknown, data.ranking.scales
     before = _slopes(some, theta, z)
     changes = np.zeros((theta.size, theta.size), bool)
     moved = theta + _MOVED * np.where(theta == 0.0, 1.0, theta)
@@ -189,16 +254,16 @@ class System(NamedTuple):
     sure: Base
 
     @classmethod
-    def of(cls, rows: Rows, root: Array, quantities: int, ranking: Ranking) -> System:
-        """Reduce rows, each times its ``root`` (r,)."""
+    def of(cls, rows: Rows, root: Array, quantities: int, ranking: Ranking, total: float) -> System:
+        """Reduce rows, each times its ``root`` (r,), of measurements whose norm is ``total``."""
         both = np.column_stack([rows.columns, rows.residual]) * root[:, None]
         measured = rows.quantity < quantities
         part = triangle(both[measured])
-        base = sure = base_of(part[:, :-1], ranking)
+        base = sure = base_of(part[:, :-1], ranking, total)
         part[:, list(base.absent)] = 0.0  # else their rounding counts
         whole = np.vstack([part, both[~measured]])
         if not measured.all():
-            sure = base_of(whole[:, :-1], ranking)
+            sure = base_of(whole[:, :-1], ranking, total)
         return cls(whole[:, :-1], whole[:, -1], base, sure)
 
     @property
@@ -225,35 +290,34 @@ class Fit:
     rows: Rows
     rounds: int
 
+    @property
+    def errors(self) -> Array:
+        """Standard errors of the unknown parameters, infinite for those in combinations only."""
+        sure, found = self.system.sure, np.full(self.theta.size, np.inf)
+        alone = [k for k, row in zip(sure.chosen, sure.weights, strict=True) if not row.any()]
+        found[alone] = np.sqrt(np.diag(self.covariance))[alone]
+        return found
 
-def fit(
-    data: Data,
-    z: Array,
-    ranking: Ranking,
-    given: Array,
-    robust: bool,
-    consistency: Consistency | None,
-) -> Fit:
+
+def fit(data: Data, z: Array, robust: bool, consistency: Consistency | None) -> Fit:
     """Solve by Gauss and Newton's method, with exact derivatives; what is linear takes one step.
 
-    ``given`` are standard deviations of quantities, NaN for those that are to be estimated, and of
-    prior values. Raises :class:`.DeclarationError` if nothing measured depends on the unknown
-    parameters, and :class:`.AccuracyError` if steps do not settle.
+    Raises :class:`.DeclarationError` if nothing measured depends on the unknown parameters, and
+    :class:`.AccuracyError` if steps do not settle.
     """
+    given, ranking = np.array([*data.noise, *data.prior.values()]), data.ranking
     theta, rows, quantities = data.theta, data.rows(data.theta, z), data.measured.shape[1]
-    size = np.array([_rms(column) or 1.0 for column in data.measured.T] + [1.0] * len(data.prior))
+    size = np.array([*map(_rms, data.measured.T), *(1.0 for _ in data.prior)])
+    size[~(size > 0.0)] = 1.0
     noise, weights = np.where(np.isnan(given), size, given), np.ones(rows.raw.size)
     free = consistency is None
     rough, still, floor = (_SETTLED, _STILL, _FLOOR) if free else (_ROUGH, _ROUGH**2, _COARSE)
     for rounds in range(1, _ROUNDS + 1):
         total = float(np.sqrt(np.nansum((data.measured / noise[:quantities]) ** 2)))
         root = np.sqrt(weights) / noise[rows.quantity]
-        system = System.of(rows, root, quantities, ranking)
+        system = System.of(rows, root, quantities, ranking, total)
         if not system.base.chosen:
-            raise DeclarationError(
-                "nothing that is measured depends on the unknown parameters"
-                f" {', '.join(data.regressor.unknown)}"
-            )
+            raise data.regressor.unchanged
         if rows.raw.size <= len(system.sure.chosen) and free:
             raise DeclarationError(
                 f"{rows.raw.size - len(data.prior)} measured values do not determine"
@@ -265,14 +329,19 @@ def fit(
             step[list(system.sure.chosen)] = system.inverse @ system.right
         else:
             step = consistency.step(system.columns, system.right, theta)
-        theta, z, rows, step = _taken(data, (theta, z, rows), step, root, total, free)
+        most = np.linalg.norm(rows.residual * root) * (1.0 + _SETTLED) + _STILL * total
+        step, z, rows = _taken(data, theta, z, step, root, most if free else math.inf)
+        theta = theta + step
         moved = float(np.linalg.norm(system.columns @ step))
         freedom = rows.raw.size - len(data.prior) - len(system.base.chosen)
         last, noise = noise, _noise(rows, given, floor * size, robust, freedom)
-        weights = _weights(rows.raw / noise[rows.quantity], robust)
+        if robust:
+            scaled = np.abs(rows.raw / noise[rows.quantity])
+            weights = np.minimum(1.0, _HUBER / np.maximum(scaled, _HUBER))
         same = bool(np.allclose(noise, last, rtol=rough, atol=0.0))
         if same and moved <= max(_SURE, still * total):
-            system = System.of(rows, 1.0 / noise[rows.quantity], quantities, ranking)
+            root = 1.0 / noise[rows.quantity]
+            system = System.of(rows, root, quantities, ranking, total)
             covariance = _covariance(data, rows, noise, system, robust)
             return Fit(theta, z, system, covariance, noise[:quantities], weights, rows, rounds)
     raise AccuracyError(
@@ -283,14 +352,7 @@ def fit(
 
 def _rms(values: Array) -> float:
     known = values[np.isfinite(values)]
-    return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
-
-
-def _weights(scaled: Array, robust: bool) -> Array:
-    """Return Huber's weights of residuals over their standard deviation."""
-    if not robust:
-        return np.ones(scaled.size)
-    return np.minimum(1.0, _HUBER / np.maximum(np.abs(scaled), _HUBER))
+    return float(np.sqrt(np.mean(known**2))) if known.size else math.nan
 
 
 def _noise(rows: Rows, given: Array, least: Array, robust: bool, freedom: int) -> Array:
@@ -305,23 +367,16 @@ def _noise(rows: Rows, given: Array, least: Array, robust: bool, freedom: int) -
 
 
 def _taken(
-    data: Data,
-    place: tuple[Array, Array, Rows],
-    step: Array,
-    root: Array,
-    total: float,
-    free: bool,
-) -> tuple[Array, Array, Rows, Array]:
-    """Take a step, or a half of it as often as it makes residuals larger, beside a ``total``."""
-    theta, z, rows = place
-    most = np.linalg.norm(rows.residual * root) * (1.0 + _SETTLED) + _STILL * total
+    data: Data, theta: Array, z: Array, step: Array, root: Array, most: float
+) -> tuple[Array, Array, Rows]:
+    """Return a step, or a half of it as often as that makes the norm of the residuals, each times
+    its ``root``, larger than the ``most``; and the iterated coordinates and rows there.
+    """
     for _ in range(_HALVINGS):
         there = data.regressor.follow(data.motion, data.parameters(theta + step), z)
         rows = data.rows(theta + step, there)
-        if rows.residual.size == root.size and (
-            not free or np.linalg.norm(rows.residual * root) <= most
-        ):
-            return theta + step, there, rows, step
+        if rows.residual.size == root.size and np.linalg.norm(rows.residual * root) <= most:
+            return step, there, rows
         step = step / 2.0
     raise AccuracyError(
         "no step of the unknown parameters was found that reduces the difference to the"
@@ -344,6 +399,6 @@ def _covariance(data: Data, rows: Rows, noise: Array, system: System, robust: bo
         u = rows.raw * root
         psi = np.clip(u, -_HUBER, _HUBER)
         part = part * float(np.mean(psi**2) / np.mean(np.abs(u) < _HUBER) ** 2)
-    found: Array = np.zeros((len(data.numbers), len(data.numbers)))
+    found: Array = np.zeros((data.theta.size, data.theta.size))
     found[np.ix_(chosen, chosen)] = part
     return found

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import starmap
 
 import numpy as np
 
@@ -17,10 +16,10 @@ from ..case import Case, scene_of
 from ..declare.scene import Scene
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.evaluation_method import EvaluationMethod
-from .base import RANK, Ranking, base_of
+from .base import RANK, base_of
 from .consistency import Consistency
-from .fit import Data, Fit, fit, nonlinear
-from .measurements import Filter, Measurements, check_units
+from .fit import Comparison, Data, Fit, fit, nonlinear
+from .measurements import Measurements
 from .regressor import DrivenMotion, Regressor
 
 _OPPOSITE = -0.7
@@ -48,31 +47,6 @@ class BaseParameter:
     def t(self) -> float:
         """The value over its standard error."""
         return abs(self.value) / self.error if self.error > 0.0 else math.inf
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Comparison(Brief):
-    """Measured quantities beside the model of them, each (t,); NaN where one is missing."""
-
-    t: Array
-    measured: Mapping[str, Array]
-    model: Mapping[str, Array]
-    units: Mapping[str, str]
-
-    @property
-    def residual(self) -> dict[str, float]:
-        """Root mean square of measured less model, by quantity."""
-        return {name: _rms(self.measured[name] - self.model[name]) for name in self.measured}
-
-    @property
-    def relative(self) -> dict[str, float]:
-        """Residuals over the root mean square of what is measured."""
-        found = {}
-        for name, residual in self.residual.items():
-            both = np.where(np.isfinite(self.model[name]), self.measured[name], np.nan)
-            size = _rms(both)
-            found[name] = residual / size if size else math.nan
-        return found
 
 
 @public
@@ -190,11 +164,9 @@ class Identification(Brief):
         AssemblyError
             If the mechanism cannot follow the measured motion.
         """
-        regressor = self.regressor
-        measured = _measured(measurements, regressor)
-        motion = measurements.motion(regressor.program.driven, trim)
         p = np.array(list((dict(self.parameters) | dict(self.values)).values()))
-        return _compared(regressor, motion, measured, p, regressor.follow(motion, p))
+        data = Data.of(self.regressor, measurements, trim, p)
+        return data.compared(data.theta, self.regressor.follow(data.motion, p))
 
 
 @public
@@ -261,15 +233,10 @@ def identify(
     """
     scene = scene_of(scene)
     names = tuple(scene.parameters) if unknown is None else tuple(dict.fromkeys(unknown))
-    if not names:
-        raise DeclarationError("identify: expected at least one unknown parameter, got none")
     if lost := [name for name in prior or {} if name not in names]:
         raise UnknownNameError("parameter of prior=", lost, names)
-    for name, spread in (prior or {}).items():
-        if not 0.0 < spread < math.inf:
-            raise DeclarationError(
-                f"prior of '{name}': expected a finite number above 0, got {spread:g}"
-            )
+    if wrong := [name for name, spread in (prior or {}).items() if not 0.0 < spread < math.inf]:
+        raise DeclarationError(f"prior of '{wrong[0]}': expected a finite number above 0")
     drives = tuple(scene.laws)
     quantities = measurements.quantities(drives)
     if not quantities:
@@ -280,49 +247,33 @@ def identify(
     values = scene.values(parameters)
     regressor = Regressor.of(scene, quantities, names, EvaluationMethod(backend))
     p = np.array(list(values.values()))
-    numbers = tuple(list(values).index(name) for name in names)
-    measured = _measured(measurements, regressor)
-    motion = measurements.motion(regressor.program.driven, trim)
-    low_pass = None if cutoff is None else Filter(measurements.t, cutoff)
-    known = {names.index(name): spread for name, spread in (prior or {}).items()}
-    data = Data(regressor, motion, measured, p, numbers, tuple(known), low_pass)
-    z = regressor.follow(motion, p)
-    before = _compared(regressor, motion, measured, p, z)
-    ranking = Ranking.of(data.theta, [scene.parameters[name].unit for name in names])
-    noise = [measurements.noise.get(name, math.nan) for name in quantities]
-    if 0.0 in noise:
+    data = Data.of(regressor, measurements, trim, p, prior, cutoff)
+    if 0.0 in data.noise:
         raise DeclarationError(
-            f"{measurements.name}: noise of '{quantities[noise.index(0.0)]}': expected a number"
-            " above 0"
+            f"{measurements.name}: noise of '{quantities[data.noise.index(0.0)]}': expected a"
+            " number above 0"
         )
-    consistency = Consistency.of(regressor.program, p, numbers, ranking.scales)
-    curved = nonlinear(data, z, names, ranking.scales)
-    given = np.array([*noise, *known.values()])
-    found = fit(data, z, ranking, given, robust, consistency if consistent else None)
-    base, sure = found.system.base, found.system.sure
+    z, consistency = regressor.follow(data.motion, p), Consistency.of(regressor, p)
+    before, curved = data.compared(data.theta, z), nonlinear(data, z)
+    found = fit(data, z, robust, consistency if consistent else None)
+    base, units = found.system.base, {name: scene.parameters[name].unit for name in names}
     rows = base.rows(len(names))
     covariance = rows @ found.covariance @ rows.T
-    units = {name: scene.parameters[name].unit for name in names}
-    alone = {k for k, row in zip(sure.chosen, sure.weights, strict=True) if not row.any()}
-    single = np.sqrt(np.diag(found.covariance)).tolist()
-    combinations = zip(
-        (names[k] for k in base.chosen),
-        base.words(names),
-        (units[names[k]] for k in base.chosen),
-        (rows @ found.theta).tolist(),
-        np.sqrt(np.diag(covariance)).tolist(),
-        strict=True,
-    )
+    combined = (rows @ found.theta).tolist(), np.sqrt(np.diag(covariance)).tolist()
     lowered = [found.weights[found.rows.quantity == k] < 1.0 for k in range(len(quantities))]
-    p = data.parameters(found.theta)
     return Identification(
         name=regressor.program.data.name,
         measurements=measurements.name,
         values=dict(zip(names, found.theta.tolist(), strict=True)),
-        errors={n: single[k] if k in alone else math.inf for k, n in enumerate(names)},
+        errors=dict(zip(names, found.errors.tolist(), strict=True)),
         units=units,
-        base=tuple(starmap(BaseParameter, combinations)),
-        unexcited=_unexcited(data, found, ranking, names),
+        base=tuple(
+            BaseParameter(names[k], words, units[names[k]], value, error)
+            for k, words, value, error in zip(
+                base.chosen, base.words(names), *combined, strict=True
+            )
+        ),
+        unexcited=_unexcited(data, found),
         absent=tuple(names[k] for k in base.absent),
         nonlinear=curved,
         condition=base.condition,
@@ -331,42 +282,15 @@ def identify(
         cutoffs={drive: measurements.cutoff(drive) for drive in regressor.program.driven},
         cutoff=cutoff,
         rounds=found.rounds,
-        comparison=_compared(regressor, motion, measured, p, found.z),
+        comparison=data.compared(found.theta, found.z),
         covariance=covariance,
         regressor=regressor,
-        parameters=regressor.program.data.values(p),
+        parameters=regressor.program.data.values(data.parameters(found.theta)),
         initial=dict(zip(names, data.theta.tolist(), strict=True)),
         prior=dict(prior or {}),
         impossible=consistency.impossible(found.theta),
         unused=tuple(n for n in measurements.columns if n not in regressor.expected),
         opposite=_opposite(before),
-    )
-
-
-def _measured(measurements: Measurements, regressor: Regressor) -> Array:
-    """Return the columns of quantities, (n, quantities), whose units are checked."""
-    quantities = regressor.quantities
-    check_units(measurements, regressor.expected)
-    if lost := [name for name in quantities if name not in measurements.columns]:
-        raise UnknownNameError("column", lost, measurements.columns, place=measurements.name)
-    return np.stack([measurements.columns[name] for name in quantities], axis=1)
-
-
-def _rms(values: Array) -> float:
-    known = values[np.isfinite(values)]
-    return float(np.sqrt(np.mean(known**2))) if known.size else math.nan
-
-
-def _compared(
-    regressor: Regressor, motion: DrivenMotion, measured: Array, p: Array, z: Array
-) -> Comparison:
-    model = regressor.at(motion, z, p)[0]
-    names = regressor.quantities
-    return Comparison(
-        motion.t,
-        dict(zip(names, measured.T, strict=True)),
-        dict(zip(names, model.T, strict=True)),
-        dict(zip(names, regressor.units, strict=True)),
     )
 
 
@@ -382,9 +306,9 @@ def _opposite(compared: Comparison) -> dict[str, float]:
     return found
 
 
-def _unexcited(data: Data, found: Fit, ranking: Ranking, names: Sequence[str]) -> tuple[str, ...]:
+def _unexcited(data: Data, found: Fit) -> tuple[str, ...]:
     """Return combinations that other rates and accelerations would determine beside the base."""
-    generator, motion = np.random.default_rng(0), data.motion
+    generator, motion, names = np.random.default_rng(0), data.motion, data.regressor.unknown
     known = np.flatnonzero(np.isfinite(motion.acceleration).all(axis=1))
     sizes = [
         np.sqrt(np.mean(part[known] ** 2)) + 1.0 for part in (motion.rate, motion.acceleration)
@@ -399,6 +323,7 @@ def _unexcited(data: Data, found: Fit, ranking: Ranking, names: Sequence[str]) -
     more[:, chosen] = 0.0
     more[:, dependent] -= rows[:, chosen] @ base.weights
     sizes[dependent] += sizes[chosen] @ np.abs(base.weights)
-    least = RANK * (sizes * ranking.scales).max() / ranking.scales
+    scales = data.ranking.scales
+    least = RANK * (sizes * scales).max() / scales
     more[:, np.linalg.norm(more, axis=0) <= np.maximum(_ROUNDED * sizes, least)] = 0.0
-    return base_of(more, ranking).words(names)
+    return base_of(more, data.ranking).words(names)

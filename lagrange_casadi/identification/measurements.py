@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
-from itertools import chain
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -15,29 +15,11 @@ import numpy.typing as npt
 from ..arguments import NotNegative, Positive, public
 from ..base.arrays import Array
 from ..base.brief import Brief
-from ..base.csv_rows import Row, headings, read_rows
+from ..base.recorded_table import MEASURED, SIZES, RecordedTable, count_sizes
 from ..base.units import UNITS
-from ..declare.curves import curve
+from ..declare.curves import curve, derivatives
 from ..errors import DeclarationError, UnknownNameError
 from .regressor import MOTION, DrivenMotion
-
-_UNITS: dict[str, dict[str, float]] = {
-    **UNITS,
-    "rad/s": {"rad/s": 1.0, "deg/s": math.radians(1.0)},
-    "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": math.radians(1.0)},
-    "m/s": {"m/s": 1.0, "mm/s": 1e-3},
-    "m/s^2": {"m/s^2": 1.0, "mm/s^2": 1e-3},
-    "N": {"N": 1.0, "kN": 1e3},
-    "N m": {"N m": 1.0, "Nm": 1.0, "kN m": 1e3, "mN m": 1e-3},
-    "W": {"W": 1.0, "kW": 1e3},
-    "1": {"1": 1.0, "ustrain": 1e-6},
-}
-"""Units that a column may have, and their sizes, for each SI unit."""
-
-_SIZES = {word: (unit, size) for unit, words in _UNITS.items() for word, size in words.items()}
-_COUNTS = ("count", "counts")
-_EMPTY = ("", "nan", "na", "n/a", "null", "-")
-"""Cells of values that are missing."""
 
 _QUANTUM = 1.0 / math.sqrt(12.0)
 """Root mean square of what rounding to whole counts leaves."""
@@ -94,7 +76,7 @@ class Measurements(Brief):
             raise DeclarationError(
                 f"{self.name}: expected at least {_FEWEST} rows of measurements, got {t.size}"
             )
-        if not (rising := np.diff(t) > 0.0).all():
+        if not (rising := (np.diff(t) > 0.0) & np.isfinite(t[1:])).all():
             k = int(np.argmin(rising))
             raise DeclarationError(
                 f"{self.name}: expected times that increase, got {t[k]:.9g} s and then"
@@ -219,10 +201,16 @@ class Measurements(Brief):
     def _smoothed(self, drive: str) -> Array:
         values = self.columns[drive]
         known = np.isfinite(values)
-        if known.sum() < _FEWEST or not (known[0] and known[-1]):
+        if known.sum() < _FEWEST:
             raise DeclarationError(
-                f"{self.name}: column '{drive}': expected at least {_FEWEST} values, the first and"
-                f" the last among them, got {int(known.sum())}"
+                f"{self.name}: column '{drive}': expected at least {_FEWEST} values, got"
+                f" {int(known.sum())}"
+            )
+        if not (known[0] and known[-1]):
+            row = "last" if known[0] else "first"
+            raise DeclarationError(
+                f"{self.name}: column '{drive}' has no value in the {row} row; expected one in the"
+                " first and in the last, between which it is smoothed"
             )
         noise = self.noise.get(drive, 0.0)
         for degree in (0, 1):
@@ -230,11 +218,7 @@ class Measurements(Brief):
             if np.mean((values - line(self.t))[known] ** 2) <= noise**2:
                 return np.array([line(self.t), line.deriv()(self.t), 0.0 * self.t])
         found = curve(self.t[known].tolist(), values[known].tolist(), smoothing=noise)
-        starts, cells = np.array(found.starts), np.array(found.cells)
-        cell = np.clip(np.searchsorted(starts, self.t, side="right") - 1, 0, len(cells) - 1)
-        u, (a, b, c, d) = self.t - starts[cell], cells[cell].T
-        rate, bend = b + u * (2.0 * c + 3.0 * u * d), 2.0 * c + 6.0 * u * d
-        return np.array([a + u * (b + u * (c + u * d)), rate, bend])
+        return derivatives(found, self.t)
 
 
 def check_units(measurements: Measurements, expected: Mapping[str, str]) -> None:
@@ -243,8 +227,8 @@ def check_units(measurements: Measurements, expected: Mapping[str, str]) -> None
     """
     for name, unit in expected.items():
         word = measurements.units.get(name, unit)
-        if (_SIZES[word][0] if word in _SIZES else word) != unit:
-            some = ", ".join(_UNITS.get(unit, [unit]))
+        if (SIZES[word][0] if word in SIZES else word) != unit:
+            some = ", ".join(MEASURED.get(unit, [unit]))
             raise DeclarationError(
                 f"{measurements.name}: column '{name}' is in {word}; expected {some}"
             )
@@ -256,7 +240,7 @@ def read_measurements(
     *,
     names: Mapping[str, str] | None = None,
     noise: Mapping[str, NotNegative] | None = None,
-    counts_per_turn: Positive | None = None,
+    counts_per_turn: Positive | Mapping[str, float] | None = None,
     time: str = "t",
 ) -> Measurements:
     """Read measurements from a CSV file.
@@ -275,7 +259,8 @@ def read_measurements(
         Standard deviations by name, in the units of the file. Of a column in counts it is by
         default that of rounding to whole counts, 0.29.
     counts_per_turn
-        Counts of an encoder in one turn.
+        Counts in one turn of the encoders of columns in counts: a number for all, or numbers by
+        name.
     time
         The head of the times.
 
@@ -289,80 +274,46 @@ def read_measurements(
     PathError
         For a file that cannot be read.
     DeclarationError
-        For a cell that is no number, a unit that is none of time, and times that do not increase.
+        For a cell that is no number, a unit that is none of time, times that do not increase, and
+        a column in counts without a number for a turn.
     UnknownNameError
-        For names that the file does not have.
+        For names that the file does not have, and ``counts_per_turn`` of columns that are not in
+        counts.
     """
-    heads, rows = _opened(path)
-    plain = [head for head, _ in heads]
-    if twice := [head for head in plain if plain.count(head) > 1]:
-        raise DeclarationError(f"{path}: expected one column '{twice[0]}', got {len(twice)}")
-    chosen = {"t": time, **(names or {})}
-    if chosen["t"] not in plain:
-        raise UnknownNameError("column of times", chosen["t"], plain, place=str(path))
-    if lost := [head for head in chosen.values() if head not in plain]:
-        raise UnknownNameError("column", lost, plain, place=str(path))
-    named = {head: name for name, head in chosen.items()}
-    found: list[list[float]] = []
-    for row in rows:
-        found.append([])
-        for cell in row.cells:
-            value = math.nan if cell.lower() in _EMPTY else row.number(cell)
-            if math.isnan(value) and cell.lower() not in _EMPTY:
-                raise DeclarationError(f"{row.where}: expected a number, got {cell!r}")
-            found[-1].append(value)
-    columns: dict[str, Array] = {}
-    deviations, units = {}, {}
-    table = np.array(found, float).reshape(-1, len(heads)).T
-    for (head, unit), values in zip(heads, table, strict=True):
-        if head in chosen and head not in named:  # its name is that of another column
-            continue
-        name = named.get(head, head)
-        size = _size(str(path), head, unit, counts_per_turn)
-        columns[name] = size * values
-        if unit:
-            units[name] = "rad" if unit in _COUNTS else unit
-        if units.get(name) in UNITS["rad"]:
-            columns[name] = _going_on(columns[name])
-        if name in (noise or {}):
-            deviations[name] = size * dict(noise or {})[name]
-        elif unit in _COUNTS:
-            deviations[name] = size * _QUANTUM
-    if unknown := [name for name in noise or {} if name not in columns]:
-        raise UnknownNameError("column of noise=", unknown, columns, place=str(path))
-    found_in = Measurements(columns.pop("t"), columns, deviations, Path(path).name, units)
-    check_units(found_in, {"t": "s"})
-    return found_in
-
-
-def _opened(path: str | Path) -> tuple[list[tuple[str, str]], Iterator[Row]]:
-    """Return names and units of columns, units from a row below the names if there is one, and the
-    rows of a file.
-    """
-    rows = read_rows(path, "columns of times, motion and forces")
-    first = next(rows)
-    if not any(math.isnan(first.number(cell)) for cell in first.cells):
+    path = Path(path)
+    table = RecordedTable.read(path, "columns of times, motion and forces")
+    if not table.heads:
         raise DeclarationError(
-            f"{first.where}: expected names of columns, as 't [s]', got {first.cells[0]!r}"
+            f"{path.name}: expected names of columns in the first line, as 't [s]', got numbers"
         )
-    heads, below = headings(first.cells), next(rows, None)
-    if below is None:
-        return heads, rows
-    words = [cell.strip("[]()") for cell in below.cells]
-    if {"", "1"}.issuperset(words) or not {"", *_SIZES, *_COUNTS}.issuperset(words):
-        return heads, chain([below], rows)
-    return [(name, unit or word) for (name, unit), word in zip(heads, words, strict=True)], rows
+    places = {
+        name: table.place(head, "column of times" if name == "t" else "column")
+        for name, head in {"t": time, **(names or {})}.items()
+    }
+    others = [table.place(head) for head in table.names if head and head not in places]
+    places |= {table.names[k]: k for k in others if k not in places.values()}
+    at = places.pop("t")
+    places = dict(sorted(places.items(), key=itemgetter(1)))
 
-
-def _size(path: str, head: str, unit: str, counts_per_turn: float | None) -> float:
-    """Return the size of a unit of a column in SI units."""
-    if unit in _COUNTS:
-        if counts_per_turn is None:
-            raise DeclarationError(
-                f"{path}: column {head} is in counts; expected counts_per_turn=, a number above 0"
-            )
-        return math.tau / counts_per_turn
-    return _SIZES[unit][1] if unit in _SIZES else 1.0
+    units = {name: table.units[k] for name, k in places.items()}
+    heads = {name: table.names[k] for name, k in places.items()}
+    counts = count_sizes(path.name, heads, units, counts_per_turn)
+    sizes = {name: SIZES[unit][1] if unit in SIZES else 1.0 for name, unit in units.items()}
+    sizes |= counts
+    units |= dict.fromkeys(counts, "rad")
+    t, *series = table.columns(at, list(places.values()), gaps=True)
+    columns = {name: sizes[name] * values for name, values in zip(places, series, strict=True)}
+    columns |= {name: _going_on(columns[name]) for name in places if units[name] in UNITS["rad"]}
+    deviations = dict.fromkeys(counts, _QUANTUM) | dict(noise or {})
+    found = Measurements(
+        t * SIZES.get(table.units[at], ("s", 1.0))[1],
+        columns,
+        {name: sizes.get(name, 1.0) * deviation for name, deviation in deviations.items()},
+        path.name,
+        {name: unit for name, unit in {"t": table.units[at], **units}.items() if unit},
+    )
+    check_units(found, {"t": "s"})
+    return found
 
 
 def _going_on(angle: Array) -> Array:
@@ -387,10 +338,10 @@ class Filter:
     cutoff: float
 
     def __call__(self, columns: Array, known: npt.NDArray[np.bool_]) -> Array:
-        """Filter columns (n, k), of which only rows that are ``known`` (n,) count."""
+        """Filter columns (n, ..., k), of which only those count that are ``known`` (n, ...)."""
         width = _DECAY / self.cutoff
-        total, weights = np.zeros_like(columns), np.zeros(self.t.size)
-        values = np.where(known[:, None], columns, 0.0)
+        values = np.where(known[..., None], columns, 0.0)
+        total, weights = np.zeros_like(values), np.zeros(known.shape)
         for shift in range(self.t.size):
             apart = self.t[shift:] - self.t[: self.t.size - shift]
             if apart.min() > _REACH * width:
@@ -398,6 +349,6 @@ class Filter:
             weight = np.exp(-0.5 * (apart / width) ** 2)
             before, after = slice(0, self.t.size - shift), slice(shift, None)
             for here, there in [(before, after), (after, before)][: 1 + (shift > 0)]:
-                total[here] += weight[:, None] * values[there]
-                weights[here] += weight * known[there]
-        return total / np.where(weights > 0.0, weights, 1.0)[:, None]
+                total[here] += (weight * values[there].T).T
+                weights[here] += (weight * known[there].T).T
+        return total / np.where(weights > 0.0, weights, 1.0)[..., None]

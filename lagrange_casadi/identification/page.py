@@ -5,15 +5,16 @@ from __future__ import annotations
 import base64
 import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from pathlib import Path
 
 from ..arguments import public
 from ..base.publish import check_writable, writing
 from ..errors import DeclarationError
-from ..shapes.index import document
-from .identification import Comparison, Identification
+from ..shapes.index import document, html_table
+from .fit import Comparison
+from .identification import Identification
 from .plot import BESIDE, DIFFERENCE, chart
 
 _STYLE = """
@@ -25,7 +26,7 @@ th, td { padding: 3px 14px 3px 0; border-bottom: 1px solid #8884; text-align: ri
 th { font-weight: 600; vertical-align: bottom; }
 th:first-child, td:first-child { text-align: left; min-width: 8em; white-space: normal; }
 td { white-space: nowrap; }
-td.unit { text-align: left; }
+td:last-child { text-align: left; }
 main { margin-top: 14px; }
 li { overflow-wrap: anywhere; }
 @media (max-width: 600px) { table { font-size: 13px; } th, td { padding-right: 8px; } }
@@ -83,9 +84,9 @@ def _parts(found: Identification, validation: Comparison | None) -> Iterator[str
         yield f"<ul>\n{notes}</ul>\n"
     yield "<h2>What the measurements determine</h2>\n"
     rows = [(o.words, f"{o.value:.6g}", f"{o.error:.2g}", f"{o.t:.3g}", o.unit) for o in found.base]
-    yield _table(("combination", "value", "standard error", "t", ""), rows)
+    yield _table(("combination", "value", "standard error", "t"), rows)
     yield "<h2>Parameters</h2>\n"
-    yield _table(("parameter", "before", "found", "standard error", ""), list(_values(found)))
+    yield _table(("parameter", "before", "found", "standard error"), _values(found))
     for title, compared in (("The record", found.comparison), ("Another record", validation)):
         if compared is not None:
             yield f"<h2>{title}</h2>\n"
@@ -109,7 +110,7 @@ def _compared(found: Identification, compared: Comparison) -> Iterator[str]:
     for name, left in compared.residual.items():
         numbers = f"{left:.4g}", f"{100.0 * relative[name]:.3g} %", f"{found.noise[name]:.3g}"
         rows.append((name, *numbers, compared.units[name]))
-    yield _table(("quantity", "difference, rms", "of measured", "noise of the fit", ""), rows)
+    yield _table(("quantity", "difference, rms", "of measured", "noise of the fit"), rows)
     yield "<main>\n"
     for name in compared.measured:
         for curves in (BESIDE, DIFFERENCE):
@@ -119,11 +120,6 @@ def _compared(found: Identification, compared: Comparison) -> Iterator[str]:
     yield "</main>\n"
 
 
-def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table whose last column has units."""
-    cells = "".join(f"<th>{escape(head)}</th>" for head in heads)
-    lines = [f"<tr>{cells}</tr>\n"]
-    for row in rows:
-        cells = "".join(f"<td>{escape(cell)}</td>" for cell in row[:-1])
-        lines.append(f'<tr>{cells}<td class="unit">{escape(row[-1])}</td></tr>\n')
-    return f'<div class="wide"><table>\n{"".join(lines)}</table></div>\n'
+def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table whose last column, which has no head, has units."""
+    return f'<div class="wide">{html_table((*heads, ""), rows)}</div>\n'

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..arguments import public
 from ..base.publish import writing
 from ..shapes.pictures import check_picture, one_at_a_time, save
-from .identification import Comparison
+from .fit import Comparison
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -34,6 +34,7 @@ from ..instants.backends import begun
 from ..instants.evaluation_method import EvaluationMethod
 from ..sensitivity.jacobian import total
 from ..sensitivity.slopes import Batch
+from .base import Ranking
 
 _ALONG = re.compile(r"(section|strain):([^:@]+):([^:@]+)@([0-9.eE+-]+)")
 _FORCES = ("effort", "reaction", "multiplier", "load", "friction", "output")
@@ -105,8 +106,10 @@ class Regressor(Graphs, Brief):
         """Derive and compile them, once for a scene.
 
         Raises :class:`.UnknownNameError` for quantities and parameters that the scene does not
-        have.
+        have, and :class:`.DeclarationError` without parameters.
         """
+        if not unknown:
+            raise DeclarationError("expected at least one unknown parameter, got none")
         for name in unknown:
             if name not in scene.parameters:
                 raise UnknownNameError("parameter", name, scene.parameters)
@@ -137,6 +140,24 @@ class Regressor(Graphs, Brief):
         units = tuple(unit for _, unit in found)
         batch = Batch.of(function, method)
         return cls(program, tuple(quantities), units, tuple(unknown), batch)
+
+    @property
+    def numbers(self) -> list[int]:
+        """Places of the unknown parameters among all."""
+        return [list(self.program.data.parameters).index(name) for name in self.unknown]
+
+    def ranking(self, p: Array) -> Ranking:
+        """Rank the unknown parameters by their units, with sizes of values ``p`` of all."""
+        parameters = self.program.data.parameters
+        return Ranking.of(p[self.numbers], [parameters[name].unit for name in self.unknown])
+
+    @property
+    def unchanged(self) -> DeclarationError:
+        """Error for quantities that the unknown parameters do not change."""
+        names = ", ".join(self.unknown)
+        return DeclarationError(
+            f"nothing that is measured depends on the unknown parameters {names}"
+        )
 
     @property
     def expected(self) -> dict[str, str]:
@@ -205,22 +226,25 @@ def _wanted(scene: Scene, quantities: Sequence[str]) -> list[str]:
 
     Raises :class:`.UnknownNameError` for a quantity whose part there is not.
     """
-    wanted = []
+    wanted: dict[str, None] = {}
     for name in quantities:
         kind, _, part = name.partition(":")
-        kind = "section" if kind == "strain" else kind
-        wanted.append("effort" if kind == "effort" else f"{kind}:{part.partition(':')[0]}")
-    for name, want in zip(quantities, wanted, strict=True):
-        if want.partition(":")[0] not in (*_FORCES, "section") or want not in scene.outputs:
+        group = "section" if kind == "strain" else kind
+        want = group if group == "effort" else f"{group}:{part.partition(':')[0]}"
+        if group not in (*_FORCES, "section") or want not in scene.outputs:
+            sections = [one for one in scene.outputs if one.startswith("section:")]
             forces = [one for one in scene.outputs if one.partition(":")[0] in _FORCES[1:]]
             forces = [f"effort:{drive}" for drive in scene.laws] + forces
-            raise UnknownNameError("measured quantity", name, forces)
-        if want.startswith("section") and along(name) is None:
+            along_links = [one.replace("section", kind, 1) for one in sections]
+            valid = along_links if group == "section" and sections else forces
+            raise UnknownNameError("measured quantity", name, valid)
+        if group == "section" and along(name) is None:
             raise DeclarationError(
                 f"measured quantity '{name}': expected a force or a fibre, and a place xi/l"
                 f" from 0 to 1, as {want}:bending@0.5"
             )
-    return list(dict.fromkeys(wanted))
+        wanted[want] = None
+    return list(wanted)
 
 
 def along(name: str) -> Along | None:
@@ -258,7 +282,7 @@ def _quantity(
         return columns[output], output.unit(data.kinds)
     names, inputs = table_of(data.space).forces, SectionInputs.of(program.outputs, place.link)
     if place.kind == "section" and place.member not in names:
-        raise UnknownNameError("section force", place.member, names)
+        raise UnknownNameError("section force", place.member, names, place=name)
     law, acting = (column(columns[one] for one in some) for some in (inputs.law, inputs.acting))
     values = program.section[place.link](law, acting, p, place.ratio)
     section = dict(zip(names, ca.vertsplit(values), strict=True))
@@ -266,7 +290,7 @@ def _quantity(
         output = Output("section", place.link, place.member)
         return section[place.member], output.unit(data.kinds)
     if place.link not in data.materials:
-        raise UnknownNameError("link with a beam", place.link, data.materials)
+        raise UnknownNameError("link with a beam", place.link, data.materials, place=name)
     link = data.link(place.link, p)
     assert link.beam is not None
     sections = CrossSections(link.beam, data.space)
@@ -274,7 +298,7 @@ def _quantity(
     cell = int(np.clip(np.searchsorted(breaks, place.ratio, "right") - 1, 0, len(breaks) - 2))
     fibres = sections.fibres(cell).names
     if place.member not in fibres:
-        raise UnknownNameError("fibre", place.member, fibres)
+        raise UnknownNameError("fibre", place.member, fibres, place=name)
     forces = [section[force] for force in sections.forces]
     normal, _, _ = sections.stresses(cell, place.ratio, [fibres.index(place.member)], forces)
     elasticity = link.beam.material.needs(f"quantity '{name}'", "elasticity")[0]

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from ..arguments import public
 from ..base.arrays import Array, during
 from ..base.brief import Brief
-from ..base.quantities import Kinds, Output
+from ..base.quantities import Kinds, Output, motions_of
 from ..base.tables import Table
 from ..declare.description import Description, density_of, kinds_of_described
 from ..declare.limits import no_sections
@@ -218,12 +218,8 @@ class Solution:
         JointMotion
             Value [rad or m], rate and acceleration, each (t,).
         """
-        members = ("", "rate", "acceleration")
         return JointMotion(
-            *(
-                self._find("joint with a motion", Output("motion", joint, member))
-                for member in members
-            )
+            *(self._find("joint with a motion", output) for output in motions_of(joint))
         )
 
     def output(self, name: str) -> Array:

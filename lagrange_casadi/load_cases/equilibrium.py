@@ -5,35 +5,35 @@ They are the actions by which the certificate balances bodies, so nothing of the
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arguments import public
-from ..base.arrays import Array
-from ..beams.beam import beam_from_numbers
 from ..case import Case, scene_of
-from ..declare.declared import Declared
-from ..declare.description import Description, density_of
+from ..declare.declared import BodyNumbers, Declared
+from ..declare.description import values_of
 from ..declare.scene import Scene
 from ..declare.stated import Triple
 from ..equations.derive import compile_scene
 from ..errors import CertificateError, DeclarationError, UnknownNameError
 from ..instants.solution import Solution
-from ..verification.balance import all_actions, forces_needed
-from ..verification.certificate import placed_of, reported_of, tolerance
+from ..verification.balance import Action, all_actions, forces_needed
+from ..verification.certificate import placed_of, reported_of
 from ..verification.placing import Moving, Placed
-from ..verification.vectors import Vector
-from .loads import Load, LoadCase, Rod, inertia_field
+from ..verification.vectors import NIL, Axes, Scalar, Vector, most, total
+from .loads import Load, LoadCase, on_own_axes, refused, turning
 
 _SLIGHT = 1e-9
 """Share of the largest load below which a peak is rounding, and governs nothing."""
 
 _NEAR = 1e-9
 """Distance of a time from an instant, as a share of the last instant, that counts as none."""
+
+_Instants = npt.NDArray[np.bool_]
+"""Some instants, as a mask of all."""
 
 
 @public
@@ -75,20 +75,60 @@ def link_load_cases(
     CertificateError
         If the loads are not in equilibrium within the tolerance of the solution.
     """
-    if link not in solution.description["bodies"]:
-        raise UnknownNameError("link", link, solution.description["bodies"])
+    described = solution.description["bodies"]
+    if link not in described:
+        raise UnknownNameError("link", link, described)
     declared = _declared(solution, link, scene)
-    _check_reported(solution, declared, link)
-    placed = placed_of(declared, reported_of(solution, {}))
-    if placed is None:
+    needed = forces_needed(declared, link)
+    if missing := [f"{one.group}:{one.part}" for one in needed if one not in solution.outputs]:
         raise DeclarationError(
-            f"load cases of link '{link}': the motion is missing; evaluate with wanted=['motion',"
-            " ...], or 'all'"
+            f"load cases of link '{link}' need {', '.join(missing)}, which the solution does not"
+            " have; evaluate with wanted=['all']"
         )
-    loads, motion = _loads_on(placed, link, solution.t.size), placed.bodies[link]
-    vectors = motion.change, motion.rate, motion.acceleration, Vector(*declared.gravity)
-    moved = _on_axes(motion, solution.t.size, *vectors)
-    return _History(solution, declared, link, loads, moved).cases(t)
+    if (placed := placed_of(declared, reported_of(solution, {}))) is None:
+        why = "the motion is missing; evaluate with wanted=['motion', ...], or ['all']"
+        raise refused(link, why)
+    numbers = None if t is None else _numbers(solution, link, t)
+    loads, body = _loads_on(placed, link), declared.bodies[link]
+    known = _known(solution, link, loads, numbers)
+    placing = placed.bodies[link]
+    vectors = placing.change, placing.rate, placing.acceleration, Vector(*declared.gravity)
+    *moved, gravity = map(placing.axes.resolve, vectors)
+    motion = on_own_axes(*moved)
+    residual, largest = _residual(body, motion, gravity, loads, known)
+    if numbers is None:
+        scales = {"N": largest, "N m": largest * declared.size, "Pa": 0.0}
+        governing = _governing(_peaks(solution, link, loads), known, scales)
+    else:
+        governing = {i: [] for i in numbers}
+    found = []
+    for i, governs in sorted(governing.items()):
+        case = LoadCase(
+            link=link,
+            t=float(solution.t[i]),
+            governs=tuple(governs),
+            loads=tuple(
+                Load(one.name, _at(one.at, i), _at(one.force, i), _at(one.couple, i))
+                for one in loads
+            ),
+            acceleration=_at(motion.change, i),
+            omega=_at(motion.rate, i),
+            alpha=_at(motion.acceleration, i),
+            gravity=_at(gravity, i),
+            mass=body.mass,
+            centre=body.centre,
+            inertia=body.inertia,
+            residual=_at(residual, i)[:2],
+            rod=described[link] if "beam" in described[link] else None,
+        )
+        if not all(one <= solution.tolerance for one in case.residual):
+            raise CertificateError(
+                f"load case of link '{link}' at t = {case.t:.6g} s is not in equilibrium: residuals"
+                f" of force {case.residual[0]:.2g} and moment {case.residual[1]:.2g}, but at most"
+                f" {solution.tolerance:.2g} is rounding"
+            )
+        found.append(case)
+    return tuple(found)
 
 
 def _declared(solution: Solution, link: str, scene: Scene | Case | None) -> Declared:
@@ -96,213 +136,120 @@ def _declared(solution: Solution, link: str, scene: Scene | Case | None) -> Decl
     declared = Declared.of(solution.description)
     if not declared.multipliers:
         return declared
+    expected = "expected scene=, the scene of the solution"
     if scene is None:
-        raise DeclarationError(
-            f"load cases of link '{link}': a solution does not say along which directions"
-            f" {', '.join(declared.multipliers)} act; expected scene=, the scene of the solution"
-        )
-    values = {name: one["value"] for name, one in solution.description["parameters"].items()}
+        names = ", ".join(declared.multipliers)
+        why = f"a solution does not say along which directions {names} act; {expected}"
+        raise refused(link, why)
+    values = values_of(solution.description)
     if [*scene_of(scene).parameters] == [*values]:
         program = compile_scene(scene_of(scene), ["motion"], parameters=values)
         stated = program.data.declared(list(values.values()))
         if (stated.bodies, stated.joints) == (declared.bodies, declared.joints):
             return stated
-    raise DeclarationError(
-        f"load cases of link '{link}': expected scene=, the scene of the solution; the one given"
-        " has other parameters, bodies or joints"
+    raise refused(link, f"{expected}; the one given has other parameters, bodies or joints")
+
+
+def _loads_on(placed: Placed, link: str) -> list[Action]:
+    """Return loads on a link, on its axes; of one name, those at one place are added up."""
+    motion, found = placed.bodies[link], dict[str, Action]()
+    resolve = motion.axes.resolve
+    for one in all_actions(placed):
+        if not (sign := one.sign_on(link)):
+            continue
+        at, number, name = resolve(one.at - motion.at), 1, one.name
+        force, couple = resolve(sign * one.force), resolve(sign * one.couple)
+        while name in found and np.any((found[name].at - at).size):
+            number, name = number + 1, f"{one.name}:{number + 1}"
+        if name in found:
+            force, couple = found[name].force + force, found[name].couple + couple
+        found[name] = Action(name, link, at, force, couple)
+    return [*found.values()]
+
+
+def _numbers(solution: Solution, link: str, times: Sequence[float]) -> list[int]:
+    """Return the numbers of the instants at which times are."""
+    instants = solution.t
+    numbers = [int(np.argmin(np.abs(instants - time))) for time in times]
+    for time, nearest in zip(times, instants[numbers], strict=True):
+        if not abs(nearest - time) <= _NEAR * np.abs(instants).max():
+            why = f"t = {time:.9g} s is no instant of the solution; the nearest is {nearest:.9g} s"
+            raise refused(link, why)
+    return numbers
+
+
+def _known(
+    solution: Solution, link: str, loads: Sequence[Action], numbers: Sequence[int] | None
+) -> _Instants:
+    """Return the instants at which all loads are known: those of the numbers, or some, must be."""
+    finite = np.isfinite([np.broadcast_to(total(*x.sizes), solution.t.shape) for x in loads])
+    known = np.asarray(finite.all(axis=0))
+    if known.any() if numbers is None else known[numbers].all():
+        return known
+    unknown = [i for i in (range(known.size) if numbers is None else numbers) if not known[i]]
+    names = ", ".join(
+        load.name for load, at in zip(loads, finite, strict=True) if not at[unknown].all()
     )
+    cure = "give the links beams and evaluate with elastic=True, or release a joint"
+    why = f"equilibrium does not determine {names}; {cure}"
+    if solution.resting[unknown].any():
+        rest = f"a joint with friction is at rest at t = {solution.t[unknown[0]]:.6g} s"
+        why = f"{rest}, which leaves {names} indeterminate"
+    raise refused(link, why)
 
 
-def _check_reported(solution: Solution, declared: Declared, link: str) -> None:
-    """Raise :class:`DeclarationError` for forces that the solution does not have."""
-    needed = forces_needed(declared, link)
-    missing = [f"{one.group}:{one.part}" for one in needed if one not in solution.outputs]
-    if missing:
-        raise DeclarationError(
-            f"load cases of link '{link}' need {', '.join(missing)}, which the solution does not"
-            " have; evaluate with wanted='all'"
-        )
+def _residual(
+    body: BodyNumbers, motion: Moving, gravity: Vector, loads: Sequence[Action], known: _Instants
+) -> tuple[Vector, float]:
+    """Return the residuals of forces and of moments about the centre, and the largest force."""
+    centre, force, moment = Vector(*body.centre), NIL, NIL
+    weight = body.mass * (gravity - motion.change_at(centre))
+    inertia = Action("", "", centre, weight, -turning(motion, Axes.of(body.inertia)))
+    for one in (acting := [inertia, *loads]):
+        force = force + one.force
+        moment = moment + one.couple + (one.at - centre).cross(one.force)
+    sizes = zip(*((*one.sizes, (one.at - centre).size) for one in acting), strict=True)
+    push, twist, reach = (float(np.broadcast_to(most(x), known.shape)[known].max()) for x in sizes)
+    scale = max(twist, push * max(reach, body.length or 0.0)) or 1.0
+    turns = 0.0 if body.length is None else moment.size / scale
+    return Vector(force.size / (push or 1.0), turns, 0.0), push
 
 
-def _loads_on(placed: Placed, link: str, count: int) -> dict[str, Array]:
-    """Return loads on a link by name, each its place, force and moment over time (3, t, 3); several
-    of one name that act at one place are added up.
+def _governing(
+    peaks: Iterable[tuple[str, Scalar, str]], known: _Instants, scales: Mapping[str, float]
+) -> dict[int, list[str]]:
+    """Return the names of what is largest in size at an instant, by its number; ``scales`` are what
+    peaks are compared with, by their units.
     """
-    motion, found = placed.bodies[link], dict[str, Array]()
-    for action in all_actions(placed):
-        for body, opposite in action.moving:
-            if body != link:
-                continue
-            sign = -1.0 if opposite else 1.0
-            acting = action.at - motion.at, sign * action.force, sign * action.couple
-            load, number, name = _on_axes(motion, count, *acting), 1, action.name
-            while name in found and not np.array_equal(found[name][0], load[0]):
-                number, name = number + 1, f"{action.name}:{number + 1}"
-            if name in found:
-                found[name][1:] += load[1:]
-            else:
-                found[name] = load
-    return found
+    found: dict[int, list[str]] = {}
+    for name, values, unit in peaks:
+        sizes = np.where(known, np.nan_to_num(np.abs(values)), 0.0)
+        i = int(np.argmax(sizes))
+        if sizes[i] > _SLIGHT * scales[unit]:
+            found.setdefault(i, []).append(name)
+    return found or {int(np.argmax(known)): []}
 
 
-def _on_axes(motion: Moving, count: int, *vectors: Vector) -> Array:
-    """Return vectors in ground axes on the axes of a body, over time (vectors, t, 3)."""
-    found = np.empty((len(vectors), count, 3))
-    for rows, vector in zip(found, vectors, strict=True):
-        for k, component in enumerate(motion.axes.resolve(vector).components):
-            rows[:, k] = component
-    return found
+def _peaks(
+    solution: Solution, link: str, loads: Sequence[Action]
+) -> Iterator[tuple[str, Scalar, str]]:
+    """Yield quantities whose peaks govern, over time, with their units."""
+    if link in solution.links_with_sections:
+        for force in solution.table.forces:
+            name = f"section:{link}:{force}"
+            yield name, solution.extremes(name)[0], solution.unit(name)
+        with suppress(DeclarationError):  # no beam, or stresses that are not known
+            stress = solution.stress(link)
+            for kind in ("normal", "shear", "von_mises"):
+                yield f"stress:{link}:{kind}", stress.largest(kind).value, "Pa"
+    members = (*solution.table.reactions, "mz")[:2]  # a plane has no resultant of moments
+    for load in loads:
+        if load.name.startswith("reaction:"):
+            for member, size, unit in zip(members, load.sizes, ("N", "N m"), strict=True):
+                yield f"{load.name}:{member}", size, unit
 
 
-@dataclass(frozen=True, eq=False)
-class _History:
-    """Loads on a link over all instants, on its axes; ``moved`` are the acceleration of its origin,
-    its angular velocity and acceleration, and gravity (4, t, 3).
-    """
-
-    solution: Solution
-    declared: Declared
-    link: str
-    loads: Mapping[str, Array]
-    moved: Array
-
-    def cases(self, t: Sequence[float] | None) -> tuple[LoadCase, ...]:
-        """Return the load cases at times, or at the instants that govern."""
-        acting = np.stack([load[1:] for load in self.loads.values()])
-        known = np.asarray(np.isfinite(acting).all(axis=(0, 1, 3)))
-        asked = np.arange(known.size) if t is None else self._numbers(t)
-        unknown = asked[~known[asked]]
-        if unknown.size and (t is not None or not known.any()):
-            raise DeclarationError(self._indeterminate(unknown))
-        residuals, largest = self._residuals(known)
-        governing: dict[int, list[str]] = {i: [] for i in asked.tolist()}
-        if t is None:
-            governing = self._governing(known, largest)
-        rod = _rod(self.solution.description["bodies"][self.link])
-        found = [self._case(i, governing[i], residuals[:, i], rod) for i in sorted(governing)]
-        limit = tolerance(self.solution)
-        for case in found:
-            if not max(case.residual) <= limit:
-                raise CertificateError(
-                    f"load case of link '{self.link}' at t = {case.t:.6g} s is not in equilibrium:"
-                    f" residuals of force {case.residual[0]:.2g} and moment"
-                    f" {case.residual[1]:.2g}, but at most {limit:.2g} is rounding"
-                )
-        return tuple(found)
-
-    def _case(self, i: int, governs: Sequence[str], residual: Array, rod: Rod | None) -> LoadCase:
-        """Return the load case of an instant."""
-        body = self.declared.bodies[self.link]
-        acceleration, omega, alpha, gravity = map(_triple, self.moved[:, i])
-        of_forces, of_moments = residual.tolist()
-        return LoadCase(
-            link=self.link,
-            t=float(self.solution.t[i]),
-            governs=tuple(governs),
-            loads=tuple(Load(name, *map(_triple, load[:, i])) for name, load in self.loads.items()),
-            acceleration=acceleration,
-            omega=omega,
-            alpha=alpha,
-            gravity=gravity,
-            mass=body.mass,
-            centre=body.centre,
-            inertia=body.inertia,
-            residual=(of_forces, of_moments),
-            rod=rod,
-        )
-
-    def _residuals(self, known: npt.NDArray[np.bool_]) -> tuple[Array, float]:
-        """Return the residuals of forces and of moments about the centre (2, t), and the largest
-        force.
-        """
-        body, (_, omega, alpha, _) = self.declared.bodies[self.link], self.moved
-        centre, inertia = np.array(body.centre), np.array(body.inertia)
-        at, pushes, couples = np.stack([*self.loads.values()], axis=1)
-        arms = at - centre
-        weight = body.mass * inertia_field(self.moved, centre)
-        spun = alpha @ inertia.T + np.cross(omega, omega @ inertia.T)
-        force, moment = sum(pushes, weight), -spun
-        for couple, turning in zip(couples, np.cross(arms, pushes), strict=True):
-            moment = moment + couple + turning
-        largest, twisting, reach = (
-            float(_sizes(np.stack([*rows])[:, known]).max(initial=0.0))
-            for rows in ((weight, *pushes), (spun, *couples), arms)
-        )
-        reach = max(reach, body.length or 0.0)
-        residuals = np.zeros((2, known.size))
-        residuals[0] = _sizes(force) / (largest or 1.0)
-        if self.declared.oriented(self.link):
-            residuals[1] = _sizes(moment) / (max(twisting, largest * reach) or 1.0)
-        return residuals, largest
-
-    def _numbers(self, times: Sequence[float]) -> npt.NDArray[np.intp]:
-        """Return the numbers of the instants that were asked for."""
-        instants = self.solution.t
-        numbers = np.array([np.argmin(np.abs(instants - time)) for time in times], dtype=np.intp)
-        for time, nearest in zip(times, instants[numbers], strict=True):
-            if not abs(nearest - time) <= _NEAR * np.abs(instants).max():
-                raise DeclarationError(
-                    f"load cases of link '{self.link}': t = {time:.9g} s is no instant of the"
-                    f" solution; the nearest is {nearest:.9g} s"
-                )
-        return numbers
-
-    def _indeterminate(self, numbers: npt.NDArray[np.intp]) -> str:
-        """Return why loads are not known at instants."""
-        names = ", ".join(
-            name for name, load in self.loads.items() if not np.isfinite(load[1:, numbers]).all()
-        )
-        if self.solution.resting[numbers].any():
-            return (
-                f"load cases of link '{self.link}': a joint with friction is at rest at"
-                f" t = {self.solution.t[numbers[0]]:.6g} s, which leaves {names} indeterminate"
-            )
-        return (
-            f"load cases of link '{self.link}': equilibrium does not determine {names}; give the"
-            " links beams and evaluate with elastic=True, or release a joint"
-        )
-
-    def _governing(self, known: npt.NDArray[np.bool_], largest: float) -> dict[int, list[str]]:
-        """Return what is largest in size at an instant, by its number."""
-        found: dict[int, list[str]] = {}
-        for name, values, scale in self._peaking(largest, largest * self.declared.size):
-            sizes = np.where(known, np.nan_to_num(np.abs(values)), 0.0)
-            i = int(np.argmax(sizes))
-            if sizes[i] > _SLIGHT * scale:
-                found.setdefault(i, []).append(name)
-        return found or {int(np.argmax(known)): []}
-
-    def _peaking(self, force: float, moment: float) -> Iterator[tuple[str, Array, float]]:
-        """Yield quantities whose peaks govern, over time, each with the load to compare with."""
-        solution = self.solution
-        if self.link in solution.links_with_sections:
-            for section in solution.table.forces:
-                name = f"section:{self.link}:{section}"
-                is_moment = solution.unit(name) == "N m"
-                yield name, solution.extremes(name)[0], moment if is_moment else force
-            with suppress(DeclarationError):  # no beam, or stresses that are not known
-                stress = solution.stress(self.link)
-                for kind in ("normal", "shear", "von_mises"):
-                    yield f"stress:{self.link}:{kind}", stress.largest(kind).value, 0.0
-        for name, (_, push, couple) in self.loads.items():
-            if name.startswith("reaction:"):
-                yield f"{name}:resultant", _sizes(push), force
-                yield f"{name}:moment", _sizes(couple), moment
-
-
-def _rod(body: Description) -> Rod | None:
-    """Return a described link as a bar, where it has a beam."""
-    if "beam" not in body:
-        return None
-    slices = body["density"].get("slices", {})
-    moments = tuple(density_of({"density": slices[name]}) for name in slices)
-    return Rod(body["length"], density_of(body), moments, beam_from_numbers(body["beam"]))
-
-
-def _sizes(rows: Array) -> Array:
-    return np.asarray(np.linalg.norm(rows, axis=-1))
-
-
-def _triple(row: Array) -> Triple:
-    x, y, z = (row + 0.0).tolist()  # without zeros of a negative sign
-    return x, y, z
+def _at(vector: Vector, i: int) -> Triple:
+    """Return a vector at an instant, without zeros of a negative sign."""
+    x, y, z = (one[i] if isinstance(one, np.ndarray) else one for one in vector.components)
+    return float(x) + 0.0, float(y) + 0.0, float(z) + 0.0

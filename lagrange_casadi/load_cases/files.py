@@ -2,43 +2,47 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+
+import numpy as np
 
 from ..arguments import public
 from ..base.csv_rows import csv_text
 from ..base.publish import filling
 from ..base.vocabulary import LOAD_FORMATS
-from ..errors import UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, shown
 from .beam_model import beam_model
-from .loads import LoadCase, node_sets
+from .loads import Load, LoadCase, nodes_of
 from .solver_text import calculix, nastran
 
-_SOLVERS = {
-    "inp": (calculix, "inp"),
-    "nas": (nastran, "nas"),
-    "beam": (beam_model, "beam.inp"),
-}
-"""Writers of a file for one load case, and endings of its name, by format."""
+_NAME = re.compile(r"[^\s,*][^\r\n,]*")
+"""Names of nodes in input files: no comma, and no beginning of a keyword or a comment."""
 
-_UNITS = {
-    "t": "s",
-    "at": "m",
-    "force": "N",
-    "moment": "N m",
-    "acceleration": "m/s^2",
-    "omega": "rad/s",
-    "alpha": "rad/s^2",
-    "gravity": "m/s^2",
-    "mass": "kg",
-    "centre": "m",
-    "inertia": "kg m^2",
-    "residual": "1",
+_SOLVERS = {"inp": ("inp", calculix), "nas": ("nas", nastran), "beam": ("beam.inp", beam_model)}
+"""Endings of files of one load case, and their lines, by format."""
+
+_FIELDS = {
+    "t": ("s", "t"),
+    "at": ("m", "x, y, z"),
+    "force": ("N", "fx, fy, fz"),
+    "moment": ("N m", "mx, my, mz"),
+    "acceleration": ("m/s^2", "ax, ay, az"),
+    "omega": ("rad/s", "omega_x, omega_y, omega_z"),
+    "alpha": ("rad/s^2", "alpha_x, alpha_y, alpha_z"),
+    "gravity": ("m/s^2", "gx, gy, gz"),
+    "mass": ("kg", "mass"),
+    "centre": ("m", "centre_x, centre_y, centre_z"),
+    "inertia": ("kg m^2", ""),
+    "residual": ("1", "residual of forces, residual of moments"),
 }
+"""Units of the fields of loads and load cases, and heads of their columns."""
+
+_LOAD = ("at", "force", "moment")
+_INERTIA = ("acceleration", "omega", "alpha", "gravity", "centre", "mass", "residual")
 
 
 @public
@@ -46,7 +50,7 @@ def write_load_cases(
     cases: Sequence[LoadCase],
     folder: str | os.PathLike[str],
     formats: Sequence[str] = ("json",),
-    nodes: Mapping[str, str] | None = None,
+    nodes: Mapping[str, str | int] | None = None,
 ) -> tuple[str, ...]:
     """Write load cases of one or several links.
 
@@ -75,76 +79,64 @@ def write_load_cases(
     UnknownNameError
         For another format, and for ``nodes`` of a part that loads no link.
     DeclarationError
-        For ``beam`` of a link without one, or whose material has no moduli.
+        For ``beam`` of a link without one, or whose material has no moduli; for one node at several
+        places, and for what cannot name one.
     PathError
         If the folder cannot be written.
     """
     if unknown := [name for name in formats if name not in LOAD_FORMATS]:
         raise UnknownNameError("format", unknown, LOAD_FORMATS)
-    links, chosen = dict.fromkeys(case.link for case in cases), dict(nodes or {})
-    loaded = dict.fromkeys(
-        name
-        for case in cases
-        for name in (*(node.name for _, node in node_sets(case, {})), case.link)
-    )
+    links = dict.fromkeys(case.link for case in cases)
+    chosen = {name: str(node) for name, node in (nodes or {}).items()}
+    loads = (node.name for case in cases for node in nodes_of(case, {}))
+    loaded = dict.fromkeys([*loads, *links])
     if unknown := [name for name in chosen if name not in loaded]:
         raise UnknownNameError("load", unknown, loaded)
-    files: dict[str, str] = {}
-    for link in links:
-        own = [case for case in cases if case.link == link]
-        for name in dict.fromkeys(formats):
-            files |= _files(name, own, chosen)
+    if wrong := [node for node in chosen.values() if not _NAME.fullmatch(node)]:
+        raise DeclarationError(f"nodes: expected names or numbers of nodes, got {shown(wrong[0])}")
+    files = {
+        f"{link}{ending}": text
+        for link in links
+        for name in formats
+        for ending, text in _texts(name, [case for case in cases if case.link == link], chosen)
+    }
     with filling(Path(folder)) as draft:
         for file, text in files.items():
             (draft / file).write_text(text, encoding="utf-8", newline="\n")
     return tuple(files)
 
 
-def _files(name: str, cases: Sequence[LoadCase], nodes: Mapping[str, str]) -> dict[str, str]:
-    """Return the texts of the files of a link in a format, by their names."""
-    link = cases[0].link
+def _texts(
+    name: str, cases: Sequence[LoadCase], nodes: Mapping[str, str]
+) -> Iterator[tuple[str, str]]:
+    """Yield files of a link's load cases in a format: endings of their names, and texts."""
     if name == "json":
-        return {f"{link}.json": _json(link, cases)}
-    if name == "csv":
-        return {f"{link}.csv": _csv_of_loads(cases), f"{link}.inertia.csv": _csv_of_inertia(cases)}
-    lines, ending = _SOLVERS[name]
-    return {
-        f"{link}_{number}.{ending}": "\n".join(lines(case, number, nodes)) + "\n"
-        for number, case in enumerate(cases, 1)
-    }
+        units = {field: unit for field, (unit, _) in _FIELDS.items()}
+        content = {"link": cases[0].link, "axes": "of the link, from its origin", "units": units}
+        every = [{name: x for name, x in vars(case).items() if name != "rod"} for case in cases]
+        yield ".json", json.dumps({**content, "cases": every}, indent=1, default=vars) + "\n"
+    elif name == "csv":
+        yield ".csv", _csv(cases, "name", _LOAD, lambda case: [(x.name, x) for x in case.loads])
+        governs = _csv(cases, "governs", _INERTIA, lambda case: [(" ".join(case.governs), case)])
+        yield ".inertia.csv", governs
+    else:
+        ending, lines = _SOLVERS[name]
+        for number, case in enumerate(cases, 1):
+            yield f"_{number}.{ending}", "\n".join([*lines(case, number, nodes), ""])
 
 
-def _json(link: str, cases: Sequence[LoadCase]) -> str:
-    every = [asdict(replace(case, rod=None)) for case in cases]
-    for numbers in every:
-        del numbers["rod"]
-    content = {"link": link, "axes": "of the link, from its origin", "units": _UNITS}
-    return json.dumps({**content, "cases": every}, indent=1) + "\n"
-
-
-def _csv_of_loads(cases: Sequence[LoadCase]) -> str:
-    heads = ["case", "t [s]", "name", *_columns(at="{}", force="f{}", moment="m{}")]
+def _csv(
+    cases: Sequence[LoadCase],
+    head: str,
+    fields: Sequence[str],
+    parts: Callable[[LoadCase], Iterable[tuple[str, Load | LoadCase]]],
+) -> str:
+    """Return a table of fields, a row for each of the named parts of a load case."""
+    units = (_FIELDS[field] for field in fields)
+    columns = [f"{name} [{unit}]" for unit, names in units for name in names.split(", ")]
     rows = (
-        [number, case.t, load.name, *load.at, *load.force, *load.moment]
+        [number, case.t, name, *np.hstack([getattr(part, field) for field in fields]).tolist()]
         for number, case in enumerate(cases, 1)
-        for load in case.loads
+        for name, part in parts(case)
     )
-    return csv_text([heads, *rows])
-
-
-def _csv_of_inertia(cases: Sequence[LoadCase]) -> str:
-    heads = _columns(
-        acceleration="a{}", omega="omega_{}", alpha="alpha_{}", gravity="g{}", centre="centre_{}"
-    )
-    last = ["mass [kg]", "residual of forces [1]", "residual of moments [1]"]
-    rows: list[list[object]] = [["case", "t [s]", "governs", *heads, *last]]
-    for number, case in enumerate(cases, 1):
-        vectors = (case.acceleration, case.omega, case.alpha, case.gravity, case.centre)
-        numbers = itertools.chain(*vectors, [case.mass], case.residual)
-        rows.append([number, case.t, " ".join(case.governs), *numbers])
-    return csv_text(rows)
-
-
-def _columns(**names: str) -> list[str]:
-    """Return heads of the columns of vectors."""
-    return [f"{name.format(x)} [{_UNITS[field]}]" for field, name in names.items() for x in "xyz"]
+    return csv_text([["case", "t [s]", head, *columns], *rows])

@@ -3,31 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..base.arrays import Array
 from ..base.brief import Brief
-from ..beams.beam import Beam
-from ..declare.density import NumericDensity
+from ..declare.description import Description
 from ..declare.stated import Triple
+from ..errors import DeclarationError
+from ..verification.placing import Moving
+from ..verification.vectors import GROUND, NIL, Axes, Vector
 
 _SAME = 1e-9
 """Distance of two places [m] that are one node."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Rod(Brief):
-    """A link along x: its length [m], its mass and the second moments yy, zz, yz of its slices,
-    each by the ratio x/length, and its beam.
-    """
-
-    length: float
-    density: NumericDensity
-    slices: tuple[NumericDensity, ...]
-    beam: Beam
 
 
 @dataclass(frozen=True)
@@ -48,13 +38,13 @@ class Load:
 class LoadCase(Brief):
     """Everything that loads a link at time ``t`` [s], on its own axes, from its origin.
 
-    ``governs`` are the quantities that are largest at this instant. ``rod`` is the link as a bar,
-    where it has a beam. The link bears ``loads``, and
+    ``governs`` are the quantities that are largest at this instant. The link bears ``loads``, and
     on each of its masses at r the inertia and weight ``gravity - acceleration - alpha x r - omega x
     (omega x r)``: ``acceleration`` of the origin [m/s^2], angular velocity ``omega`` [rad/s],
     angular acceleration ``alpha`` [rad/s^2]. With ``mass`` [kg], its ``centre`` [m] and the
     ``inertia`` about it [kg m^2] these are in equilibrium, but for ``residual``: of forces, and of
-    moments about the centre, each relative to the largest on the link.
+    moments about the centre, each relative to the largest on the link. ``rod`` describes a link
+    that has a beam.
     """
 
     link: str
@@ -69,16 +59,17 @@ class LoadCase(Brief):
     centre: Triple
     inertia: tuple[Triple, Triple, Triple]
     residual: tuple[float, float]
-    rod: Rod | None = None
+    rod: Description | None = field(default=None, repr=False, compare=False)
 
 
-def inertia_field(moved: Array, at: Array) -> Array:
-    """Return inertia and weight of a unit of mass [m/s^2] at places of a link, as in
-    :class:`LoadCase`; ``moved`` are acceleration, omega, alpha and gravity (4, ..., 3).
-    """
-    acceleration, omega, alpha, gravity = moved
-    change = acceleration + np.cross(alpha, at) + np.cross(omega, np.cross(omega, at))
-    return np.asarray(gravity - change)
+def on_own_axes(acceleration: Vector, omega: Vector, alpha: Vector) -> Moving:
+    """Return the motion of a link whose vectors are on its own axes, from its origin."""
+    return Moving(NIL, NIL, acceleration, GROUND, omega, alpha)
+
+
+def turning(motion: Moving, inertia: Axes) -> Vector:
+    """Return the moment that turns what has an inertia about its centre, on the axes of both."""
+    return inertia.turn(motion.acceleration) + motion.rate.cross(inertia.turn(motion.rate))
 
 
 def title(case: LoadCase) -> str:
@@ -86,27 +77,49 @@ def title(case: LoadCase) -> str:
     return f"{case.link} at t = {case.t:.9g} s: {', '.join(case.governs) or 'as asked'}"
 
 
-def node_sets(case: LoadCase, chosen: Mapping[str, str]) -> list[tuple[str, Load]]:
-    """Return node sets with what each bears: two loads at one place are one node's. A set has the
-    name that was ``chosen``, else that of the load, which is without its kind.
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A node at the place ``at``: the ``name`` of the first load there, that of its ``set`` in a
+    mesh, and the sum of force and moment of all loads there (6).
     """
-    found: dict[str, Load] = {}
+
+    name: str
+    set: str
+    at: Triple
+    wrench: Array
+
+
+def nodes_of(case: LoadCase, chosen: Mapping[str, str]) -> list[Node]:
+    """Return the nodes that take the loads; their sets have the names that were ``chosen``, else
+    those of the loads, which are without their kinds.
+    """
+    found: list[Node] = []
     for load in case.loads:
-        for name, node in found.items():
-            if math.dist(node.at, load.at) <= _SAME:
-                force, moment = _sum(node.force, load.force), _sum(node.moment, load.moment)
-                found[name] = replace(node, force=force, moment=moment)
-                break
-        else:
-            name = load.name.partition(":")[2].replace(":", "_")
-            while name.upper() in map(str.upper, found):
-                name += "_"
-            found[name] = replace(load, name=name)
-    return [(chosen.get(name, name), node) for name, node in found.items()]
+        wrench = np.array([*load.force, *load.moment])
+        if same := [node for node in found if math.dist(node.at, load.at) <= _SAME]:
+            same[0].wrench[:] += wrench
+            continue
+        name = load.name.partition(":")[2].replace(":", "_")
+        name = unlike(name, [node.name for node in found])
+        found.append(Node(name, chosen.get(name, name), load.at, wrench))
+    for own in found:
+        if len(same := [node for node in found if node.set.upper() == own.set.upper()]) > 1:
+            names = " and ".join(node.name for node in same)
+            why = f"{names} are at several places, but each has the node '{own.set}'"
+            raise refused(case.link, f"{why}; expected a node for each")
+    return found
 
 
-def _sum(a: Triple, b: Triple) -> Triple:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+def refused(link: str, why: str) -> DeclarationError:
+    """Return the error of what is asked of a link's load cases."""
+    return DeclarationError(f"load cases of link '{link}': {why}")
+
+
+def unlike(name: str, taken: Collection[str]) -> str:
+    """Return a name, with underscores if it is taken: solvers ignore the case of letters."""
+    while name.upper() in map(str.upper, taken):
+        name += "_"
+    return name
 
 
 def listed(numbers: Sequence[float]) -> str:

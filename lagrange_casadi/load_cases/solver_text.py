@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from .loads import LoadCase, listed, node_sets, title
+from .loads import LoadCase, listed, nodes_of, title
 
 _SETS = 10
 """Numbers of Nastran's load sets of a load case."""
@@ -15,18 +15,15 @@ _SETS = 10
 
 def calculix(case: LoadCase, number: int, nodes: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of a file for a step of CalculiX or Abaqus."""
-    sets, elements = node_sets(case, nodes), nodes.get(case.link, case.link)
+    found, elements = nodes_of(case, nodes), nodes.get(case.link, case.link)
     yield from _head(case, "**", f"Within a step: *INCLUDE, INPUT={case.link}_{number}.inp")
     yield f"** Element set {elements}: mass {case.mass:.9g} kg, centre {listed(case.centre)} m"
     yield "** Node sets, each of the one node that takes a joint's load:"
-    yield from (f"**   {name} at {listed(node.at)} m" for name, node in sets)
+    yield from (f"**   {node.set} at {listed(node.at)} m" for node in found)
     yield "** Moments are on degrees of freedom 4 to 6 of that node. Of a *RIGID BODY of CalculiX"
-    yield "** they are on 1 to 3 of its ROT NODE."
-    yield "*CLOAD"
-    for name, node in sets:
-        for k, value in enumerate((*node.force, *node.moment), 1):
-            if value != 0.0:
-                yield f"{name}, {k}, {value:.12g}"
+    yield from ("** they are on 1 to 3 of its ROT NODE.", "*CLOAD")
+    for node in found:
+        yield from (f"{node.set}, {k}, {x:.12g}" for k, x in enumerate(node.wrench, 1) if x)
     weight, size, spin = _field(case)
     if size or spin:
         yield "*DLOAD"
@@ -45,22 +42,29 @@ def calculix(case: LoadCase, number: int, nodes: Mapping[str, str]) -> Iterator[
 
 def nastran(case: LoadCase, number: int, nodes: Mapping[str, str]) -> Iterator[str]:
     """Yield bulk data of a load set, which adds up sets of one kind each."""
-    sets, whole = node_sets(case, nodes), _SETS * number
-    taken = {int(name) for name, _ in sets if name.isdigit()}
+    found, whole = nodes_of(case, nodes), _SETS * number
+    taken = {int(node.set) for node in found if node.set.isdecimal()}
     free = (k for k in itertools.count(1) if k not in taken)
-    grids = [int(name) if name.isdigit() else next(free) for name, _ in sets]
+    grids = [(int(one.set) if one.set.isdecimal() else next(free), one) for one in found]
     yield from _head(case, "$", f"In case control: LOAD = {whole}")
     yield f"$ Mass {case.mass:.9g} kg, centre {listed(case.centre)} m"
     yield "$ Grid points, each takes a joint's load:"
-    for grid, (_, node) in zip(grids, sets, strict=True):
-        yield f"$   {grid}: {node.name} at {listed(node.at)} m"
+    yield from (f"$   {grid}: {node.name} at {listed(node.at)} m" for grid, node in grids)
     used = []
-    for grid, (_, node) in zip(grids, sets, strict=True):
-        for word, vector in (("FORCE", node.force), ("MOMENT", node.moment)):
-            if any(vector):
+    for grid, node in grids:
+        for word, vector in (("FORCE", node.wrench[:3]), ("MOMENT", node.wrench[3:])):
+            if vector.any():
                 yield from _card(word, whole + 1, grid, 0, 1.0, *vector)
                 used = [whole + 1]
-    for own, (about, word, *fields) in enumerate(_inertia(case), whole + 2):
+    weight, size, spin = _field(case)
+    negative, turn = [0.0 - x for x in case.alpha], 1.0 / math.tau
+    about = "angular acceleration, in turns, negative: the force of RACC is m (alpha x r)"
+    inertia: list[tuple[Any, ...]] = [
+        (size, "gravity less the acceleration of the origin", "GRAV", 0, 1.0, *weight),
+        (spin, "angular velocity, in turns", "RFORCE", 0, 0, turn, *case.omega),
+        (any(negative), about, "RFORCE", 0, 0, 0.0, *negative, "", turn),
+    ]
+    for own, (_, about, word, *fields) in enumerate((x for x in inertia if x[0]), whole + 2):
         yield f"$ {about}"
         yield from _card(word, own, *fields)
         used.append(own)
@@ -68,21 +72,6 @@ def nastran(case: LoadCase, number: int, nodes: Mapping[str, str]) -> Iterator[s
     yield f"LOAD    {whole:>8}{1.0:>8}{pairs[:48]}"
     if pairs[48:]:
         yield f"        {pairs[48:]}"
-
-
-def _inertia(case: LoadCase) -> Iterator[tuple[Any, ...]]:
-    """Yield entries of Nastran's inertia and weight: a comment, the word, and fields after the
-    number of the set.
-    """
-    weight, size, spin = _field(case)
-    if size:
-        yield "gravity less the acceleration of the origin", "GRAV", 0, 1.0, *weight
-    if spin:
-        yield "angular velocity, in turns", "RFORCE", 0, 0, 1.0 / math.tau, *case.omega
-    if any(case.alpha):
-        about = "angular acceleration, in turns, negative: the force of RACC is m (alpha x r)"
-        negative = [0.0 - x for x in case.alpha]
-        yield about, "RFORCE", 0, 0, 0.0, *negative, "", 1.0 / math.tau
 
 
 def _head(case: LoadCase, mark: str, use: str) -> Iterator[str]:

@@ -1,89 +1,22 @@
-"""Load spectra: rainflow matrices of what loads a part, and equivalent loads of bearings."""
+"""Load spectra: rainflow matrices of what loads a part."""
 
 from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
-from dataclasses import astuple, dataclass
 from pathlib import Path
 
 import numpy as np
 
-from ..arguments import Positive, public
+from ..arguments import Index, public
 from ..base.arrays import Array
 from ..base.csv_rows import csv_text
 from ..base.publish import writing
-from ..base.table_file import TableFile
-from ..base.units import count
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Solution
-from ..strength.bearings import equivalent_load, joint_rate, reaction_sizes, time_weights
 from ..strength.rainflow import counted
 
 _HEADS = ("range", "mean", "cycles", "range_low", "range_high", "mean_low", "mean_high")
-
-
-@public
-@dataclass(frozen=True)
-class BearingLoads:
-    """Loads of a bearing as catalogues ask for them: ``radial`` and ``axial`` [N] even loads that
-    wear it as much as those of the cycle, at the mean ``speed`` [1/min]; and the largest of each.
-    """
-
-    joint: str
-    radial: float
-    axial: float
-    speed: float
-    largest_radial: float
-    largest_axial: float
-    largest_speed: float
-
-
-@public
-def bearing_loads(solution: Solution, joint: str, exponent: Positive = 3.0) -> BearingLoads:
-    """Compute equivalent loads and speeds of a joint for catalogues of bearings.
-
-    Parameters
-    ----------
-    solution
-        A solution with the joint's reaction and motion.
-    joint
-        Name of the joint.
-    exponent
-        That of the bearing's life: 3 for balls, 10/3 for rollers.
-
-    Returns
-    -------
-    BearingLoads
-        Loads are weighted by the angle that the joint turns under them; the speed is the mean of
-        its size, also of a joint that swings.
-
-    Raises
-    ------
-    DeclarationError
-        For a reaction or a rate that was not evaluated, or is indeterminate.
-    """
-    across, along = reaction_sizes(solution, joint)
-    rate = joint_rate(solution, joint, "angle")
-    if rate is None:
-        raise DeclarationError(f"joint '{joint}' does not turn, or its motion was not evaluated")
-    speed, weights = np.abs(rate) * 60.0 / math.tau, time_weights(solution.t)
-    turned = speed * weights
-    return BearingLoads(
-        joint,
-        equivalent_load(across, turned, exponent),
-        equivalent_load(along, turned, exponent),
-        float(turned.sum() / weights.sum()),
-        *(float(values.max()) for values in (across, along, speed)),
-    )
-
-
-def write_bearing_loads(loads: Sequence[BearingLoads], path: Path) -> None:
-    """Write loads of bearings as CSV, a row for each joint."""
-    each = ("radial [N]", "axial [N]", "speed [1/min]")
-    heads = ["joint", *each, *(f"largest {name}" for name in each)]
-    TableFile(path).write(heads, map(astuple, loads))
 
 
 @public
@@ -92,7 +25,7 @@ def write_spectrum(
     name: str,
     path: str | os.PathLike[str],
     *,
-    classes: int = 64,
+    classes: Index = 64,
     repeating: bool = True,
 ) -> None:
     """Write the rainflow matrix of a quantity as CSV: ranges, means and counts of its cycles.
@@ -124,14 +57,11 @@ def write_spectrum(
         raise DeclarationError(f"spectrum of '{name}': give a ratio too, as in '{name}@0.5'")
     if not np.isfinite(history).all():
         raise DeclarationError(f"spectrum of '{name}': it is indeterminate at some instants")
-    number = count("spectrum: classes", classes, 0)
-    cycles = np.array(
-        [(one.size, one.mean, one.times) for one in counted(history, repeating=repeating)]
-    ).reshape(-1, 3)
-    size, mean, times = cycles[cycles[:, 0] > 0.0].T
-    if number:
+    cycles = [one[:3] for one in counted(history, repeating=repeating) if one.size > 0.0]
+    size, mean, times = np.array(cycles).reshape(-1, 3).T
+    if classes:
         lowest, widest = float(history.min()), float(np.ptp(history))
-        ranges, means = (np.linspace(x, x + widest, number + 1) for x in (0.0, lowest))
+        ranges, means = (np.linspace(x, x + widest, classes + 1) for x in (0.0, lowest))
         found, _, _ = np.histogram2d(size, mean, bins=(ranges, means), weights=times)
         i, j = np.nonzero(found)
         ends = ranges[i], ranges[i + 1], means[j], means[j + 1]
@@ -139,8 +69,7 @@ def write_spectrum(
     else:
         (size, mean), same = np.unique([size, mean], axis=1, return_inverse=True)
         rows = [size, mean, np.bincount(same.ravel(), times), size, size, mean, mean]
-    seconds = float(np.ptp(solution.t))
-    again = "which repeat" if repeating else "once"
+    seconds, again = np.ptp(solution.t), "which repeat" if repeating else "once"
     head = f"# {name} [{unit}], counted over {seconds:.9g} s, {again}\n"
     with writing(Path(path)) as (draft,):
         draft.write((head + csv_text([_HEADS, *np.column_stack(rows).tolist()])).encode())
@@ -165,9 +94,8 @@ def _history(solution: Solution, name: str) -> tuple[Array, str]:
         stresses = solution.stress(quantity).at(ratio)[0]
         return stresses[int(np.argmax(np.ptp(stresses, axis=1)))], "Pa"
     link, _, force = quantity.rpartition(":")
-    law = solution.section(link).law
-    if force not in solution.table.forces:
-        place = f"spectrum of '{name}'"
-        raise UnknownNameError("section force", force, solution.table.forces, place=place)
+    law, forces = solution.section(link).law, solution.table.forces
+    if force not in forces:
+        raise UnknownNameError("section force", force, forces, place=f"spectrum of '{name}'")
     values = law.at(force, np.full((solution.t.size, 1), ratio))[:, 0]
     return np.asarray(values), solution.unit(f"section:{quantity}")

@@ -6,14 +6,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import casadi as ca
 import numpy as np
 
 from ..base.brief import Brief
-from ..base.quantities import Output
+from ..base.quantities import Output, motion_names, motions_of
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, table_of
 from ..base.vocabulary import Precision
@@ -75,6 +76,9 @@ class Setting(Member):
     high: float = math.inf
 
 
+_Member = TypeVar("_Member", bound=Member)
+
+
 @dataclass(frozen=True)
 class LinkContract:
     """A link that has sections: its name, and its number in C."""
@@ -116,6 +120,11 @@ class Contract(Brief):
         return "float" if self.precision == "single" else "double"
 
     @property
+    def words(self) -> dict[str, str]:
+        """Words of every template: the prefix of names, and that of constants."""
+        return {"p": self.prefix, "P": self.prefix.upper()}
+
+    @property
     def shown(self) -> tuple[Member, Member]:
         """An input and an output for examples: a coordinate, and an effort, if there is one."""
         efforts = (m for m in self.outputs if m.source.startswith("effort:"))
@@ -149,21 +158,39 @@ class Contract(Brief):
             if link.constant != usual[link.name]
         }
 
-    def input_of(self, name: str) -> str:
-        """The member for the input of a full name, such as ``motion:O_rate`` or ``time``."""
-        return next(member.name for member in self.inputs if member.source == name)
-
     def parts_of(self, name: str) -> list[str]:
-        """The members that add up to the input of a full name: its own, and its rest, if any."""
+        """The members that add up to the input of a full name, such as ``motion:O_rate`` or
+        ``time``: its own, and its rest, if any.
+        """
         return [m.name for m in self.inputs if m.source in (name, f"{REST}{name}")]
+
+    def split(self, value: str) -> list[str]:
+        """A variable of C that is a double as numbers of the precision: one, or in single precision
+        two that add up to it.
+        """
+        first = f"({self.prefix}_real) {value}"
+        rest = f"({self.prefix}_real) ({value} - (double) {first})"
+        return [first, rest] if self.rests else [first]
+
+    @property
+    def moved(self) -> list[list[str]]:
+        """Full names of the coordinates, the rates and the accelerations, each by drive."""
+        return motion_names(self.drives)
 
     @property
     def motion(self) -> list[list[str]]:
         """The members for coordinates, rates and accelerations, each by drive."""
-        return [
-            [self.input_of(f"motion:{drive}{order}") for drive in self.drives]
-            for order in ("", "_rate", "_acceleration")
-        ]
+        return [[self.parts_of(name)[0] for name in names] for names in self.moved]
+
+    @property
+    def moment(self) -> list[str]:
+        """The members for the time and the coordinates, and in single precision for the rest of
+        each; the time is empty where nothing depends on it.
+        """
+        names = ["time", *self.moved[0]]
+        names += [f"{REST}{name}" for name in names] if self.rests else []
+        given = {m.source: m.name for m in self.inputs}
+        return [given.get(name, "") for name in names]
 
 
 def _short(source: str, kind: str = "") -> str:
@@ -194,30 +221,41 @@ def contract(
     values = solution.description["parameters"]
     timed = _timed(program)
     settings = [] if fixed else [_setting(key, values[key]) for key in program.data.parameters]
-    names = members({setting.source: setting.source for setting in settings})
-    inputs = _inputs(program, precision, timed)
-    shown = members({key: _short(key, "input") for key in inputs})
-    given = [output for output in program.outputs if str(output) not in inputs]
-    called = members({str(output): _short(str(output)) for output in given})
-    largest: dict[str, float] = {}
-    for output in given:
-        unit = output.unit(program.data.kinds)
-        largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.outputs[output]).max()))
+    inputs = list(_inputs(program, precision, timed))
+    taken = {m.source for m in inputs}
+    given = [output for output in program.outputs if str(output) not in taken]
+    units = [output.unit(program.data.kinds) for output in given]
+    largest = largest_of(units, (np.abs(solution.outputs[output]).max() for output in given))
+    outputs = [_output(program, output, solution, largest) for output in given]
     numbered = constants(f"{prefix(name)}_link", program.links)
     links = [LinkContract(link, constant) for link, constant in numbered.items()]
     return Contract(
         prefix(name),
         name,
         precision,
-        tuple(replace(s, name=names[s.source]) for s in settings),
-        tuple(replace(m, name=shown[key]) for key, m in inputs.items()),
-        tuple(_output(program, output, called[str(output)], solution, largest) for output in given),
+        _named(settings),
+        _named(inputs, "input"),
+        _named(outputs),
         tuple(links),
         program.driven,
         timed,
         tuple(map(str, indeterminate)),
         solution.table,
     )
+
+
+def _named(struct: Sequence[_Member], kind: str = "") -> tuple[_Member, ...]:
+    """Members of a struct, with their names in C."""
+    names = members({m.source: _short(m.source, kind) for m in struct})
+    return tuple(replace(m, name=names[m.source]) for m in struct)
+
+
+def largest_of(units: Iterable[str], sizes: Iterable[float]) -> dict[str, float]:
+    """The largest of some sizes in each unit."""
+    found: dict[str, float] = {}
+    for unit, size in zip(units, sizes, strict=True):
+        found[unit] = max(found.get(unit, 0.0), float(size))
+    return found
 
 
 @symbolic
@@ -240,7 +278,7 @@ def _setting(key: str, parameter: dict[str, float]) -> Setting:
     unit = str(parameter["unit"])
     default = parameter["value"]
     return Setting(
-        name=key,
+        name="",
         source=key,
         unit=unit,
         meaning=f"parameter {key}",
@@ -255,33 +293,28 @@ def _bracket(value: float, closed: str, opened: str) -> str:
     return closed if math.isfinite(value) else opened
 
 
-def _inputs(program: Program, precision: Precision, timed: bool) -> dict[str, Member]:
+def _inputs(program: Program, precision: Precision, timed: bool) -> Iterator[Member]:
     rests = precision == "single"
-    found: dict[str, Member] = {}
-
-    def add(
-        key: str, unit: str, meaning: str, sign: str = "", range_: str = "any finite number"
-    ) -> None:
-        found[key] = Member("", key, unit, meaning, sign, range_)
-
-    rest = "remainder of {} that single precision does not hold, 0 if unknown"
     if timed:
-        add("time", "s", "time, which loads of this mechanism depend on")
+        yield _input("time", "s", "time, which loads of this mechanism depend on")
         if rests:
-            add(f"{REST}time", "s", rest.format("the time"))
+            yield _rest("time", "s", "the time")
     for joint in program.driven:
-        for member in ("", "rate", "acceleration"):
-            output = Output("motion", joint, member)
+        for output in motions_of(joint):
             key, unit = str(output), output.unit(program.data.kinds)
-            add(
-                key,
-                unit,
-                f"{_where(output)}: {_brief(output.quantity.long_name)}",
-                _sign(program, output),
-            )
-            if rests and not member:
-                add(f"{REST}{key}", unit, rest.format("it"))
-    return found
+            meaning = f"{_where(output)}: {_brief(output.quantity.long_name)}"
+            yield _input(key, unit, meaning, _sign(program, output))
+            if rests and not output.member:
+                yield _rest(key, unit, "it")
+
+
+def _input(key: str, unit: str, meaning: str, sign: str = "") -> Member:
+    return Member("", key, unit, meaning, sign, "any finite number")
+
+
+def _rest(key: str, unit: str, of: str) -> Member:
+    meaning = f"remainder of {of} that single precision does not hold, 0 if unknown"
+    return _input(f"{REST}{key}", unit, meaning)
 
 
 def _sign(program: Program, output: Output) -> str:
@@ -296,12 +329,12 @@ def _sign(program: Program, output: Output) -> str:
 
 
 def _output(
-    program: Program, output: Output, member: str, solution: Solution, largest: Mapping[str, float]
+    program: Program, output: Output, solution: Solution, largest: Mapping[str, float]
 ) -> Member:
     unit, wrapped = output.unit(program.data.kinds), output in program.loop_angles
     within = "in (-pi, pi]" if wrapped else _range(solution, output, largest[unit])
     meaning = f"{_where(output)}: {_brief(output.meant(solution.table).long_name)}"
-    return Member(member, str(output), unit, meaning, _sign(program, output), within, wrapped)
+    return Member("", str(output), unit, meaning, _sign(program, output), within, wrapped)
 
 
 def _where(output: Output) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from ..arithmetic.lookups import lookup
 from ..base.arrays import Array
 from ..base.vocabulary import Precision
-from ..codegen.printer import Format, literal
+from ..codegen.printer import Format
 from ..errors import SizeError
 from .exported_program import ExportedProgram
 
@@ -73,7 +73,7 @@ def table_text(exported: ExportedProgram) -> str:
     text = re.sub(r"\breal\b", "casadi_real", text)
     if exported.precision == "single":
         text = text.replace("floor(", "floorf(")
-    number = literal(exported.precision)
+    number = exported.number
     layout = cycle.layout
     text += _constants("cell", cycle.cell.astype(float), number)
     text += _constants("slopes", cycle.slopes.astype(float), number)
@@ -94,7 +94,7 @@ def table_call(exported: ExportedProgram) -> Iterable[str]:
         f" {cycle.coefficients.shape[1]}, coefficients, {len(cycle.columns)}, order, slopes,"
         f" {len(cycle.layout.runs)}, runs, y);"
     )
-    number = literal(exported.precision)
+    number = exported.number
     for k in np.flatnonzero(cycle.drift):
         yield f"y[{k}] = y[{k}] + {number(cycle.drift[k])}*(drive[0] - {phase});"
 

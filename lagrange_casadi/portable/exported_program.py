@@ -5,7 +5,8 @@ from what constants.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +18,7 @@ from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..codegen.emit import hoisted, newton_rule
-from ..codegen.printer import print_functions
+from ..codegen.printer import Format, literal, print_functions
 from ..codegen.stages import controlled
 from ..declare.limits import END
 from ..equations.checks import Check, Column
@@ -26,27 +27,62 @@ from ..equations.section_function import SectionInputs, section
 from ..instants.cycle_table import CycleTable
 from ..instants.rules import limits
 from ..instants.tabulate import still
+from .calls import CALLS
+from .statuses import ANSWERS
 
 
 @dataclass(frozen=True, eq=False)
 class ExportedProgram:
     """Source of an exported program.
 
-    ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all
-    vectors. ``cycle`` is a table to be read instead of an instant, and ``still`` are stations that
-    are given beside it, for they do not move. ``sections`` are, of each link that has them, the
-    name of the function that gives its section forces, and what that takes.
+    ``columns`` are those of a table or of ``functions``, in order. ``cycle`` is a table to be read
+    instead of an instant, and ``still`` are stations that are given beside it, for they do not
+    move. ``sections`` are, of each link that has them, the name of the function that gives its
+    section forces, and what that takes. ``positive`` of the margins must be positive, others not
+    negative; the mechanism's extent is the first of matter if ``extent_first``.
     """
 
     program: Program
     precision: Precision
     functions: Mapping[str, ca.Function]
     columns: tuple[Column, ...]
-    sizes: dict[str, int]
     newton: int | None
     cycle: CycleTable | None
     still: Mapping[Output, float]
     sections: Mapping[str, tuple[str, SectionInputs]]
+    positive: int
+    extent_first: bool
+
+    @property
+    def sizes(self) -> Counter[str]:
+        """The lengths of the vectors that its functions fill or take, 0 of those that none does."""
+        found = Counter[str]()
+        for name in self.called(CALLS):
+            found |= {vector: n for _, vector, n in CALLS[name].places(self.functions[name])}
+        return found
+
+    def called(self, calls: Iterable[str]) -> list[str]:
+        """Return those of some functions that it has, in order."""
+        return [name for name in calls if name in self.functions]
+
+    @property
+    def number(self) -> Format:
+        """Literal of C for a number of the precision."""
+        return literal(self.precision)
+
+    def column(self, output: str) -> str:
+        """The column of an output, by its full name, as C and other languages write it."""
+        return f"y[{self.columns.index(Output.of(output))}]"
+
+    def answers(self) -> Iterator[str]:
+        """Answer for each rule that may be broken, by its number."""
+        program = self.program
+        yield "OK"
+        for rule in program.rules:
+            indeterminate = rule.bound is not None and program.bounds[rule.bound].kind.startswith(
+                "OPEN"
+            )
+            yield "UNDETERMINED" if indeterminate else ANSWERS.get(rule.status, "OK")
 
     @property
     def text(self) -> str:
@@ -103,29 +139,19 @@ def exported(
         )
     if stages.loops is not None:
         functions["loops"] = stages.loops
-    sizes = {
-        "p": 0 if fixed else symbols.numel(),
-        "constants": constants.size1_out(0),
-        "moment": stages.count.size1_in(0),
-        "counted": stages.count.size1_out(0),
-        "drives": len(program.driven),
-        "loops": stages.instant.size1_in(3),
-        "evaluated": len(kept),
-        "rows": max(1, len(columns)),
-        "matter": functions["matter"].size1_out(0),
-        "gapped": int(gapped),
-        "sound": 0 if fixed else functions["sound"].size1_out(0),
-        "positive": 0 if fixed else positive,
-    }
     of_sections, sections = _sections(program, symbols, precision)
-    functions |= of_sections
-    filled, cycle = (
-        {name: f for name, f in functions.items() if f.size1_out(0)},
-        None if read is None else read[1],
-    )
-    places = {} if read is None else still(program, tuple(p.tolist()))
+    filled = {name: f for name, f in (functions | of_sections).items() if f.size1_out(0)}
     return ExportedProgram(
-        program, precision, filled, columns, sizes, newton, cycle, places, sections
+        program,
+        precision,
+        filled,
+        columns,
+        newton,
+        cycle=None if read is None else read[1],
+        still={} if read is None else still(program, tuple(p.tolist())),
+        sections=sections,
+        positive=positive,
+        extent_first=gapped,
     )
 
 

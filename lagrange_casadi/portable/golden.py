@@ -4,15 +4,16 @@ tolerances.
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-import casadi as ca
 import numpy as np
 
 from ..arithmetic.compensated import ROUNDING
 from ..base.arrays import Array
-from ..base.quantities import Output
+from ..base.quantities import Output, motion_names
 from ..base.vocabulary import Precision
 from ..codegen.stages import compensated
 from ..equations.program import Program
@@ -20,7 +21,7 @@ from ..instants.backends import run
 from ..instants.evaluation_method import EvaluationMethod
 from ..instants.solution import Solution
 from ..verification.accuracy import estimate
-from .contract import FAINT, REST, Contract, Member
+from .contract import FAINT, REST, Contract, Member, largest_of
 
 INSTANTS = 9
 RATIOS = (0.0, 0.5, 1.0)
@@ -69,7 +70,8 @@ def golden(
     stride = max(1, (count - 1) // (INSTANTS - 1))
     chosen = np.arange(0, count, stride)
     t = solution.t[chosen]
-    inputs = np.stack([_input(program, m.source, t, p, precision) for m in contract.inputs], axis=1)
+    moved = {"time": t} | motions_at(program, t, p)
+    inputs = np.stack([_input(moved, m.source, precision) for m in contract.inputs], axis=1)
     outputs = np.stack([exact.series[m.source][chosen] for m in contract.outputs], axis=1)
     rounding = np.array([ALLOWED * errors[m.source] for m in contract.outputs])
     saved = np.array([_saved(m, solution, exact) for m in contract.outputs])
@@ -120,10 +122,7 @@ def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, s
     others of its unit.
     """
     peaks = [float(np.abs(exact.series[m.source]).max()) for m in contract.outputs]
-    largest = {
-        unit: max(p for p, m in zip(peaks, contract.outputs, strict=True) if m.unit == unit)
-        for unit in contract.units
-    }
+    largest = largest_of((m.unit for m in contract.outputs), peaks)
     rows = zip(errors, peaks, contract.outputs, strict=True)
     return max(
         ((float(e) / p, m.name) for e, p, m in rows if p > FAINT * largest[m.unit]),
@@ -138,17 +137,15 @@ def _saved(member: Member, solution: Solution, exact: Solution) -> float:
     return float(np.abs(gaps).max())
 
 
-def _input(program: Program, source: str, t: Array, p: Array, precision: Precision) -> Array:
+def motions_at(program: Program, t: Array, p: Array) -> dict[str, Array]:
+    """The motion of the drives over instants, by full names."""
+    rows = np.vstack([order.full() for order in program.motion(t[None, :], p)])
+    return dict(zip(itertools.chain(*motion_names(program.driven)), rows, strict=True))
+
+
+def _input(moved: Mapping[str, Array], source: str, precision: Precision) -> Array:
     """The values of an input over instants; of a rest, what rounding its value to single leaves."""
-    name = source.removeprefix(REST)
-    if name == "time":
-        values = t
-    else:
-        output = Output.of(name)
-        order = ("", "rate", "acceleration").index(output.member)
-        values = np.atleast_2d(program.motion(ca.DM(t).T, ca.DM(p))[order].full())[
-            program.driven.index(output.part)
-        ]
+    values = moved[source.removeprefix(REST)]
     if source.startswith(REST):
         return np.asarray(values - values.astype(np.float32))
     return np.asarray(values.astype(np.float32).astype(float) if precision == "single" else values)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
-from .contract import CORNERS
+from .contract import CORNERS, Contract, Member
 from .sections import about, law_in_words
 from .slopes import types
 from .source import Source
@@ -15,12 +16,10 @@ from .text import filled, member, template
 
 def header(source: Source) -> str:
     """The header, ``<prefix>.h``."""
-    c, p, P = source.contract, source.contract.prefix, source.contract.prefix.upper()
-    span = source.span
+    c, span, words = source.contract, source.span, source.words
     return template(
         "mechanism.h",
-        **source.words,
-        null=", 0" if c.settings else "",
+        **words,
         begin=_begin(source),
         story=filled(source.story),
         conventions=filled(
@@ -49,16 +48,17 @@ def header(source: Source) -> str:
         stack=deepest(source.code),
         real=c.real,
         statuses=",\n".join(
-            f"  {P}_{key} = {k} /* {text} */" for k, (key, text) in enumerate(STATUSES.items())
+            f"  {words['P']}_{key} = {k} /* {text} */"
+            for k, (key, text) in enumerate(STATUSES.items())
         ),
         parameters=_parameters(source),
-        inputs="\n".join(member(p, m.name, m.comment) for m in c.inputs),
+        inputs=_rows(c, c.inputs),
         outputs_note=(
             " Angles that follow from loops are within one turn."
             if any(m.wrapped for m in c.outputs)
             else ""
         ),
-        outputs="\n".join(member(p, m.name, m.comment) for m in c.outputs),
+        outputs=_rows(c, c.outputs),
         links=_links(source) + (types(c, source.slopes) if source.slopes else ""),
         model="\n".join(f"  {line}" for line in _model(source)),
         for_parameters=", for parameters, or 0 for the defaults" if c.settings else "",
@@ -67,7 +67,6 @@ def header(source: Source) -> str:
             if source.iterated
             else ""
         ),
-        given=f", const {p}_parameters* parameters" if c.settings else "",
         span=f", from {span[0]:.6g} to {span[1]:.6g} s" if math.isfinite(span[0]) else "",
         pair_note=(
             "\n   The time is time + time_rest, because single precision has few digits;"
@@ -75,10 +74,9 @@ def header(source: Source) -> str:
             if c.rests
             else ""
         ),
-        time_rest=f", {p}_real time_rest" if c.rests else "",
         follows=_follows(source),
-        sections=_section_functions(source)
-        + (template("sensitivity.h", **source.words) if source.slopes else ""),
+        sections=(template("mechanism_sections.h", **words) if c.links else "")
+        + (template("sensitivity.h", **words) if source.slopes else ""),
     )
 
 
@@ -125,8 +123,12 @@ def _parameters(source: Source) -> str:
     c = source.contract
     if not c.settings:
         return ""
-    rows = "\n".join(member(c.prefix, m.name, m.comment) for m in c.settings)
+    rows = _rows(c, c.settings)
     return template("mechanism_parameters.h", **source.words, corners=CORNERS, rows=rows)
+
+
+def _rows(c: Contract, members: Iterable[Member]) -> str:
+    return "\n".join(member(c.prefix, m.name, m.comment) for m in members)
 
 
 def _model(source: Source) -> list[str]:
@@ -147,9 +149,3 @@ def _links(source: Source) -> str:
         links=",\n".join(f"  {link.constant} = {k}" for k, link in enumerate(c.links)),
         forces="\n".join(member(c.prefix, one, about(c.table, one)) for one in c.table.forces),
     )
-
-
-def _section_functions(source: Source) -> str:
-    if not source.contract.links:
-        return ""
-    return template("mechanism_sections.h", **source.words)

@@ -5,9 +5,13 @@ two alike.
 from __future__ import annotations
 
 import functools
+import itertools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
+
+_LONGEST = 200
+"""Letters of a prefix: names of files, which are longer by up to 17, may have 255."""
 
 
 @functools.cache
@@ -27,9 +31,9 @@ def reserved(word: str) -> bool:
 
 def prefix(name: str) -> str:
     """First part of the names of all files, symbols and targets of a mechanism: its name, with
-    underscores for what C does not allow.
+    underscores for what C does not allow, and without what is too long for a file.
     """
-    word = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "mechanism"
+    word = re.sub(r"[^A-Za-z0-9]+", "_", name)[:_LONGEST].strip("_") or "mechanism"
     word = word if word[0].isalpha() else f"mechanism_{word}"
     taken = word.lower() in taken_words("files") or word in taken_words("cmake") or reserved(word)
     return f"{word}_mechanism" if taken else word
@@ -38,30 +42,29 @@ def prefix(name: str) -> str:
 def members(names: Mapping[str, str]) -> dict[str, str]:
     """Members of one struct for full names and what each is to be called, with underscores for
     colons.
-
-    Where two would be alike, the later one is numbered.
     """
-    found: dict[str, str] = {}
-    taken: set[str] = set()
-    for full, name in names.items():
-        plain = re.sub(r"\W", "_", name)
-        word = f"{plain}_" if reserved(plain) else plain
-        number = 2
-        while word in taken:
-            word, number = f"{plain}_{number}", number + 1
-        taken.add(word)
-        found[full] = word
-    return found
+    plain = {full: re.sub(r"\W", "_", name) for full, name in names.items()}
+    return distinct(plain, lambda word: f"{word}_" if reserved(word) else word)
 
 
 def constants(begin: str, links: Sequence[str]) -> dict[str, str]:
-    """Constants for names that may differ in capitals alone; where two would be alike, the later
+    """Constants for names that may differ in capitals alone."""
+    return distinct({link: f"{begin}_{link}" for link in links}, str.upper)
+
+
+def distinct(
+    names: Mapping[str, str],
+    written: Callable[[str], str] = str,
+    compared: Callable[[str], str] = str,
+) -> dict[str, str]:
+    """Return names as they are ``written``; where two are alike as they are ``compared``, the later
     one is numbered.
     """
     found: dict[str, str] = {}
-    for link in links:
-        word, number = f"{begin}_{link}".upper(), 2
-        while word in found.values():
-            word, number = f"{begin}_{link}_{number}".upper(), number + 1
-        found[link] = word
+    taken: set[str] = set()
+    for key, name in names.items():
+        numbered = (f"{name}_{number}" for number in itertools.count(2))
+        tries = map(written, itertools.chain([name], numbered))
+        found[key] = next(word for word in tries if compared(word) not in taken)
+        taken.add(compared(found[key]))
     return found

@@ -50,7 +50,7 @@ def functions(c: Contract, exported: ExportedProgram) -> str:
     """The C functions that give the forces inside links."""
     names = {Output.of(m.source): m.name for m in c.outputs}
     links: list[str] = []
-    place = exported.sizes["gapped"]
+    place = int(exported.extent_first)
     for link in c.links:
         function, inputs = exported.sections[link.name]
         links.append(f"  case {link.constant}:")
@@ -67,8 +67,7 @@ def functions(c: Contract, exported: ExportedProgram) -> str:
     acting = max(len(inputs.acting) for _, inputs in exported.sections.values())
     return template(
         "sections.c",
-        p=c.prefix,
-        P=c.prefix.upper(),
+        **c.words,
         none=" = ".join(f"forces->{force}" for force in c.table.forces),
         law=len(c.table.law),
         acting=f", acting[{acting}]" if acting else "",
@@ -84,12 +83,6 @@ def _acts(c: Contract, members: tuple[str, ...]) -> bool:
     """Return whether a distributed load of some link has one of these members."""
     outputs = (Output.of(m.source) for m in c.outputs)
     return any(output.group == "spread" and output.member in members for output in outputs)
-
-
-def in_words(table: Table) -> str:
-    """All forces in words."""
-    *words, last = (table.row("section", force).long_name for force in table.forces)
-    return f"{', '.join(words)} and {last}"
 
 
 def about(table: Table, force: str) -> str:

@@ -19,6 +19,7 @@ from ..errors import DeclarationError
 from ..instants.evaluation_method import EvaluationMethod
 from ..sensitivity.jacobian import total
 from ..sensitivity.series import at_instants
+from .calls import CalledInC
 from .contract import Contract, Setting
 from .text import comment, indented, member, number_rows, numbers, template
 
@@ -86,28 +87,27 @@ def types(c: Contract, slopes: ExportedSlopes) -> str:
         for m, unit in zip(c.outputs, units, strict=True)
     )
     words = {"rows": "\n".join(rows), "members": "\n".join(members)}
-    return template("sensitivity_types.h", p=c.prefix, **words)
+    return template("sensitivity_types.h", **c.words, **words)
 
 
-def code(c: Contract, slopes: ExportedSlopes, drives: int, loops: bool) -> str:
+def code(c: Contract, slopes: ExportedSlopes) -> str:
     """The function, for the source."""
     pairs = itertools.product(c.outputs, slopes.by)
     put = (f"sensitivities->{m.name}.{s.name} = s[{k}];" for k, (m, s) in enumerate(pairs))
     return template(
         "sensitivity.c",
-        p=c.prefix,
-        P=c.prefix.upper(),
+        **c.words,
         many=len(c.outputs) * len(slopes.by),
-        drives=max(1, drives),
+        drives=len(c.drives),
         put=indented(put),
-        given=indented(f"  {line}" for line in _given(c)),
-        loops="model->loops" if loops else "0",
+        given=indented(f"  {line}" for line in _given(c, slopes)),
     )
 
 
-def _given(c: Contract) -> Iterator[str]:
+def _given(c: Contract, slopes: ExportedSlopes) -> Iterator[str]:
     for name, members in zip(("d", "rate", "acceleration"), c.motion, strict=True):
         yield from (f"{name}[{k}] = inputs->{member};" for k, member in enumerate(members))
+    yield from CalledInC({FUNCTION: slopes.function}).call(FUNCTION)
 
 
 def selftest_numbers(slopes: ExportedSlopes) -> str:
@@ -132,8 +132,7 @@ def selftest_function(c: Contract, slopes: ExportedSlopes) -> str:
     first, by = c.outputs[0].name, slopes.by[0].name
     return template(
         "selftest_sensitivity.c",
-        p=c.prefix,
-        P=c.prefix.upper(),
+        **c.words,
         compared=indented(compared),
         first=f"{first}.{by}",
     )

@@ -57,6 +57,12 @@ def markdown(text: str) -> str:
     return re.sub(r"([\\`*{}\[\]<>#|&!~$])", r"\\\1", text)
 
 
+def listed(words: Iterable[str]) -> str:
+    """Words in a sentence: ``a, b and c``."""
+    *first, last = words
+    return f"{', '.join(first)} and {last}"
+
+
 def member(p: str, name: str, about: str) -> str:
     """A member of a struct of numbers."""
     return f"  {p}_real {name}; /* {comment(about)} */"

@@ -13,11 +13,12 @@ from ..equations.model_data import template
 from ..errors import DeclarationError, LagrangeCasadiError
 from ..instants.ordering import ordered
 from ..instants.solution import Solution
+from ..shapes.index import html_table
 from ..shapes.places import require_poses
 from ..studies.evaluate import evaluate
 from .page import page
 from .still import still
-from .words import html_table, what
+from .words import what
 
 _ROWS = 12
 """Peaks that are shown at most: the largest of each unit first."""

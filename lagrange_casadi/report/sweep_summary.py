@@ -8,11 +8,11 @@ from html import escape
 
 import numpy as np
 
+from ..shapes.index import html_table
 from ..studies.sweep.axes import counted
 from ..studies.sweep.best import with_errors
 from ..studies.sweep.meanings import STATUS
 from ..studies.sweep.reading import Sweep
-from .words import html_table
 
 _ROWS = 12
 """Columns that are shown at most."""

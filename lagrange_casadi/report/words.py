@@ -1,11 +1,6 @@
-"""Names of quantities in a page: the table's words, as short as a chart's legend; and tables of
-notebooks.
-"""
+"""Names of quantities in a page: the table's words, as short as a chart's legend."""
 
 from __future__ import annotations
-
-from collections.abc import Iterable, Sequence
-from html import escape
 
 from ..base.quantities import Output
 from ..base.tables import Table
@@ -49,11 +44,3 @@ def what(output: Output, table: Table) -> str:
     for end in _CUT:
         words = words.replace(end, "")
     return words
-
-
-def html_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table as HTML."""
-    head = "".join(f"<th>{word}</th>" for word in heads)
-    cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows)
-    body = "".join(f"<tr>{row}</tr>" for row in cells)
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"

@@ -1,5 +1,5 @@
-"""A file of this program is opened to read: held to its seal, its schema and its version looked at,
-before anything is believed.
+"""Files of this program. One that is opened to read is held to its seal, its schema and its version
+looked at, before anything is believed; one that is written is sealed.
 """
 
 from __future__ import annotations
@@ -7,11 +7,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import h5py
 import numpy as np
 
-from ..base.seal import VerifiedFile, kind_of, verify
+from ..base.publish import PatientFile, replacing
+from ..base.seal import VerifiedFile, kind_of, seal, verify
 from ..errors import StoreError
 from .untrusted import check_links, reported_as, shown
 
@@ -65,6 +67,24 @@ def opened_file(
             if not file.attrs.get("complete", False):
                 raise StoreError(f"{path}: was not written to its end")
             yield file
+
+
+@contextmanager
+def sealed_file(
+    path: str | os.PathLike[str], schema: str, version: int, case: str
+) -> Iterator[h5py.File]:
+    """A file of a schema to write, of a case, which is sealed and then replaces what is at the path
+    whole or not at all.
+
+    Raises :class:`PathError` where no file can be put, :class:`StoreError` where it cannot be
+    written.
+    """
+    with replacing(Path(path), hdf5=True) as draft:
+        with PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
+            file.attrs.update({"schema": schema, "schema_version": version, "case": case})
+            yield file
+            file.attrs["complete"] = True
+        seal(draft, schema)
 
 
 def read_all(file: h5py.File) -> None:

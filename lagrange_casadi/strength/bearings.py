@@ -1,5 +1,5 @@
 """Pins and bearings: shear, bending and pressure of a pin, pressure and heating of a plain bearing,
-life of a rolling one.
+life of a rolling one, and its loads for catalogues.
 
 A pin that fits loosely in its eye and its fork is a beam: the eye's load is even over its width,
 and each cheek bears in the middle of its own (Wittel, Jannasch, Voßiek and Spura, *Roloff/Matek
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -123,6 +124,61 @@ def rated_hours(
 
 
 @public
+@dataclass(frozen=True)
+class BearingLoads:
+    """Loads of a bearing as catalogues ask for them: ``radial`` and ``axial`` [N] even loads that
+    wear it as much as those of the cycle, at the mean ``speed`` [1/min]; and the largest of each.
+    """
+
+    joint: str
+    radial: float
+    axial: float
+    speed: float
+    largest_radial: float
+    largest_axial: float
+    largest_speed: float
+
+
+@public
+def bearing_loads(solution: Solution, joint: str, exponent: Positive = 3.0) -> BearingLoads:
+    """Compute equivalent loads and speeds of a joint for catalogues of bearings.
+
+    Parameters
+    ----------
+    solution
+        A solution with the joint's reaction and motion.
+    joint
+        Name of the joint.
+    exponent
+        That of the bearing's life: 3 for balls, 10/3 for rollers.
+
+    Returns
+    -------
+    BearingLoads
+        Loads are weighted by the angle that the joint turns under them; the speed is the mean of
+        its size, also of a joint that swings.
+
+    Raises
+    ------
+    DeclarationError
+        For a reaction or a rate that was not evaluated, or is indeterminate.
+    """
+    across, along = _reaction_sizes(solution, joint)
+    rate = _joint_rate(solution, joint, "angle")
+    if rate is None:
+        raise DeclarationError(f"joint '{joint}' does not turn, or its motion was not evaluated")
+    speed, weights = np.abs(rate) * 60.0 / math.tau, _time_weights(solution.t)
+    turned = speed * weights
+    return BearingLoads(
+        joint,
+        equivalent_load(across, turned, exponent),
+        equivalent_load(along, turned, exponent),
+        float(turned.sum() / weights.sum()),
+        *(float(values.max()) for values in (across, along, speed)),
+    )
+
+
+@public
 def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None = None) -> Safety:
     """Return the factors of safety of the pin and bearings of a joint, over all instants.
 
@@ -155,8 +211,8 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
             f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
             f" {having or 'none'}"
         )
-    across, along = reaction_sizes(solution, joint)
-    rate, slide = (joint_rate(solution, joint, kind) for kind in ("angle", "slide"))
+    across, along = _reaction_sizes(solution, joint)
+    rate, slide = (_joint_rate(solution, joint, kind) for kind in ("angle", "slide"))
     verdicts: list[Verdict] = []
     unknown: list[str] = []
     if parts is None:
@@ -176,7 +232,7 @@ def joint_safety(solution: Solution, joint: str, parts: Sequence[Fitted] | None 
     return Safety(joint, tuple(verdicts), tuple(unknown))
 
 
-def reaction_sizes(solution: Solution, joint: str) -> tuple[Array, Array]:
+def _reaction_sizes(solution: Solution, joint: str) -> tuple[Array, Array]:
     """Return the sizes of a reaction across its joint's axis, and along it, each (t,); zero where
     friction at rest leaves it indeterminate.
 
@@ -215,7 +271,7 @@ def _check(joint: str, part: Fitted) -> None:
             )
 
 
-def joint_rate(solution: Solution, joint: str, kind: str) -> Array | None:
+def _joint_rate(solution: Solution, joint: str, kind: str) -> Array | None:
     """The rate at which a joint turns or slides; None if it was not evaluated, or there is none."""
     entry = solution.description["joints"][joint]
     kinds = entry.get("coordinates") or {joint: entry.get("coordinate")}
@@ -281,7 +337,7 @@ def _plain(
     if bearing.speed is not None:
         found.append(_verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s"))
     if bearing.heating is not None:
-        weights = time_weights(t)
+        weights = _time_weights(t)
         mean = float(pressure * speed @ weights / weights.sum())
         factor = bearing.heating / mean if mean else math.inf
         found.append(Verdict("heating", factor, f"p v {mean / 1e6:.4g} MPa m/s in the mean"))
@@ -292,7 +348,7 @@ def _rolling(
     bearing: Rolling, across: Array, along: Array, rate: Array, t: Array
 ) -> Iterator[Verdict]:
     load = bearing.radial * across + bearing.axial * along
-    weights = time_weights(t)
+    weights = _time_weights(t)
     shares = np.abs(rate) * weights
     rpm = float(shares.sum() / weights.sum()) * 60 / math.tau
     even = equivalent_load(load, shares, bearing.exponent)
@@ -304,7 +360,7 @@ def _rolling(
         yield _verdict("static load", bearing.static, load, t, "load", "N")
 
 
-def time_weights(t: Array) -> Array:
+def _time_weights(t: Array) -> Array:
     """Weight of each instant, by trapezia [s]; a single one has the weight of a second."""
     steps = np.diff(t) / 2
     return np.append(steps, 0.0) + np.append(0.0, steps) if t.size > 1 else np.ones(1)

@@ -50,6 +50,10 @@ class Action:
             if body != "ground"
         )
 
+    def sign_on(self, body: str) -> float:
+        """Return 1 for the body, -1 for the one that bears the opposite, and 0 for any other."""
+        return 1.0 if body == self.body else -1.0 if body == self.against else 0.0
+
     @cached_property
     def sizes(self) -> tuple[Scalar, Scalar]:
         """The sizes of force and couple."""
@@ -299,16 +303,15 @@ def _before(
     """
     motion, force, moment, largest = placed.bodies[link], NIL, NIL, 0.0
     for act in acting:
-        for body, opposite in act.moving:
-            if body != link:
-                continue
-            push, twist = act.sizes
-            largest = np.maximum(largest, total(push, twist / placed.declared.size))
-            arm = act.at - motion.at
-            there = motion.axes.x.dot(arm)
-            if not np.any(there <= edge):
-                continue
-            here = np.where(there <= edge, -1.0 if opposite else 1.0, 0.0)
-            force = force + here * act.force
-            moment = moment + here * (arm.cross(act.force) + act.couple)
+        if not (sign := act.sign_on(link)):
+            continue
+        push, twist = act.sizes
+        largest = np.maximum(largest, total(push, twist / placed.declared.size))
+        arm = act.at - motion.at
+        there = motion.axes.x.dot(arm)
+        if not np.any(there <= edge):
+            continue
+        here = np.where(there <= edge, sign, 0.0)
+        force = force + here * act.force
+        moment = moment + here * (arm.cross(act.force) + act.couple)
     return motion.axes.resolve(force), motion.axes.resolve(moment), largest

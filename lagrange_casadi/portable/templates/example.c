@@ -14,7 +14,7 @@ int main(void) {
   ${p}_outputs outputs;
 $declared  ${p}_status status;
   int k;
-  status = ${p}_prepare(&model$null);
+  status = ${p}_prepare(&model$and_defaults);
   if (status != ${P}_OK) return failed(status);
   printf("%13s  %13s  %13s%s\n", "time [s]", "$coordinate [$coordinate_unit]", "$output [$output_unit]", $heading);
   for (k = 0; k < $count; ++k) {

@@ -1,5 +1,5 @@
 
 /* The scene's motion at a time. */
 static ${p}_status motion(const ${p}_model* model, double time, ${p}_inputs* inputs) {
-  return ${p}_motion(model, (${p}_real) time$rest, inputs);
+  return ${p}_motion(model, $time, inputs);
 }

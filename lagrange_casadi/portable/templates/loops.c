@@ -7,11 +7,7 @@ static ${p}_status close_loops(${p}_model* model, const casadi_real* counted, in
   casadi_real* res[2];
   int k, step;
   for (k = 0; k < $nz; ++k) z[k] = model->loops[k];
-  arg[0] = z;
-  arg[1] = counted;
-  arg[2] = $p_values;
-  res[0] = correction;
-  res[1] = &size;
+$given
   for (step = 0; step < most && !(size < done); ++step) {
     before = size;
     loops(arg, res);

@@ -48,13 +48,13 @@ static void put(const casadi_real* y, ${p}_outputs* outputs) {
 $put
 }
 $defaults
-${p}_status ${p}_prepare(${p}_model* model$given) {
+${p}_status ${p}_prepare(${p}_model* model$and_parameters) {
 $prepare
   model->seal = SEAL;
   return ${P}_OK;
 }
 
-${p}_status ${p}_motion(const ${p}_model* model, ${p}_real time$time_rest, ${p}_inputs* inputs) {
+${p}_status ${p}_motion(const ${p}_model* model, ${p}_real time$and_rest, ${p}_inputs* inputs) {
 $motion
 }
 

@@ -6,7 +6,7 @@
      ${p}_model model;
      ${p}_inputs inputs = {0};
      ${p}_outputs outputs;
-     ${p}_status status = ${p}_prepare(&model$null);
+     ${p}_status status = ${p}_prepare(&model$and_defaults);
      $begin
      status = ${p}_evaluate(&model, &inputs, &outputs);
      if (status != ${P}_OK) puts(${p}_message(status));
@@ -56,10 +56,10 @@ $model
 } ${p}_model;
 
 /* Makes a model ready${for_parameters}.$anew */
-${p}_status ${p}_prepare(${p}_model* model$given);
+${p}_status ${p}_prepare(${p}_model* model$and_parameters);
 
 /* The motion that the scene prescribes at a time [s]$span: fills inputs.$pair_note */
-${p}_status ${p}_motion(const ${p}_model* model, ${p}_real time$time_rest, ${p}_inputs* inputs);
+${p}_status ${p}_motion(const ${p}_model* model, ${p}_real time$and_rest, ${p}_inputs* inputs);
 
 /* The outputs at an instant.$follows */
 ${p}_status ${p}_evaluate(${p}_model* model, const ${p}_inputs* inputs,

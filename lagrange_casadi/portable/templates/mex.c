@@ -159,7 +159,7 @@ static mxArray* motion(const mxArray* times, const mxArray* parameters) {
   for (i = 0; i < mxGetNumberOfElements(times); ++i) {
     const double t = number(times, i);
     ${p}_inputs inputs;
-    const ${p}_status status = ${p}_motion(&model, (${p}_real) t$time_rest, &inputs);
+    const ${p}_status status = ${p}_motion(&model, $time, &inputs);
     if (status != ${P}_OK) mexErrMsgIdAndTxt("${p}:time", "t(%lu) = %g s: %s.", (unsigned long) i + 1, t, ${p}_message(status));
     for (k = 0; members_of_inputs[k].name; ++k) columns[k][i] = get(&inputs, members_of_inputs + k);
   }

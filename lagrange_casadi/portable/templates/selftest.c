@@ -83,7 +83,7 @@ static void check_misuse(void) {
   memset(&model, 0, sizeof model);
   give(inputs_at[0], &inputs);
   expect(${p}_evaluate(&model, &inputs, &outputs), ${P}_NOT_PREPARED);
-  expect(${p}_prepare(&model$null), ${P}_OK);
+  expect(${p}_prepare(&model$and_defaults), ${P}_OK);
   inputs.$first_input = (${p}_real) NAN;
   expect(${p}_evaluate(&model, &inputs, &outputs), ${P}_BAD_INPUT);
   if (outputs.$first_output == outputs.$first_output) complain("outputs are left as they were where an input is no number");
@@ -94,7 +94,7 @@ int main(void) {
   ${p}_inputs inputs;
   ${p}_outputs outputs;
   int k;
-  expect(${p}_prepare(&model$null), ${P}_OK);
+  expect(${p}_prepare(&model$and_defaults), ${P}_OK);
   for (k = 0; k < INSTANTS; ++k) {
     check_motion(&model, k);
     lead(&model, k);

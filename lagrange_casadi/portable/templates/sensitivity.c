@@ -13,14 +13,6 @@ ${p}_status ${p}_sensitivity(${p}_model* model, ${p}_real time, const ${p}_input
   if (status == ${P}_OK && !is_finite(time)) status = ${P}_BAD_TIME;
   if (status == ${P}_OK) {
 $given
-    arg[0] = &time;
-    arg[1] = d;
-    arg[2] = rate;
-    arg[3] = acceleration;
-    arg[4] = $loops;
-    arg[5] = model->parameters;
-    res[0] = s;
-    slopes_of(arg, res);
     if (!all_finite(s, $many)) status = ${P}_NOT_FINITE;
   }
   if (status != ${P}_OK) {

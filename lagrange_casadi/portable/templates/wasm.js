@@ -30,7 +30,7 @@ export class Mechanism {
         throw new TypeError("unknown parameter '" + name + "'; valid: " + contract.parameters.map((one) => one.name).join(", "));
       }
     }
-    this.#check(this.#engine.prepare(contract.parameters.map((one) => parameters[one.name] ?? one.default)));
+    this.#check(this.#engine.prepare(contract.parameters.map((one) => own(parameters, one.name) ?? one.default)));
   }
 
   /** The inputs that the scene's motion prescribes at a time [s]. */
@@ -43,7 +43,7 @@ export class Mechanism {
   /** The outputs for inputs by name; of those that are left out, 0 is taken. */
   evaluate(inputs) {
     this.#engine.fit(1);
-    this.#engine.inputs.set(contract.inputs.map((one) => inputs[one.name] ?? 0));
+    this.#engine.inputs.set(contract.inputs.map((one) => own(inputs, one.name) ?? 0));
     this.#check(this.#engine.evaluate());
     return named(contract.outputs, this.#engine.outputs);
   }
@@ -75,6 +75,11 @@ export class Mechanism {
   #check(status) {
     if (status) throw new MechanismError(status, this.#engine.message(status));
   }
+}
+
+/** A value by its name; what every object inherits, as `constructor`, is none. */
+function own(values, name) {
+  return Object.hasOwn(values, name) ? values[name] : undefined;
 }
 
 function named(members, values) {

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from pathlib import Path
 
 import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...base.publish import PatientFile, replacing
-from ...base.seal import kind_of, seal
-from ...store.opening import opened_file, read_all
+from ...base.seal import kind_of
+from ...store.opening import opened_file, read_all, sealed_file
 from ...store.untrusted import check_dataset, shown
 from .front import Front
 from .optimum import Optimum
@@ -30,15 +28,11 @@ def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
     Raises :class:`.PathError` where no file can be put there, :class:`.StoreError` where it cannot
     be written.
     """
-    with replacing(Path(path), hdf5=True) as draft:
-        with PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
-            file.attrs.update({"schema": SCHEMA, "schema_version": VERSION, "case": found.case})
-            if isinstance(found, Optimum):
-                _write_optimum(file, found)
-            else:
-                _write_front(file, found)
-            file.attrs["complete"] = True
-        seal(draft, SCHEMA)
+    with sealed_file(path, SCHEMA, VERSION, found.case) as file:
+        if isinstance(found, Optimum):
+            _write_optimum(file, found)
+        else:
+            _write_front(file, found)
 
 
 def is_optimum(path: str | os.PathLike[str]) -> bool:

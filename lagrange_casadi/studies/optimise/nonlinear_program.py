@@ -15,10 +15,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ...arithmetic.ipopt import ipopt
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.symbolic import symbolic
-from ...errors import DeclarationError
 from ..designs.energy import DriveEnergy
 from ..designs.engine import DesignEngine
 from .conditions import Conditions, conditions
@@ -156,11 +156,6 @@ class NonlinearProgram:
     def __init__(
         self, engine: DesignEngine, values: PointValues, box: Box, problem: Problem, least: float
     ) -> None:
-        if not ca.has_nlpsol("ipopt"):
-            raise DeclarationError(
-                "optimise: the CasADi at hand has no IPOPT; install CasADi from PyPI, whose wheel"
-                " contains it"
-            )
         self.values, self.box, self.instants, self.least_closure = values, box, engine.count, least
         self.objective, self.terms = problem.objective, problem.terms
         self.closures = values.closures()
@@ -334,22 +329,11 @@ class NonlinearProgram:
         if self.averaged:
             given.append(ca.vec(guesses))
         variables, parameters, g = ca.vertcat(x, level), ca.vertcat(*given), ca.vertcat(*rows)
-        options: dict[str, Any] = {
-            "print_time": False,
-            "error_on_fail": False,
-            "ipopt.print_level": 0,
-            "ipopt.sb": "yes",
-        }
-        options |= {
-            "ipopt.tol": 1e-10,
-            "ipopt.max_iter": 200,
-            "ipopt.bound_relax_factor": 0.0,
-            "show_eval_warnings": False,
-        }
-        options |= {"ipopt.hessian_approximation": "limited-memory"} if self.large else {}
-        solver = ca.nlpsol(
-            "solver", "ipopt", {"x": variables, "p": parameters, "f": best, "g": g}, options
-        )
+        options: dict[str, object] = {"tol": 1e-10, "max_iter": 200, "bound_relax_factor": 0.0}
+        if self.large:
+            options["hessian_approximation"] = "limited-memory"
+        program = {"x": variables, "p": parameters, "f": best, "g": g}
+        solver = ipopt("optimise", program, **options)
         by_g = ca.MX.sym("by_g", g.numel())
         slope = ca.gradient(best + ca.dot(by_g, g), variables)
         parts = ca.horzcat(ca.gradient(best, variables), ca.jtimes(g, variables, by_g, True))

@@ -1,0 +1,89 @@
+"""The functions of an exported program, in the order in which they are called: what each takes and
+fills, for every language, and how C calls it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+
+@dataclass(frozen=True)
+class Call:
+    """A call of a function: the vectors that it takes, and those that it fills."""
+
+    takes: tuple[str, ...]
+    fills: tuple[str, ...]
+
+    def places(self, function: ca.Function) -> Iterator[tuple[str, str, int]]:
+        """Yield of each vector its place in C, its name, and its length by the function."""
+        for k, vector in enumerate(self.takes):
+            yield f"arg[{k}]", vector, function.size1_in(k)
+        for k, vector in enumerate(self.fills):
+            yield f"res[{k}]", vector, function.size1_out(k)
+
+
+PREPARE = {
+    "sound": Call(("parameters",), ("sound_of",)),
+    "constants_of": Call(("parameters",), ("constants",)),
+    "matter": Call(("parameters",), ("matter",)),
+}
+"""Calls for new parameters: margins of what must not be negative, and what else they set."""
+
+MOTION = {
+    "law": Call(("at", "parameters"), ("d", "rate", "acceleration")),
+    "beyond": Call(("at", "parameters"), ("far",)),
+}
+"""Calls for a time: the motion of the drives, and how far it is beyond the ends of its curves."""
+
+INSTANT = {
+    "count": Call(("moment", "parameters"), ("counted",)),
+    "loops": Call(("z", "counted", "parameters"), ("correction", "size")),
+    "instant": Call(("counted", "rate", "acceleration", "loops", "constants"), ("evaluated",)),
+    "status": Call(("y", "matter", "iterated"), ("rule",)),
+}
+"""Calls for an instant: ``moment`` are its time and coordinates. ``loops`` is called again until
+its size is small: it corrects ``z``, from which the next instant starts. ``rule`` is the number of
+the first rule that is broken.
+"""
+
+SLOPES = {
+    "slopes_of": Call(("time", "d", "rate", "acceleration", "loops", "parameters"), ("s",)),
+}
+"""Call for the derivatives of the outputs of an instant."""
+
+CALLS = PREPARE | MOTION | INSTANT | SLOPES
+
+MODEL = ("parameters", "constants", "matter", "loops")
+"""Vectors that a model keeps between calls."""
+
+_POINTERS = {name: f"model->{name}" for name in MODEL}
+_POINTERS |= {name: f"&{name}" for name in ("size", "iterated", "rule", "time")}
+"""Vectors of C that are no arrays of the function that calls."""
+
+
+@dataclass(eq=False)
+class CalledInC:
+    """Statements of C that call ``functions`` by way of ``arg`` and ``res``, of which only those
+    are set that differ from the call before. ``pointers`` are vectors that have other names in C.
+    """
+
+    functions: Mapping[str, ca.Function]
+    pointers: dict[str, str] = field(default_factory=dict)
+    _set: dict[str, str] = field(default_factory=dict)
+
+    def call(self, name: str) -> Iterator[str]:
+        """Yield the statements of a call."""
+        yield from self.given(name)
+        yield f"{name}(arg, res);"
+
+    def given(self, name: str) -> Iterator[str]:
+        """Yield the statements before a call: a vector without elements is 0."""
+        known = _POINTERS | self.pointers
+        for place, vector, size in CALLS[name].places(self.functions[name]):
+            pointer = known.get(vector, vector) if size else "0"
+            if self._set.get(place) != pointer:
+                self._set[place] = pointer
+                yield f"{place} = {pointer};"

@@ -1,0 +1,275 @@
+"""Records of machines are read as loggers write them, and what is wrong in them is said."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import CASES
+from measured_machines import ARM, PLATE, platform, record, rubbing, two_links
+
+from lagrange_casadi import Measurements, excite, identify, load_case, read_measurements
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
+
+
+def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
+    path = tmp_path / "run.csv"
+    t = np.arange(200) * 5.0 + np.random.default_rng(0).uniform(0, 2, 200)  # ms
+    angle = 30.0 * np.sin(2 * np.pi * t / 1000.0)  # deg
+    counts = np.round(angle / 360.0 * 4096)
+    lines = ["t [ms],A [deg],B [counts],torque [mN m]"]
+    for k, (at, a, n) in enumerate(zip(t, angle, counts, strict=True)):
+        lines.append(f"{at:.6f},{a:.9f},{n:.0f},{'' if k == 7 else 1000 + k}")
+    path.write_text("\n".join(lines) + "\n")
+    given = read_measurements(
+        path, names={"effort:A": "torque"}, noise={"A": 0.01}, counts_per_turn=4096
+    )
+    assert np.isnan(given.columns["effort:A"][7])
+    assert given.columns["effort:A"][8] == pytest.approx(1.008)
+    assert given.noise == pytest.approx({"A": np.radians(0.01), "B": 2 * np.pi / 4096 / 12**0.5})
+    motion = given.motion(["A", "B"], trim=0.05)
+    inner = np.isfinite(motion.acceleration[:, 0])
+    true = -np.radians(30.0) * (2 * np.pi) ** 2 * np.sin(2 * np.pi * given.t)
+    off = np.abs(motion.acceleration[inner] - true[inner, None]).max(axis=0) / true.max()
+    assert off[0] < 0.1
+    assert off[1] < 0.3
+    assert 5.0 < given.cutoff("A") < 100.0
+    assert given.quantities(["A", "B"]) == ("effort:A",)
+    path.write_text("\n".join([lines[0], "0,1,x,3"]))
+    with pytest.raises(DeclarationError, match=r"line 2: expected a finite number, got 'x' in col"):
+        read_measurements(path, counts_per_turn=4096)
+
+
+def test_each_encoder_has_its_counts(tmp_path):
+    path, turn = tmp_path / "run.csv", np.arange(9) / 10
+    rows = [f"{k},{4096 * x:.0f},{1000 * x:.0f}" for k, x in enumerate(turn)]
+    path.write_text("\n".join(["t [s],A [counts],slow [counts]", *rows]))
+    given = read_measurements(path, names={"B": "slow"}, counts_per_turn={"A": 4096, "B": 1000})
+    for name, counts in (("A", 4096), ("B", 1000)):
+        np.testing.assert_allclose(given.columns[name], 2 * np.pi * turn, atol=np.pi / counts)
+        assert given.noise[name] == pytest.approx(2 * np.pi / counts / 12**0.5)
+    for wrong, words in (
+        ({"A": 4096}, r"run\.csv: column slow is in counts; expected counts_per_turn="),
+        ({"A": 4096, "B": 0}, "column slow is in counts; .* a number above 0, got 0"),
+        ({"A": 4096, "slow": 9}, "unknown column of counts_per_turn= 'slow'; valid: A, B"),
+        (None, "column A is in counts; expected counts_per_turn="),
+        (0, "counts_per_turn: expected a positive number or values by name"),
+    ):
+        with pytest.raises(DeclarationError, match=words):
+            read_measurements(path, names={"B": "slow"}, counts_per_turn=wrong)
+
+
+def test_a_file_of_a_logger_is_read_as_it_is(tmp_path):
+    """Its angle begins again after each turn, and it has columns that no one needs."""
+    path, t = tmp_path / "log.csv", np.arange(60) * 0.01
+    counts = np.round(np.linspace(300.0, 900.0, 60)) % 400
+    rows = zip(t, counts, 0.0 * t + 21.0, 0.0 * t, np.cos(t), strict=True)
+    heads = "clock [s],position [counts],temperature [C],A [deg],effort:A [N m]"
+    path.write_text("\n".join([heads, *(",".join(f"{x:.6g}" for x in row) for row in rows)]))
+    given = read_measurements(path, names={"t": "clock", "A": "position"}, counts_per_turn=400)
+    away = given.columns["A"] - np.linspace(1.5 * np.pi, 4.5 * np.pi, 60)
+    assert np.abs(away).max() <= np.pi / 400 + 1e-9
+    assert given.quantities(["A"]) == ("effort:A",)
+    motion = given.motion(["A"])  # at constant speed, as far as counts tell
+    assert not motion.acceleration.any()
+    assert motion.rate == pytest.approx(3.0 * np.pi / 0.59, rel=1e-2)
+    assert given.cutoff("A") == 0.0
+
+
+def test_heads_and_units_of_a_file_may_stand_in_two_lines(tmp_path):
+    path = tmp_path / "log.csv"
+    rows = [f"{k},{k},{10 * k}" for k in range(9)]
+    path.write_text("\n".join(["t,A,effort:A", "ms,deg,(N m)", *rows]))
+    given = read_measurements(path, noise={"A": 1.0})
+    assert given.t[3] == pytest.approx(0.003)
+    assert given.columns["A"][3] == pytest.approx(np.radians(3.0))
+    assert given.units == {"t": "ms", "A": "deg", "effort:A": "N m"}
+    path.write_text("\n".join(rows))
+    with pytest.raises(DeclarationError, match="expected names of columns in the first line"):
+        read_measurements(path)
+    path.write_text("\n".join(["time,A,effort:A", *rows]))
+    with pytest.raises(UnknownNameError, match="unknown column of times 't'"):
+        read_measurements(path)
+    with pytest.raises(DeclarationError, match="noise of 'A': expected a number that is not neg"):
+        read_measurements(path, noise={"A": -1.0}, time="time")
+
+
+def test_a_drive_at_rest_and_a_wrong_sign_are_said():
+    scene = two_links()
+    given = record(scene, ARM, "effort:A")
+    columns = {name: given.columns[name] for name in ("A", "effort:A")}
+    columns |= {"B": np.full(given.t.size, 0.8), "index": given.t}
+    rest = identify(scene, Measurements(given.t, columns, {"B": 1e-3}))
+    assert "B is a straight line within its noise" in rest.notes
+    assert "columns that are not used: index" in rest.notes
+    assert rest.unexcited
+    assert not any("J2" in note for note in rest.notes if note.startswith("nothing"))
+    turned = Measurements(given.t, dict(given.columns) | {"effort:A": -given.columns["effort:A"]})
+    assert identify(scene, turned).opposite["effort:A"] < -0.9
+    assert not rest.opposite
+
+
+def test_a_measured_rate_does_not_keep_a_coordinate_from_being_smoothed():
+    scene = two_links()
+    given = record(scene, ARM, "effort:A")
+    rough = given.columns["A"] + 1e-3 * np.random.default_rng(0).standard_normal(given.t.size)
+    smoothed = Measurements(given.t, dict(given.columns) | {"A": rough}, {"A": 1e-3})
+    motion = smoothed.motion(["A", "B"])
+    off = motion.d[:, 0] - given.columns["A"]
+    assert np.sqrt(np.mean(off**2)) < 7e-4
+    np.testing.assert_array_equal(motion.rate[:, 0], given.columns["A_rate"])
+    np.testing.assert_array_equal(motion.d[:, 1], given.columns["B"])
+
+
+def test_a_unit_of_another_quantity_is_refused(tmp_path):
+    scene, path = two_links(), tmp_path / "run.csv"
+    given = record(scene, ARM, "effort:A", "effort:B")
+    columns = [given.t, *(given.columns[name] for name in ("A", "B", "effort:A"))]
+    rows = [",".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True)]
+
+    def read(*heads):
+        path.write_text("\n".join([",".join(heads), *rows]))
+        return read_measurements(path)
+
+    good = ("t [s]", "A [rad]", "B", "effort:A [N m]")
+    found = identify(scene, read(*good), ["J2"])
+    for k, head, unit in ((1, "A [mm]", "rad"), (3, "effort:A [mm]", "N m")):
+        wrong = read(*(head if k == place else one for place, one in enumerate(good)))
+        name, word = head[:-1].split(" [")
+        for refused in (lambda given: identify(scene, given), found.validate):
+            with pytest.raises(DeclarationError, match=f"'{name}' is in {word}; expected {unit}"):
+                refused(wrong)
+    with pytest.raises(DeclarationError, match="'t' is in deg; expected s"):
+        read("t [deg]", *good[1:])
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda rows: rows[:1], "run.csv: expected at least 8 rows of measurements, got 1"),
+        (lambda rows: [], "run.csv: expected at least 8 rows of measurements, got 0"),
+        (
+            lambda rows: [*rows[:3], rows[4], rows[3], *rows[5:]],
+            r"run.csv, line 6: times must increase, but 0\.03 follows 0\.04",
+        ),
+        (lambda rows: [*rows[:3], "nan,nan,nan,nan", *rows[4:]], "line 5: .* 'nan' in column t"),
+        (
+            lambda rows: [*rows[:3], "0.03,inf,1,1", *rows[4:]],
+            r"line 5: .* 'inf' in column A \[rad",
+        ),
+        (
+            lambda rows: ["0,,,", *rows[1:]],
+            "column 'A' has no value in the first row; expected one",
+        ),
+        (lambda rows: [*rows, "9,,,"], "column 'A' has no value in the last row; expected one in"),
+        (lambda rows: [f"{row}," for row in rows], "line 2: 5 cells, expected 4"),
+    ],
+    ids=["one", "none", "back", "nan", "inf", "no first", "no last", "a cell too many"],
+)
+def test_rows_that_are_wrong_are_refused(tmp_path, change, says):
+    scene, path = two_links(), tmp_path / "run.csv"
+    given = record(scene, ARM, "effort:A")
+    columns = [given.t, *(given.columns[name] for name in ("A", "B", "effort:A"))]
+    rows = [",".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True)]
+
+    def found(rows, heads="t [s],A [rad],B [rad],effort:A [N m]"):
+        path.write_text("\n".join([heads, *rows]))
+        return identify(scene, read_measurements(path), ["J2"], parameters=ARM)
+
+    with pytest.raises(DeclarationError, match=says):
+        found(change(rows))
+    gap = found([*rows[:3], f"{rows[3].split(',')[0]},,,", *rows[4:]])
+    assert gap.values["J2"] == pytest.approx(0.16, rel=1e-2)
+    nameless = found([f"{row}," for row in rows], "t,A,B,effort:A,")
+    assert nameless.values["J2"] == pytest.approx(0.16, rel=1e-2)
+
+
+def test_what_cannot_be_is_refused_by_name():
+    scene = two_links()
+    given = record(scene, ARM, "effort:A", "effort:B")
+    with pytest.raises(UnknownNameError, match="unknown parameter 'mass'"):
+        identify(scene, given, ["mass"])
+    with pytest.raises(UnknownNameError, match="unknown measured quantity 'effort:C'"):
+        identify(scene, Measurements(given.t, {**given.columns, "effort:C": given.t}))
+    limits = {"A": (-1.0, 1.0, 2.0, 9.0), "B": (0.0, 1.5, 3.0, 20.0)}
+    for call, words in (
+        (lambda: identify(scene, given, ["m1"]), "nothing that is measured depends on the unknown"),
+        (lambda: excite(scene, limits, ["m1"]), "nothing that is measured depends on the unknown"),
+        (lambda: identify(scene, given, []), "expected at least one unknown parameter, got none"),
+        (lambda: excite(scene, limits, []), "expected at least one unknown parameter, got none"),
+        (lambda: identify(scene, given, prior={"m2": 0.0}), "prior of 'm2': .* above 0"),
+        (lambda: identify(scene, given, prior={"mm": 0.1}), "unknown parameter of prior= 'mm'"),
+        (
+            lambda: excite(scene, limits | {"C": limits["A"]}),
+            "unknown drive of limits= 'C'; valid: A",
+        ),
+        (lambda: excite(scene, {"A": limits["A"]}), "limits=: expected those of drive 'B' too"),
+        (
+            lambda: excite(scene, limits | {"A": ("x", 1, 1, 1)}),
+            "limits of 'A': expected the least",
+        ),
+        (lambda: excite(scene, limits | {"A": 3}), "limits of 'A': expected the least .* got 3"),
+    ):
+        with pytest.raises(DeclarationError, match=words):
+            call()
+    with pytest.raises(UnknownNameError, match=r"'efort:A' .did you mean 'effort:A'"):
+        identify(scene, Measurements(given.t, {**given.columns, "efort:A": given.t}))
+    for name, words in (
+        ("strain:crank:side +y@0.5", "unknown measured quantity .* valid: strain:coupler"),
+        ("strain:rocker:side +y@0.5", r"strain:.*@0.5: unknown link with a beam 'rocker'"),
+        ("section:rocker:bend@0.5", "unknown section force 'bend' .did you mean 'bending'"),
+    ):
+        with pytest.raises(UnknownNameError, match=words):
+            identify(rubbing(), Measurements(given.t, {"O": given.t, name: given.t}))
+    for place in ("1.5", "e", "-0.1"):
+        name = f"section:l1:bending@{place}"
+        with pytest.raises(DeclarationError, match=r"place xi/l from 0 to 1|measured quantity"):
+            identify(scene, Measurements(given.t, {**given.columns, name: given.t}))
+    with pytest.raises(UnknownNameError, match="column of a drive 'B'"):
+        identify(scene, Measurements(given.t, {"A": given.columns["A"], "effort:A": given.t}))
+    for bad, words in (
+        ({"t": given.t[::-1]}, "times that increase, got 3 s and then 2.99 s in rows 1 and 2"),
+        ({"t": given.t[:0]}, "at least 8 rows of measurements, got 0"),
+        ({"columns": {"A": np.full(301, np.nan)}}, "column 'A' has no values"),
+    ):
+        with pytest.raises(DeclarationError, match=words):
+            Measurements(**{"t": given.t, "columns": {}} | bad)
+    few = {name: given.columns[name][:8] for name in ("A", "B", "effort:A")}
+    few["effort:A"] = np.where(np.arange(8) < 4, few["effort:A"], np.nan)
+    with pytest.raises(DeclarationError, match="4 measured values do not determine 5 unknown"):
+        identify(scene, Measurements(given.t[:8], few))
+    with pytest.raises(DeclarationError, match="trim=5: expected less than half of the 3 s"):
+        identify(scene, given, trim=5.0)
+    far = dict(record(platform(), PLATE, "effort:d0").columns)
+    far["d0"] = far["d0"] + np.linspace(0.0, 3.0, far["d0"].size)
+    with pytest.raises(AssemblyError, match="cannot be closed at row"):
+        identify(platform(), Measurements(np.linspace(0, 2, 201), far))
+
+
+def test_the_command_takes_counts_of_each_encoder(tmp_path, monkeypatch, capsys):
+    """The record of the arm, as encoders of two kinds count its angles."""
+    monkeypatch.chdir(tmp_path)
+    folder, turns = CASES / "parallelogram_arm", {"shoulder": 65536, "motor": 40000}
+    head, *rows = (folder / "run.csv").read_text().splitlines()
+    table = np.loadtxt(rows, delimiter=",")
+    for name, turn in turns.items():
+        place = head.split(",").index(f"{name} [deg]")
+        table[:, place] = np.round(table[:, place] / 360.0 * turn)
+    heads = head.replace("[deg]", "[counts]")
+    rows = [",".join(f"{x:.17g}" for x in row) for row in table]
+    Path("run.csv").write_text("\n".join([heads, *rows]))
+    each = [f"--counts-per-turn={name}={turn}" for name, turn in turns.items()]
+    assert main(["identify", "parallelogram_arm", "run.csv", "--trim", "0.1", *each]) == 0
+    given = read_measurements("run.csv", counts_per_turn=turns)
+    found = identify(load_case(folder), given, trim=0.1)
+    assert capsys.readouterr().out.endswith(
+        " ".join(f"--set {word}" for word in found.setting.split()) + "\n"
+    )
+    for wrong, words in (
+        (["4096", "motor=9"], "one NUMBER for all columns in counts, or NAME=NUMBER for each"),
+        (["motor=x"], "expected NUMBER or NAME=NUMBER, as in 4096 or O=4096, got 'motor=x'"),
+        (["=9"], "expected NUMBER or NAME=NUMBER, as in 4096 or O=4096, got '=9'"),
+    ):
+        options = [word for number in wrong for word in ("--counts-per-turn", number)]
+        assert main(["identify", "parallelogram_arm", "run.csv", *options]) == 2
+        assert words in capsys.readouterr().err
