@@ -315,6 +315,61 @@ def test_a_loop_that_is_open_at_the_ground(solved):
     )
 
 
+def test_a_drawing_that_is_far_from_assembled(solved, tmp_path):
+    """Every part of the four-bar lies elsewhere, turned: the assembled one has the same efforts."""
+    points, parts, joints, motions = FOUR_BAR
+    away = {"Part1": (0.02, -0.03, 0.05), "Part2": (0.1, 0.2, -0.1), "Part3": (-0.1, 0.1, 0.2)}
+    scattered = {}
+    for name, (*told, place, rows) in ((one, (*part, IDENTITY)[:6]) for one, part in parts.items()):
+        turn = np.array(turned("x", 5)) @ np.array(rows)
+        moved = tuple(a + b for a, b in zip(place, away[name], strict=True))
+        scattered[name] = (*told, moved, tuple(map(tuple, turn.tolist())))
+    there = solved(points, parts, joints, motions, count=5)
+    back = solved(points, scattered, joints, motions, count=5)
+    assert back.certified
+    assert np.allclose(back.effort("O"), there.effort("O"), rtol=1e-10, atol=1e-10)
+    text = case_of(tmp_path / "press.asmt").replace("\n#  ", "")
+    assert re.search(
+        r"# joint '\w' is open by \d\.\d+ m and \S+ rad in the drawing: parts are", text
+    )
+
+
+@pytest.mark.parametrize("kind", ["SphSphJoint", "CylSphJoint", "RevCylJoint", "RevRevJoint"])
+def test_distances_are_closed_in_a_drawing(kind, solved):
+    """Of OndselSolver's testapp/SphSphJt.asmt and its like: a part is 60 m off, and is to be 2 m
+    off: in space, or across z; with two revolute axes also in one plane.
+    """
+    near = np.array([-26.0, 7.0, 11.0])
+    part = (1.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), {"M": (0.0, 0.0, 0.0)}, (58.0, 25.0, 23.0))
+    joints = {"tie": (kind, "G", "part/M", ("distanceIJ", 2.0))}
+    pose = solved({"G": tuple(near)}, {"part": part}, joints, {}, count=2).pose("part")
+    x, y, z = np.array([pose.x[0], pose.y[0], pose.z[0]]) - near
+    assert np.hypot(np.hypot(x, y), z if kind == "SphSphJoint" else 0.0) == pytest.approx(2.0)
+    assert (abs(z) < 1e-12) == (kind == "RevRevJoint")
+
+
+def test_an_angle_between_axes_that_are_parallel_in_a_drawing(solved):
+    """The cosine of the angle has no slope there."""
+    part = (1.0, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), {"M": (0.0, 0.0, 0.0)}, (5.0, 2.0, 1.0))
+    joints = {"tie": ("AngleJoint", "G", "part/M", ("theIzJz", float(np.radians(10.0))))}
+    solution = solved({"G": (0.0, 0.0, 0.0)}, {"part": part}, joints, {}, count=2)
+    assert solution.certified
+
+
+def test_parts_that_cannot_be_assembled(tmp_path):
+    """The second part's pivot is at most 0.2 m from the first one's: 5 m are too much."""
+    points, parts, joints, motions = PENDULUM
+    far = {"rod": ("SphSphJoint", "G", "lower/A", ("distanceIJ", 5.0))}
+    path = tmp_path / "press.asmt"
+    path.write_text(assembly(points, parts, joints | far, {"one": motions["one"]}))
+    words = (
+        r"press\.asmt: line \d+, SphSphJoint rod: joint 'rod' is open by 4\.8 m and 0 rad in the"
+        r" drawing, and by \d.* if parts are moved to close all joints: assemble them first"
+    )
+    with pytest.raises(errors.ModelFileError, match=words):
+        read(path)
+
+
 def test_long_names_of_ties(solved):
     """The lines of a case are broken where they are long, and are the same Python."""
     long = "wheel_with_a_name_that_does_not_fit_into_one_line_of_the_case_with_all_its_arguments"

@@ -184,6 +184,21 @@ MISUSE = {
         "bodies[0].axes: axes: expected three directions at right angles, right-handed",
     ),
     "unknown motion": (changed(motions={"knee": "t"}), "unknown coordinate 'knee'; valid: hinge"),
+    "unknown posture": (
+        changed(posture={"knee": 1}),
+        "posture: unknown coordinate 'knee'; valid: hinge",
+    ),
+    "coupled twist": (
+        changed(
+            joints=[HINGE | {"kind": "planar"}],
+            couplings=[{"name": "gear", "first": "hinge:turn", "second": "hinge:turn", "ratio": 2}],
+        ),
+        "couplings[0]: unknown coordinate 'hinge:turn'; valid: none",
+    ),
+    "point of words": (
+        changed(bodies=[ROD | {"point": "yes"}]),
+        "bodies[0].point: expected true or false, got 'yes'",
+    ),
     "code": (
         changed(motions={"hinge": "__import__('os')"}),
         "motion of 'hinge': '__import__('os')' is not supported; valid: numbers, pi, t",
@@ -225,6 +240,17 @@ def test_names_and_notes_of_a_file_are_no_code(tmp_path):
     read(write(tmp_path, told))
 
 
+def test_parts_are_named_as_the_file_names_them(tmp_path):
+    told = changed(
+        bodies=[ROD | {"name": "upper arm"}],
+        joints=[HINGE | {"name": "hinge 1", "child": "upper arm"}],
+        motions={"hinge 1": "2 * t"},
+    )
+    scene = read(write(tmp_path, told, "my arm.json"))
+    assert scene.mechanism.name == "my_arm"
+    assert list(scene.motion) == ["hinge_1"]
+
+
 @pytest.mark.parametrize(
     ("told", "written"),
     [
@@ -236,7 +262,7 @@ def test_names_and_notes_of_a_file_are_no_code(tmp_path):
     ],
 )
 def test_laws(told, written):
-    assert python(told) == written
+    assert str(python(told)) == written
 
 
 NO_LAWS = ["", "x", "t.real", "lambda: 1", "[t]", "sin", "sin(t, t)", "1e400 * t", "9" * 400]

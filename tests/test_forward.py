@@ -2,6 +2,7 @@
 Modelica library, and against energies that share nothing with the package.
 """
 
+import functools
 import math
 import re
 
@@ -180,6 +181,68 @@ def test_the_search_for_a_cycle_takes_nothing_from_the_run_along_it(monkeypatch)
     assert found.cycle.power == pytest.approx(5.0 * found.cycle.mean_speed, rel=1e-9)
 
 
+@pytest.mark.parametrize("inertia", [1e9, 1e-9])
+def test_a_pendulum_is_certified_however_slow_or_fast_it_is(inertia):
+    """It moves by 1e-7 of a radian, or swings thousands of times."""
+    m = Mechanism("pendulum")
+    mass = min(2.0, inertia)
+    rod = m.link("rod", length=1.0, mass=mass, centre=(0.5, 0.0), inertia=inertia)
+    m.revolute("O", m.ground, rod)
+    scene = Scene(m, {"O": polynomial(0.4)}, t=(0.0, 6.0, 41), wanted=["effort"])
+    found = free(scene)
+    assert found.solution.certified
+    whole, weight = inertia + mass / 4.0, mass * 9.81 / 2.0
+    energy = whole * found.speed**2 / 2.0 + weight * (np.sin(found.angle) - math.sin(0.4))
+    assert np.abs(energy).max() < 1e-9 * whole * (found.speed**2).max()
+
+
+BIG, SMALL = 2.0**30, 2.0**-30
+
+
+def scaled(mass, length, time):
+    """A slider-crank with friction, in units of its own, and the torque of these."""
+    m = Mechanism("scaled")
+    m.set_gravity(0.0, -10.0 * length / time**2)
+    crank, rod = (
+        m.link(name, length=ratio * length, mass=mass)
+        for name, ratio in (("crank", 0.125), ("rod", 0.375))
+    )
+    block = m.point_mass("block", 2.0 * mass)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, block)
+    m.friction("rub", m.prismatic("guide", m.ground, block, axis=(1, 0)), mu=0.1)
+    motion = {"O": polynomial(0.25, 10.0 / time)}
+    scene = Scene(m, motion, t=(0.0, 0.5 * time, 33), posture={"rod": 0.0}, wanted=["effort"])
+    return scene, mass * (length / time) ** 2
+
+
+@functools.cache
+def in_units(mass, length, time):
+    """Its run-up and its flywheel, in these units: angles, speeds, inertia."""
+    scene, torque = scaled(mass, length, time)
+    motor, rough = forward.dc_motor(50.0 * torque, 30.0 / time), {"accuracy": 1e-10}
+    up = free(scene, drive=motor, start=(0.25, 0.0), **rough)
+    wheel = flywheel(scene, drive=motor, load=4.0 * torque, fluctuation=0.05, count=33, **rough)
+    assert up.solution.certified
+    assert wheel.motion.solution.certified
+    inertia = wheel.inertia / (mass * length**2)
+    return [*up.angle, *up.speed * time, *wheel.motion.speed * time, inertia]
+
+
+@pytest.mark.parametrize(
+    "units",
+    [
+        *((BIG, 1.0, 1.0), (SMALL, BIG, 1.0), (1.0, SMALL, 1.0)),
+        *((1.0, 1.0, BIG), (BIG, SMALL, SMALL)),
+    ],
+)
+def test_a_machine_moves_alike_in_all_units(units, monkeypatch):
+    """To the last bit: these units are powers of two, which round nothing."""
+    monkeypatch.setattr(machine_module, "find_compiler", lambda language: None)
+    assert in_units(*units) == in_units(1.0, 1.0, 1.0)
+
+
 @pytest.mark.parametrize("wheel", [False, True])
 def test_a_motor_that_is_too_weak_stalls_where_its_energy_ends(wheel):
     """The message says where and when: I w^2/2 is then used up, by a run of two states."""
@@ -283,6 +346,11 @@ def test_friction_stops_a_block_where_it_must_and_holds_it():
     assert found.ended.angle == pytest.approx(3.0 * stop / 2.0, rel=1e-10)
     assert found.t.size == 1 + int(stop / 0.01)
     assert found.solution.certified
+    for mu in (0.5, 0.75):  # it stops at an instant, which has no friction of its own
+        found = free(plane(0.0, mu, mu * 9.81))
+        assert found.ended.t == pytest.approx(1.0, rel=1e-12)
+        assert found.t[-1] == 0.99
+        assert found.solution.certified
     slope = math.atan(0.3)
     with pytest.raises(LagrangeCasadiError, match="held at t = 0 s"):
         free(plane(0.99 * slope, 0.3, 0.0))
@@ -600,6 +668,20 @@ def arm():
             "cannot be made as an expression",
         ),
         (lambda: free(rotor(0.0), drive=1.0), "nothing that 'O' moves has inertia; expected"),
+        (
+            lambda: free(slider_crank({"guide": polynomial(0.35)}, crank=0.9), start=(0.5, 0.0)),
+            "the loops of 'slider_crank' do not close at 0.5, or are at a dead centre there",
+        ),
+        (
+            lambda: free(
+                press(),
+                drive=forward.induction_motor(8.0, 0.2, 157.08).geared(25.0),
+                inertia=60.0,
+                start=(math.pi / 2, -6.0),
+                steady=True,
+            ),
+            "'punch_press' stalls, because it loses speed each turn: from -",
+        ),
         (lambda: free(rotor(), start=(0.0,)), r"start: expected \(coordinate, rate\)"),
         (
             lambda: free(rotor(), drive=forward.power(9.0), start=(0.0, 0.0)),

@@ -279,8 +279,22 @@ MISUSE = {
         robot(BASE, link("a"), joint("p", "base", "a", more='<mimic joint="q"/>')),
         "line 4, <mimic>: unknown joint 'q'; valid: p",
     ),
+    "an axis that is too short": (
+        robot(BASE, link("a"), joint("p", "base", "a", axis="1e-300 0 0")),
+        "line 4, <axis>: expected a direction, got zero",
+    ),
+    "mimic of itself": (
+        robot(BASE, link("a"), joint("p", "base", "a", more='<mimic joint="p"/>')),
+        "line 4, <mimic>: couples joint 'p' to itself",
+    ),
     "twice": (robot(BASE, BASE), "<link name='base'>: the name is taken"),
 }
+
+
+def test_names_of_other_letters_are_told_apart(reading):
+    path = reading(BASE, link("手"), link("足"), joint("右", "base", "手"), joint("左", "手", "足"))
+    assert evaluate(read(path), t=(0.0, 0.0, 1)).certified
+    assert "# 足 in the file" in case_of(path)
 
 
 @pytest.mark.parametrize("what", MISUSE)

@@ -158,6 +158,17 @@ SDF_MISUSE = {
         ),
         "its pose is relative to itself",
     ),
+    "a long chain": (
+        model(
+            '<frame name="f0"/>',
+            *(
+                f'<frame name="f{k}"><pose relative_to="f{k - 1}">0 0 0 0 0 0</pose></frame>'
+                for k in range(1, 999)
+            ),
+            '<link name="a"><pose relative_to="f998">0 0 0 0 0 0</pose>' + inertial() + "</link>",
+        ),
+        "its pose is relative to too many others",
+    ),
     "unknown frame": (
         model('<link name="a"><pose relative_to="x">0 0 0 0 0 0</pose>' + inertial() + "</link>"),
         "<link name='a'>: unknown frame 'x'; valid: a",
@@ -283,6 +294,10 @@ MJCF_MISUSE = {
         mjcf("", '<include file="/etc/passwd"/>'),
         "<include>: file '/etc/passwd' leads out",
     ),
+    "no place": (
+        mjcf('<body name="a" pos="nan 0 0"><geom size="1"/><joint/></body>'),
+        "body 'a': place: expected a finite number of at most 1e+12, got nan",
+    ),
     "distance": (
         mjcf(LINKS, '<equality><joint joint1="C" joint2="O" polycoef="0 0 1 0 0"/></equality>'),
         "is not supported: its polynomial is not linear",
@@ -312,4 +327,13 @@ def test_without_mujoco_it_is_refused_by_name(reading, monkeypatch):
     with pytest.raises(
         errors.MissingPackageError, match="is compiled by MuJoCo: pip install mujoco"
     ):
+        read(reading(mjcf(LINKS), "robot.xml"))
+
+
+def test_a_broken_mujoco_is_refused_by_name(reading, monkeypatch, tmp_path):
+    (tmp_path / "mujoco.py").write_text('raise ImportError("its core\\nis missing")\n')
+    monkeypatch.delitem(sys.modules, "mujoco", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+    words = "pip install mujoco; it is broken here: its core is missing"
+    with pytest.raises(errors.MissingPackageError, match=words):
         read(reading(mjcf(LINKS), "robot.xml"))

@@ -89,6 +89,20 @@ def entries(numbers: Sequence[float], number: ca.SX) -> ca.SX:
     return ca.ceil(whole) * scale
 
 
+def pieces(
+    breaks: Sequence[float], cells: Sequence[Sequence[float]], x: ca.SX, *, ends: bool
+) -> ca.SX:
+    """A polynomial in pieces between breaks, as a scalar expression: of each of the ``cells`` the
+    coefficients of rising powers of the distance from its first break.
+    """
+    number = cell(breaks, x, ends=ends) if len(cells) > 1 else ca.SX(0)
+    u = x - entries(breaks[:-1], number)
+    *lower, found = (entries(coefficients, number) for coefficients in zip(*cells, strict=True))
+    for coefficient in reversed(lower):
+        found = found * u + coefficient
+    return found
+
+
 def is_entry(x: ca.SX) -> bool:
     """Return whether a scalar expression is a table's value for a cell, as a whole number."""
     if not x.is_output():

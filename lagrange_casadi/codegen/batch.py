@@ -4,8 +4,9 @@ row for every point, for every few, or one for all.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -80,9 +81,15 @@ class BatchLibrary:
             name: np.ascontiguousarray(rows, np.intc if name == CHOSEN else float)
             for name, (rows, _) in given.items()
         }
-        every = {f"{name}_every": each for name, (_, each) in given.items()}
+        self.bound(n, arrays, {name: each for name, (_, each) in given.items()}, into)()
+
+    def bound(
+        self, n: int, arrays: Mapping[str, Array], every: Mapping[str, int], into: Array
+    ) -> Callable[[], None]:
+        """Return a function that does so for what is in the ``arrays`` when it is called."""
         pointers = {name: array.ctypes.data for name, array in arrays.items()}
-        self.entry(self.call.made(n=n, **pointers, **every, found=into.ctypes.data))
+        each = {f"{name}_every": number for name, number in every.items()}
+        return partial(self.entry, self.call.made(n=n, **pointers, **each, found=into.ctypes.data))
 
 
 def _names(function: ca.Function) -> list[str]:

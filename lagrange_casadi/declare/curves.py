@@ -146,14 +146,8 @@ class Curve:
         if self.periodic:
             # A remainder is exact, and goes on with whole turns where angles count them.
             within = ca.remainder(within, self.high - self.low)
-        number = lookups.cell(
-            (*self.starts, self.high - self.origin), within, ends=not self.periodic
-        )
-        u = within - lookups.entries(self.starts, number)
-        found = lookups.entries([cell[3] for cell in self.cells], number)
-        for k in (2, 1, 0):
-            found = found * u + lookups.entries([cell[k] for cell in self.cells], number)
-        return found
+        breaks = (*self.starts, self.high - self.origin)
+        return lookups.pieces(breaks, self.cells, within, ends=not self.periodic)
 
 
 def derivatives(curve: Curve, x: Array) -> Array:

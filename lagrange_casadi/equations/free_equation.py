@@ -25,6 +25,7 @@ from ..declare.scene import Scene
 from ..declare.torques import Law, torque_of
 from ..errors import DeclarationError
 from .derive import compiled_for
+from .friction import SLIP
 from .program import Program
 from .reflected_inertia import reflected_inertia
 
@@ -45,8 +46,8 @@ the acceleration by the speed, by an added torque and by the flywheel's inertia.
 least of all loops' sines of the transmission angle.
 """
 
-_SLIP = 5e-10
-"""Residual of friction's laws that is too large: half of what a solution may have."""
+_JAMMED = SLIP["double"] / 2.0
+"""Residual of friction's laws at a jam."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +181,7 @@ def _margins(program: Program, out: ca.SX) -> ca.SX:
     """
     slips = program.checks("slip")
     margins = [
-        ca.fmin(out[k], 1.0 - out[slips[names]] / _SLIP)
+        ca.fmin(out[k], 1.0 - out[slips[names]] / _JAMMED)
         for names, k in program.checks("jam").items()
     ]
     return ca.densify(ca.vertcat(ca.SX(0, 1), *margins))

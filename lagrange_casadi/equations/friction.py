@@ -27,6 +27,7 @@ import numpy as np
 
 from ..arithmetic.scalars import column
 from ..base.arrays import Expression, Operand
+from ..base.vocabulary import Precision
 from ..declare.meshes import Loss, Transmission
 from .checks import Check, Column
 from .pressing import Contact, FrictionContact, both_edges
@@ -35,6 +36,9 @@ STEPS = 4
 """Newton's steps: the error goes as the 4th, 10th, 22nd, 46th power of how much of itself a
 friction brings about.
 """
+
+SLIP: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
+"""Largest relative residual of friction laws."""
 
 _NOTHING = 1e-30
 

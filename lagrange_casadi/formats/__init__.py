@@ -1,8 +1,8 @@
 """Models of other programs as cases: a file is read into a record, and the record is written as a
 case.
 
-A format is a module with ``read(path, text) -> Model``; :data:`FORMATS` lists them by the ending of
-files.
+A format is a module with ``read(model, text)``, which fills a record; :data:`FORMATS` lists them by
+the ending of files.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .record import Model
 
 __all__ = ["FORMATS", "case_of", "read", "save_model"]
 
-FORMATS: dict[str, Callable[[Path, str], Model]] = {
+FORMATS: dict[str, Callable[[Model, str], None]] = {
     ".json": json_model.read,
     ".asmt": asmt.read,
     ".urdf": urdf.read,
@@ -100,7 +100,7 @@ def save_model(
     """
     file = Path(path)
     check_writable(file)
-    text = json_model.write(checked(model_of(scene, parameters or {}, file.name)))
+    text = json_model.write(checked(model_of(scene, parameters or {}, file)))
     with writing(file) as (draft,):
         draft.write(text.encode())
 
@@ -126,4 +126,6 @@ def _model(path: Path) -> Model:
         raise PathError(f"cannot read {path}: {error.strerror}") from None
     except UnicodeDecodeError:
         raise ModelFileError(f"{path.name}: no text in UTF-8") from None
-    return reader(path, text)
+    model = Model(path.stem, path)
+    reader(model, text)
+    return model

@@ -10,13 +10,13 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 from ..base.arrays import Array
 from .elements import Element
-from .record import GROUND, Body, Frame, Joint, Law, Model, Row, Tie
+from .frames import Frame
+from .record import GROUND, Body, Joint, Law, Model, Row, Tie
 
 KINDS: dict[str, str] = {
     "RevoluteJoint": "revolute",
@@ -50,11 +50,15 @@ TIES: dict[str, tuple[Row, ...]] = {
 }
 """The joints that are rows between their markers; an atomic joint of such is one of several."""
 
-_NUMBERS = {"AngleJoint": "theIzJz", "ScrewJoint": "pitch", "RackPinionJoint": "pitchRadius"}
-_NUMBERS |= {"PointInPlaneJoint": "offset", "LineInPlaneJoint": "offset", "PlanarJoint": "offset"}
-_NUMBERS |= dict.fromkeys(
-    ("SphSphJoint", "CylSphJoint", "RevCylJoint", "RevRevJoint"), "distanceIJ"
-)
+_NUMBERS: dict[str, str] = {
+    **dict.fromkeys(("PlanarJoint", "PointInPlaneJoint", "LineInPlaneJoint"), "offset"),
+    **dict.fromkeys(("SphSphJoint", "CylSphJoint", "RevCylJoint", "RevRevJoint"), "distanceIJ"),
+    "AngleJoint": "theIzJz",
+    "ScrewJoint": "pitch",
+    "RackPinionJoint": "pitchRadius",
+    "GearJoint": "radiusI",
+}
+"""Property with the number of a joint."""
 
 _MOTIONS = {
     "RotationalMotion": ("RotationZ", "turn", "revolute"),
@@ -80,32 +84,29 @@ class _Line(Element):
         """Yield what stands below the lines of a text below it."""
         return (one for group in self.all(name) for one in group.inside)
 
-    def value(self, name: str) -> str:
+    def at(self, _name: str = "") -> str:
+        """Return the place of the line and the name below it, for messages."""
+        return f"{self.where} {self.stated('Name', '')}".rstrip()
+
+    def stated(self, name: str, usual: object) -> object:
         """Return the text below the line of a text."""
+        if usual is not None and self.first(name) is None:
+            return usual
         found = self.needed(name).inside
         return found[0].name if found else ""
 
-    def number(self, name: str, where: str = "") -> float:
-        """Return the number below the line of a text."""
-        return self.model.number(where or self.where, self.value(name), name)
-
-    def vector(self, name: str) -> Array:
-        """Return three numbers below the line of a text."""
-        return self.model.numbers(self.needed(name).where, self.value(name), name)
-
     def frame(self) -> Frame:
         """Return the place and axes below it."""
-        place, rows = self.vector("Position3D"), self.needed("RotationMatrix")
+        place, rows = self.triple("Position3D"), self.needed("RotationMatrix")
         axes = [self.model.numbers(rows.where, one.name, "axes") for one in rows.inside]
         if len(axes) != 3:
             raise rows.refuse("expected three rows")
         return Frame(place, self.model.rotation(rows.where, np.array(axes)))
 
 
-def read(path: Path, text: str) -> Model:
-    """Return the model of a file. Raises :class:`.ModelFileError`, which names line and element."""
-    model = Model(path.stem, path.name, gravity=np.zeros(3))
-    return _Reader(model, _tree(model, text)).read()
+def read(model: Model, text: str) -> None:
+    """Read a file. Raises :class:`.ModelFileError`, which names line and element."""
+    _Reader(model, _tree(model, text)).read()
 
 
 def _tree(model: Model, text: str) -> _Line:
@@ -113,7 +114,7 @@ def _tree(model: Model, text: str) -> _Line:
     lines = text.splitlines()
     if not lines or lines[0].strip() not in _HEADS:
         raise model.refuse("line 1", "expected the first line of an assembly of FreeCAD")
-    above = [_Line(model, "", 1)]
+    above = [_Line(model, lines[0].strip(), 1)]
     for at, line in enumerate(lines[1:], 2):
         if line.startswith("TimeSeries"):
             break
@@ -126,149 +127,149 @@ def _tree(model: Model, text: str) -> _Line:
         del above[depth + 1 :]
         above[-1].inside.append(one := _Line(model, data.strip(), at))
         above.append(one)
-    return above[0].needed("Assembly")
+    root = above[0].needed("Assembly")
+    for one in above[0].inside:
+        if one is not root:
+            one.ignore()
+    return root
 
 
 class _Reader:
     """A file under way: the model, and where its markers are."""
 
     def __init__(self, model: Model, root: _Line) -> None:
-        self.model, self.root = model, root
+        self.model, self.root, self.path = model, root, f"/{root.attribute('Name')}"
         self.markers: dict[str, tuple[str, Frame]] = {}
         self.named: dict[str, str] = {}
 
-    def read(self) -> Model:
-        """Return the model."""
-        model, root, stated = self.model, self.root, self.root.value("Name")
-        model.name = model.name_of("mechanism", stated, root.where, {})
+    def read(self) -> None:
+        """Read the assembly."""
+        model, root = self.model, self.root
+        model.drawn, model.gravity = True, root.triple("ConstantGravity")
+        model.name = model.name_of("mechanism", self.path[1:], root.where)
         if not np.allclose(root.frame().axes, np.eye(3)) or any(root.frame().place):
             model.notes.append(
                 "The placement of the assembly itself is ignored: the assembly is the ground."
             )
-        self.points(root, GROUND, f"/{stated}")
+        self.points(root, GROUND, self.path)
         for part in root.below("Parts"):
             if part.name != "Part":
                 raise part.refuse("is not supported here; expected a Part")
-            self.part(part, f"/{stated}")
+            self.part(part)
         sets = root.needed("ConstraintSets")
         for joint in sets.below("Joints"):
-            self.joint(joint, f"/{stated}")
+            self.joint(joint)
         for motion in sets.below("Motions"):
-            if motion.name != "AllowRotation":
+            if motion.name == "AllowRotation":
+                motion.ignore()
+            else:
                 self.motion(motion)
-        ignored = [one for one in sets.below("Motions") if one.name == "AllowRotation"]
-        ignored += [*sets.below("Limits"), *sets.below("GeneralConstraintSets")]
-        for one in (*ignored, *root.below("ForceTorques")):
-            model.notes.append(f"{one.name} of line {one.line} is ignored.")
-        model.gravity = root.vector("ConstantGravity")
+        for name in ("Limits", "GeneralConstraintSets"):
+            for one in sets.below(name):
+                one.ignore()
+        for one in root.below("ForceTorques"):
+            one.ignore()
         self.times()
-        return model
 
     def points(self, line: _Line, body: str, path: str) -> None:
         """Keep the markers of a body; one on a curve has no place."""
         for point in line.below("RefPoints"):
             frame = point.frame()
             for marker in point.below("Markers"):
-                name = f"{path}/{marker.value('Name')}"
+                name = f"{path}/{marker.attribute('Name')}"
                 self.markers[name] = (body, frame.then(marker.frame()))
 
-    def part(self, line: _Line, path: str) -> None:
+    def part(self, line: _Line) -> None:
         """Read a body."""
-        stated, mass = line.value("Name"), line.needed("PrincipalMassMarker")
-        centre, heavy = mass.frame(), mass.number("Mass")
-        inertia = centre.axes @ np.diag(mass.vector("MomentOfInertias")) @ centre.axes.T
-        given, where = (heavy, centre.place, inertia, line.frame()), f"{line.where} {stated}"
-        name = self.model.add(Body, stated, where, *given)
-        self.markers[f"{path}/{stated}/MassMarker"] = (name, centre)
-        self.points(line, name, f"{path}/{stated}")
+        stated, mass = line.attribute("Name"), line.needed("PrincipalMassMarker")
+        centre, heavy = mass.frame(), mass.amount("Mass")
+        inertia = centre.tensor(np.diag(mass.triple("MomentOfInertias")))
+        given, path = (heavy, centre.place, inertia, line.frame()), f"{self.path}/{stated}"
+        name = self.model.add(Body, stated, line.at(), *given)
+        self.markers[f"{path}/MassMarker"] = (name, centre)
+        self.points(line, name, path)
 
-    def marker(self, line: _Line, name: str) -> tuple[str, Frame]:
-        """Return the body and the frame of a marker that a line names."""
-        if (data := line.value(name)) not in self.markers:
-            raise line.refuse(f"unknown marker '{data}'; valid: {', '.join(self.markers)}")
-        return self.markers[data]
+    def ends(self, line: _Line) -> tuple[tuple[str, str], tuple[Frame, Frame]]:
+        """Return the bodies and the frames of the two markers that a line names."""
+        names = [line.known("marker", line.attribute(key), self.markers) for key in _MARKERS]
+        (parent, near), (child, far) = (self.markers[name] for name in names)
+        return (parent, child), (near, far)
 
-    def joint(self, line: _Line, path: str) -> None:
+    def joint(self, line: _Line) -> None:
         """Read a joint between two markers."""
-        model, kind, value = self.model, line.name, 0.0
-        stated = line.value("Name") or f"{kind}_{line.line}"
-        where = f"{line.where} {stated}"
+        model, kind, where = self.model, line.name, line.at()
+        stated = line.attribute("Name") or f"{kind}_{line.line}"
         if kind not in KINDS and kind not in TIES:
             words = f"is not supported; valid: {', '.join([*KINDS, *TIES])}"
             raise model.refuse(where, words)
-        (parent, near), (child, far) = (self.marker(line, key) for key in _MARKERS)
-        if line.first(key := _NUMBERS.get(kind, "")) is not None:
-            value = line.number(key, where)
+        bodies, (near, far) = self.ends(line)
+        key = _NUMBERS.get(kind, "")
+        value = line.amount(key, None if kind == "GearJoint" else 0.0) if key else 0.0
         if kind in KINDS:
             near = near.then(Frame(np.array([0.0, 0.0, value])))
-            known = model.frame_of(parent).then(near).relative(model.frame_of(child).then(far))
-            far = far.then(Frame(axes=_half_turn(KINDS[kind], known.axes)))
-            name = model.add(Joint, stated, where, KINDS[kind], parent, child, near, far)
+            one, other = (
+                model.frame_of(body).then(at) for body, at in zip(bodies, (near, far), strict=True)
+            )
+            far = far.then(Frame(axes=_half_turn(KINDS[kind], one.relative(other).axes)))
+            name = model.add(Joint, stated, where, KINDS[kind], *bodies, near, far)
         else:
             if kind == "GearJoint":
-                one, other = (line.number(key, where) for key in ("radiusI", "radiusJ"))
-                if not one or not other:
+                radius = line.amount("radiusJ")
+                if not value or not radius:
                     raise model.refuse(where, "a radius of zero is impossible")
-                value = one / other
+                value /= radius
             if kind == "AngleJoint" and abs(math.sin(value)) < 1e-9:
-                kind = "ParallelAxesJoint"  # where the slope of the angle's cosine is zero
-            frames = model.frame_of(parent).then(near), model.frame_of(child).then(far)
-            rows = tuple(self.row(frames, row, kind, value) for row in TIES[kind])
-            name = model.add(Tie, stated, where, parent, child, near, far, rows)
-        self.named[f"{path}/{stated}"] = name
-
-    def row(self, frames: tuple[Frame, Frame], row: Row, kind: str, value: float) -> Row:
-        """Return a row of a joint with its number; one that turns keeps what it is in the file."""
-        near, far = frames
-        known = near.relative(far)
-        if row.kind == "slide and turn":
-            factor = value if kind == "RackPinionJoint" else -value / math.tau
-            angle = math.atan2(known.axes[1, 0], known.axes[0, 0])
-            found = float(known.place[row.i]) + factor * angle
-            return replace(row, value=_clean(found), factor=factor, angle=_clean(angle))
-        if row.kind == "wheels":
-            back = far.relative(near).place
-            first = _clean(math.atan2(known.place[1], known.place[0]))
-            second = _clean(math.atan2(back[1], back[0]))
-            found = second + value * first
-            return replace(row, value=found, factor=value, angle=first, other=second)
-        if kind == "AngleJoint":
-            return replace(row, value=math.cos(value))
-        if row.kind.startswith("distance"):
-            return replace(row, value=value**2)
-        return replace(row, value=value) if row.kind == "slide" else row
+                kind, key = "ParallelAxesJoint", ""  # the slope of the angle's cosine is zero
+            rows = tuple(_numbered(row, key, value) for row in TIES[kind])
+            name = model.add(Tie, stated, where, *bodies, near, far, rows)
+        self.named[f"{self.path}/{line.attribute('Name')}"] = name
 
     def motion(self, line: _Line) -> None:
         """Read the motion of a joint, or of one marker against another one."""
-        model, stated = self.model, line.value("Name")
-        where = f"{line.where} {stated}"
+        model, where = self.model, line.at()
         if line.name == "GeneralMotion":
-            (parent, near), (child, far) = (self.marker(line, key) for key in _MARKERS)
-            if line.value("RotationOrder").split() != ["1", "2", "3"]:
+            if line.attribute("RotationOrder").split() != ["1", "2", "3"]:
                 raise model.refuse(where, "is supported only with the RotationOrder 1 2 3")
-            name = model.add(Joint, stated, where, "free", parent, child, near, far)
+            bodies, frames = self.ends(line)
+            name = model.add(Joint, line.attribute("Name"), where, "free", *bodies, *frames)
             for key, coordinate in zip(_GENERAL, model.joints[name].coordinates, strict=True):
-                model.motions[coordinate] = Law(_law(line.value(key)), where=where)
+                model.motions[coordinate] = Law(_law(line.attribute(key)), where=where)
             return
         if line.name not in _MOTIONS:
             words = f"is not supported; valid: {', '.join([*_MOTIONS, 'GeneralMotion'])}"
             raise model.refuse(where, words)
         key, direction, single = _MOTIONS[line.name]
-        joint = model.joints.get(self.named.get(path := line.value("MotionJoint"), ""))
-        if joint is None:
-            valid = ", ".join(path for path, name in self.named.items() if name in model.joints)
-            raise model.refuse(where, f"unknown joint '{path}'; valid: {valid}")
+        valid = {path: name for path, name in self.named.items() if name in model.joints}
+        path = model.known(where, "joint", line.attribute("MotionJoint"), valid)
+        joint = model.joints[valid[path]]
         coordinate = joint.name if joint.kind == single else f"{joint.name}:{direction}"
-        model.motions[coordinate] = Law(_law(line.value(key)), where=where)
+        model.motions[coordinate] = Law(_law(line.attribute(key)), where=where)
 
     def times(self) -> None:
         """Read the instants, where the file has a simulation."""
         if (data := self.root.first("SimulationParameters")) is None:
             return
-        start, stop, step = (data.number(key) for key in ("tstart", "tend", "hout"))
-        count = round((stop - start) / step) + 1 if step > 0.0 else 101
+        start, stop, step = (data.amount(key) for key in ("tstart", "tend", "hout"))
+        steps = (stop - start) / step if step > 0.0 else 0.0
         if stop > start:  # a drawing that was assembled only has no duration
-            self.model.span = (start, stop, count if 1 < count <= 100_001 else 101)
+            count = round(steps) + 1 if 0.5 < steps <= 100_000 else 101
+            self.model.span = (start, stop, count)
+
+
+def _numbered(row: Row, key: str, value: float) -> Row:
+    """Return a row of a joint with the number that a property of the file gives."""
+    match key, row.kind:
+        case "offset", "slide":
+            return replace(row, value=value)
+        case "distanceIJ", "distance" | "distance across":
+            return replace(row, value=value**2)
+        case "theIzJz", _:
+            return replace(row, value=math.cos(value))
+        case "pitch", _:
+            return replace(row, factor=-value / math.tau)
+        case "pitchRadius" | "radiusI", _:
+            return replace(row, factor=value)
+    return row
 
 
 def _half_turn(kind: str, axes: Array) -> Array:
@@ -284,8 +285,3 @@ def _half_turn(kind: str, axes: Array) -> Array:
 def _law(text: str) -> str:
     """Return a law without comments, which are in quotes, and without its marks of new lines."""
     return re.sub(r'"[^"]*"', "", text).replace("<n>", " ")
-
-
-def _clean(value: float) -> float:
-    """Return a number, zero where it is a drawing's rounding of it."""
-    return value if abs(value) > 1e-9 else 0.0

@@ -7,13 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.arrays import Array
-from .record import GROUND, Body, Frame, Joint, Model, Tie
-
-SLACK = 1e-6
-"""Frames of a joint that are apart by less, of the mechanism's size and in rad, are one."""
-
-EXACT = 1e-12
-"""Difference that is rounding of sums, and is not worth a note."""
+from .frames import Frame
+from .posture import EXACT, SLACK, apart, assemble, extent, hang, outward
+from .record import GROUND, Body, Model
 
 
 def checked(model: Model) -> Model:
@@ -26,27 +22,27 @@ def checked(model: Model) -> Model:
         raise model.refuse("", "has no body that moves")
     for body in model.bodies.values():
         model.bodies[body.name] = _body(model, body)
-    joints: list[Joint | Tie] = [*model.joints.values(), *model.ties.values()]
-    for joint in joints:
+    for joint in model.closures:
         for name in (joint.parent, joint.child):
-            if name != GROUND and name not in model.bodies:
-                there = ", ".join([GROUND, *model.bodies])
-                words = f"joint '{joint.name}': unknown body '{name}'; valid: {there}"
-                raise model.refuse(joint.where, words)
+            where = f"{joint.where}: joint '{joint.name}'"
+            model.known(where, "body", name, [GROUND, *model.bodies])
         if joint.parent == joint.child:
             words = f"joint '{joint.name}' joins '{joint.parent}' to itself"
             raise model.refuse(joint.where, words)
+    hang(model)
+    if model.drawn:
+        assemble(model)
     _connected(model)
     valid = [name for joint in model.joints.values() for name in joint.coordinates]
-    text = {name: law.where for name, law in model.motions.items()}
-    text |= {
-        name: one.where for one in model.couplings.values() for name in (one.first, one.second)
-    }
-    for name, where in text.items():
-        if name not in valid:
-            words = f"unknown coordinate '{name}'; valid: {', '.join(valid)}"
-            raise model.refuse(where, words)
-    _assemble(model)
+    stated = {name: law.where for name, law in model.motions.items()}
+    stated |= dict.fromkeys(model.posture, "posture")
+    for name, where in stated.items():
+        model.known(where, "coordinate", name, valid)
+    for one in model.couplings.values():
+        for name in (one.first, one.second):
+            model.known(one.where, "coordinate", name, [name for name in valid if ":" not in name])
+        if one.first == one.second:
+            raise model.refuse(one.where, f"couples joint '{one.first}' to itself")
     _rounding(model)
     _spins(model)
     return model
@@ -59,10 +55,9 @@ def _body(model: Model, body: Body) -> Body:
         raise model.refuse(body.where, f"{what}: a mass of {body.mass:g} kg is impossible")
     if body.inertia is None or not np.any(body.inertia):
         if body.mass > 0.0 and not body.point:
-            words = (
-                f"{what} has a mass of {body.mass:g} kg and no inertia; give its moments of inertia"
-            )
-            raise model.refuse(body.where, f"{words} of inertia about the centre of mass")
+            words = f"{what} has a mass of {body.mass:g} kg and no inertia"
+            words += "; give its moments of inertia about the centre of mass"
+            raise model.refuse(body.where, words)
         return replace(body, inertia=np.zeros((3, 3)))
     inertia = (body.inertia + body.inertia.T) / 2.0
     moments = np.linalg.eigvalsh(inertia)
@@ -86,52 +81,18 @@ def _connected(model: Model) -> None:
     """Raise :class:`.ModelFileError` for the first body that hangs on nothing; one that ties alone
     hold is free but for these.
     """
-    reached, before = {GROUND}, 0
-    while before < len(reached):
-        before = len(reached)
-        for joint in model.joints.values():
-            if {joint.parent, joint.child} & reached:
-                reached |= {joint.parent, joint.child}
+    reached = {GROUND}
+    list(outward(model, reached))
     for tie in model.ties.values():
         for one, other in ((tie.parent, tie.child), (tie.child, tie.parent)):
             if one not in reached and other in reached:
-                ends = GROUND, one, model.frame_of(one), Frame()
-                model.add(Joint, f"{one}_free", tie.where, "free", *ends)
+                model.attach(one, GROUND, "free", tie.where)
                 _connected(model)
                 return
     for body in model.bodies.values():
         if body.name not in reached:
             words = f"body '{body.name}' is not connected to the ground"
             raise model.refuse(body.where, words)
-
-
-def _assemble(model: Model) -> None:
-    """Move bodies of a drawing that is not assembled, all of whose joints are open, so that one of
-    these is closed, its coordinates as they are.
-    """
-    apart = opened(model)
-    closed = [one for one in model.joints.values() if one.name not in apart]
-    placed = {GROUND, *(name for one in closed for name in (one.parent, one.child))}
-    while True:
-        between = (
-            one for one in model.joints.values() if (one.parent in placed) != (one.child in placed)
-        )
-        if (joint := next(between, None)) is None:
-            return
-        near, far = model.frames(joint)
-        relative = model.closest(joint)
-        moves = joint.child if joint.parent in placed else joint.parent
-        if moves == joint.child:
-            frame = near.then(relative).then(joint.on_child.inverse())
-        else:
-            frame = far.then(relative.inverse()).then(joint.on_parent.inverse())
-        gap, angle = apart[joint.name]
-        model.bodies[moves] = replace(model.bodies[moves], frame=frame)
-        placed.add(moves)
-        model.notes.append(
-            f"body '{moves}' is moved so that joint '{joint.name}' is closed, which is open by"
-            f" {gap:.3g} m and {angle:.3g} rad in the file"
-        )
 
 
 def _spins(model: Model) -> None:
@@ -171,12 +132,12 @@ def _axis_of(model: Model, body: str, along: Array) -> Array:
 
 def _rounding(model: Model) -> None:
     """Lay the frames of each joint on each other where they miss by a drawing's rounding."""
-    size, (off, where) = model.size(), model.rounded
+    size, (off, where) = extent(model), model.rounded
     if off:
         words = f"Axes that are off right angles by {off:.1e} (at {where}) or less"
         model.notes.append(f"{words} are taken as rounding, and set at right angles.")
     for joint in model.joints.values():
-        gap, angle = model.apart(joint)
+        gap, angle = apart(model, joint)
         if max(gap / size, angle) > SLACK or max(gap / size, angle) <= EXACT:
             continue
         model.notes.append(
@@ -206,14 +167,4 @@ def spinning(model: Model) -> list[str]:
             np.trace(body.inertia)
         ):
             found.append(body.name)
-    return found
-
-
-def opened(model: Model) -> dict[str, tuple[float, float]]:
-    """Return the joints whose frames are apart in the reference posture, by how much."""
-    size, found = model.size(), {}
-    for joint in model.joints.values():
-        gap, angle = model.apart(joint)
-        if gap > SLACK * size or angle > SLACK:
-            found[joint.name] = (gap, angle)
     return found

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
 from ..base.arrays import Array
 from .checks import spinning
-from .record import GROUND, MOVES, Frame, Joint, Law, Model, Tie
+from .posture import at_reference, closing, extent, outward
+from .record import GROUND, MOVES, Joint, Law, Model
 
-RANK = 1e-8
-"""Singular values that are smaller, of the largest, are none."""
-
-STEP = 1e-100
-"""A step of which nothing is left in what is real."""
+RANK = 1e-6
+"""Smaller singular values, of the largest, come of axes that a drawing has rounded."""
 
 REST = "The file gives no motion of {}: here it rests. Write how it moves among the laws."
 
@@ -41,7 +39,7 @@ def driven(model: Model) -> Model:
     if resting:
         model.notes.append(REST.format(", ".join(resting)))
     for name in resting:
-        start = model.posture.get(name, model.at_reference(name))
+        start = model.posture.get(name, at_reference(model, name))
         model.motions[name] = Law(repr(float(start) + 0.0))
     return model
 
@@ -53,10 +51,7 @@ def _rates(model: Model, names: list[str]) -> Array:
     column = {name: k for k, name in enumerate(names)}
     velocity = {GROUND: np.zeros((6, len(names)))}
     rows = [np.zeros((0, len(names)))]
-    waiting = list(model.joints.values())
-    while waiting:
-        joint = next(one for one in waiting if one.parent in velocity or one.child in velocity)
-        waiting.remove(joint)
+    for joint in outward(model, {GROUND}):
         relative = np.zeros((6, len(names)))
         for name, twist in _twists(model, joint):
             relative[:, column[name]] = twist
@@ -70,53 +65,20 @@ def _rates(model: Model, names: list[str]) -> Array:
         rows.append(np.zeros((1, len(names))))
         rows[-1][0, column[one.second]], rows[-1][0, column[one.first]] = 1.0, -one.ratio
     for tie in model.ties.values():
-        rows.append(_tied(model, tie) @ (velocity[tie.child] - velocity[tie.parent]))
+        slopes = closing(model, tie, tie.rows)[1]
+        rows.append(slopes @ (velocity[tie.child] - velocity[tie.parent]))
     return np.vstack(rows)
 
 
-def _tied(model: Model, tie: Tie) -> Array:
-    """Return the rows of a tie by the velocity of its child against its parent: complex steps."""
-    near, far = model.frames(tie)
-    size, found = model.size(), np.zeros((len(tie.rows), 6))
-    names: dict[str, Any] = {"ca": np, "p": near.place} | dict(zip("xyz", near.axes.T, strict=True))
-    for k, moved in enumerate(1j * STEP * np.eye(6)):
-        speed, spin = moved[:3] * size, moved[3:]
-        q = far.place + speed + np.cross(spin, far.place)
-        axes = far.axes.T + np.cross(spin, far.axes.T)
-        names |= {"q": q, "turn": spin @ near.axes[:, 2]} | dict(zip("uvw", axes, strict=True))
-        for j, row in enumerate(tie.rows):
-            if row.kind == "wheels":
-                names["first"] = _angle((q - near.place) @ near.axes)
-                names["second"] = _angle(axes @ (near.place - q))
-            found[j, k] = eval(row.text, names).imag / STEP  # of our own table of rows
-    return found
-
-
-def _angle(direction: Array) -> complex:
-    """Return the small part of a direction's angle about z, as an imaginary number."""
-    x, y, _ = direction
-    return complex(0.0, float((x.real * y.imag - y.real * x.imag) / (x.real**2 + y.real**2)))
-
-
-def _twists(model: Model, joint: Joint) -> list[tuple[str, Array]]:
-    """Return the velocity of the child against the parent for each coordinate: that of the point at
+def _twists(model: Model, joint: Joint) -> Iterator[tuple[str, Array]]:
+    """Yield the velocity of the child against the parent for each coordinate: that of the point at
     the ground's origin over the mechanism's size, and the angular one.
     """
     near, far = model.frames(joint)
-    moves = zip(joint.coordinates, MOVES[joint.kind], strict=True)
-    return [
-        (name, _twist(move, axis, near, far, joint.lead) * _scale(model))
-        for name, (_, move, axis) in moves
-    ]
-
-
-def _scale(model: Model) -> Array:
-    return np.array([1.0 / model.size()] * 3 + [1.0] * 3)
-
-
-def _twist(move: str, axis: str, near: Frame, far: Frame, lead: float) -> Array:
-    along = far.axes[:, 2] if axis == "w" else near.axes[:, "xyz".index(axis)]
-    if move == "slide":
-        return np.concatenate([along, np.zeros(3)])
-    slide = lead / (2.0 * np.pi) * along if move == "screw" else np.zeros(3)
-    return np.concatenate([np.cross(near.place, along) + slide, along])
+    for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
+        along = far.axes[:, 2] if axis == "w" else near.axes[:, "xyz".index(axis)]
+        speed, spin = along, np.zeros(3)
+        if move != "slide":
+            slide = joint.lead / (2.0 * np.pi) * along if move == "screw" else 0.0
+            speed, spin = np.cross(near.place, along) + slide, along
+        yield name, np.concatenate([speed / extent(model), spin])

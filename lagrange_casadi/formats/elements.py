@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 from xml.parsers import expat
@@ -57,6 +57,15 @@ class Element:
         """Return the error of this element."""
         return self.model.refuse(self.where, words)
 
+    def known(self, what: str, stated: str, valid: Collection[str]) -> str:
+        """Return a name in this element, which must be one of the valid ones."""
+        return self.model.known(self.where, what, stated, valid)
+
+    def ignore(self) -> None:
+        """Note that the element is not read."""
+        words = f"{self.form.format(self.name)} of line {self.line} is ignored."
+        self.model.notes.append(words)
+
     def needed(self, *names: str) -> Self:
         """Return the first element in it of these names, of which there must be one."""
         if (found := self.first(*names)) is None:
@@ -65,33 +74,29 @@ class Element:
 
     def attribute(self, name: str) -> str:
         """Return an attribute, which there must be."""
-        return str(self._stated(name, None))
+        return str(self.stated(name, None))
 
-    def _stated(self, name: str, usual: object) -> object:
+    def stated(self, name: str, usual: object) -> object:
+        """Return what an attribute gives; ``usual`` if there is none, unless that is None."""
         if usual is None and name not in self.given:
             raise self.refuse(f"lacks {name}=")
         return self.given.get(name, usual)
 
     def amount(self, name: str, usual: float | None = None, what: str = "") -> float:
         """Return the number in an attribute; ``usual`` if there is no such attribute."""
-        return self.model.number(self.at(name), self._stated(name, usual), what or name)
+        return self.model.number(self.at(name), self.stated(name, usual), what or name)
 
     def triple(self, name: str, usual: object = None, what: str = "") -> Array:
         """Return three numbers in an attribute; ``usual`` if there is no such attribute."""
-        return self.model.numbers(self.at(name), self._stated(name, usual), what or name)
+        return self.model.numbers(self.at(name), self.stated(name, usual), what or name)
 
     def direction(self, name: str, what: str = "") -> Array:
-        """Return three numbers in an attribute that are not all zero."""
-        if not np.any(found := self.triple(name, what=what)):
-            raise self.model.refuse(self.at(name), "expected a direction, got zero")
-        return found
+        """Return three numbers in an attribute that are a direction."""
+        return self.model.direction(self.at(name), self.triple(name, what=what))
 
-    def choice(self, name: str, valid: Mapping[str, str], more: str = "") -> str:
+    def choice(self, name: str, valid: Mapping[str, str]) -> str:
         """Return what a word in an attribute means."""
-        if (word := self.attribute(name)) not in valid:
-            words = ", ".join([*valid, *more.split()])
-            raise self.refuse(f"unknown {name} {shown(word)}; valid: {words}")
-        return valid[word]
+        return valid[self.known(name, self.attribute(name), valid)]
 
     def inner(self, name: str = "", usual: float = 0.0) -> float:
         """Return the number that is the text of an element in it, without a name its own."""
@@ -112,6 +117,15 @@ class Element:
                 raise one.refuse("the name is taken")
             found[name] = one
         return found
+
+
+def six_moments(stated: Callable[[str, float], float], usual: float = 0.0) -> Array:
+    """Return the inertia of six moments ``ixx``, ``ixy``, ..., as URDF and SDF name them; those
+    about an axis have a usual value.
+    """
+    return np.array(
+        [[stated(f"i{min(a, b)}{max(a, b)}", usual * (a == b)) for b in "xyz"] for a in "xyz"]
+    )
 
 
 def parsed(model: Model, text: str, root: str) -> Element:

@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Array, Json
+from ..base.arrays import Array
 from ..errors import shown
 from .elements import Element
-from .record import MOVES, Body, Coupling, Frame, Joint, Law, Model
+from .frames import Frame
+from .record import MOVES, Body, Coupling, Joint, Law, Model
 
 SCHEMA, VERSION = "lagrange_casadi.model", 1
 """Name of the format in a file."""
@@ -96,17 +96,15 @@ def _object(
     if not isinstance(data, dict):
         raise model.refuse(path, f"expected an object, got {shown(data)}")
     for key in data:
-        if valid and key not in valid:
-            raise model.refuse(path, f"unknown key {shown(key)}; valid: {', '.join(valid)}")
+        model.known(path, "key", key, valid or data)
     for key in needed:
         if key not in data:
             raise model.refuse(path, f"lacks '{key}'")
     return _Object(model, path, 0, data)
 
 
-def read(path: Path, text: str) -> Model:
-    """Return the model of a file. Raises :class:`.ModelFileError`, which names the element."""
-    model = Model(path.stem, path.name)
+def read(model: Model, text: str) -> None:
+    """Read a file. Raises :class:`.ModelFileError`, which names the element."""
     try:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
@@ -118,72 +116,64 @@ def read(path: Path, text: str) -> Model:
         raise model.refuse("", f"expected {expected}, got {got}")
     if data.get("units", "SI") != "SI":
         raise model.refuse("units", f'expected "SI", got {shown(data["units"])}')
-    model.name = top.word("name", model.name)
+    model.name = model.name_of("mechanism", top.word("name", model.name), top.at("name"))
     model.gravity = top.triple("gravity", model.gravity.tolist())
     for one in top.objects("bodies", BODY, "name", "mass"):
         _body(one)
     for one in top.objects("joints", JOINT, "name", "kind", "parent", "child"):
         _joint(one)
     for one in top.objects("couplings", COUPLING, "name", "first", "second", "ratio"):
-        joints, ratio = (one.word("first"), one.word("second")), one.amount("ratio")
-        model.add(Coupling, one.word("name"), one.where, *joints, ratio, one.amount("offset", 0.0))
+        joints = (_here(model, "joint", one.word(key)) for key in ("first", "second"))
+        law = one.amount("ratio"), one.amount("offset", 0.0)
+        model.add(Coupling, one.word("name"), one.where, *joints, *law)
     motions, posture = top.table("motions"), top.table("posture")
-    model.motions = {name: _law(motions, name) for name in motions.given}
-    model.posture = {name: posture.amount(name, what="value") for name in posture.given}
+    for name in motions.given:
+        model.motions[_here(model, "joint", name)] = _law(motions, name)
+    for name in posture.given:
+        model.posture[_here(model, "joint", name)] = posture.amount(name, what="value")
     if "drives" in data:
-        model.drives = top.words("drives")
+        model.drives = [_here(model, "joint", name) for name in top.words("drives")]
     if "time" in data:
         model.span = _span(top.table("time", SPAN, *SPAN))
     model.notes = top.words("notes")
-    return model
 
 
 def write(model: Model) -> str:
     """Return the text of the file for a model."""
     data: dict[str, Any] = {"schema": SCHEMA, "version": VERSION, "name": model.name, "units": "SI"}
-    data["gravity"] = model.gravity.tolist()
-    data["time"] = dict(zip(SPAN, model.span, strict=True))
-    data["bodies"] = [_body_data(body) for body in model.bodies.values()]
-    data["joints"] = [
-        {"name": one.name, "kind": one.kind, "parent": one.parent, "child": one.child}
-        | {"on_parent": _frame_data(one.on_parent), "on_child": _frame_data(one.on_child)}
-        | ({"lead": one.lead} if one.lead else {})
-        for one in model.joints.values()
-    ]
-    data["couplings"] = [
-        {key: getattr(one, key) for key in COUPLING} for one in model.couplings.values()
-    ]
-    data["motions"] = {
-        name: law.text
-        if law.samples is None
-        else dict(zip(SAMPLES, map(list, law.samples), strict=True))
-        for name, law in model.motions.items()
-    }
+    data |= {"gravity": model.gravity, "time": dict(zip(SPAN, model.span, strict=True))}
+    for key in ("bodies", "joints", "couplings"):
+        data[key] = [*getattr(model, key).values()]
+    data["motions"] = model.motions
     data |= {"posture": model.posture} if model.posture else {}
     data |= {"drives": model.drives} if model.drives is not None else {}
     data |= {"notes": model.notes} if model.notes else {}
-    return json.dumps(data, indent=1, allow_nan=False) + "\n"
+    return json.dumps(data, indent=1, allow_nan=False, default=_plain) + "\n"
 
 
-def _body_data(body: Body) -> dict[str, Json]:
-    data: dict[str, Any] = {"name": body.name, "mass": body.mass} | _frame_data(body.frame)
-    if body.rod is not None:
-        data["rod"] = [end.tolist() for end in body.rod]
-    elif body.point:
-        data["point"] = True
-    else:
-        assert body.inertia is not None
-        data |= {"centre": body.centre.tolist(), "inertia": body.inertia.tolist()}
-    if body.places:
-        data["places"] = {name: place.tolist() for name, place in body.places.items()}
-    return data
+def _plain(part: object) -> object:
+    """Return a part of a record in the words of the file."""
+    match part:
+        case Body():
+            own: dict[str, Any] = {"centre": part.centre, "inertia": part.inertia}
+            own = {"rod": part.rod} if part.rod else {"point": True} if part.point else own
+            own |= {"places": part.places} if part.places else {}
+            return {"name": part.name, "mass": part.mass, **_plain_frame(part.frame), **own}
+        case Joint() | Coupling():
+            keys = COUPLING if isinstance(part, Coupling) else JOINT if part.lead else JOINT[:-1]
+            return {key: getattr(part, key) for key in keys}
+        case Law():
+            samples = part.samples
+            return part.text if samples is None else dict(zip(SAMPLES, samples, strict=True))
+        case Frame():
+            return _plain_frame(part)
+    assert isinstance(part, np.ndarray)
+    return part.tolist()
 
 
-def _frame_data(frame: Frame) -> dict[str, Json]:
-    data: dict[str, Any] = {"place": frame.place.tolist()}
-    if not np.array_equal(frame.axes, np.eye(3)):
-        data["axes"] = frame.axes.T.tolist()
-    return data
+def _plain_frame(frame: Frame) -> dict[str, Array]:
+    upright = np.array_equal(frame.axes, np.eye(3))
+    return {"place": frame.place} | ({} if upright else {"axes": frame.axes.T})
 
 
 def _body(one: _Object) -> None:
@@ -202,18 +192,25 @@ def _body(one: _Object) -> None:
             raise one.model.refuse(one.at("inertia"), f"expected {expected}")
     elif given is not None:
         inertia = np.diag(one.triple("inertia"))
-    point = one.given.get("point", False) is True
+    if not isinstance(point := one.given.get("point", False), bool):
+        raise one.model.refuse(one.at("point"), f"expected true or false, got {shown(point)}")
     one.model.add(Body, name, one.where, mass, centre, inertia, frame, named, rod, point)
 
 
 def _joint(one: _Object) -> None:
-    if one.given["kind"] not in [*MOVES]:
-        kind, valid = shown(one.given["kind"]), ", ".join(MOVES)
-        words = f"joint '{one.word('name')}': unknown kind {kind}; valid: {valid}"
-        raise one.model.refuse(one.at("kind"), words)
-    bodies = one.word("parent"), one.word("child")
+    name, where = one.word("name"), f"{one.at('kind')}: joint '{one.word('name')}'"
+    kind = one.model.known(where, "kind", one.given["kind"], [*MOVES])
+    bodies = (_here(one.model, "body", one.word(key)) for key in ("parent", "child"))
     frames, lead = (one.frame("on_parent"), one.frame("on_child")), one.amount("lead", 0.0)
-    one.model.add(Joint, one.word("name"), one.where, one.given["kind"], *bodies, *frames, lead)
+    one.model.add(Joint, name, one.where, kind, *bodies, *frames, lead)
+
+
+def _here(model: Model, kind: str, stated: str) -> str:
+    """Return the name here of a body, a joint or a coordinate of the file."""
+    name, colon, freedom = stated.partition(":")
+    return (
+        model.named.get((kind, stated)) or f"{model.named.get((kind, name), name)}{colon}{freedom}"
+    )
 
 
 def _law(motions: _Object, name: str) -> Law:

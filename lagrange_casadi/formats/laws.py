@@ -5,11 +5,13 @@ from __future__ import annotations
 import ast
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Container
 
 from numpy.polynomial import Polynomial
 
-from .record import LARGEST
+from .posture import at_reference
+from .python_text import Call, of_pi, signed, vector
+from .record import LARGEST, Law, Model
 
 _TURNS = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh")
 ONE_NUMBER = (*_TURNS, "exp", "log", "sqrt", "fabs")
@@ -80,15 +82,14 @@ def _allowed(node: ast.expr) -> ast.expr:
     )
 
 
-def python(text: str, less: float = 0.0) -> str:
+def python(text: str, less: float = 0.0) -> Call:
     """Return a law, less a number, as what a case has for it, in the words of ``motion``."""
     tree = parsed(text)
     try:
         found = (_polynomial(tree) - less).trim().coef
     except LawError:
-        shift = f" - {of_pi(less)}" if less > 0 else f" + {of_pi(-less)}" if less else ""
-        return f"expression(lambda t: {ast.unparse(tree)}{shift})"
-    return f"polynomial({', '.join(map(of_pi, found.tolist()))})"
+        return Call("expression", [f"lambda t: {ast.unparse(tree)}{signed(-less)}"])
+    return Call("polynomial", [of_pi(one) for one in found.tolist()])
 
 
 def _polynomial(node: ast.expr) -> Polynomial:
@@ -120,23 +121,45 @@ def _polynomial(node: ast.expr) -> Polynomial:
     raise LawError("no polynomial")
 
 
-def of_pi(value: float) -> str:
-    """Return a number as text: as a simple multiple of pi where it is one to the last digits."""
-    share = value / math.pi
-    for part in (1, 2, 3, 4, 6):
-        whole = share * part
-        near = round(whole)
-        if near and abs(near) < 1000 and abs(whole - near) < 4e-16 * abs(whole):
-            times = {1: "pi", -1: "-pi"}.get(near, f"{near} * pi")
-            return times if part == 1 else f"{times} / {part}"
-    return text_of(value)
+class Motions:
+    """Motions of a record as a case counts them: from the reference posture, and those of joints
+    that are open as in the file.
+    """
 
+    def __init__(self, model: Model, opened: Container[str]) -> None:
+        self.model, self.opened = model, opened
 
-def text_of(value: float) -> str:
-    """Return a number as Python writes it; zero has no sign."""
-    return repr(float(value) + 0.0)
+    def offset(self, coordinate: str) -> float:
+        """Return what a coordinate of the file is where that of the case is zero."""
+        if coordinate.partition(":")[0] in self.opened:
+            return 0.0
+        return at_reference(self.model, coordinate)
 
+    def law(self, coordinate: str, law: Law) -> Call:
+        """Return the motion of a coordinate."""
+        less = self.offset(coordinate)
+        if law.samples is not None:
+            times, values = law.samples
+            return Call("samples", [vector(times), vector(one - less for one in values)])
+        try:
+            return python(law.text, less)
+        except LawError as error:
+            words = f"motion of '{coordinate}': {error}"
+            raise self.model.refuse(law.where, words) from None
 
-def tuple_of(values: Sequence[float]) -> str:
-    """Return numbers as a tuple in Python."""
-    return f"({', '.join(map(text_of, values))})"
+    def counted(self, name: str) -> bool:
+        """Return whether the turns of a joint are counted from another posture than the reference:
+        three turns, of which not the last one alone differs from zero there, have no difference.
+        """
+        joint = self.model.joints[name]
+        turns = [one for one in joint.coordinates if ":turn_" in one]
+        given = {one: law for one, law in self.model.motions.items() if one in turns}
+        if len(turns) < 3 or not any(at_reference(self.model, one) for one in turns[:-1]):
+            return False
+        if all(str(self.law(one, law)) == "polynomial(0.0)" for one, law in given.items()):
+            return False
+        if len(given) < len(turns):
+            words = f"motion of '{next(iter(given))}': expected one of each turn of joint '{name}'"
+            words += ", for the body is turned about several axes in the reference posture"
+            raise self.model.refuse(joint.where, words)
+        return True

@@ -15,7 +15,8 @@ import numpy as np
 from ..base.arrays import Array
 from ..errors import MissingPackageError, shown
 from .elements import Element, parsed
-from .record import GROUND, LARGEST, Body, Coupling, Frame, Joint, Model, turned
+from .frames import Frame, turned
+from .record import GROUND, LARGEST, Body, Coupling, Joint, Model
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -25,26 +26,26 @@ if TYPE_CHECKING:
 _FOLDERS = ("assetdir", "meshdir", "texturedir")
 _FILES = ("file", "fileup", "filedown", "filefront", "fileback", "fileleft", "fileright", "content")
 _DEEPEST = 20
+_UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
 
-def read(path: Path, text: str) -> Model:
-    """Return the model of a file. Raises :class:`.ModelFileError`, and
-    :class:`.MissingPackageError` without MuJoCo.
+def read(model: Model, text: str) -> None:
+    """Read a file. Raises :class:`.ModelFileError`, and :class:`.MissingPackageError` without
+    MuJoCo.
     """
-    model = Model(path.stem, path.name)
-    root = parsed(model, text, "mujoco")
-    _inside(model, path.parent.resolve(), root, path.parent.resolve(), 0)
+    folder = model.file.parent.resolve()
+    _inside(model, folder, parsed(model, text, "mujoco"), folder, 0)
     try:
         import mujoco
-    except ModuleNotFoundError:
-        raise MissingPackageError(
-            f"{path.name}: a model of MuJoCo is compiled by MuJoCo: pip install mujoco"
-        ) from None
+    except ImportError as error:
+        words = f"{model.file.name}: a model of MuJoCo is compiled by MuJoCo: pip install mujoco"
+        broken = "" if isinstance(error, ModuleNotFoundError) else f"; it is broken here: {error}"
+        raise MissingPackageError(words + broken) from None
     try:
-        compiled = mujoco.MjModel.from_xml_path(str(path))
+        compiled = mujoco.MjModel.from_xml_path(str(model.file))
     except ValueError as error:
         raise model.refuse("", f"MuJoCo refuses it: {error}") from None
-    return _Reader(model, compiled, mujoco).read()
+    _Reader(model, compiled, mujoco).read()
 
 
 def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -> None:
@@ -85,12 +86,12 @@ class _Reader:
         self.bodies: dict[int, str] = {0: GROUND}
         self.joints: dict[int, str] = {}
 
-    def read(self) -> Model:
-        """Return the model."""
+    def read(self) -> None:
+        """Read the model."""
         model, m = self.model, self.m
         stated = m.names.partition(b"\0")[0].decode(errors="replace")  # its own is the first one
-        model.name = model.name_of("mechanism", stated or model.name, "", {})
-        model.gravity = m.opt.gravity.copy()
+        model.name = model.name_of("mechanism", stated or model.name, "")
+        model.gravity = model.numbers("option", m.opt.gravity.tolist(), "gravity")
         for k in range(1, m.nbody):
             self.body(k)
         for k in range(m.neq):
@@ -101,29 +102,24 @@ class _Reader:
             if kinds(int(m.actuator_trntype[k])) in (kinds.mjTRN_JOINT, kinds.mjTRN_JOINTINPARENT):
                 model.preferred.append(self.joints[int(m.actuator_trnid[k, 0])])
         self.left_out()
-        return model
 
     def called(self, kind: str, k: int) -> str:
         """Return the name of an object, or its number."""
         data = self.mujoco.mj_id2name(self.m, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind}"), k)
         return data or f"{kind.lower()}_{k}"
 
-    def frame(self, k: int) -> Frame:
-        """Return where a body is in the reference posture."""
-        axes = self.data.xmat[k].reshape(3, 3)
-        return Frame(self.data.xpos[k].copy(), self.model.rotation(f"body {k}", axes))
-
     def body(self, k: int) -> None:
         """Declare a body, and the joints that it hangs on."""
         model, m, stated = self.model, self.m, self.called("BODY", k)
-        where, axes, frame = f"body {shown(stated)}", self.rotation(m.body_iquat[k]), self.frame(k)
-        inertia, mass = axes @ np.diag(m.body_inertia[k]) @ axes.T, float(m.body_mass[k])
-        name = model.add(Body, stated, where, mass, m.body_ipos[k].copy(), inertia, frame)
+        where, mass = f"body {shown(stated)}", float(m.body_mass[k])
+        frame = self.frame(where, self.data.xpos[k], self.data.xquat[k])
+        own = self.frame(where, m.body_ipos[k], m.body_iquat[k])
+        inertia = own.tensor(np.diag(m.body_inertia[k]))
+        name = model.add(Body, stated, where, mass, own.place, inertia, frame)
         self.bodies[k], above = name, self.bodies[int(m.body_parentid[k])]
         first, count = int(m.body_jntadr[k]), int(m.body_jntnum[k])
         if not count:
-            near = model.frame_of(above).relative(frame)
-            model.add(Joint, f"{name}_fixed", where, "weld", above, name, near, Frame())
+            model.attach(name, above, "weld", where)
         for j in range(first, first + count):
             below = name
             if j < first + count - 1:
@@ -136,16 +132,18 @@ class _Reader:
         """Declare a joint; in the reference posture its coordinate is ``ref``."""
         model, m, stated = self.model, self.m, self.called("JOINT", j)
         kind = ("free", "spherical", "prismatic", "revolute")[int(m.jnt_type[j])]
-        far = Frame() if kind == "free" else Frame(m.jnt_pos[j].copy())
+        where = f"joint {shown(stated)}"
+        far = Frame() if kind == "free" else self.frame(where, m.jnt_pos[j])
         at = far if kind == "free" else frame.then(far)
         if kind in ("prismatic", "revolute"):
-            along, ref = Frame.about(m.jnt_axis[j]), float(m.qpos0[m.jnt_qposadr[j]])
+            ref = model.number(where, float(m.qpos0[m.jnt_qposadr[j]]), "ref")
+            along = Frame.about(m.jnt_axis[j])
             at, far = at.then(along), far.then(along)
             if kind == "revolute":
                 far = far.then(Frame(axes=turned(np.array([0.0, 0.0, 1.0]), -ref)))
             else:
                 at = at.then(Frame(np.array([0.0, 0.0, -ref])))
-        near, where = model.frame_of(above).relative(at), f"joint {shown(stated)}"
+        near = model.frame_of(above).relative(at)
         self.joints[j] = model.add(Joint, stated, where, kind, above, below, near, far)
 
     def equality(self, k: int) -> None:
@@ -160,33 +158,31 @@ class _Reader:
             if np.any(data[2:5]) or other < 0:
                 raise model.refuse(where, "is not supported: its polynomial is not linear")
             starts = [float(m.qpos0[m.jnt_qposadr[j]]) for j in (one, other)]
-            offset = float(data[0]) + starts[0] - float(data[1]) * starts[1]
+            offset, ratio = model.numbers(where, data[:2].tolist(), "polycoef", 2).tolist()
+            offset += starts[0] - ratio * starts[1]
             joints = self.joints[other], self.joints[one]
-            model.add(Coupling, stated, where, *joints, float(data[1]), offset)
+            model.add(Coupling, stated, where, *joints, ratio, offset)
             return
         if kind not in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD):
             raise model.refuse(where, "is not supported; valid: connect, weld, joint")
         if sites:
-            near, far = self.site(one), self.site(other)
+            near, far = (self.frame(where, m.site_pos[k], m.site_quat[k]) for k in (one, other))
             one, other = int(m.site_bodyid[one]), int(m.site_bodyid[other])
         elif kind == kinds.mjEQ_CONNECT:
-            near, far = Frame(data[:3].copy()), Frame(data[3:6].copy())
+            near, far = self.frame(where, data[:3]), self.frame(where, data[3:6])
         else:
-            far = Frame(data[:3].copy())
-            near = Frame(data[3:6].copy(), self.rotation(data[6:10])).then(far)
+            far = self.frame(where, data[:3])
+            near = self.frame(where, data[3:6], data[6:10]).then(far)
         shape = "weld" if kind == kinds.mjEQ_WELD else "spherical"
         ends = self.bodies[one], self.bodies[other]
         model.add(Joint, stated, where, shape, *ends, near, far)
 
-    def site(self, k: int) -> Frame:
-        """Return the frame of a site on its body."""
-        return Frame(self.m.site_pos[k].copy(), self.rotation(self.m.site_quat[k]))
-
-    def rotation(self, quaternion: Array) -> Array:
-        """Return the axes of a quaternion."""
-        axes = np.zeros(9)
-        self.mujoco.mju_quat2Mat(axes, np.asarray(quaternion, dtype=float))
-        return self.model.rotation("quaternion", axes.reshape(3, 3))
+    def frame(self, where: str, place: Array, quaternion: Array = _UPRIGHT) -> Frame:
+        """Return the frame of a place and a quaternion, which MuJoCo takes even as no numbers."""
+        found, axes = self.model.numbers(where, place.tolist(), "place"), np.zeros(9)
+        turn = self.model.numbers(where, quaternion.tolist(), "quaternion", 4)
+        self.mujoco.mju_quat2Mat(axes, turn)
+        return Frame(found, self.model.rotation(where, axes.reshape(3, 3)))
 
     def left_out(self) -> None:
         """Note what was not read."""

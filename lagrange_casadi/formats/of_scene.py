@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -19,8 +20,9 @@ from ..declare.scene import Scene
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..studies.evaluate import evaluate
+from .frames import Frame, turned
 from .laws import LONGEST, ONE_NUMBER
-from .record import Body, Frame, Joint, Law, Model, turned
+from .record import Body, Joint, Law, Model
 
 Data = dict[str, Any]
 
@@ -47,7 +49,7 @@ _TEXT = Arithmetic(
 """Graphs as texts."""
 
 
-def model_of(scene: Scene, parameters: Mapping[str, float], file: str) -> Model:
+def model_of(scene: Scene, parameters: Mapping[str, float], file: Path) -> Model:
     """Return the record of a scene for values of parameters; what it has no word for is in its
     notes.
 

@@ -6,10 +6,10 @@ A format's module makes a :class:`Model` of a file; :mod:`.as_case` makes a case
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,12 +17,13 @@ import numpy as np
 from ..base.arrays import Array
 from ..declare.joints import IN_SPACE
 from ..errors import ModelFileError, shown
+from .frames import Frame, right_angled
 
 GROUND = "ground"
 """The name of the fixed frame, as of a body."""
 
-LARGEST = 1e12
-"""A larger number in a file is no length, mass or angle of a machine."""
+LARGEST, SHORTEST = 1e12, 1e-100
+"""A larger number in a file is no length, mass or angle of a machine; a shorter axis is none."""
 
 ROWS: dict[str, str] = {
     "slide": "ca.dot(q - p, {e})",
@@ -48,52 +49,6 @@ MOVES: dict[str, tuple[tuple[str, str, str], ...]] = {
 """The name of each coordinate of a kind of joint, empty for one alone, how it moves, and along or
 about which axis of the parent's frame; w is z of the child's.
 """
-
-
-@dataclass(frozen=True, eq=False)
-class Frame:
-    """A place [m] and three axes, the columns of a rotation, on some other frame."""
-
-    place: Array = field(default_factory=lambda: np.zeros(3))
-    axes: Array = field(default_factory=lambda: np.eye(3))
-
-    @classmethod
-    def about(cls, axis: Array, place: Sequence[float] | Array = (0.0, 0.0, 0.0)) -> Frame:
-        """Return a frame whose z is along a direction."""
-        z = axis / np.linalg.norm(axis)
-        other = np.eye(3)[int(np.argmin(np.round(np.abs(z), 9)))]
-        x = other - (other @ z) * z
-        x /= np.linalg.norm(x)
-        return cls(np.array(place), np.column_stack([x, np.cross(z, x), z]) + 0.0)
-
-    @classmethod
-    def posed(cls, place: Array, angles: Array) -> Frame:
-        """Return a frame turned by roll, pitch and yaw about fixed x, y and z [rad]."""
-        (cr, cp, cy), (sr, sp, sy) = np.cos(angles), np.sin(angles)
-        axes = np.array(
-            [
-                [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-                [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-                [-sp, cp * sr, cp * cr],
-            ]
-        )
-        return cls(place, _right_angled(axes))
-
-    def then(self, inner: Frame) -> Frame:
-        """Return a frame given relative to this one, relative to the reference of this one."""
-        return Frame(self.place + self.axes @ inner.place, self.axes @ inner.axes)
-
-    def inverse(self) -> Frame:
-        """Return the reference of this one, relative to this one."""
-        return self.relative(Frame())
-
-    def relative(self, other: Frame) -> Frame:
-        """Return a frame given relative to the reference of this one, relative to this one."""
-        return Frame(self.axes.T @ (other.place - self.place), self.axes.T @ other.axes)
-
-    def at(self, place: Array) -> Array:
-        """Return the place of a point of this frame."""
-        return np.asarray(self.place + self.axes @ place)
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,10 +121,8 @@ class Coupling:
 class Row:
     """An equation between two frames: ``kind`` is one of :data:`ROWS`, with its numbers.
 
-    ``i`` and ``j`` number axes of the parent's and of the child's frame. Where it has an angle,
-    that of the child's frame about z of the parent's, ``angle`` is its value in the reference
-    posture; of two wheels it is the direction of one's centre in the other's axes, and ``other``
-    the direction the other way.
+    ``i`` and ``j`` number axes of the parent's and of the child's frame. ``value`` is what it
+    holds; a row with turns holds what it is in the reference posture.
     """
 
     kind: str
@@ -177,8 +130,6 @@ class Row:
     j: int = 2
     value: float = 0.0
     factor: float = 0.0
-    angle: float = 0.0
-    other: float = 0.0
 
     @property
     def text(self) -> str:
@@ -216,16 +167,16 @@ Part = Body | Joint | Coupling | Tie
 class Model:
     """A mechanism as a file describes it. ``notes`` say what was ignored, and what was cleaned.
 
-    ``file`` is the name of the file, ``span`` the instants: start [s], stop [s], count. ``posture``
-    are rough values of coordinates at the start, from which loops that are open in the reference
-    posture are assembled. ``drives`` are the joints whose efforts make the motion, where these are
-    not those that have one; ``preferred`` are joints that are driven first. ``called`` are the
-    file's names of parts that have another one here; ``named`` are names here by the kind of a part
-    and its name of the file. ``rounded`` is by how much axes are off right angles, and where.
+    ``span`` are the instants: start [s], stop [s], count. ``posture`` are rough values of
+    coordinates at the start, from which loops that are open in the reference posture are assembled;
+    bodies that are only ``drawn`` are moved instead. ``drives`` are the joints whose efforts make
+    the motion, where these are not those that have one; ``preferred`` are joints that are driven
+    first. ``named`` are the names here by the kind of a part and its name of the file. ``rounded``
+    is by how much axes are off right angles, and where.
     """
 
     name: str
-    file: str
+    file: Path
     bodies: dict[str, Body] = field(default_factory=dict)
     joints: dict[str, Joint] = field(default_factory=dict)
     couplings: dict[str, Coupling] = field(default_factory=dict)
@@ -235,20 +186,35 @@ class Model:
     span: tuple[float, float, int] = (0.0, 1.0, 101)
     posture: dict[str, float] = field(default_factory=dict)
     drives: list[str] | None = None
+    drawn: bool = False
     preferred: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    called: dict[str, str] = field(default_factory=dict)
     named: dict[tuple[str, str], str] = field(default_factory=dict)
     rounded: tuple[float, str] = (0.0, "")
 
+    @property
+    def parts(self) -> set[str]:
+        """The names that parts have here."""
+        return {GROUND, *self.bodies, *self.joints, *self.couplings, *self.ties}
+
+    @property
+    def closures(self) -> list[Joint | Tie]:
+        """Joints and ties."""
+        return [*self.joints.values(), *self.ties.values()]
+
     def refuse(self, where: str, words: str) -> ModelFileError:
         """Return the error of an element of the file."""
-        return ModelFileError(f"{self.file}: {where + ': ' if where else ''}{words}")
+        return ModelFileError(f"{self.file.name}: {where + ': ' if where else ''}{words}")
+
+    def known(self, where: str, what: str, stated: str, valid: Collection[str]) -> str:
+        """Return a name of the file, which must be one of the valid ones."""
+        if stated not in valid:
+            names = ", ".join(valid) or "none"
+            raise self.refuse(where, f"unknown {what} {shown(stated)}; valid: {names}")
+        return stated
 
     def number(self, where: str, given: object, what: str) -> float:
-        """Return a number of the file. Raises :class:`.ModelFileError` for what is none, and for
-        one that no machine has.
-        """
+        """Return a number of the file, which a machine may have."""
         try:
             found = float(given)  # type: ignore[arg-type]
         except (TypeError, ValueError, OverflowError):
@@ -265,30 +231,35 @@ class Model:
             raise self.refuse(where, f"{what}: expected {count} numbers, got {shown(given)}")
         return np.array([self.number(where, part, what) for part in parts])
 
+    def direction(self, where: str, found: Array) -> Array:
+        """Return a direction of the file, which must have a length."""
+        if not np.linalg.norm(found) > SHORTEST:
+            raise self.refuse(where, "expected a direction, got zero")
+        return found
+
     def rotation(self, where: str, axes: Array) -> Array:
         """Return axes at right angles that are nearest to those of the file, without its rounding.
 
         Raises :class:`.ModelFileError` for axes that are off by more than 1e-4.
         """
-        exact = _right_angled(axes)
+        exact = right_angled(axes)
         off = float(np.abs(exact - axes).max())
         if off > 1e-4 or np.linalg.det(exact) < 0:
-            words = "axes: expected three directions at right angles, right-handed"
-            raise self.refuse(where, words)
+            raise self.refuse(
+                where, "axes: expected three directions at right angles, right-handed"
+            )
         if off > max(1e-9, self.rounded[0]):
             self.rounded = off, where
         return exact
 
-    def name_of(self, kind: str, stated: str, where: str, taken: Collection[str]) -> str:
+    def name_of(self, kind: str, stated: str, where: str) -> str:
         """Return a name of the file as one that parts may have, and keep what it was."""
         name = re.sub(r"\W", "_", stated.strip(), flags=re.ASCII)
         name = name if name[:1].isalpha() else f"{kind[0]}_{name}"
-        if name in taken or (name == GROUND and kind == "body"):
+        if (kind, stated) in self.named or (name == GROUND and kind == "body"):
             raise self.refuse(where, f"{kind} {shown(stated)}: the name is taken")
-        while name in {GROUND, *self.bodies, *self.joints, *self.couplings, *self.ties}:
+        while name in self.parts:
             name = f"{name}_{kind}"
-        if name != stated:
-            self.called[name] = stated
         self.named[kind, stated] = name
         return name
 
@@ -296,18 +267,27 @@ class Model:
         """Add a body, joint, coupling or tie under its name of the file; return its name here."""
         parts: dict[type[Part], dict[str, Any]] = {Body: self.bodies, Coupling: self.couplings}
         parts |= {Joint: self.joints, Tie: self.ties}
-        kind = "joint" if part is Tie else part.__name__.lower()
-        taken = {**self.joints, **self.ties} if kind == "joint" else parts[part]
-        name = self.name_of(kind, stated, where, taken)
+        name = self.name_of("joint" if part is Tie else part.__name__.lower(), stated, where)
         parts[part][name] = replace(part(name, *given), where=where)
         return name
 
     def find(self, kind: str, stated: str, where: str) -> str:
         """Return the name here of a part that the file names."""
-        if (kind, stated) in self.named:
-            return self.named[kind, stated]
-        valid = ", ".join(name for of, name in self.named if of == kind)
-        raise self.refuse(where, f"unknown {kind} {shown(stated)}; valid: {valid}")
+        valid = [name for of, name in self.named if of == kind]
+        return self.named[kind, self.known(where, kind, stated, valid)]
+
+    def couple(
+        self, stated: str, where: str, joints: Sequence[str], ratio: float, offset: float = 0.0
+    ) -> None:
+        """Add a coupling of two joints that the file names."""
+        first, second = (self.find("joint", one, where) for one in joints)
+        self.add(Coupling, stated, where, first, second, ratio, offset)
+
+    def attach(self, body: str, parent: str, kind: str, where: str) -> None:
+        """Attach a body as it is: by a ``weld``, or by a ``free`` joint."""
+        near = self.frame_of(parent).relative(self.frame_of(body))
+        name = f"{body}_{'fixed' if kind == 'weld' else kind}"
+        self.add(Joint, name, where, kind, parent, body, near, Frame())
 
     def frame_of(self, body: str) -> Frame:
         """Return where a body is in the reference posture."""
@@ -317,99 +297,3 @@ class Model:
         """Return the two frames of a joint in the reference posture, on the ground."""
         parent, child = self.frame_of(joint.parent), self.frame_of(joint.child)
         return parent.then(joint.on_parent), child.then(joint.on_child)
-
-    def at_reference(self, coordinate: str) -> float:
-        """Return a coordinate in the reference posture."""
-        joint = self.joints[coordinate.partition(":")[0]]
-        near, far = self.frames(joint)
-        known, moves = near.relative(far), MOVES[joint.kind]
-        order = ["xyzw".index(axis) for _, move, axis in moves if move != "slide"]
-        turns = [0.0, 0.0]
-        if len(order) == 1:
-            turns = [math.atan2(known.axes[1, 0], known.axes[0, 0])]
-        elif len(order) == 3:
-            turns = _three_turns(known.axes[np.ix_(order, order)])
-        slides = [known.place["xyz".index(axis)] for _, move, axis in moves if move == "slide"]
-        return float([*slides, *turns][joint.coordinates.index(coordinate)])
-
-    def closest(self, joint: Joint) -> Frame:
-        """Return where the child's frame is on the parent's if the joint, open in the reference
-        posture, is closed with the coordinates that it has there.
-        """
-        near, far = self.frames(joint)
-        known, moves = near.relative(far), MOVES[joint.kind]
-        slides = [axis for _, move, axis in moves if move == "slide"]
-        place = np.where([axis in slides for axis in "xyz"], known.place, 0.0)
-        turns = [axis for _, move, axis in moves if move != "slide"]
-        if len(turns) == 3:
-            return Frame(place, known.axes)
-        if len(turns) == 2:  # of a universal joint: the child's z is across the parent's
-            across = np.array([known.axes[0, 2], known.axes[1, 2], 0.0])
-            return Frame.about(across if np.any(across) else np.eye(3)[0], place)
-        if not turns:
-            return Frame(place)
-        angle = math.atan2(known.axes[1, 0], known.axes[0, 0])
-        if joint.kind == "screw":
-            place[2] = joint.lead * angle / math.tau
-        return Frame(place, turned(np.array([0.0, 0.0, 1.0]), angle))
-
-    def size(self) -> float:
-        """Return the extent of what joints and centres of mass span [m]."""
-        places = [one.place for joint in self.joints.values() for one in self.frames(joint)]
-        places += [body.frame.at(body.centre) for body in self.bodies.values()]
-        return float(np.max(np.ptp(np.array(places), axis=0))) or 1.0 if places else 1.0
-
-    def apart(self, joint: Joint) -> tuple[float, float]:
-        """Return by how much the frames of a joint miss what it holds: in m, and in rad."""
-        near, far = self.frames(joint)
-        known = near.relative(far)
-        free = {(move, axis) for _, move, axis in MOVES[joint.kind]}
-        held = [k for k, axis in enumerate("xyz") if not {("slide", axis), ("screw", axis)} & free]
-        gap = math.hypot(*known.place[held].tolist())
-        turns = sum(move != "slide" for move, _ in free)
-        if any(one != GROUND and self.bodies[one].point for one in (joint.parent, joint.child)):
-            return gap, 0.0
-        if joint.kind == "universal":
-            return gap, abs(float(known.axes[2, 2]))
-        if joint.kind == "screw":
-            turn = math.atan2(known.axes[1, 0], known.axes[0, 0])
-            away = (float(known.place[2]) - joint.lead * turn / math.tau) / (joint.lead or 1.0)
-            gap = math.hypot(gap, joint.lead * (away - round(away)))
-        if not turns:
-            sine = math.hypot(*(known.axes - known.axes.T)[[0, 0, 1], [1, 2, 2]].tolist()) / 2.0
-            return gap, math.atan2(sine, (float(np.trace(known.axes)) - 1.0) / 2.0)
-        tilt = math.hypot(float(known.axes[0, 2]), float(known.axes[1, 2]))
-        return gap, math.atan2(tilt, float(known.axes[2, 2])) if turns == 1 else 0.0
-
-
-def _three_turns(axes: Array) -> list[float]:
-    """Return the angles about x, y and z in sequence, each axis carried by those before."""
-    y = math.asin(min(1.0, max(-1.0, float(axes[0, 2]))))
-    return [math.atan2(-axes[1, 2], axes[2, 2]), y, math.atan2(-axes[0, 1], axes[0, 0])]
-
-
-def _right_angled(axes: Array) -> Array:
-    """Return the axes at right angles that are nearest to others; components that are nothing or
-    one but for rounding are so.
-    """
-    left, _, right = np.linalg.svd(np.where(np.abs(axes) < 1e-9, 0.0, axes))
-    exact = left @ right
-    exact = np.where(np.abs(exact) < 1e-9, 0.0, exact)
-    return np.asarray(np.where(np.abs(np.abs(exact) - 1.0) < 1e-15, np.sign(exact), exact))
-
-
-MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-"""Names of the moments of inertia in URDF and SDF."""
-
-
-def inertia_of(moments: Sequence[float], axes: Array) -> Array:
-    """Return the inertia of six :data:`MOMENTS` about axes, on the reference axes of these."""
-    xx, xy, xz, yy, yz, zz = moments
-    return np.asarray(axes @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ axes.T)
-
-
-def turned(axis: Array, angle: float) -> Array:
-    """Return the rotation about a direction of length 1 by an angle [rad]."""
-    x, y, z = axis
-    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.asarray(np.eye(3) + math.sin(angle) * skew + (1 - math.cos(angle)) * skew @ skew)

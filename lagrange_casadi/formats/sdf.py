@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from ..base.arrays import Array
 from ..errors import shown
-from .elements import Element, parsed
-from .record import GROUND, MOMENTS, Body, Coupling, Frame, Joint, Model, inertia_of
+from .elements import Element, parsed, six_moments
+from .frames import Frame
+from .record import GROUND, Body, Coupling, Joint, Model
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -20,26 +19,31 @@ KINDS: dict[str, str] = {
     "revolute2": "universal",
     "screw": "screw",
     "fixed": "weld",
+    "gearbox": "",
 }
-"""Types of joints."""
+"""Types of joints; a gearbox couples two others."""
 
+_DEEPEST = 200
 _IGNORED = ("pose", "link", "joint", "frame", "static", "self_collide", "enable_wind")
 
 
-def read(path: Path, text: str) -> Model:
-    """Return the model of a file. Raises :class:`.ModelFileError`, which names line and element."""
-    usual = np.array([0.0, 0.0, -9.8])  # of a world whose file gives none
-    model = Model(path.stem, path.name, gravity=usual)
+def read(model: Model, text: str) -> None:
+    """Read a file. Raises :class:`.ModelFileError`, which names line and element."""
     root = parsed(model, text, "sdf")
     world = root.first("world")
+    model.gravity = np.array([0.0, 0.0, -9.8])  # of a world whose file gives none
     if world is not None and (line := world.first("gravity")) is not None:
         model.gravity = line.numbers("gravity", 3)
     line = (world or root).needed("model")
-    others = [one for one in (world or root).all("model") if one is not line]
-    model.notes += [f"Model {shown(one.given.get('name'))} of line {one.line} is ignored."
-                    for one in others]  # fmt: skip
-    model.name = model.name_of("mechanism", line.attribute("name"), line.where, {})
-    return _Reader(model, line).read()
+    for one in (world or root).all("model"):
+        if one is not line:
+            named = shown(one.given.get("name"))
+            model.notes.append(f"Model {named} of line {one.line} is ignored.")
+    for one in root.all("world"):
+        if one is not world:
+            one.ignore()
+    model.name = model.name_of("mechanism", line.attribute("name"), line.where)
+    _Reader(model, line).read()
 
 
 class _Reader:
@@ -50,44 +54,41 @@ class _Reader:
         self.named = line.by_name("link", "frame", "joint")
         self.own = self.pose(line.first("pose"))
 
-    def read(self) -> Model:
-        """Return the model."""
+    def read(self) -> None:
+        """Read the model."""
+        model, joints = self.model, list(self.line.all("joint"))
         for link in self.line.all("link"):
             self.body(link)
-        for joint in self.line.all("joint"):
-            if joint.attribute("type") != "gearbox":
-                self.joint(joint)
-        for joint in self.line.all("joint"):
+        for joint in joints:
+            if kind := joint.choice("type", KINDS):
+                self.joint(joint, kind)
+        for joint in joints:
             self.couplings(joint)
-        hung = {name for one in self.model.joints.values() for name in (one.parent, one.child)}
-        if GROUND not in hung and self.model.bodies:
-            first = next(iter(self.model.bodies.values()))
-            ends = GROUND, first.name, first.frame, Frame()
-            self.model.add(Joint, f"{first.name}_fixed", first.where, "weld", *ends)
-            self.model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
+        hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
+        if GROUND not in hung and model.bodies:
+            first = next(iter(model.bodies.values()))
+            model.attach(first.name, GROUND, "weld", first.where)
+            model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
         for one in self.line.inside:
             if one.name in ("model", "include"):
                 raise one.refuse("is not supported; put its links into the model itself")
             if one.name not in _IGNORED:
-                self.model.notes.append(f"<{one.name}> of line {one.line} is ignored.")
-        return self.model
+                one.ignore()
 
     def body(self, link: Element) -> None:
         """Declare a link as a body."""
         inertial = link.first("inertial")
-        if inertial is None or inertial.first("inertia") is None:
+        if inertial is None or (moments := inertial.first("inertia")) is None:
             words = "lacks <inertia>, in place of which Gazebo has 1 kg and 1 kg m^2"
             raise (inertial or link).refuse(words)
         mass, centre = inertial.inner("mass", 1.0), self.pose(inertial.first("pose"))
-        moments = inertial.needed("inertia")
-        six = [moments.inner(key, 1.0 if key[1] == key[2] else 0.0) for key in MOMENTS]
-        inertia, frame = inertia_of(six, centre.axes), self.frame(link.attribute("name"), ())
-        self.model.add(Body, link.attribute("name"), link.where, mass, centre.place, inertia, frame)
+        inertia, name = centre.tensor(six_moments(moments.inner, 1.0)), link.attribute("name")
+        given = mass, centre.place, inertia, self.frame(name, ())
+        self.model.add(Body, name, link.where, *given)
 
-    def joint(self, line: Element) -> None:
+    def joint(self, line: Element, kind: str) -> None:
         """Declare a joint, whose frames coincide as the model stands."""
         model, data, lead = self.model, line.attribute("name"), 0.0
-        kind = line.choice("type", KINDS, "gearbox")
         parent, child = self.end(line, "parent"), self.end(line, "child")
         near = far = frame = self.frame(data, ())
         if kind in ("revolute", "prismatic", "screw", "universal"):
@@ -105,15 +106,12 @@ class _Reader:
 
     def couplings(self, line: Element) -> None:
         """Declare what ties a joint to another one: a mimic, a gearbox."""
-        model, data = self.model, line.attribute("name")
-        axis = line.first("axis")
+        model, data, axis = self.model, line.attribute("name"), line.first("axis")
         if axis is not None and (mimic := axis.first("mimic")) is not None:
-            joints = mimic.attribute("joint"), data
-            first, second = (model.find("joint", joint, mimic.where) for joint in joints)
             keys = ("multiplier", "offset", "reference")
             ratio, offset, reference = (mimic.inner(key) for key in keys)
-            given = first, second, ratio, offset - ratio * reference
-            model.add(Coupling, f"{data}_mimic", mimic.where, *given)
+            joints, offset = (mimic.attribute("joint"), data), offset - ratio * reference
+            model.couple(f"{data}_mimic", mimic.where, joints, ratio, offset)
         if line.given["type"] != "gearbox":
             return
         ratio = line.inner("gearbox_ratio", 1.0)
@@ -141,8 +139,7 @@ class _Reader:
         legacy = data.first("use_parent_model_frame")
         if legacy is not None and legacy.text.strip() in ("1", "true"):
             on = self.own
-        if not np.any(given):
-            raise data.refuse("expected a direction, got zero")
+        given = self.model.direction(data.where, given)
         return np.asarray(on.axes @ given / np.linalg.norm(given))
 
     def end(self, line: Element, key: str) -> str:
@@ -164,8 +161,9 @@ class _Reader:
     def frame(self, name: str, above: tuple[str, ...]) -> Frame:
         """Return where a link, frame or joint is; poses may be given relative to each other."""
         line = self.named[name]
-        if name in above:
-            raise line.refuse("its pose is relative to itself")
+        if name in above or len(above) > _DEEPEST:
+            what = "itself" if name in above else "too many others"
+            raise line.refuse(f"its pose is relative to {what}")
         pose, on = line.first("pose"), ""
         if pose is not None:
             on = pose.given.get("relative_to", "") or pose.given.get("frame", "")
@@ -181,10 +179,7 @@ class _Reader:
             return self.own
         if name == "world":
             return Frame()
-        if name not in self.named:
-            words = f"unknown frame {shown(name)}; valid: {', '.join(self.named)}"
-            raise line.refuse(words)
-        return self.frame(name, above)
+        return self.frame(line.known("frame", name, self.named), above)
 
     def pose(self, line: Element | None) -> Frame:
         """Return the frame of a pose: a place, and roll, pitch and yaw."""

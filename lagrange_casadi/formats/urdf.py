@@ -8,13 +8,12 @@ Loops are given by a second joint of a link, and by ``<constraint>`` (proposed f
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from ..errors import shown
-from .elements import Element, parsed
-from .record import GROUND, MOMENTS, Body, Coupling, Frame, Joint, Model, inertia_of
+from .elements import Element, parsed, six_moments
+from .frames import Frame
+from .record import GROUND, Body, Joint, Model
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -37,73 +36,74 @@ _KNOWN = ("link", "joint", "material", "gazebo", "transmission", "ros2_control",
           "drake:ball_constraint", "sensor", "safety_controller")  # fmt: skip
 
 
-def read(path: Path, text: str) -> Model:
-    """Return the model of a file. Raises :class:`.ModelFileError`, which names line and element."""
-    model = Model(path.stem, path.name)
+def read(model: Model, text: str) -> None:
+    """Read a file. Raises :class:`.ModelFileError`, which names line and element."""
     root = parsed(model, text, "robot")
     for one in root.inside:
         if one.name.startswith("xacro:"):
-            data = f"xacro {path.name} > expanded.urdf"
+            data = f"xacro {model.file.name} > expanded.urdf"
             raise one.refuse(f"is a macro of xacro; expand it first: {data}")
-    model.name = model.name_of("mechanism", root.given.get("name", path.stem), root.where, {})
-    return _Robot(model, root).read()
+    model.name = model.name_of("mechanism", root.given.get("name", model.name), root.where)
+    _Robot(model, root).read()
 
 
 class _Robot:
-    """A robot under way: its elements by name, and where links are in the zero posture."""
+    """A robot under way: its links by name, and the body and the frame on it that each is."""
 
     def __init__(self, model: Model, root: Element) -> None:
         self.model, self.root = model, root
-        self.links = root.by_name("link")
+        self.links, self.joints = root.by_name("link"), list(root.all("joint"))
         self.on: dict[str, tuple[str, Frame]] = {}
         self.frames: list[str] = []
 
-    def read(self) -> Model:
-        """Return the model."""
-        model = self.model
-        joints = list(self.root.all("joint"))
-        children = {self.side(joint, _OTHER)[0] for joint in joints}
+    def read(self) -> None:
+        """Read the robot."""
+        children = {self.side(joint, _OTHER)[0] for joint in self.joints}
         roots = [name for name in self.links if name not in children]
         if len(roots) != 1:
             found = ", ".join(map(repr, roots)) or "none"
             raise self.root.refuse(f"expected one root link, found {found}")
         self.on[roots[0]] = (GROUND, Frame())
-        placed = {roots[0]: Frame()}
-        waiting = joints
+        waiting = list(self.joints)
         while waiting:
-            ready = [one for one in waiting if self.side(one, _ONE)[0] in placed]
+            ready = [one for one in waiting if self.side(one, _ONE)[0] in self.on]
             if not ready:
                 raise waiting[0].refuse("its links are not connected to the root")
-            self.grow(ready[0], placed)
-            waiting = [one for one in waiting if one is not ready[0]]
+            self.grow(ready[0])
+            waiting.remove(ready[0])
         for loop in self.root.all(*_LOOPS):
-            self.loop(loop, placed)
+            self.loop(loop)
         for line in self.root.all("drake:ball_constraint"):
             self.ball_constraint(line)
-        for joint in joints:
-            self.mimic(joint)
+        for joint in self.joints:
+            if (mimic := joint.first("mimic")) is not None:
+                name, first = joint.attribute("name"), mimic.attribute("joint")
+                law = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
+                self.model.couple(f"{name}_mimic", mimic.where, (first, name), *law)
         for coupling in self.root.all("coupling"):
-            self.coupling(coupling, joints)
+            self.coupling(coupling)
         self.actuators()
-        self.left_out(joints)
-        return model
+        self.left_out()
 
-    def grow(self, line: Element, placed: dict[str, Frame]) -> None:
+    def grow(self, line: Element) -> None:
         """Read a joint: its link is placed by it, or closes a loop."""
         kind = line.choice("type", KINDS)
         (parent, _), (child, _) = self.side(line, _ONE), self.side(line, _OTHER)
-        origin, again = self.origin(line.first("origin")), child in placed
-        massless = self.links[child].first("inertial") is None
-        if not again:
-            placed[child] = placed[parent].then(origin)
+        origin = self.origin(line.first("origin"))
+        if child not in self.on:
             body, frame = self.on[parent]
-            if kind == "weld" and massless:
+            if kind == "weld" and self.links[child].first("inertial") is None:
                 self.on[child] = (body, frame.then(origin))
                 self.frames += [child] if body != GROUND else []
                 return
-            self.on[child] = (self.body(child, placed[child]), Frame())
+            self.on[child] = (self.body(child, self.placed(parent).then(origin)), Frame())
         axes = self.axes(line, kind)
         self.add(line, kind, (parent, origin.then(axes)), (child, axes))
+
+    def placed(self, link: str) -> Frame:
+        """Return where a link is in the zero posture."""
+        body, frame = self.on[link]
+        return self.model.frame_of(body).then(frame)
 
     def add(
         self, line: Element, kind: str, one: tuple[str, Frame], other: tuple[str, Frame]
@@ -113,7 +113,7 @@ class _Robot:
         bodies = [self.on[link][0] for link, _ in (one, other)]
         self.model.add(Joint, line.attribute("name"), line.where, kind, *bodies, *ends)
 
-    def loop(self, line: Element, placed: dict[str, Frame]) -> None:
+    def loop(self, line: Element) -> None:
         """Read a loop that an element of its own closes."""
         kind, axis = line.choice("type", KINDS), line.first("parent_axis", "axis")
         (parent, near), (child, far) = self.side(line, _ONE), self.side(line, _OTHER)
@@ -121,7 +121,7 @@ class _Robot:
         apart = kind == "universal" or line.first("child_axis") is not None
         if axis is not None and axis.given.get("frame") == "parent" and not apart:
             # The axis is given on the parent alone: the child's is where it is at zero.
-            known = placed[child].relative(placed[parent].then(near))
+            known = self.placed(child).relative(self.placed(parent).then(near))
             far = Frame(far.place, self.model.rotation(line.where, known.axes))
         else:
             far = far.then(self.axes(line, kind, "child_axis" if apart else "parent_axis", "axis"))
@@ -133,34 +133,22 @@ class _Robot:
         for letter, point in (("A", "p_AP"), ("B", "p_BQ")):
             body = line.needed(f"drake:ball_constraint_body_{letter}")
             at = line.needed(f"drake:ball_constraint_{point}").triple("value", what=point)
-            sides.append((self.known(body, body.attribute("name")), Frame(at)))
+            sides.append((body.known("link", body.attribute("name"), self.links), Frame(at)))
         line.given.setdefault("name", f"ball_{len(self.model.joints)}")
         self.add(line, "spherical", sides[0], sides[1])
 
-    def mimic(self, joint: Element) -> None:
-        """Read that a joint follows another one."""
-        if (mimic := joint.first("mimic")) is None:
-            return
-        first = self.model.find("joint", mimic.attribute("joint"), mimic.where)
-        second = self.model.find("joint", joint.attribute("name"), joint.where)
-        ratio, offset = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
-        given = first, second, ratio, offset
-        self.model.add(Coupling, f"{second}_mimic", mimic.where, *given)
-
-    def coupling(self, line: Element, joints: list[Element]) -> None:
+    def coupling(self, line: Element) -> None:
         """Read a coupling of two links' joints."""
-        above = {self.side(one, _OTHER)[0]: one for one in reversed(joints)}
+        above = {self.side(one, _OTHER)[0]: one for one in reversed(self.joints)}
         links = [self.side(line, side)[0] for side in (_ONE, _OTHER)]
         for link in links:
             if link not in above:
                 raise line.refuse(f"link {shown(link)} has no joint")
         if len({self.side(above[link], _ONE)[0] for link in links}) > 1:
             raise line.refuse("is supported only if both its links have the same parent")
-        first, second = (
-            self.model.find("joint", above[link].attribute("name"), line.where) for link in links
-        )
+        joints = [above[link].attribute("name") for link in links]
         ratio = line.needed("ratio").amount("value", what="ratio")
-        self.model.add(Coupling, line.attribute("name"), line.where, first, second, ratio)
+        self.model.couple(line.attribute("name"), line.where, joints, ratio)
 
     def actuators(self) -> None:
         """Read which joints have a drive."""
@@ -173,11 +161,11 @@ class _Robot:
             words = "Reductions of transmissions are not read: efforts are at joints."
             self.model.notes.append(words)
 
-    def left_out(self, joints: list[Element]) -> None:
+    def left_out(self) -> None:
         """Note what was not read."""
         losses = {
             joint.given["name"]: None
-            for joint in joints
+            for joint in self.joints
             for one in joint.all("dynamics")
             for key in ("damping", "friction")
             if one.given.get(key) and one.amount(key)
@@ -188,7 +176,7 @@ class _Robot:
             self.model.notes.append(f"Frames without mass are left out: {', '.join(self.frames)}.")
         for one in self.root.inside:
             if one.name not in (*_KNOWN, *_LOOPS):
-                self.model.notes.append(f"<{one.name}> of line {one.line} is ignored.")
+                one.ignore()
 
     def body(self, stated: str, frame: Frame) -> str:
         """Declare a link as a body."""
@@ -197,8 +185,8 @@ class _Robot:
         if inertial is not None:
             mass = inertial.needed("mass").amount("value", what="mass")
             centre, moments = self.origin(inertial.first("origin")), inertial.first("inertia")
-            six = [0.0 if moments is None else moments.amount(key, 0.0) for key in MOMENTS]
-            inertia = inertia_of(six, centre.axes)
+            if moments is not None:
+                inertia = centre.tensor(six_moments(moments.amount))
         return self.model.add(Body, stated, link.where, mass, centre.place, inertia, frame)
 
     def axes(self, line: Element, kind: str, *names: str) -> Frame:
@@ -222,10 +210,4 @@ class _Robot:
             found = next(iter(list(line.all("link1"))[1:2]), None)
         found = found or line.needed(*names)
         origin = found.first("origin") or line.first(f"{found.name}_origin") or found
-        return self.known(found, found.attribute("link")), self.origin(origin)
-
-    def known(self, line: Element, link: str) -> str:
-        """Return a link's name. Raises :class:`.ModelFileError` for one that is not there."""
-        if link not in self.links:
-            raise line.refuse(f"unknown link {shown(link)}; valid: {', '.join(self.links)}")
-        return link
+        return found.known("link", found.attribute("link"), self.links), self.origin(origin)

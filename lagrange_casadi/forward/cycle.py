@@ -10,9 +10,8 @@ keeps a fluctuation.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -21,8 +20,9 @@ from ..base.arrays import Array
 from ..declare.even_points import checked
 from ..declare.scene import Scene
 from ..errors import DeclarationError, LagrangeCasadiError
-from .machine import ROW, SLOW, Machine, Start
-from .motion import ACCURACY, Cycle, FreeMotion, follow, why_lost
+from .integration import integrated, terminal
+from .machine import ROW, Machine, Start
+from .motion import ACCURACY, Cycle, FreeMotion, follow
 
 _STEPS, _TRIES, _FASTER, _SLOWER = 25, 12, 1.4, 0.3
 _SAME = 1e-6
@@ -32,23 +32,33 @@ _SLOWEST = 1e-4
 _DONE = 1e-10
 """Relative residual at which a cycle is steady."""
 
+_EVEN = 1e9
+"""A flywheel of so many times the machine's inertia lets it turn evenly."""
+
 _FLAT = 1e-12
 """Change of energy with the speed, beside the kinetic energy, that is none."""
 
 _SPEED, _TIME, _BY, _TIME_BY = 0, 1, slice(2, 5), slice(5, 8)
-"""States over the angle: the speed, the time, and their derivatives by the speed at the start, the
-added torque and the flywheel's inertia.
+"""States over the angle: the speed over that at the start, the time times that, and the derivatives
+of both by the speed at the start, the added torque and the flywheel's inertia, in ``units``.
 """
+
+_ZERO = 1e-3
+"""A state that counts as zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class Turn:
     """A cycle of a signed angle ``span`` [rad] from a state on: the states at its end, and at its
     least and its largest speed by size.
+
+    ``units`` are the speed at the start, and the torque and the inertia that the machine has beside
+    it.
     """
 
     begin: Start
     span: float
+    units: Array
     end: Array
     least: Array
     largest: Array
@@ -56,12 +66,24 @@ class Turn:
     @property
     def period(self) -> float:
         """Time of the cycle [s]."""
-        return float(self.end[_TIME])
+        return float(self.end[_TIME]) / self.begin.speed
 
     @property
     def speed(self) -> float:
         """Mean speed [rad/s]."""
         return self.span / self.period
+
+    @property
+    def fluctuation(self) -> float:
+        """Largest less least speed, over the mean speed."""
+        return float((self.largest - self.least)[_SPEED] * self.end[_TIME]) / self.span
+
+    @property
+    def gain(self) -> float:
+        """Kinetic energy at the end beyond that at the start, over twice the latter, of an even
+        inertia.
+        """
+        return float(self.end[_SPEED] ** 2 - 1.0) / 2.0
 
 
 @dataclass(frozen=True)
@@ -92,19 +114,17 @@ class Goal:
 
     def residuals(self, turn: Turn) -> tuple[Array, Array]:
         """Relative residuals of what is sought, and their slopes by the speed at the start, the
-        torque and the inertia. The first is the energy that a cycle adds, which does not depend on
-        the speed if nothing does.
+        torque and the inertia, in units. The first is the energy that a cycle adds, which does not
+        depend on the speed if nothing does.
         """
-        begin, end = np.array([turn.begin.speed, 0.0, 0.0]), turn.end
-        rows = [(end[_SPEED] ** 2 - begin[0] ** 2) / (2.0 * begin[0] ** 2)]
-        slopes = [(end[_SPEED] * end[_BY] - begin) / begin[0] ** 2]
+        end = turn.end
+        rows, slopes = [turn.gain], [end[_SPEED] * end[_BY] - (1.0, 0.0, 0.0)]
         if self.mean is not None:
-            wanted = self.span / self.mean
-            rows.append(end[_TIME] / wanted - 1.0)
-            slopes.append(end[_TIME_BY] / wanted)
+            rows.append(self.mean / turn.speed - 1.0)
+            slopes.append(end[_TIME_BY] * self.mean / (turn.begin.speed * self.span))
         if self.fluctuation is not None:
             swing = (turn.largest - turn.least) / self.span
-            rows.append(swing[_SPEED] * end[_TIME] - self.fluctuation)
+            rows.append(turn.fluctuation - self.fluctuation)
             slopes.append(swing[_BY] * end[_TIME] + swing[_SPEED] * end[_TIME_BY])
         return np.array(rows), np.array(slopes)
 
@@ -123,21 +143,22 @@ def sought(machine: Machine, begin: Start, goal: Goal, accuracy: float) -> Turn:
         raise _stalled(machine, turn)
     turns, rough = [turn], max(1.0, accuracy / ACCURACY)
     for _ in range(_STEPS):
-        speed = turn.begin.speed
         rows, slopes = goal.residuals(turn)
         step = np.zeros(3)
         step[goal.unknown] = -np.linalg.lstsq(slopes[:, goal.unknown], rows)[0]
-        if goal.mean is None and abs(slopes[0, 0] * speed) < _FLAT * rough:
+        if goal.mean is None and abs(slopes[0, 0]) < _FLAT * rough:
+            if len(turns) > 1:  # at a speed that is large beyond measure
+                break
             raise LagrangeCasadiError(
                 f"machine '{machine.name}' has no steady cycle: nothing in it depends on the speed,"
                 " so each turn adds as much energy as the one before"
             )
-        if np.abs(rows).max() < _DONE * rough and abs(step[0]) < _SAME * abs(speed):
+        if np.abs(rows).max() < _DONE * rough and abs(step[0]) < _SAME:
             return turn
-        step *= min(1.0, abs(speed / (2.0 * step[0]))) if step[0] else 1.0
-        before, found = np.array([speed, *machine.added]), None
+        step *= min(1.0, abs(1.0 / (2.0 * step[0]))) if step[0] else 1.0
+        before, found = np.array([turn.begin.speed, *machine.added]), None
         for _ in range(_TRIES):  # as much of the step as lets the machine get round
-            now = before + step
+            now = before + turn.units * step
             machine.added[:] = now[1:]
             if now[2] >= 0.0:
                 found = _turned(machine, Start(begin.angle, float(now[0])), goal.span, accuracy)
@@ -167,16 +188,16 @@ def _none(
 ) -> LagrangeCasadiError:
     """The reason why no steady cycle was found, by the ``turns`` and a ``stall`` on the way."""
     last, name = turns[-1], machine.name
-    swing = last.largest[_SPEED] - last.least[_SPEED]
-    if goal.fluctuation is not None and swing / last.speed < goal.fluctuation:
+    if goal.fluctuation is not None and last.fluctuation < goal.fluctuation:
         return LagrangeCasadiError(
             f"machine '{name}' needs no flywheel: it fluctuates by less than {goal.fluctuation:g}"
             " without one"
         )
-    gains = [turn.end[_SPEED] ** 2 - turn.begin.speed**2 for turn in turns]
+    gains = [turn.gain for turn in turns]
     slows = max(gains) <= 0.0
     if slows and stall is None:
-        found = _at_speeds(machine, last.begin, goal.span, accuracy, _SLOWER)
+        slowest = min((turn.begin for turn in turns), key=lambda begin: abs(begin.speed))
+        found = _at_speeds(machine, slowest, goal.span, accuracy, _SLOWER)
         stall = found if isinstance(found, Stall) else None
     if stall is not None:
         return _stalled(machine, stall, ", because it loses speed each turn" if slows else "")
@@ -190,7 +211,7 @@ def _none(
 
 def _stalled(machine: Machine, stall: Stall, cause: str = "") -> LagrangeCasadiError:
     """The error for a machine that stalls."""
-    begin, way = stall.begin, math.copysign(SLOW, stall.begin.speed)
+    begin, way = stall.begin, math.copysign(machine.slow, stall.begin.speed)
     rows = machine.at(0.0, stall.angle, way)
     drive = float(rows[ROW["drive"]])
     need = drive - float(rows[ROW["inertia"]] * rows[ROW["acceleration"]])
@@ -206,46 +227,43 @@ def _turned(machine: Machine, begin: Start, span: float, accuracy: float) -> Tur
     """Go round once; or the stall before the machine is round."""
     machine.begin(0.0, begin.angle)
     a, by = ROW["acceleration"], [ROW[f"by_{name}"] for name in ("speed", "drive", "inertia")]
+    usual, inertia = begin.speed, _inertia(machine, begin)
+    units = np.array([usual, inertia * usual**2, inertia])
 
     def rates(angle: float, y: Array) -> Array:
-        speed = y[_SPEED]
-        found = np.full(8, np.nan)
-        if not speed * begin.speed > 0.0:
+        speed, found = usual * y[_SPEED], np.full(8, np.nan)
+        if not y[_SPEED] > 0.0:
             return found
         rows = machine.at(0.0, angle, speed)
-        found[_SPEED], found[_TIME] = rows[a] / speed, 1.0 / speed
-        slope = (rows[by[0]] - rows[a] / speed) / speed
-        found[_BY] = slope * y[_BY]
-        found[_BY][1:] += rows[by[1:]] / speed
-        found[_TIME_BY] = -y[_BY] / speed**2
+        found[_SPEED], found[_TIME] = rows[a] / (speed * usual), 1.0 / y[_SPEED]
+        found[_BY] = (rows[by[0]] - rows[a] / speed) / speed * y[_BY]
+        found[_BY][1:] += rows[by[1:]] * units[1:] / (speed * usual)
+        found[_TIME_BY] = -y[_BY] / y[_SPEED] ** 2
         return found
 
-    def even(angle: float, y: Array) -> float:
-        return float(machine.at(0.0, angle, float(y[_SPEED]))[a])
-
-    def stall(_angle: float, y: Array) -> float:
-        return float(y[_SPEED] / begin.speed) - _SLOWEST
-
-    def blocked(angle: float, y: Array) -> float:
-        return machine.margin(0.0, angle, float(y[_SPEED]))
-
-    vars(stall).update(terminal=True)
-    vars(blocked).update(terminal=True)
-    state = np.zeros(8)
-    state[_SPEED], state[_BY] = begin.speed, (1.0, 0.0, 0.0)
-    ends = begin.angle, begin.angle + span
-    run = _over(rates, ends, state, accuracy, [even, stall, blocked])
-    angle, (speed, t) = float(run.t[-1]), run.y[:2, -1]
+    state = np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    events = [
+        lambda angle, y: float(machine.at(0.0, angle, usual * y[_SPEED])[a]),
+        terminal(lambda _angle, y: float(y[_SPEED]) - _SLOWEST),
+        terminal(lambda angle, y: machine.margin(0.0, angle, usual * y[_SPEED])),
+    ]
+    run = integrated(rates, (begin.angle, begin.angle + span), state, accuracy, _ZERO, events)
+    angle, (speed, t) = float(run.t[-1]), run.y[:2, -1] * (usual, 1.0 / usual)
     if run.t_events[1].size:  # from there evenly slower
         slower = float(machine.at(0.0, angle, speed)[a])
         return Stall(begin, angle - speed**2 / (2.0 * slower), float(t - speed / slower))
     if run.status != 0:
         raise LagrangeCasadiError(
-            f"machine '{machine.name}' has no steady cycle: {why_lost(machine, t, angle, speed)}"
+            f"machine '{machine.name}' has no steady cycle: {machine.obstacle(t, angle, speed)}"
         )
     extremes = np.concatenate([run.y[:, [0, -1]].T, np.reshape(run.y_events[0], (-1, state.size))])
-    order = np.argsort(np.abs(extremes[:, _SPEED]))
-    return Turn(begin, span, run.y[:, -1], extremes[order[0]], extremes[order[-1]])
+    order = np.argsort(extremes[:, _SPEED])
+    return Turn(begin, span, units, run.y[:, -1], extremes[order[0]], extremes[order[-1]])
+
+
+def _inertia(machine: Machine, begin: Start) -> float:
+    """The inertia of a machine where it begins [kg m^2], that of the flywheel too."""
+    return float(machine.at(0.0, begin.angle, begin.speed)[ROW["inertia"]])
 
 
 def swing(machine: Machine, begin: Start, span: float, accuracy: float) -> tuple[float, float]:
@@ -255,6 +273,8 @@ def swing(machine: Machine, begin: Start, span: float, accuracy: float) -> tuple
     Raises :class:`.LagrangeCasadiError` if it cannot turn evenly.
     """
     effort, load, drive = ROW["effort"], ROW["load"], ROW["drive"]
+    inertia, added = _inertia(machine, begin), machine.added.copy()
+    energy = _ZERO * inertia * begin.speed**2
 
     def over(mean: float) -> Array:
         def rates(angle: float, _y: Array) -> list[float]:
@@ -263,7 +283,8 @@ def swing(machine: Machine, begin: Start, span: float, accuracy: float) -> tuple
 
         machine.begin(0.0, begin.angle)
         ends = begin.angle, begin.angle + span
-        run = _over(rates, ends, np.zeros(1), accuracy, [lambda x, y: rates(x, y)[0]])
+        events = [lambda angle, y: rates(angle, y)[0]]
+        run = integrated(rates, ends, np.zeros(1), accuracy, energy, events)
         if run.status != 0:
             raise LagrangeCasadiError(
                 f"machine '{machine.name}': the torque at the constant speed"
@@ -271,29 +292,12 @@ def swing(machine: Machine, begin: Start, span: float, accuracy: float) -> tuple
             )
         return np.append(run.y[0, [-1, 0]], run.y_events[0])
 
-    with machine.evenly(begin.angle, begin.speed):
+    machine.added[:] = 0.0, _EVEN * inertia
+    try:
         mean = float(over(0.0)[0]) / span
         return float(np.ptp(over(mean))), mean
-
-
-def _over(
-    rates: Callable[[float, Array], Sequence[float] | Array],
-    ends: tuple[float, float],
-    state: Array,
-    accuracy: float,
-    events: Sequence[Callable[[float, Array], float]],
-) -> Any:
-    """SciPy's result of an integration over the angle."""
-    from scipy.integrate import solve_ivp
-
-    with np.errstate(invalid="ignore"):
-        return solve_ivp(
-            *(rates, ends, state),
-            method="DOP853",
-            rtol=max(accuracy, 2.3e-14),
-            atol=accuracy * 1e-3,
-            events=events,
-        )
+    finally:
+        machine.added[:] = added
 
 
 def _check_repeats(machine: Machine, begin: Start, span: float) -> None:
@@ -302,9 +306,11 @@ def _check_repeats(machine: Machine, begin: Start, span: float) -> None:
     first, last = (
         machine.at(0.0, begin.angle + share * span, begin.speed).copy() for share in (0.0, 1.0)
     )
-    for name in ("effort", "drive", "load", "inertia", "taken"):
+    energy, rate = _ZERO * first[ROW["kinetic"]], abs(begin.speed)
+    torques = dict.fromkeys(("effort", "drive", "load"), energy)
+    for name, size in (torques | {"taken": energy * rate, "inertia": energy / rate**2}).items():
         a, b = first[ROW[name]], last[ROW[name]]
-        if not abs(a - b) <= _SAME * (abs(a) + abs(b) + 1e-3 * first[ROW["kinetic"]]):
+        if not abs(a - b) <= _SAME * (abs(a) + abs(b) + size):
             raise DeclarationError(
                 f"machine '{machine.name}' does not repeat after {abs(span):.6g} rad: its"
                 f" {name} is {a:.6g} there and {b:.6g} here; expected cycle= the angle after which"
@@ -324,17 +330,18 @@ def finished(
     even = checked("count", (0.0, turn.period, count))
     motion = follow(scene, machine, turn.begin, even, wanted, accuracy)
     lost = [
-        array
-        for name, array in motion.solution.series.items()
+        motion.solution.statistics(name).mean or 0.0
+        for name in motion.solution.series
         if name.startswith("friction:") and name.endswith(":loss")
     ]
     gave, took, taken = (
         float(work[-1]) / turn.period
         for work in (motion.work_drive, motion.work_load, motion.work_taken)
     )
+    least, largest = (turn.begin.speed * float(at[_SPEED]) for at in (turn.least, turn.largest))
     cycle = Cycle(
-        *(turn.period, turn.speed, float(turn.least[_SPEED]), float(turn.largest[_SPEED])),
+        *(turn.period, turn.speed, least, largest),
         *(float(machine.added[0]), gave, took, taken),
-        lost=sum(float(np.mean((one[1:] + one[:-1]) / 2.0)) for one in lost),
+        lost=sum(lost),
     )
     return replace(motion, cycle=cycle)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -15,19 +13,18 @@ from ..base.arrays import Array
 from ..codegen import find_compiler, load_batch
 from ..codegen.emit import newton_rule
 from ..equations.free_equation import COLUMNS, FreeEquation
-from ..errors import DeclarationError
+from ..errors import DeclarationError, LagrangeCasadiError
 from ..instants.backends import begun
 
 ROW = {name: k for k, name in enumerate(COLUMNS)}
 
-_EVEN = 1e9
-"""A flywheel of so many times the machine's inertia lets it turn evenly."""
-
 _APART = 0.05
-"""Steps by which loops are followed to a start [rad or m]."""
+"""Steps by which loops are followed to a start, in rad or shares of the extent."""
 
-SLOW = 1e-9
-"""Rate of a machine that is nearly at rest, at which friction has its direction."""
+_SLOW, _SLIGHT = 1e-9, 1e-5
+"""Share of the pace at which a machine is nearly at rest; and share of its size by which it hardly
+moves in the whole time.
+"""
 
 _DEAD, _NEAR = 1e-4, 0.05
 """Sine of a loop's transmission angle at which the loop is at a dead centre; and that, or margin
@@ -61,41 +58,34 @@ class Start:
     speed: float
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class _Compiled:
     """A function at one point, compiled where there is a compiler: arguments are written into
     ``given``, and stay.
     """
 
-    function: ca.Function
     given: dict[str, Array]
     found: Array
-    _call: Any = None
-    _entry: Any = None
+    evaluate: Callable[[], None]
 
     @classmethod
     def of(cls, function: ca.Function) -> _Compiled:
         given = {
             function.name_in(k): np.zeros(function.numel_in(k)) for k in range(function.n_in())
         }
-        made = cls(function, given, np.zeros(function.numel_out(0)))
-        if (compiler := find_compiler("c")) is not None:
+        found, compiler = np.zeros(function.numel_out(0)), find_compiler("c")
+        if compiler is not None:
             library = load_batch(function, compiler)
-            made._entry = library.entry
-            made._call = library.call.made(
-                n=1,
-                **{name: array.ctypes.data for name, array in given.items()},
-                **{f"{name}_every": 0 for name in given},
-                found=made.found.ctypes.data,
-            )
-        return made
+            return cls(given, found, library.bound(1, given, dict.fromkeys(given, 0), found))
+
+        def interpreted() -> None:
+            found[:] = function(*given.values()).full().ravel()
+
+        return cls(given, found, interpreted)
 
     def __call__(self) -> Array:
         """Evaluate it; the result is overwritten by the next call."""
-        if self._entry is None:
-            self.found[:] = self.function(*self.given.values()).full().ravel()
-        else:
-            self._entry(self._call)
+        self.evaluate()
         return self.found
 
 
@@ -105,7 +95,8 @@ class Machine:
     all parameters.
 
     ``z`` are the coordinates of iterated loops where it was evaluated last, ``evaluations`` how
-    often it was.
+    often it was, and ``last`` the last time, coordinate and rate at which it was finite. Its
+    ``pace`` is a rate [rad/s or m/s] beside which rates are large or small.
     """
 
     equation: FreeEquation
@@ -113,7 +104,9 @@ class Machine:
     state: _Compiled
     loops: _Compiled | None
     z: Array
+    pace: float = 1.0
     evaluations: int = 0
+    last: tuple[float, float, float] = (math.nan, math.nan, math.nan)
 
     @classmethod
     def of(cls, equation: FreeEquation, inertia: float, values: Mapping[str, float]) -> Machine:
@@ -133,6 +126,17 @@ class Machine:
         """The mechanism's name, for messages."""
         return self.equation.program.data.name
 
+    @property
+    def size(self) -> float:
+        """A coordinate that is neither large nor small: one rad, or the mechanism's extent [m]."""
+        equation = self.equation
+        return equation.program.extent(self.state.given["p"]) if equation.slides else 1.0
+
+    @property
+    def slow(self) -> float:
+        """Rate of the machine nearly at rest, at which friction has its direction."""
+        return _SLOW * self.pace
+
     def law(self, t: float) -> tuple[float, float]:
         """Coordinate and rate of the drive as the scene has them."""
         found = self.equation.program.motion(t, list(self.values.values()))
@@ -143,35 +147,34 @@ class Machine:
         """Torque and inertia on the drive, to be set."""
         return self.state.given["added"]
 
-    @contextmanager
-    def evenly(self, angle: float, speed: float) -> Iterator[None]:
-        """Let it turn evenly for a while, as with a flywheel that is large beyond measure, and no
-        added torque; the state is one of its own.
-        """
-        before, own = self.added.copy(), float(self.at(0.0, angle, speed)[ROW["inertia"]])
-        self.added[:] = 0.0, _EVEN * own
-        try:
-            yield
-        finally:
-            self.added[:] = before
-
     def begin(self, t: float, angle: float) -> None:
         """Follow the loops from the scene's own start to an angle.
 
         Raises :class:`.DeclarationError` if they do not close there, or nothing has inertia.
         """
         first = self.law(self.equation.program.data.span[0])[0]
-        steps = 1 + int(abs(angle - first) / _APART)
-        if not all(self._close(t, x) for x in np.linspace(first, angle, steps + 1)[1:]):
+        steps = 1 + int(abs(angle - first) / (_APART * self.size))
+        closed = all(self._close(t, x) for x in np.linspace(first, angle, steps + 1)[1:])
+        rows = self.at(t, angle, self.pace)
+        if not closed or math.isnan(rows[ROW["kinetic"]]):
             raise DeclarationError(
-                f"start: the loops of '{self.name}' do not close at {angle:.6g}; expected another"
-                " coordinate"
+                f"start: the loops of '{self.name}' do not close at {angle:.6g}, or are at a dead"
+                " centre there; expected another coordinate"
             )
-        if self.at(t, angle, SLOW)[ROW["inertia"]] == 0.0:
+        if rows[ROW["inertia"]] == 0.0:
             raise DeclarationError(
                 f"free machine '{self.name}': nothing that '{self.equation.joint}' moves has"
                 " inertia; expected masses or inertias, or inertia="
             )
+
+    def let_go(self, t: float, start: Start, span: float) -> None:
+        """Set the pace to that at which a machine moves from a start on, within a time ``span``:
+        its rate there, or what its acceleration gives it over its size.
+        """
+        usual = self.size / span
+        rows = self.at(t, start.angle, start.speed or _SLIGHT * usual)
+        pace = max(abs(start.speed), math.sqrt(abs(rows[ROW["acceleration"]]) * self.size))
+        self.pace = pace if _SLIGHT * usual < pace < math.inf else usual
 
     def at(self, t: float, angle: float, speed: float) -> Array:
         """Rows :data:`COLUMNS` of a state; no number where loops do not close there."""
@@ -181,7 +184,10 @@ class Machine:
         if not self._close(t, angle):
             return np.full(len(COLUMNS), np.nan)
         given["z"][:] = self.z
-        return self.state()
+        rows = self.state()
+        if math.isfinite(rows[ROW["acceleration"]]):
+            self.last = t, angle, speed
+        return rows
 
     def margin(self, t: float, angle: float, speed: float) -> float:
         """Distance of a state from a dead centre and from a jam: zero at one of them."""
@@ -189,14 +195,23 @@ class Machine:
         sine = float(rows[ROW["sine"]]) - _DEAD
         return min([sine, *rows[len(COLUMNS) :]]) if math.isfinite(sine) else 1.0
 
-    def obstacle(self, t: float, angle: float, speed: float) -> Event | None:
-        """The dead centre or the jam that a state is near, if any."""
+    def obstacle(self, t: float, angle: float, speed: float) -> Event:
+        """The dead centre or the jam that a state is near, at which it can be followed no further.
+
+        Raises :class:`.LagrangeCasadiError` if there is none.
+        """
         rows = self.at(t, angle, speed)
         jams = zip(rows[len(COLUMNS) :], self.equation.jams, strict=False)
         near, joints = min([(rows[ROW["sine"]], ""), *jams])
-        if near >= _NEAR:
-            return None
-        return Event("jam" if joints else "dead centre", t, angle, speed, joints)
+        if near < _NEAR:
+            return Event("jam" if joints else "dead centre", t, angle, speed, joints)
+        raise LagrangeCasadiError(
+            f"free machine '{self.name}': its motion cannot be followed beyond t = {t:.6g} s,"
+            f" coordinate {angle:.6g}, rate {speed:.6g}: acceleration"
+            f" {rows[ROW['acceleration']]:.3g}, drive torque or force {rows[ROW['drive']]:.3g} (SI"
+            " units); there the law of the drive or of a load grows without bound, or switches back"
+            " and forth"
+        )
 
     def _close(self, t: float, angle: float) -> bool:
         if self.loops is None:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from ..arguments import Outputs, public
 from ..arithmetic import lookups
-from ..base.arrays import Array, Expression
+from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..declare.description import coordinates_of
@@ -25,7 +23,8 @@ from ..instants.solution import Solution
 from ..studies.request import Request
 from ..studies.solving import solve
 from ..verification.certificate import failure
-from .machine import ROW, SLOW, Event, Machine, Start
+from .integration import integrated, terminal
+from .machine import ROW, Event, Machine, Start
 
 ACCURACY = 1e-12
 """Relative error of a step of integration."""
@@ -33,6 +32,9 @@ ACCURACY = 1e-12
 _MOST_EVALUATIONS, _LOOKED = 4_000_000, 200_000
 """Evaluations that a whole run may take; and after how many it is compared with its share of them.
 """
+
+_ZERO = 0.1
+"""Share of the pace at which a rate counts as zero, beside which its error is absolute."""
 
 _LEAST = 1e-9
 """Share of the whole time by which a run must go on after a stop."""
@@ -100,6 +102,7 @@ class FreeMotion:
     work_load: Array
     work_taken: Array
     kinetic: Array
+    energy: Array
     inertia: float
     events: tuple[Event, ...]
     scene: Scene
@@ -126,15 +129,6 @@ class FreeMotion:
         the drive needs as much to turn evenly.
         """
         return np.asarray(self.drive - (self.reflected + self.inertia) * self.acceleration)
-
-    @property
-    def energy(self) -> Array:
-        """Residual of the balance of energy, (t,)."""
-        works = (self.work_drive, self.work_load, self.work_taken)
-        missing = self.kinetic - self.kinetic[0] - works[0] + works[1] + works[2]
-        still = float(np.abs(self.reflected).max() + self.inertia) * SLOW**2
-        largest = max(still, *(float(np.abs(energy).max()) for energy in (self.kinetic, *works)))
-        return np.asarray(np.abs(missing) / (largest or 1.0))
 
 
 def begun_at(machine: Machine, start: Sequence[float] | None, t: float) -> Start:
@@ -164,7 +158,9 @@ def follow(
         raise DeclarationError("t: a free machine needs two instants or more")
     machine.begin(float(times[0]), start.angle)
     y, events = _integrated(machine, start, times, accuracy)
-    times = times[: y.shape[1]]
+    # An instant at which friction stops the machine has no friction of its own.
+    stops = bool(events) and events[-1].kind == "held" and abs(y[1, -1]) < machine.slow
+    times, y = (row[..., : y.shape[1] - stops] for row in (times, y))
     if times.size < 2:
         raise LagrangeCasadiError(
             f"free machine '{machine.name}': the run ended before the second instant: {events[-1]}"
@@ -176,8 +172,11 @@ def follow(
     for i, (now, angle, speed) in enumerate(zip(times, y[0], y[1], strict=True)):
         rows[:, i] = machine.at(now, angle, speed)[: len(ROW)]
         if not math.isfinite(rows[ROW["acceleration"], i]):
-            rows[:, i] = machine.at(now, angle, math.copysign(SLOW, ways[i]))[: len(ROW)]
-    flywheel = float(machine.added[1])
+            rows[:, i] = machine.at(now, angle, math.copysign(machine.slow, ways[i]))[: len(ROW)]
+    flywheel, inertia = float(machine.added[1]), np.abs(rows[ROW["inertia"]])
+    kinetic = rows[ROW["kinetic"]] + flywheel * y[1] ** 2 / 2.0
+    still = float(inertia.max()) * machine.slow**2
+    largest = max(still, *(float(np.abs(energy).max()) for energy in (kinetic, *y[2:])))
     law = hermite(times, y[0], y[1], rows[ROW["acceleration"]])
     moved = replace(
         scene,
@@ -192,14 +191,16 @@ def follow(
         times,
         *(y[0], y[1], rows[ROW["acceleration"]], rows[ROW["drive"]], rows[ROW["load"]]),
         *(rows[ROW["inertia"]] - flywheel, y[2], y[3], y[4]),
-        kinetic=rows[ROW["kinetic"]] + flywheel * y[1] ** 2 / 2.0,
+        kinetic=kinetic,
+        energy=np.abs(kinetic - kinetic[0] - y[2] + y[3] + y[4]) / (largest or 1.0),
         inertia=flywheel,
         events=tuple(events),
         scene=moved,
         solution=solution,
         unit="m" if machine.equation.slides else "rad",
     )
-    turning = np.abs(rows[ROW["inertia"]]) * np.maximum(np.abs(found.acceleration), SLOW)
+    still = machine.slow * machine.pace / machine.size
+    turning = inertia * np.maximum(np.abs(found.acceleration), still)
     return replace(found, solution=_certified(found, float(turning.max())))
 
 
@@ -251,7 +252,7 @@ def hermite(t: Array, value: Array, rate: Array, acceleration: Array) -> Motion:
     rise = value[1:] - value[:-1] - h * (rate[:-1] + h * acceleration[:-1] / 2.0)
     faster = rate[1:] - rate[:-1] - h * acceleration[:-1]
     change = acceleration[1:] - acceleration[:-1]
-    cells = (
+    coefficients = (
         value[:-1],
         rate[:-1],
         acceleration[:-1] / 2.0,
@@ -260,20 +261,9 @@ def hermite(t: Array, value: Array, rate: Array, acceleration: Array) -> Motion:
         (6.0 * rise - 3.0 * h * faster + h**2 * change / 2.0) / h**5,
     )
 
-    def graph(time: Expression) -> Expression:
-        if t.size == 2:
-            u, c = time - t[0], [ca.SX(float(cell[0])) for cell in cells]
-        else:
-            number = lookups.cell(t.tolist(), time, ends=False)
-            u = time - lookups.entries(t[:-1].tolist(), number)
-            c = [lookups.entries(cell.tolist(), number) for cell in cells]
-        found = ca.SX(c[-1])
-        for coefficient in reversed(c[:-1]):
-            found = found * u + coefficient
-        return found
-
+    cells = np.transpose(coefficients).tolist()
     return Motion(
-        graph,
+        lambda time: lookups.pieces(t.tolist(), cells, time, ends=False),
         span=(float(t[0]), float(t[-1])),
         knots=tuple(t.tolist()),
         description=f"the motion of a free machine through {t.size} instants",
@@ -285,149 +275,120 @@ def _integrated(
 ) -> tuple[Array, list[Event]]:
     """States at the instants that are reached, (5, t): coordinate, rate, works of the drive, of the
     load and of the scene; and the events.
-    """
-    from scipy.integrate import solve_ivp
 
-    t, end = float(times[0]), float(times[-1])
+    The time is integrated as a share of the whole, and the coordinate from the start on. The
+    scene's work may be nothing but rounding: its error is held by that of the kinetic energy.
+    """
+    begin, span = float(times[0]), float(times[-1] - times[0])
     machine.evaluations = 0
-    first = machine.at(t, start.angle, start.speed).copy()
+    first = machine.at(begin, start.angle, start.speed).copy()
     for name in ("drive", "load"):
         if not math.isfinite(first[ROW[name]]):
             raise LagrangeCasadiError(
                 f"free machine '{machine.name}': the law of its {name} is not finite at the start,"
                 f" at the rate {start.speed:g}; expected another start"
             )
-    first = machine.at(t, start.angle, start.speed or SLOW).copy()
-    energy = abs(first[ROW["kinetic"]]) + machine.added[1] * start.speed**2 / 2.0
-    energy = max(energy, *(abs(first[ROW[name]]) for name in ("drive", "load", "inertia")), 1e-12)
-    scales = accuracy * np.array([1.0, max(abs(start.speed), 1.0), energy, energy, energy])
-    state = np.array([start.angle, start.speed, 0.0, 0.0, 0.0])
+    machine.let_go(begin, start, span)
+    inertia = machine.at(begin, start.angle, start.speed or machine.slow)[ROW["inertia"]]
+    kinetic, small = inertia * start.speed**2 / 2.0, _ZERO * machine.pace
+    energy = abs(inertia) * small**2
+    sizes = np.array([machine.size, small, energy, energy, math.inf, energy])
+    share, state = 0.0, np.array([0.0, start.speed, 0.0, 0.0, 0.0, kinetic])
+    shares = (times - begin) / span
     done, events, back = [state[:, None]], list[Event](), 0.0
-    while True:
-        way = math.copysign(1.0, state[1]) if state[1] else _first_way(machine, t, float(state[0]))
-        way = back or way
-        if way == 0.0:
-            events.append(Event("held", t, float(state[0]), 0.0))
+    while share < 1.0:
+        t, angle = begin + span * share, start.angle + float(state[0])
+        way = math.copysign(1.0, state[1]) if state[1] else _first_way(machine, t, angle)
+        course = _Course(machine, begin, span, start.angle, back or way)
+        if course.margin(share, state) <= 0.0:
+            events.append(machine.obstacle(*course.at(share, state)))
             break
-        if machine.margin(t, float(state[0]), float(state[1]) or way * SLOW) <= 0.0:
-            events.append(why_lost(machine, t, float(state[0]), float(state[1]) or way * SLOW))
+        if course.way == 0.0:
+            events.append(Event("held", t, angle, 0.0))
             break
-        ends, last = (float(times[0]), end), (t, float(state[0]), float(state[1]))
-        rates = _Rates(machine, way, ends, last)
-        run = solve_ivp(
-            *(rates, (t, end), state),
-            method=_careful(),
-            rtol=max(accuracy, 2.3e-14),
-            atol=scales,
-            t_eval=times[(times > t) & (times <= end)],
-            events=_watched(machine, way),
-            first_step=(end - t) * 1e-6,
+        run = integrated(
+            course.rates,
+            (share, 1.0),
+            state,
+            accuracy,
+            sizes,
+            [terminal(course.rest, -course.way), terminal(course.margin)],
+            t_eval=shares[shares > share],
+            first_step=(1.0 - share) * 1e-6,
         )
         done.append(np.reshape(run.y, (state.size, -1)))  # SciPy's is a list where it is empty
         if run.status == 0:
             break
         (rests, blocks), (states, blocked) = run.t_events, run.y_events
         if run.status == -1 or blocks.size:
-            at = (float(blocks[0]), *blocked[0][:2].tolist()) if blocks.size else rates.last
-            events.append(why_lost(machine, *at))
+            at = course.at(float(blocks[0]), blocked[0]) if blocks.size else machine.last
+            events.append(machine.obstacle(*at))
             break
-        before, t, state = t, float(rests[0]), states[0] * (1.0, 0.0, 1.0, 1.0, 1.0)
-        if t - before < _LEAST * (end - times[0]):
-            if not back:  # a torque may begin right after
-                back = -way
-                continue
-            events.append(Event("held", t, float(state[0]), 0.0))
+        before, share, state = share, float(rests[0]), states[0] * (1.0, 0.0, 1.0, 1.0, 1.0, 1.0)
+        if share - before >= _LEAST:
+            back = 0.0
+            events.append(Event("rest", *course.at(share, state)[:2], 0.0))
+        elif not back:  # a torque may begin right after
+            back = -course.way
+        else:
+            events.append(Event("held", *course.at(share, state)[:2], 0.0))
             break
-        back = 0.0
-        events.append(Event("rest", t, float(state[0]), 0.0))
-        if t >= end:
-            break
-    return np.concatenate(done, axis=1), events
+    y = np.concatenate(done, axis=1)[:5]
+    y[0] += start.angle
+    return y, events
 
 
-def _careful() -> Any:
-    """SciPy's DOP853, with the plain fifth-order estimate of a step's error: its own one is smaller
-    by the ratio of two estimates, and passes more steps over jumps and corners of a load.
-    """
-    from scipy.integrate import DOP853
+@dataclass(frozen=True, eq=False)
+class _Course:
+    """A machine that moves one ``way``, from an ``angle`` at the time ``begin`` [s] on for a time
+    ``span`` [s], by the share of that time and the states of :func:`_integrated`.
 
-    class Careful(DOP853):  # type: ignore[misc]
-        def _estimate_error_norm(self, K: Array, h: float, scale: Array) -> float:  # noqa: N803
-            errors = K.T @ self.E5 / scale
-            return float(abs(h) * np.linalg.norm(errors) / math.sqrt(errors.size))
-
-    return Careful
-
-
-@dataclass
-class _Rates:
-    """The rates of the states of a machine that moves one ``way``: what depends on that, as a
-    friction, stays as it is up to where the machine is at rest and beyond, so that
-    nothing jumps before rest is found. ``ends`` are the first and the last time of the run, and
-    ``last`` the last time, coordinate and rate at which it was finite.
+    What depends on the way, as a friction, stays as it is up to where the machine is at rest and
+    beyond, so that nothing jumps before rest is found.
     """
 
     machine: Machine
+    begin: float
+    span: float
+    angle: float
     way: float
-    ends: tuple[float, float]
-    last: tuple[float, float, float]
 
-    def __call__(self, t: float, y: Array) -> list[float]:
-        machine, angle, speed = self.machine, float(y[0]), float(y[1])
-        if machine.evaluations > _LOOKED:
-            share = (t - self.ends[0]) / (self.ends[1] - self.ends[0])
-            if machine.evaluations > 2.0 * share * _MOST_EVALUATIONS:
-                raise LagrangeCasadiError(
-                    f"free machine '{machine.name}': after {machine.evaluations} evaluations the"
-                    f" run has only reached t = {t:.6g} s, rate {speed:.6g}; the law of the drive"
-                    " or of a load is stiff, or switches back and forth, there, or the time is too"
-                    " long for the accuracy"
-                )
-        slow = self.way * speed < SLOW
-        a, drive, load, taken = machine.at(t, angle, self.way * SLOW if slow else speed)[_RATES]
-        if math.isfinite(a):
-            self.last = t, angle, speed
-        return [speed, a, drive * speed, load * speed, taken]
+    def at(self, share: float, y: Array) -> tuple[float, float, float]:
+        """Time, coordinate and rate, which is slow at rest."""
+        t, angle, speed = self.begin + self.span * share, self.angle + float(y[0]), float(y[1])
+        return t, angle, speed or self.way * self.machine.slow
 
+    def rates(self, share: float, y: Array) -> Array:
+        """Rates of the states."""
+        machine, speed = self.machine, float(y[1])
+        t, angle, _ = self.at(share, y)
+        if machine.evaluations > max(_LOOKED, 2.0 * share * _MOST_EVALUATIONS):
+            raise LagrangeCasadiError(
+                f"free machine '{machine.name}': after {machine.evaluations} evaluations the run"
+                f" has only reached t = {t:.6g} s, rate {speed:.6g}; the law of the drive or of a"
+                " load is stiff, or switches back and forth, there, or the time is too long for the"
+                " accuracy"
+            )
+        slow = self.way * speed < machine.slow
+        rows = machine.at(t, angle, self.way * machine.slow if slow else speed)
+        a, drive, load, taken = rows[_RATES]
+        gives, takes = drive * speed, load * speed
+        return self.span * np.array([speed, a, gives, takes, taken, gives - takes - taken])
 
-def _watched(machine: Machine, way: float) -> list[Callable[[float, Array], float]]:
-    """Functions of the state that are zero at rest, and at a dead centre or a jam, for a machine
-    that moves one ``way``.
-    """
+    def rest(self, _share: float, y: Array) -> float:
+        """A function that is zero at rest, and not of what is at rest and stays so."""
+        return float(y[1]) + self.way * _NOTHING
 
-    def rest(_t: float, y: Array) -> float:  # of nothing that is at rest and stays so
-        return float(y[1]) + way * _NOTHING
-
-    def blocked(t: float, y: Array) -> float:
-        return machine.margin(t, float(y[0]), float(y[1]) or way * SLOW)
-
-    vars(rest).update(terminal=True, direction=-way)
-    vars(blocked).update(terminal=True)
-    return [rest, blocked]
+    def margin(self, share: float, y: Array) -> float:
+        """A function that is zero at a dead centre, and at a jam."""
+        return self.machine.margin(*self.at(share, y))
 
 
 def _first_way(machine: Machine, t: float, angle: float) -> float:
     """The way in which a machine at rest begins to move: 1 or -1, or 0 where friction holds it."""
     ahead, back = (
-        float(machine.at(t, angle, way * SLOW)[ROW["acceleration"]]) for way in (1.0, -1.0)
+        float(machine.at(t, angle, way * machine.slow)[ROW["acceleration"]]) for way in (1.0, -1.0)
     )
     if ahead > 0.0 or ahead == back == 0.0:
         return 1.0
     return -1.0 if back < 0.0 else 0.0
-
-
-def why_lost(machine: Machine, t: float, angle: float, speed: float) -> Event:
-    """The event at which the integrator can go no further.
-
-    Raises :class:`.LagrangeCasadiError` if it is no dead centre and no jam.
-    """
-    if (found := machine.obstacle(t, angle, speed)) is not None:
-        return found
-    rows = machine.at(t, angle, speed)
-    raise LagrangeCasadiError(
-        f"free machine '{machine.name}': its motion cannot be followed beyond t = {t:.6g} s,"
-        f" coordinate {angle:.6g}, rate {speed:.6g}: acceleration"
-        f" {rows[ROW['acceleration']]:.3g}, drive torque or force {rows[ROW['drive']]:.3g} (SI"
-        " units); there the law of the drive or of a load grows without bound, or switches back and"
-        " forth"
-    )

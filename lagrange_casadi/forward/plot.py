@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.publish import writing
+from ..instants.statistics import shares
 from ..shapes.pictures import check_picture, one_at_a_time, save
 from .motion import FreeMotion
 
@@ -45,8 +46,7 @@ def plot_cycle(motion: FreeMotion, path: str | Path) -> None:
     angle = motion.unit == "rad"
     x = np.degrees(motion.angle) if angle else motion.angle
     resisting = motion.resisting
-    mean = float(np.sum((resisting[1:] + resisting[:-1]) / 2.0 * np.diff(motion.angle)))
-    mean /= float(motion.angle[-1] - motion.angle[0]) or 1.0
+    mean = float(resisting @ shares(motion.angle))
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     upper.fill_between(x, resisting, mean, where=resisting > mean, color="#f2c9b8", lw=0.0)

@@ -213,4 +213,5 @@ def _turning(machine: Machine, start: Sequence[float] | None) -> Start:
             "a steady cycle: the speed at the start is 0; expected start=(angle, speed) with a"
             " guess of the speed"
         )
+    machine.pace = abs(begin.speed)
     return begin

@@ -32,12 +32,13 @@ from ..declare.description import values_of
 from ..declare.scene import Scene
 from ..equations.checks import Check
 from ..equations.derive import as_derived, compile_scene
+from ..equations.friction import SLIP
 from ..equations.held_efforts import HeldEfforts, held_efforts
 from ..equations.program import Program
 from .backends import run
 from .beyond_equilibrium import Holding
 from .evaluation_method import EvaluationMethod
-from .rules import OPEN, SLIP
+from .rules import OPEN
 from .solution import Solution
 
 _MOST = 10

@@ -18,6 +18,7 @@ from ..base.vocabulary import Precision
 from ..codegen.emit import NEWTON_LOST
 from ..declare.ends import BEYOND
 from ..equations.checks import Check
+from ..equations.friction import SLIP
 from ..equations.program import Program
 from ..equations.revolutions import REACH
 from ..equations.status import NEAR, Bound
@@ -35,9 +36,6 @@ residual.
 
 _DEAD = 64.0
 """Roundings below which a closure says nothing but that it is zero."""
-
-SLIP: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
-"""Largest relative residual of friction laws."""
 
 EXTENSIVE = ("GAP", "OPEN_MOMENT")
 """Kinds whose limit is a share of the mechanism's extent."""
