@@ -116,7 +116,9 @@ def refused(link: str, why: str) -> DeclarationError:
 
 
 def unlike(name: str, taken: Collection[str]) -> str:
-    """Return a name, with underscores if it is taken: capitals and small letters are one to solvers."""
+    """Return a name, with underscores if it is taken: capitals and small letters are one to
+    solvers.
+    """
     while name.upper() in map(str.upper, taken):
         name += "_"
     return name
