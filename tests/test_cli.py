@@ -219,6 +219,7 @@ def test_check_fails_a_damaged_file(here, capsys):
 
 
 BROKEN = {
+    "text.h5": "mine",
     "raises.py": "1 / 0\n",
     "empty.py": "x = 1\n",
     "leaves.py": "raise SystemExit(3)\n",
@@ -250,6 +251,21 @@ def scene():
         ("run CASE --set r", 2, "expected NAME=VALUE"),
         ("run CASE --set r=nan", 2, "parameter 'r' must be a finite number, got nan"),
         ("run CASE --set r=0.1 --set r=0.2", 2, "parameter 'r' is set twice"),
+        ("identify CASE empty.py --noise O=1 --noise O=2", 2, "--noise: column 'O' has two"),
+        ("identify CASE empty.py --column O=a --column O=b", 2, "'O' is read from two columns"),
+        ("identify CASE empty.py --column O", 2, "'--column': expected NAME=NAME, got 'O'"),
+        ("identify CASE empty.py --out raises.py", 2, "expected a name that ends in .h5"),
+        ("identify CASE empty.py --out text.h5", 2, "cannot write text.h5: it is no file of HDF5"),
+        ("loads CASE --link rod --out l --node A=1 --node A=2", 2, "--node: 'A' is named twice"),
+        ("report CASE --beside r=1 --beside r=2", 2, "--beside: parameter 'r' is set twice"),
+        ("sweep CASE --grid r=1,2 --grid r=3", 2, "--grid: parameter 'r' is swept twice"),
+        ("tolerances CASE --tolerance r=1 --tolerance r=2", 2, "parameter 'r' is listed twice"),
+        ("free CASE --geared 3", 2, "--geared goes with --drive"),
+        ("free CASE --load inf", 2, "--load: expected a finite number, got inf"),
+        ("free CASE --cycle -1", 2, "--cycle: expected a positive number of turns, got -1"),
+        ("free CASE --drive torque=inf", 2, "--drive torque: expected a finite number, got 'inf'"),
+        ("free CASE --fluctuation 0.1 --t 0:1:5", 2, "expected it without --t"),
+        ("free CASE --out raises.py", 2, "expected a name that ends in .h5"),
         ("run CASE --set m2=-1", 2, "parameter 'm2' = -1 kg is out of its range [0, inf]"),
         (
             "run CASE --set l=-1 --set r=-2",

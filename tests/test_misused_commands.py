@@ -31,6 +31,8 @@ FILES = {
     "motors.csv": MOTORS,
     "profiles.csv": "name,h,w\nflat,0.03,0.01\n",
     "designs.csv": "l\n0.2\n0.3\n",
+    "data.csv": "t [s],O [rad],effort:O [N m]\n"
+    + "".join(f"{k / 50},{0.3 * (k / 50) ** 2},{1.0 + 0.1 * k}\n" for k in range(60)),
 }
 
 TYPED = {
@@ -50,6 +52,9 @@ TYPED = {
     "size": "case.py --profiles profiles.csv",
     "drive": "case.py --motors motors.csv",
     "new": "begun",
+    "free": "case.py --want effort --want motion --out g.h5",
+    "identify": "case.py data.csv --unknown l --out h.h5",
+    "loads": "case.py --link arm --bearing O --out i",
 }
 RIGHT = {command: words(options) for command, options in TYPED.items()}
 
@@ -115,13 +120,34 @@ WRONG = {
     "--criterion": ["best", ""],
     "--yielding": ["best", ""],
     "--motors": ["nowhere.csv", "", ".", "profiles.csv", "text.h5"],
-    "--drive": TEXTS,
+    "--drive": [*TEXTS, "torque", "torque=", "torque=x", "torque=1,2", "dc=1", "power=nan"],
     "--ratio": ["0", "nan", "x", "", "inf", "O="],
     "--efficiency": ["0", "-1", "nan", "x", "1.5", "inf"],
     "--inertia": ["-1", "nan", "x", "inf"],
     "--lead": ["nan", "x", "inf", "0"],
     "--at": ["x", "nan", ""],
     "--like": ["nothing", "", "../x"],
+    "--geared": POSITIVE,
+    "--load": ["nan", "x", "inf", ""],
+    "--start": ["", "0", "x,1", "0,nan", "0,1,2"],
+    "--fluctuation": POSITIVE,
+    "--cycle": POSITIVE,
+    "--unknown": ["", "q", "l,q", "l,", "a b"],
+    "--noise": ["", "l", "effort:O", "effort:O=0", "effort:O=x", "effort:Q=1", "effort:O=-1"],
+    "--prior": ["", "l", "q=1", "l=0", "l=-1", "l=x"],
+    "--counts-per-turn": POSITIVE,
+    "--cutoff": POSITIVE,
+    "--trim": ["-1", "nan", "x", "", "9"],
+    "--validate": ["nowhere.csv", "", ".", "profiles.csv", "text.h5"],
+    "--figure": ["nowhere/x.png", ".", "", "x.txt", "case.py/x.png"],
+    "--report": ["nowhere/x.html", ".", "", "x.txt", "case.py/x.html"],
+    "--plot": ["nowhere/x.png", ".", "", "x.txt", "case.py/x.png"],
+    "--format": ["dwg", ""],
+    "--node": ["", "O", "=1", "O="],
+    "--spectrum": [*TEXTS, "section:arm:axial", "section:arm:axial@2", "stress:arm@x"],
+    "--classes": ["-1", "1.5", "x", "", "nan"],
+    "--bearing": TEXTS,
+    "--exponent": POSITIVE,
 }
 """Values that have no meaning, by the option."""
 
@@ -135,7 +161,7 @@ def misuses():
             one
             for parameter in main_options(command)
             for one in parameter.opts
-            if one.startswith("--")
+            if one.startswith("--") and not getattr(parameter, "is_flag", False)
         }
         for value in (
             WRONG["FILE" if command in (*SWEPT, *RUN) else "CASE"]
@@ -151,7 +177,7 @@ def misuses():
             for value in WRONG[option]:
                 if option == "--over" and command == "optimise":
                     value = {"O=0:1:5": "q=0:1"}.get(value, value)
-                if option == "--out" and command in ("plot", "export") and value == ".":
+                if option == "--out" and command in ("plot", "export", "loads") and value == ".":
                     continue  # a folder
                 kept = [*right]
                 if option in kept:

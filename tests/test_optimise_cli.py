@@ -87,7 +87,7 @@ def test_an_interrupt_leaves_the_best_so_far(here, capfd, monkeypatch):
     ("options", "said"),
     [
         ("--over l=0.3", "expected NAME=LEAST:LARGEST, as in l=0.15:0.4, got 'l=0.3'"),
-        ("--over l=0.1:0.2", "over: a parameter is listed twice"),
+        ("--over l=0.1:0.2", "--over: parameter 'l' is listed twice"),
         ("--over k=0.1:0.2", "unknown parameter 'k'; valid: r, l"),
         ("--subject-to peak:effort:O", "expected a constraint such as"),
         ("--figure x.txt", "expected a name that ends in .png or .pdf or .svg"),

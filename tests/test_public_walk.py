@@ -8,6 +8,7 @@ import itertools
 import random
 import signal
 import warnings
+from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -211,10 +212,37 @@ def walked(things, chosen):
     return found
 
 
-def test_right_calls_are_right(things):
-    for of, (function, given) in public_calls.rights(things).items():
-        if of not in LONG:
-            call(function, given)
+def ours(thing, depth=1):
+    """A thing of this package and those that it holds for users to see."""
+    if type(thing).__module__.partition(".")[0] == "lagrange_casadi":
+        yield thing
+        if depth:
+            for name, inner in getattr(thing, "__dict__", {}).items():
+                if not name.startswith("_"):
+                    yield from ours(inner, depth - 1)
+    elif isinstance(thing, Mapping):
+        for inner in thing.values():
+            yield from ours(inner, depth)
+    elif isinstance(thing, list | tuple):
+        for inner in thing:
+            yield from ours(inner, depth)
+
+
+def unlike_a_line(thing):
+    """What is wrong with how a notebook shows a thing."""
+    text = repr(thing)
+    return text[:300] if len(text) > 200 or "\n" in text or " object at 0x" in text else ""
+
+
+def test_right_calls_are_right_and_give_what_is_shown_in_a_line(things):
+    seen, found = set(), {}
+    for function, given in public_calls.rights(things).values():
+        for thing in ours(call(function, given)):
+            seen.add(type(thing).__name__)
+            if said := unlike_a_line(thing):
+                found[type(thing).__name__] = said
+    assert found == {}
+    assert {"Gears", "LoadCase", "Optimum", "Program", "Sizing", "Solution", "Spreads"} <= seen
 
 
 def test_wrong_kinds_are_refused(things):

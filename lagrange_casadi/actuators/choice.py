@@ -12,13 +12,14 @@ import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..errors import DeclarationError, NoDesignError
 from .duty import Duty, mean_of
 from .motor import Motor
 
 
-@dataclass(frozen=True, eq=False)
-class Choice:
+@dataclass(frozen=True, eq=False, repr=False)
+class Choice(Brief):
     """A motor with a gear ratio and what it does: its ``duty``, and how much of its limits that
     takes, each 1 at most.
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arguments import Finite, public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.beyond_equilibrium import Holding
 from ..instants.solution import Solution
@@ -32,8 +33,8 @@ class InertiaRatio(NamedTuple):
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Duty:
+@dataclass(frozen=True, eq=False, repr=False)
+class Duty(Brief):
     """Requirements of a drive over the instants ``t`` [s]: ``speed`` [rad/s], ``torque`` [N m],
     each (t,).
 

@@ -9,13 +9,14 @@ import numpy as np
 
 from ..arguments import NotNegative, Numeric, Positive, public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..renamed import renamed
 
 
 @renamed
 @public
-@dataclass(frozen=True)
-class Motor:
+@dataclass(frozen=True, repr=False)
+class Motor(Brief):
     """A motor: torques in N m, speeds in rad/s, the rotor's inertia in kg m^2. Of a ``linear`` one
     forces in N, speeds in m/s, and the mass of what moves in kg.
 

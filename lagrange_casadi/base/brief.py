@@ -1,32 +1,87 @@
-"""Dataclasses that hold arrays, in a line."""
+"""Objects in a line that a notebook can show."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import fields
 
+import casadi as ca
 import numpy as np
 
 from ..errors import shown
 
+LONGEST = 200
+"""Characters of a line at most."""
+
 _FEW = 4
-"""Numbers of an array that are written out."""
+"""Numbers of an array, and entries of a collection, that are written out."""
+
+_NAMES = 40
+"""Characters that a list of names takes at most."""
+
+_VALUE = 60
+"""Characters that a field takes at most."""
+
+_WORDS = ("name", "link", "joint", "case")
+"""Fields by which an object is known, the first that it has."""
 
 
 class Brief:
-    """A dataclass that Python writes in a line: of an array its shape, and from where to where its
-    numbers are.
+    """A dataclass that Python writes in a line, as ``Name(field=value, ...)``: of an array its
+    shape, and from where to where its numbers are; of another object its kind and name; of a large
+    collection the number of its entries.
     """
 
     def __repr__(self) -> str:
-        entries = fields(self)  # type: ignore[arg-type]
-        each = ", ".join(f"{entry.name}={_brief(getattr(self, entry.name))}" for entry in entries)
-        return f"{type(self).__name__}({each})"
+        entries = [entry.name for entry in fields(self) if entry.repr]  # type: ignore[arg-type]
+        each = ", ".join(f"{name}={_brief(getattr(self, name, None))}" for name in entries)
+        text = f"{type(self).__name__}({each})"
+        if len(text) > LONGEST:
+            text = f"{text[: LONGEST - 6].rpartition(', ')[0]}, ...)"
+        return text
+
+
+def listed(names: Iterable[str], empty: str = "none") -> str:
+    """Names with commas between: as many as take little room, and how many more there are."""
+    left = list(names)
+    begun = [left.pop(0)] if left else []
+    while left and len(", ".join([*begun, left[0]])) <= _NAMES:
+        begun.append(left.pop(0))
+    return (", ".join(begun) or empty) + (f" and {len(left)} more" if left else "")
 
 
 def _brief(value: object) -> str:
-    if not isinstance(value, np.ndarray) or value.size <= _FEW:
-        return shown(value)
-    shape = " x ".join(map(str, value.shape))
-    if value.dtype.kind not in "iuf" or not np.isfinite(value).any():
-        return f"<{shape} of {value.dtype}>"
-    return f"<{shape} from {np.nanmin(value):.5g} to {np.nanmax(value):.5g}>"
+    """A value in few characters."""
+    if isinstance(value, np.ndarray) and value.size > _FEW:
+        shape = " x ".join(map(str, value.shape))
+        if value.dtype.kind not in "iuf" or not np.isfinite(value).any():
+            return f"<{shape} of {value.dtype}>"
+        return f"<{shape} from {np.nanmin(value):.5g} to {np.nanmax(value):.5g}>"
+    if isinstance(value, Brief):
+        return _known(value)
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, Mapping):
+        pairs = (f"{shown(key)}: {_brief(one)}" for key, one in value.items())
+        return _few(value, lambda: f"{{{', '.join(pairs)}}}")
+    if isinstance(value, tuple | list | set | frozenset):
+        return _few(value, lambda: f"({', '.join(map(_brief, value))}{',' * (len(value) == 1)})")
+    if isinstance(value, ca.SX) and (not value.is_scalar() or ca.n_nodes(value) > _FEW):
+        return f"<SX of {' x '.join(map(str, value.shape))}>"
+    if hasattr(value, "__qualname__"):
+        return f"<{getattr(value, '__name__', 'function')}>"
+    text = shown(value)
+    return text if len(text) <= _VALUE else _known(value)
+
+
+def _known(value: object) -> str:
+    """An object's kind, and the name by which it is known if it has one."""
+    word = next((getattr(value, word) for word in _WORDS if hasattr(value, word)), "")
+    return f"<{type(value).__name__}{f' {word}' if isinstance(word, str) and word else ''}>"
+
+
+def _few(values: Collection[object], written: Callable[[], str]) -> str:
+    """A collection as it is ``written``, or the number of its entries where that is long."""
+    if len(values) <= _FEW and len(text := written()) <= _VALUE:
+        return text
+    return f"<{len(values)} entries>"

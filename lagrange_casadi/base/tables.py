@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from ..base.brief import Brief
+
 CONVENTIONS = (
     "SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi"
     " = 0) to its tip (xi = 1), n is 90 deg counter-clockwise of e; section forces are the action"
@@ -303,8 +305,8 @@ class Terms:
     couple: str = ""
 
 
-@dataclass(frozen=True, eq=False)
-class Table:
+@dataclass(frozen=True, eq=False, repr=False)
+class Table(Brief):
     """All outputs of planar mechanisms, or of spatial ones.
 
     ``rows`` are in the order in which a solution keeps them. ``sizes`` are resultants: their own

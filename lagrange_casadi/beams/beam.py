@@ -10,6 +10,7 @@ from typing import Annotated, Any, TypeAlias
 
 from ..arguments import Share, public
 from ..base.arrays import Json, Operand
+from ..base.brief import Brief
 from ..base.units import Within
 from ..errors import DeclarationError
 from .material import Material
@@ -40,8 +41,8 @@ class Notch:
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Beam:
+@dataclass(frozen=True, eq=False, repr=False)
+class Beam(Brief):
     """A cross-section, a :class:`.Shape` or a :class:`.Course` of some, and a :class:`.Material`;
     notches along the link.
 

@@ -9,12 +9,13 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from ..arguments import public
+from ..base.brief import Brief
 from ..errors import DeclarationError, UnknownNameError
 
 
 @public
-@dataclass(frozen=True)
-class Material:
+@dataclass(frozen=True, repr=False)
+class Material(Brief):
     """A material, in SI units; what is not known is None, and whatever needs it says so.
 
     ``density`` [kg/m^3]; ``elasticity``, ``shear_modulus``, by default by Poisson's ratio of 0.3,

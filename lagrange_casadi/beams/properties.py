@@ -11,6 +11,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Operand
+from ..base.brief import Brief
 
 POISSON = 0.3
 """Poisson's ratio in the coefficients of shear: from 0 to 0.5 they change by a twentieth."""
@@ -32,8 +33,8 @@ class Fibre:
     along_z: tuple[Any, Any, Any] = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, eq=False)
-class Properties:
+@dataclass(frozen=True, eq=False, repr=False)
+class Properties(Brief):
     """A cross-section about its centroid, on the link's axes y and z, in SI units.
 
     ``iz`` is the integral of y^2, which bending in the plane of a planar mechanism sees, ``iy``

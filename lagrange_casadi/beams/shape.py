@@ -14,6 +14,7 @@ from typing import Any
 
 from ..arguments import Symbolic, public
 from ..base.arrays import Expression, Operand
+from ..base.brief import Brief
 from ..base.units import number
 from ..errors import DeclarationError, NumberError
 from ..renamed import renamed
@@ -88,8 +89,8 @@ class Shape:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class Course:
+@dataclass(frozen=True, eq=False, repr=False)
+class Course(Brief):
     """Cross-sections along a link: linear between two ``breaks``, ratios xi/l, from one shape to
     another of its kind.
     """

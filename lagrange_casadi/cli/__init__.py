@@ -140,7 +140,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _fail(str(lacking), 1)
         except MemoryError as error:
             return _fail(f"out of memory: {str(error) or 'fewer instants or ratios fit'}", 1)
-        except OSError as error:  # of standard output, for files fail with an error of ours
+        except OSError as error:  # of help on standard output; all else is an error of ours
             return _fail(one_line(error), 1)
         except (KeyboardInterrupt, Exception):
             raise

@@ -5,6 +5,7 @@ animated SVG or glTF.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -12,13 +13,12 @@ from ..animation import Film, check_ending, write_animation
 from ..base.publish import check_writable
 from ..case import load_case
 from ..declare.scene import Scene, kinds
-from ..errors import CertificateError
 from ..store.runs import load
 from ..store.untrusted import reported_as
 from ..studies.evaluate import evaluate
-from ..verification.certificate import failure
+from ..verification.certificate import refuse_failed
 from .echo import echo
-from .options import HDF5, asked
+from .options import HDF5
 
 
 def animate(
@@ -30,11 +30,11 @@ def animate(
     width: int,
     rate: float,
     seconds: float,
-    **options: object,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.animate`."""
     file = target.suffix in HDF5
-    if file and any(options.values()):
+    if file and any(given.values()):
         raise click.UsageError("--set, --t and --over go with a case, not with a file")
     film = Film(width, rate, seconds, forces, section, not no_names)
     if file:
@@ -51,11 +51,10 @@ def animate(
         out = out or Path(f"{case.name}.gif")
         check_writable(out)
         scene = case.scene
-        solution = evaluate(scene, wanted=_wanted(scene, film), **asked(options))
+        solution = evaluate(scene, wanted=_wanted(scene, film), **given)
         write_animation(solution, out, film)
     echo(f"wrote {out}")
-    if solution.failed:
-        raise CertificateError(f"{failure(solution)}; {out} shows what fails it")
+    refuse_failed(solution, f"{out} shows what fails it")
 
 
 def _wanted(scene: Scene, film: Film) -> list[str]:

@@ -49,50 +49,47 @@ def _sentence(file: Path) -> str:
 
 def new(folder: Path, like: str | None, source: Path | None) -> None:
     """See :func:`.commands.new`."""
-    if source is not None:
-        if like is not None:
-            raise DeclarationError("--like and --from exclude each other")
-        _translated(folder, source)
-        return
-    like, found = SIMPLE if like is None else like, shipped_cases()
-    if like not in found:
-        raise UnknownNameError("case", like, found)
+    if like is not None and source is not None:
+        raise DeclarationError("--like and --from exclude each other")
+    files = (
+        _copied(SIMPLE if like is None else like, folder) if source is None else _translated(source)
+    )
     if os.path.lexists(folder):
         raise PathError(f"{folder} exists: expected a new folder")
     with filling(folder) as draft:
-        for file in sorted(found[like].iterdir()):
-            if file.is_file() and file.name != "README.md":  # which says what the other one is
-                shutil.copyfile(file, draft / file.name)
-        case = draft / "case.py"
-        case.write_text(
-            _renamed(case.read_text(encoding="utf-8"), like, folder), encoding="utf-8", newline="\n"
-        )
+        for name, content in files.items():
+            (draft / name).write_bytes(content)
+    case = files["case.py"].decode()
+    if source is not None:
+        echo(*(line[2:] for line in case.splitlines() if line.startswith("# ")))
     echo(
-        f"wrote {folder / 'case.py'}: change it, then lagrange-casadi run"
-        f" {shlex.quote(str(folder))}"
+        f"wrote {folder / 'case.py'}: {'change' if source is None else 'read'} it, then"
+        f" lagrange-casadi run {shlex.quote(str(folder))}"
     )
 
 
-def _translated(folder: Path, source: Path) -> None:
-    """Write the case of a model of another program."""
+def _translated(source: Path) -> dict[str, bytes]:
+    """The files of a case by their names, of a model of another program."""
     from ..formats import case_of
 
-    text = case_of(source)
-    if os.path.lexists(folder):
-        raise PathError(f"{folder} exists: expected a new folder")
-    with filling(folder) as draft:
-        (draft / "case.py").write_text(text, encoding="utf-8", newline="\n")
-    for line in text.splitlines():
-        if line.startswith("# "):
-            echo(line[2:])
-    echo(
-        f"wrote {folder / 'case.py'}: read it, then lagrange-casadi run {shlex.quote(str(folder))}"
-    )
+    return {"case.py": case_of(source).encode()}
 
 
-def _renamed(text: str, like: str, folder: Path) -> str:
-    """A case's text, its mechanism under the folder's name, as far as that is a name."""
+def _copied(like: str, folder: Path) -> dict[str, bytes]:
+    """The files of a case by their names, of one that comes with the package: its mechanism is
+    named after the folder, as far as that is a name.
+    """
+    found = shipped_cases()
+    if like not in found:
+        raise UnknownNameError("case", like, found)
+    files = {
+        file.name: file.read_bytes()
+        for file in sorted(found[like].iterdir())
+        if file.is_file() and file.name != "README.md"  # which says what the other one is
+    }
     name = re.sub(r"[^A-Za-z0-9_]", "_", Path(os.path.abspath(folder)).name)
-    return (
-        text.replace(f'Mechanism("{like}")', f'Mechanism("{name}")') if name[:1].isalpha() else text
-    )
+    if name[:1].isalpha():
+        case = files["case.py"].decode()
+        renamed = case.replace(f'Mechanism("{like}")', f'Mechanism("{name}")')
+        files["case.py"] = renamed.encode()
+    return files

@@ -5,8 +5,6 @@ What a command does is imported when it is run.
 
 from __future__ import annotations
 
-from typing import Any
-
 import click
 
 from ..base.packages import check_installed
@@ -31,7 +29,7 @@ from .design_commands import (
     trade,
 )
 from .echo import say_step
-from .help import command
+from .help import Body, command
 from .options import (
     CASE,
     EVEN_POINTS,
@@ -43,6 +41,7 @@ from .options import (
     flag,
     instants,
     method,
+    named,
     over,
     pair,
     place,
@@ -56,7 +55,7 @@ from .options import (
 )
 
 
-@command()
+@command
 @click.argument("case", type=CASE)
 @at_values
 @value(
@@ -94,7 +93,7 @@ from .options import (
 )
 @flag("--no-certificate", "Do not check the results by an independent balance of forces.")
 @flag("--verbose", "List all quantities, with strength and deflection in full.")
-def run(**given: Any) -> None:
+def run() -> Body:
     """Compute efforts, reactions and section forces of CASE.
 
     CASE is a folder with a case.py, a Python file, or a name that the command cases lists. The
@@ -102,10 +101,10 @@ def run(**given: Any) -> None:
     """
     from .run import run
 
-    run(**given)
+    return run
 
 
-@command()
+@command
 @click.argument("case", type=CASE)
 @file("--out", "Write into this folder.", metavar="DIR")
 @file(
@@ -143,17 +142,17 @@ def run(**given: Any) -> None:
     "--wasm", "Also write DIR/CASE.wasm for web pages, with a wrapper in JavaScript; needs ziglang."
 )
 @flag("--force", "Write into a folder that holds other files as well; these are left as they are.")
-def export(**given: Any) -> None:
+def export() -> Body:
     """Write CASE as C for other programs.
 
     The folder stands alone: it has the library, a self-test and an example.
     """
     from .export import export
 
-    export(**given)
+    return export
 
 
-@command()
+@command
 @click.argument("file", type=PATH)
 @file("--out", "Draw into this folder.", required=True)
 @several(
@@ -161,11 +160,13 @@ def export(**given: Any) -> None:
     "NAME",
     "For a sweep: draw over this parameter, for maps over two; for a list of designs, over any.",
 )
-@several(
+@named(
     "--at",
     "NAME=VALUE",
     "For a sweep: keep another parameter at this value, or choose designs of a list.",
     kind=place,
+    into="at",
+    twice="a parameter stays at one value, got two for '{}'",
 )
 @click.option(
     "--against",
@@ -176,17 +177,17 @@ def export(**given: Any) -> None:
 )
 @flag("--si", "Draw axes in SI units without prefixes, in place of kN and mm.")
 @svg
-def plot(**given: Any) -> None:
+def plot() -> Body:
     """Draw the figures of the run or sweep FILE.h5.
 
     A run has the figures of its case, a sweep has its peaks over parameters.
     """
     from .plot import plot
 
-    plot(**given)
+    return plot
 
 
-@command()
+@command
 @click.argument(
     "targets", metavar="FILE.h5|CASE [FILE.h5|CASE]", type=CASE, nargs=-1, required=True
 )
@@ -199,30 +200,31 @@ def plot(**given: Any) -> None:
     "--live",
     "For a case: put the evaluation into the page, with sliders for the parameters; needs ziglang.",
 )
-@several(
+@named(
     "--beside",
     "NAME=VALUE",
     "For a case: show a second design beside it, with this parameter changed; repeatable.",
     kind=setting,
+    into="beside",
 )
 @click.option("--case", type=CASE, help="For a sweep: show the mechanism of this case in motion.")
-def report(**given: Any) -> None:
+def report() -> Body:
     """Write a page for browsers about FILE.h5 or CASE, or about two of them side by side.
 
     It is one file, which needs no network and no Python. The mechanism moves with its forces drawn
     on it, next to charts and tables. For a sweep there are maps, fronts and a table of designs;
     click a design to see its mechanism move.
     """
-    if given["live"]:
+    if click.get_current_context().params["live"]:
         # What is imported takes a second or more.
         check_installed("ziglang", "a live report", "live")
         say_step(1, "loading the program")
     from .report_page import report
 
-    report(**given)
+    return report
 
 
-@command()
+@command
 @click.argument("target", metavar="FILE.h5|CASE", type=CASE)
 @file(
     "--out",
@@ -243,7 +245,7 @@ def report(**given: Any) -> None:
 @settings_by("For a case: set a parameter, as l=0.25 or phi=30deg; repeatable.")
 @instants("For a case: set the instants [s], both ends included; default: those of the case.")
 @over
-def animate(**given: Any) -> None:
+def animate() -> Body:
     """Write an animation of FILE.h5 or CASE.
 
     It shows one cycle, again and again. A GIF works everywhere, an SVG is sharp at every size, an
@@ -251,13 +253,13 @@ def animate(**given: Any) -> None:
     """
     from .animate import animate
 
-    animate(**given)
+    return animate
 
 
-@command()
+@command
 @click.argument("target", metavar="CASE|FILE.h5|FILE.h5.parts", type=CASE)
 @wanted("Count the instructions of these outputs; default: those of the case.")
-def info(**given: Any) -> None:
+def info() -> Body:
     """Describe a case, or the file of a run or a sweep.
 
     For a case it lists parts, drives, loads, posture, wanted outputs and the number of
@@ -265,38 +267,38 @@ def info(**given: Any) -> None:
     """
     from .info import info
 
-    info(**given)
+    return info
 
 
-@command()
+@command
 @click.argument("file", metavar="FILE.h5|FILE.h5.parts", type=PATH)
 @flag("--untrusted", "Read the file in a process of its own: forged files may crash or stall HDF5.")
 @value(
     "--time-limit", float, "SECONDS", f"Limit the time of --untrusted [s]; default: {TIME_LIMIT:g}."
 )
-def check(**given: Any) -> int:
+def check() -> Body:
     """Check that FILE.h5 is whole and consistent.
 
     The exit status is 0 if it is, else 1.
     """
     from .check import check
 
-    return check(**given)
+    return check
 
 
-@command()
+@command
 @file("--copy", "Copy all of them into this new folder.", metavar="FOLDER")
-def cases(**given: Any) -> None:
+def cases() -> Body:
     """List the cases that come with the package, or copy them.
 
     The name of each is a CASE for the other commands, as in run four_bar.
     """
     from .cases import cases
 
-    cases(**given)
+    return cases
 
 
-@command()
+@command
 @click.argument("folder", type=PATH)
 @value("--like", str, "NAME", "Copy this case; the command cases lists all.")
 @click.option(
@@ -306,7 +308,7 @@ def cases(**given: Any) -> None:
     metavar="FILE",
     help="Begin with a model of another program: .json, .asmt, .urdf, .sdf or .xml (MuJoCo).",
 )
-def new(**given: Any) -> None:
+def new() -> Body:
     """Begin a case of your own in a new FOLDER.
 
     It is a copy of one that comes with the package, under the folder's name, or a model of another
@@ -314,22 +316,22 @@ def new(**given: Any) -> None:
     """
     from .cases import new
 
-    new(**given)
+    return new
 
 
-@command()
+@command
 @flag("--clear", "Remove all graphs and libraries from the cache.")
-def cache(**given: Any) -> None:
+def cache() -> Body:
     """Show the cache of graphs and compiled libraries, or empty it.
 
     It lists the folder, its size, and the limit of that.
     """
     from .cache import cache
 
-    cache(**given)
+    return cache
 
 
-@command()
+@command
 @click.argument("case", type=CASE)
 @several(
     "--link",
@@ -344,21 +346,22 @@ def cache(**given: Any) -> None:
     "Write a load case for every instant; default: for those at which a section force or a stress"
     " of the link, or a reaction on it, is largest.",
 )
-@click.option(
-    "--format",
-    "formats",
-    type=click.Choice(LOAD_FORMATS),
-    multiple=True,
-    help="Write this format; repeatable. inp is included by input files of CalculiX and Abaqus, nas"
-    " by Nastran's; beam is a model that CalculiX runs. Default: all.",
-)
 @several(
+    "--format",
+    None,
+    "Write this format; repeatable. inp is included by input files of CalculiX and Abaqus, nas by"
+    " Nastran's; beam is a model that CalculiX runs. Default: all.",
+    kind=click.Choice(LOAD_FORMATS),
+    into="formats",
+)
+@named(
     "--node",
     "JOINT=NAME",
     "Name the node set, or the number, of the node in your mesh that takes a joint's load;"
     " LINK=NAME names the element set; repeatable.",
     kind=pair,
     into="nodes",
+    twice="'{}' is named twice",
 )
 @several(
     "--spectrum",
@@ -367,12 +370,13 @@ def cache(**given: Any) -> None:
     " stress:rod@0.5; repeatable.",
     into="spectra",
 )
-@click.option(
+@value(
     "--classes",
-    type=click.IntRange(0),
-    metavar="N",
+    click.IntRange(0),
+    "N",
+    "Set the classes of --spectrum, 0 for every cycle as it is; default: 64.",
     default=64,
-    help="Set the classes of --spectrum, 0 for every cycle as it is; default: 64.",
+    shown=False,
 )
 @several(
     "--bearing",
@@ -380,22 +384,23 @@ def cache(**given: Any) -> None:
     "Write equivalent loads and the speed of this joint for catalogues of bearings; repeatable.",
     into="bearings",
 )
-@click.option(
+@value(
     "--exponent",
-    type=float,
-    metavar="P",
+    float,
+    "P",
+    "Set the exponent of --bearing: 3 for balls, 10/3 for rollers; default: 3.",
     default=3.0,
-    help="Set the exponent of --bearing: 3 for balls, 10/3 for rollers; default: 3.",
+    shown=False,
 )
-def loads(**given: Any) -> None:
+def loads() -> Body:
     """Write loads on links of CASE for finite elements, and load spectra.
 
     Each load case has the forces and moments on the link, its acceleration and gravity, on the
     link's own axes. These are in equilibrium.
     """
-    from .loads import loads_command
+    from .loads import loads
 
-    loads_command(**given)
+    return loads
 
 
 GROUPS = {

@@ -5,8 +5,6 @@ What a command does is imported when it is run.
 
 from __future__ import annotations
 
-from typing import Any
-
 import click
 
 from ..base.space import MOST_THREADS
@@ -18,7 +16,7 @@ from ..base.vocabulary import (
     SAMPLES,
     YIELDING,
 )
-from .help import command
+from .help import Body, command
 from .options import (
     AXIS,
     BOUNDS,
@@ -37,7 +35,9 @@ from .options import (
     flag,
     instants,
     length,
+    named,
     over,
+    pair,
     place,
     ratios,
     resumable,
@@ -53,15 +53,16 @@ from .options import (
 )
 
 
-@command()
+@command
 @click.argument("case", type=CASE)
-@several(
+@named(
     "--grid",
     AXIS,
     "Sweep a parameter over a range or a list of values, in SI units or with a unit; repeatable,"
     " the last varies fastest.",
     kind=axis,
     into="axes",
+    twice="parameter '{}' is swept twice",
 )
 @file(
     "--designs",
@@ -109,7 +110,7 @@ from .options import (
 @flag("--yes", "Allow more than 10^9 designs.", into="many")
 @flag("--quiet", "Show no progress.")
 @file("--out", "Write the sweep to this HDF5 file; default: <case>_sweep.h5 here.")
-def sweep(**given: Any) -> None:
+def sweep() -> Body:
     """Compute CASE for each design of a grid or a list.
 
     CASE is a folder with a case.py, a Python file, or a name that the command cases lists. One HDF5
@@ -123,10 +124,10 @@ def sweep(**given: Any) -> None:
     """
     from .sweep import sweep
 
-    sweep(**given)
+    return sweep
 
 
-@command()
+@command
 @click.argument("file", metavar="FILE.h5", type=PATH)
 @several(
     "--minimise", "COLUMN", "Minimise this column; of two objectives, list their Pareto front."
@@ -141,17 +142,17 @@ def sweep(**given: Any) -> None:
 )
 @several("--column", "COLUMN", "List this column too; repeatable.", into="columns")
 @table_file("Also write the designs as CSV.")
-def best(**given: Any) -> None:
+def best() -> Body:
     """List the best designs of the sweep FILE.h5.
 
     Peaks are compared by their size, whatever their sign.
     """
     from .table import best
 
-    best(**given)
+    return best
 
 
-@command()
+@command
 @click.argument("file", metavar="FILE.h5", type=PATH)
 @conditions("rows")
 @several(
@@ -159,17 +160,17 @@ def best(**given: Any) -> None:
 )
 @value("--rows", click.IntRange(1), "N", "List this number of rows.", default=20)
 @table_file("Write all rows as CSV; default: all columns without axes.")
-def table(**given: Any) -> None:
+def table() -> Body:
     """List the designs of the sweep FILE.h5, or write them as CSV.
 
     A row is a design; for columns with a value at each xi or t, it is a design at one of these.
     """
     from .table import table
 
-    table(**given)
+    return table
 
 
-@command()
+@command
 @click.argument("case", type=CASE)
 @several(
     "--minimise",
@@ -178,13 +179,14 @@ def table(**given: Any) -> None:
     " parameter; repeated: find the Pareto front.",
     required=True,
 )
-@several(
+@named(
     "--over",
     BOUNDS,
     "Choose this parameter between two bounds, in SI units or with a unit; repeatable.",
     kind=bounds,
-    into="bounds",
+    into="over",
     required=True,
+    twice="parameter '{}' is listed twice",
 )
 @several(
     "--subject-to",
@@ -211,7 +213,7 @@ def table(**given: Any) -> None:
 @resumable("search")
 @file("--out", "Write history and result to this HDF5 file; default: <case>_optimum.h5 here.")
 @file("--figure", "Draw the history into this file; default: <case>_optimum.png here.")
-def optimise(**given: Any) -> int:
+def optimise() -> Body:
     """Find the design of CASE with the least peak or mean.
 
     Limits hold over the whole motion. For several terms it finds their Pareto front: designs of
@@ -220,10 +222,10 @@ def optimise(**given: Any) -> int:
     """
     from .optimise import optimise
 
-    return optimise(**given)
+    return optimise
 
 
-@command("size")
+@command
 @click.argument("case", type=CASE)
 @file(
     "--profiles",
@@ -244,20 +246,24 @@ def optimise(**given: Any) -> int:
 )
 @choice("--criterion", CRITERIA, "goodman", "Count mean stress in fatigue by this criterion.")
 @choice(
-    "--yielding", YIELDING, "von_mises", "Compare this equivalent stress with the yield strength."
+    "--yielding",
+    YIELDING,
+    "von_mises",
+    "Compare this equivalent stress with the yield strength.",
+    into="yield_criterion",
 )
 @at_values
-def size(**given: Any) -> None:
+def size() -> Body:
     """Choose the lightest safe profile for each link of CASE.
 
     The loads follow the masses of the chosen profiles.
     """
-    from .size import size_command
+    from .size import size
 
-    size_command(**given)
+    return size
 
 
-@command("free")
+@command
 @click.argument("case", type=CASE)
 @value(
     "--drive",
@@ -274,15 +280,14 @@ def size(**given: Any) -> None:
     "Set the gear ratio, turns of the motor per turn of the drive.",
     default=1.0,
 )
-@click.option(
-    "--load", type=float, default=0.0, metavar="NUMBER", help="Apply this resisting torque [N m]."
-)
-@click.option(
+@value("--load", float, "NUMBER", "Apply this resisting torque [N m].", default=0.0, shown=False)
+@value(
     "--inertia",
-    type=float,
+    float,
+    "NUMBER",
+    "Put a flywheel of this inertia on the drive [kg m^2].",
     default=0.0,
-    metavar="NUMBER",
-    help="Put a flywheel of this inertia on the drive [kg m^2].",
+    shown=False,
 )
 @value(
     "--start",
@@ -308,7 +313,7 @@ def size(**given: Any) -> None:
     "Draw torque and speed over the drive's coordinate into this file, .png, .pdf or .svg.",
     metavar="FILE.png",
 )
-def free(**given: Any) -> None:
+def free() -> Body:
     """Compute the motion of CASE under the torques of a motor, its loads and its weight.
 
     All forces are those of this motion. CASE has one degree of freedom; the motion that it
@@ -317,12 +322,12 @@ def free(**given: Any) -> None:
     \b
     lagrange-casadi free punch_press --drive induction=200,0.2,157 --geared 15 --fluctuation 0.05
     """
-    from .free import free_command
+    from .free import free
 
-    free_command(**given)
+    return free
 
 
-@command("drive")
+@command
 @click.argument("case", type=CASE)
 @file(
     "--motors",
@@ -336,15 +341,13 @@ def free(**given: Any) -> None:
     "Choose a motor for this drive; repeatable. Default: all drives.",
     into="drives",
 )
-@click.option(
+@several(
     "--ratio",
-    "ratios",
-    multiple=True,
-    callback=ratios,
-    metavar="NUMBER,...",
-    help="Set the gear ratio, turns of the motor per turn of the drive; the best of several is"
-    " taken."
+    "NUMBER,...",
+    "Set the gear ratio, turns of the motor per turn of the drive; the best of several is taken."
     " Default: 1.",
+    into="ratios",
+    callback=ratios,
 )
 @value(
     "--lead",
@@ -355,12 +358,13 @@ def free(**given: Any) -> None:
 @value(
     "--efficiency", float, "SHARE", "Set the efficiency of the gearbox, from 0 to 1.", default=1.0
 )
-@click.option(
+@value(
     "--inertia",
-    type=float,
+    float,
+    "NUMBER",
+    "Add this moment of inertia to that of the motor's rotor [kg m^2].",
     default=0.0,
-    metavar="NUMBER",
-    help="Add this moment of inertia to that of the motor's rotor [kg m^2].",
+    shown=False,
 )
 @settings_by()
 @instants(
@@ -368,42 +372,43 @@ def free(**given: Any) -> None:
 )
 @over
 @file("--plot", "Draw torque over speed into this file, .png, .pdf or .svg.", metavar="FILE.png")
-def drive(**given: Any) -> None:
+def drive() -> Body:
     """Choose the smallest motor that suits each drive of CASE.
 
     It lists the speeds, torques and power that a cycle demands, and the reserves of the motor.
     """
-    from .drive import drive_command
+    from .drive import drive
 
-    drive_command(**given)
+    return drive
 
 
-@command()
+@command
 @click.argument("case", type=CASE)
-@several(
+@named(
     "--tolerance",
     "NAME=VALUE",
     "Set the tolerance of a parameter, plus or minus this value [SI unit, unit or %]; repeatable.",
     kind=tolerance,
     into="within",
     required=True,
+    twice="parameter '{}' is listed twice",
 )
 @at_values
 @wanted("Compute these outputs, as in run; repeatable. Default: those of the case.")
 @value("--samples", int, "NUMBER", "Draw this number of designs at random.", default=SAMPLES)
 @backend(" designs")
 @table_file("Write the peaks as CSV, one row per quantity.")
-def tolerances(**given: Any) -> None:
+def tolerances() -> Body:
     """Compute the scatter of the peaks of CASE within tolerances.
 
     It lists the share of each tolerance in the scatter.
     """
     from .tolerances import tolerances
 
-    tolerances(**given)
+    return tolerances
 
 
-@command()
+@command
 @click.argument("case", type=CASE)
 @at_values
 @wanted()
@@ -415,17 +420,17 @@ def tolerances(**given: Any) -> None:
 )
 @file("--out", "Write the numbers to this JSON file; default: <case>_trade.json here.")
 @file("--figure", "Draw time over error into this file; default: <case>_trade.png here.")
-def trade(**given: Any) -> None:
+def trade() -> Body:
     """Measure time and error of each evaluation method on CASE.
 
     Methods differ in backend, precision, Newton steps, tables and compiler flags.
     """
     from .trade import trade
 
-    trade(**given)
+    return trade
 
 
-@command()
+@command
 @click.argument("case", type=CASE)
 @click.argument("data", metavar="DATA.csv", type=PATH)
 @several(
@@ -435,24 +440,28 @@ def trade(**given: Any) -> None:
     callback=separated,
 )
 @settings_by("Set a known parameter, or the first value of an unknown one, as l=0.25; repeatable.")
-@several(
+@named(
     "--column",
     "NAME=HEAD",
     "Read a drive's coordinate, or a force as effort:O, from the column of this head; repeatable.",
-    kind=tolerance,
+    kind=pair,
     into="names",
+    twice="'{}' is read from two columns",
 )
-@several(
+@named(
     "--noise",
     "NAME=NUMBER",
     "State the standard deviation of a column, in the unit of the file; repeatable.",
     kind=place,
+    into="noise",
+    twice="column '{}' has two",
 )
-@several(
+@named(
     "--prior",
     "NAME=NUMBER",
     "Set the standard deviation of the first value of a parameter; repeatable.",
     kind=place,
+    into="prior",
 )
 @several(
     "--counts-per-turn",
@@ -476,7 +485,7 @@ def trade(**given: Any) -> None:
 @file("--out", "Write to this HDF5 file; default: <case>_identified.h5.")
 @file("--figure", "Draw measured and model to this .png, .pdf or .svg.", metavar="FILE")
 @file("--report", "Write a page with all tables and pictures.", metavar="FILE.html")
-def identify(**given: Any) -> None:
+def identify() -> Body:
     """Find parameters of CASE from motion and forces that were measured.
 
     The first line of DATA.csv has names and units of columns: t [s], the coordinates of all drives,
@@ -487,6 +496,6 @@ def identify(**given: Any) -> None:
     \b
     lagrange-casadi identify cases/slider_crank run.csv --unknown m3 --noise 'effort:O=0.05'
     """
-    from .identify import identify_command
+    from .identify import identify
 
-    identify_command(**given)
+    return identify

@@ -9,8 +9,6 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from tqdm import tqdm
-
 from ..base.publish import writing
 from ..declare.scene import Scene
 from ..errors import LagrangeCasadiError, PostureError
@@ -19,6 +17,7 @@ from ..methods import method
 from ..shapes.index import write_index
 from ..shapes.specs import Spec
 from .echo import echo
+from .progress import bar_of
 
 
 def draw_with_progress(
@@ -31,13 +30,7 @@ def draw_with_progress(
     chosen = specs or default_figures(solution)
     skipped: list[str] = []
     drawn: list[Path] = []
-    for spec, path in tqdm(
-        draw(solution, chosen, folder, si, svg),
-        total=len(chosen),
-        desc="figures",
-        leave=False,
-        disable=None,
-    ):
+    for spec, path in bar_of("figures", draw(solution, chosen, folder, si, svg), len(chosen)):
         if path:
             drawn.append(path)
         else:

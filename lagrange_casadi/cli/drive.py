@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -15,21 +16,17 @@ from ..actuators import Choice, Duty, Motor, duty_of, inertia_at, plot_duty, rea
 from ..actuators.duty import slides
 from ..base.arrays import Array
 from ..case import load_case
-from ..declare.scene import kinds
-from ..errors import CertificateError, NoDesignError, UnknownNameError
+from ..errors import NoDesignError, UnknownNameError
 from ..instants.solution import Solution
 from ..shapes.pictures import check_picture
 from ..studies.evaluate import evaluate
-from ..verification.certificate import failure, summary
+from ..verification.certificate import certified_outputs, refuse_failed, summary
 from .echo import echo
-from .options import asked
 
 _BAR = 40
-_FORCES = ("reaction", "multiplier", "load", "friction")
-"""Outputs that a certificate needs beside efforts and motion."""
 
 
-def drive_command(
+def drive(
     case: Path,
     motors: Path | None,
     drives: Sequence[str],
@@ -38,7 +35,7 @@ def drive_command(
     efficiency: float,
     inertia: float,
     plot: Path | None,
-    **options: object,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.drive`."""
     if lead is not None and not 0.0 < lead < math.inf:
@@ -61,9 +58,7 @@ def drive_command(
                 f"--plot: expected one drive, by --drive; there are {', '.join(chosen)}"
             )
         check_picture(plot)
-    given = asked(options)
-    wanted = ["effort", "motion", *(kind for kind in kinds(scene.outputs) if kind in _FORCES)]
-    solution = evaluate(scene, wanted=wanted, **given)
+    solution = evaluate(scene, wanted=certified_outputs(scene.outputs), **given)
     lines = [
         (
             f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to"
@@ -91,10 +86,8 @@ def drive_command(
             )
             lines.append(f"wrote {plot}")
     lines += (f"note: {note}" for note in solution.notes)
-    for line in (*lines, summary(solution.certificate)):
-        echo(line)
-    if solution.failed:
-        raise CertificateError(failure(solution))
+    echo(*lines, summary(solution.certificate))
+    refuse_failed(solution)
     if failed:
         raise NoDesignError("; ".join(failed))
 

@@ -7,14 +7,20 @@ from __future__ import annotations
 
 import click
 
-from ..errors import escaped
+from ..errors import StoreError, escaped
 
 
-def echo(line: str, err: bool = False) -> None:
-    """Print a line on standard output, or on standard error; control characters
-    in it are escaped.
+def echo(*lines: str, err: bool = False) -> None:
+    """Print lines on standard output, or on standard error; control characters in them are
+    escaped.
     """
-    click.echo(escaped(line), err=err)
+    try:
+        for line in lines:
+            click.echo(escaped(line), err=err)
+    except OSError as error:
+        if err or isinstance(error, BrokenPipeError):  # nobody reads it
+            raise
+        raise StoreError(f"cannot write to standard output: {error.strerror}") from None
 
 
 def say_step(number: int, what: str) -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
+from typing import Any
 
 import click
 
 from ..case import load_case
 from ..exports import export as write
 from .echo import echo
-from .options import asked
 
 
 def export(
@@ -20,13 +20,12 @@ def export(
     name: str | None,
     fmu: bool,
     fmu_by: str | None,
-    **options: object,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.export`."""
     if fmu_by and not fmu:
         raise click.UsageError("--fmu-by goes with --fmu")
     loaded = load_case(case)
-    given = asked(options)
     if model is not None:
         from ..formats import save_model
 

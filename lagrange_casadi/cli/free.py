@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +12,16 @@ import click
 from ..base.numerals import real
 from ..case import load_case
 from ..declare.even_points import EvenPoints
-from ..errors import CertificateError, UnknownNameError
+from ..errors import UnknownNameError
 from ..forward import FreeMotion, Law, dc_motor, induction_motor, power, torque
 from ..forward.plot import plot_cycle
-from ..forward.running import flywheel, free
+from ..forward.running import flywheel
+from ..forward.running import free as run
 from ..shapes.pictures import check_picture
 from ..store.runs import check_target, save
-from ..verification.certificate import failure, summary
+from ..verification.certificate import refuse_failed, summary
 from .echo import echo
-from .options import parameters
+from .options import HDF5, target
 
 LAWS: dict[str, tuple[Callable[..., Law], int]] = {
     "torque": (torque, 1),
@@ -31,63 +32,60 @@ LAWS: dict[str, tuple[Callable[..., Law], int]] = {
 """Laws of drives by the word of the option, and how many numbers each takes."""
 
 
-def free_command(
+def free(
     case: Path,
     drive: str | None,
     geared: float,
-    load: float,
     inertia: float,
     start: str | None,
     steady: bool,
     fluctuation: float | None,
     cycle: float,
-    count: int,
-    settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
-    want: Sequence[str],
     out: Path | None,
     plot: Path | None,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.free`."""
     if fluctuation is not None and inertia:
         raise click.UsageError("--fluctuation finds the flywheel; expected it without --inertia")
+    if fluctuation is not None and t is not None:
+        raise click.UsageError("--fluctuation computes a steady cycle; expected it without --t")
+    if drive is None and geared != 1.0:
+        raise click.UsageError("--geared goes with --drive")
+    if not math.isfinite(given["load"]):
+        raise click.UsageError(f"--load: expected a finite number, got {given['load']:g}")
+    if not 0.0 < cycle < math.inf:
+        raise click.UsageError(f"--cycle: expected a positive number of turns, got {cycle:g}")
     if plot is not None:
         check_picture(plot)
     loaded = load_case(case)
-    target = out or Path(f"{loaded.name}_free.h5")
-    check_target(target)
-    law = None if drive is None else _law(drive).geared(geared)
-    begin = None if start is None else _numbers("--start", start, 2)
-    machine: dict[str, Any] = {
-        "drive": law,
-        "load": load,
-        "start": begin,
+    out = target("--out", out, f"{loaded.name}_free.h5", HDF5)
+    check_target(out)
+    given |= {
+        "drive": None if drive is None else _law(drive).geared(geared),
+        "start": None if start is None else _numbers("--start", start, 2),
         "cycle": math.tau * cycle,
-        "count": count,
-        "parameters": parameters(settings),
-        "wanted": want or None,
     }
     wheel = None
     if fluctuation is not None:
-        wheel = flywheel(loaded.scene, fluctuation=fluctuation, **machine)
+        wheel = flywheel(loaded.scene, fluctuation=fluctuation, **given)
         found = wheel.motion
     else:
-        found = free(loaded.scene, inertia=inertia, t=t, steady=steady, **machine)
-    for line in _lines(found):
-        echo(line)
+        found = run(loaded.scene, inertia=inertia, t=t, steady=steady, **given)
+    echo(*_lines(found))
     if wheel is not None:
         echo(
             f"flywheel: {wheel.inertia:.6g} kg m^2 by the exact cycle, {wheel.textbook:.6g} kg m^2"
             f" by the energy method, for a swing of {wheel.energy:.6g} J"
         )
-    save(found.solution, target)
-    echo(f"wrote {target}")
+    save(found.solution, out)
+    echo(f"wrote {out}")
     if plot is not None:
         plot_cycle(found, plot)
         echo(f"wrote {plot}")
     echo(summary(found.solution.certificate))
-    if found.solution.failed:
-        raise CertificateError(failure(found.solution))
+    refuse_failed(found.solution)
 
 
 def _law(text: str) -> Law:
@@ -104,8 +102,9 @@ def _numbers(what: str, text: str, many: int) -> list[float]:
         found = [real(word) for word in text.split(",")]
     except ValueError:
         found = []
-    if len(found) != many:
-        raise click.UsageError(f"{what}: expected {many} numbers with commas between, got '{text}'")
+    if len(found) != many or not all(map(math.isfinite, found)):
+        numbers = "a finite number" if many == 1 else f"{many} finite numbers with commas between"
+        raise click.UsageError(f"{what}: expected {numbers}, got '{text}'")
     return found
 
 

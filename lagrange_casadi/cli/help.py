@@ -28,17 +28,23 @@ _MACHINE = (
 """Options that say how results are computed, by name."""
 
 
+Body = Callable[..., int | None]
+"""The work of a command with its options; a number that it returns is the exit status."""
+
+
 class Command(click.Command):
     """A command whose help has the options of the machine in a group of their own.
 
-    What it was asked for is noted in the context's ``obj``, for what follows an error.
+    Its callback takes nothing and returns its :data:`Body`, which it imports. What it was asked for
+    is noted in the context's ``obj``, for what follows an error.
     """
 
     def invoke(self, ctx: click.Context) -> object:
         """Run the command."""
         if ctx.obj is not None:
             ctx.obj |= ctx.params
-        return super().invoke(ctx)
+        assert self.callback is not None
+        return self.callback()(**ctx.params)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options in two groups."""
@@ -53,9 +59,11 @@ class Command(click.Command):
                     formatter.write_dl(records)
 
 
-def command(name: str | None = None) -> Callable[[Callable[..., int | None]], Command]:
-    """Declare a command with grouped options."""
-    return click.command(name, cls=Command)
+def command(imports: Callable[[], Body]) -> Command:
+    """Declare a command: of the function's name, described by its docstring, to do what it
+    returns.
+    """
+    return click.command(cls=Command)(imports)
 
 
 def write_commands(

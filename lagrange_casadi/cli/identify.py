@@ -2,67 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
-from ..base.publish import check_writable
 from ..case import load_case
-from ..identification import Comparison, Identification, identify, read_measurements
+from ..identification import Comparison, Identification, read_measurements
+from ..identification import identify as estimate
 from ..identification.file import save_identification
 from ..identification.page import check_page, report_identification
 from ..identification.plot import plot_identification
 from ..shapes.pictures import check_picture
+from ..store.opening import IDENTIFICATION
+from ..store.runs import check_target
 from .echo import echo
-from .options import parameters
+from .options import HDF5, target
 
 
-def identify_command(
+def identify(
     case: Path,
     data: Path,
-    unknown: Sequence[str],
-    settings: Sequence[tuple[str, float | str]],
-    names: Sequence[tuple[str, str]],
-    noise: Sequence[tuple[str, float]],
-    prior: Sequence[tuple[str, float]],
+    names: Mapping[str, str],
+    noise: Mapping[str, float],
     counts_per_turn: Sequence[tuple[str, float]],
-    robust: bool,
-    consistent: bool,
-    cutoff: float | None,
     trim: float,
     validate: Path | None,
     out: Path | None,
     figure: Path | None,
     report: Path | None,
+    **given: Any,
 ) -> None:
     """See :func:`.design_commands.identify`."""
     loaded = load_case(case)
-    out = out or Path(f"{loaded.name}_identified.h5")
-    check_writable(out, hdf5=True)
+    out = target("--out", out, f"{loaded.name}_identified.h5", HDF5)
+    check_target(out, IDENTIFICATION)
     if figure is not None:
         check_picture(figure)
     if report is not None:
         check_page(report)
 
     turns = _turns(counts_per_turn)
-    read = partial(read_measurements, names=dict(names), noise=dict(noise), counts_per_turn=turns)
+    read = partial(read_measurements, names=names, noise=noise, counts_per_turn=turns)
     record, other = read(data), None if validate is None else read(validate)
-    found = identify(
-        loaded.scene,
-        record,
-        unknown or None,
-        parameters=parameters(settings),
-        prior=dict(prior),
-        robust=robust,
-        consistent=consistent,
-        cutoff=cutoff,
-        trim=trim,
-    )
+    found = estimate(loaded.scene, record, trim=trim, **given)
     second = None if other is None else found.validate(other, trim)
-    for line in _lines(found, second):
-        echo(line)
+    echo(*_lines(found, second))
     save_identification(found, out, second)
     echo(f"wrote {out}")
     if figure is not None:

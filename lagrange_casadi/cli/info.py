@@ -27,11 +27,11 @@ from .report import Rows, asked_line
 from .strength_lines import not_evaluated_lines
 
 
-def info(target: Path, want: tuple[str, ...]) -> None:
+def info(target: Path, wanted: Sequence[str] | None) -> None:
     """See :func:`.commands.info`."""
     folder = unfinished(target)
     if folder or target.suffix in HDF5:
-        if want:
+        if wanted:
             raise click.UsageError("--want goes with a case, not with a file")
         if folder:
             _describe_sweep(folder.identity)
@@ -41,14 +41,13 @@ def info(target: Path, want: tuple[str, ...]) -> None:
         else:
             _describe_file(store.load(target))
     else:
-        _describe_case(load_case(target).scene, want)
+        _describe_case(load_case(target).scene, wanted)
 
 
-def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
-    program = compile_scene(scene, want or None)
+def _describe_case(scene: Scene, wanted: Sequence[str] | None) -> None:
+    program = compile_scene(scene, wanted)
     _describe_mechanism(template(scene).filled(scene.values()))
-    for line in scene_lines(scene):
-        echo(line)
+    echo(*scene_lines(scene))
     timing = scene.timing()
     echo(asked_line(timing.words(program.data.symbols)[:4], timing.slides))
     echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
@@ -57,7 +56,7 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     echo(
         f"outputs: {', '.join(outputs)}" + (f"; all of a kind: {', '.join(whole)}" if whole else "")
     )
-    echo(f"wanted: {', '.join(want or scene.wanted)}")
+    echo(f"wanted: {', '.join(wanted or scene.wanted)}")
     loops = [
         f"{name} ({'iterated' if program.iterates(name) else 'closed form'})"
         for name in program.checks("closure")
@@ -77,15 +76,11 @@ def _describe_file(solution: Solution) -> None:
     echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
     made = (provenance.backend, provenance.precision, provenance.compiler, provenance.flags)
     _describe_method(made, provenance.method, provenance.versions)
-    for note in solution.notes:
-        echo(f"note: {note}")
-    for line in not_evaluated_lines(solution):
-        echo(line)
+    echo(*(f"note: {note}" for note in solution.notes), *not_evaluated_lines(solution))
     if solution.sensitivities.by:
         by = ", ".join(solution.sensitivities.parameters)
         echo(f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}")
-    for line in Rows.of_all(solution).table():
-        echo(line)
+    echo(*Rows.of_all(solution).table())
 
 
 def _describe_sweep(identity: Identity) -> None:

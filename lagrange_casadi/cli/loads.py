@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -13,35 +14,27 @@ from ..base.publish import check_writable
 from ..base.table_file import TableFile
 from ..base.vocabulary import LOAD_FORMATS
 from ..case import load_case
-from ..declare.even_points import EvenPoints
-from ..declare.scene import kinds
-from ..declare.times import Over
-from ..errors import CertificateError, DeclarationError
+from ..errors import DeclarationError
 from ..load_cases import LoadCase, link_load_cases, write_load_cases, write_spectrum
 from ..load_cases.beam_model import modelled
 from ..strength.bearings import bearing_loads
 from ..studies.evaluate import evaluate
-from ..verification.certificate import failure, summary
+from ..verification.certificate import certified_outputs, refuse_failed, summary
 from .echo import echo
-from .options import parameters
-
-_FORCES = ("reaction", "multiplier", "load", "friction")
 
 
-def loads_command(
+def loads(
     case: Path,
     links: Sequence[str],
     out: Path,
-    settings: Sequence[tuple[str, float | str]],
-    t: EvenPoints | None,
-    over: Over | None,
     every: bool,
     formats: Sequence[str],
-    nodes: Sequence[tuple[str, str]],
+    nodes: Mapping[str, str],
     spectra: Sequence[str],
     classes: int,
     bearings: Sequence[str],
     exponent: float,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.loads`."""
     if not (links or spectra or bearings):
@@ -49,18 +42,17 @@ def loads_command(
     check_writable(out, folder=True)
     scene, chosen = load_case(case).scene, tuple(dict.fromkeys(links))
     inside = {*chosen, *(re.split("[:@]", f"{name}:")[1] for name in spectra)}
-    wanted = ["effort", "motion", *(kind for kind in kinds(scene.outputs) if kind in _FORCES)]
+    wanted = certified_outputs(scene.outputs)
     wanted += (name for name in scene.outputs if name in {f"section:{link}" for link in inside})
-    solution = evaluate(scene, parameters=parameters(settings), t=t, over=over, wanted=wanted)
-    if solution.failed:
-        raise CertificateError(failure(solution))
+    solution = evaluate(scene, wanted=wanted, **given)
+    refuse_failed(solution)
     instants = solution.t.tolist() if every else None
     cases = [case for link in chosen for case in link_load_cases(solution, link, instants, scene)]
     for one in cases:
         governs = f": {', '.join(one.governs)}" if one.governs else ""
         echo(f"{one.link} at t = {one.t:.6g} s, residual {max(one.residual):.1e}{governs}")
     if cases:
-        files = write_load_cases(cases, out, formats or _formats(cases), dict(nodes))
+        files = write_load_cases(cases, out, formats or _formats(cases), nodes)
         echo(f"wrote {out}: {len(cases)} load cases in {len(files)} files")
     out.mkdir(parents=True, exist_ok=True)
     for name in spectra:

@@ -5,43 +5,34 @@ from __future__ import annotations
 import signal
 from collections.abc import Sequence
 from pathlib import Path
-
-from tqdm import tqdm
+from typing import Any
 
 from ..base.publish import check_writable, writing
 from ..case import load_case
-from ..errors import DeclarationError
 from ..figures.optimum import draw_front, draw_optimum
 from ..shapes.pictures import PICTURES
 from ..studies.optimise import Front, Optimum
 from ..studies.optimise import optimise as search
 from .echo import echo
 from .optimum_lines import front_lines, optimum_lines
-from .options import HDF5, asked, check_ending
+from .options import HDF5, target
+from .progress import bar_of
 
 
 def optimise(
     case: Path,
     minimise: Sequence[str],
-    bounds: Sequence[tuple[str, tuple[float, float]]],
     out: Path | None,
     figure: Path | None,
-    **options: object,
+    **given: Any,
 ) -> int:
     """See :func:`.commands.optimise`."""
-    over = dict(bounds)
-    if len(over) < len(bounds):
-        raise DeclarationError("over: a parameter is listed twice")
     loaded = load_case(case)
-    out, figure = (
-        out or Path(f"{loaded.name}_optimum.h5"),
-        figure or Path(f"{loaded.name}_optimum.png"),
-    )
-    check_ending("--out", out, HDF5)
+    out = target("--out", out, f"{loaded.name}_optimum.h5", HDF5)
     check_writable(out, hdf5=True)
-    check_ending("--figure", figure, PICTURES)
+    figure = target("--figure", figure, f"{loaded.name}_optimum.png", PICTURES)
     check_writable(figure)
-    with tqdm(desc="programs", leave=False, disable=None) as bar:
+    with bar_of("programs") as bar:
 
         def progress(start: int, objective: float, excess: float) -> None:
             bar.set_postfix_str(
@@ -50,7 +41,7 @@ def optimise(
             )
             bar.update()
 
-        given = asked(options) | {"over": over, "out": out, "progress": progress}
+        given |= {"out": out, "progress": progress}
         found: Optimum | Front
         if len(minimise) == 1:
             found = search(loaded, minimise=minimise[0], **given)
@@ -66,7 +57,6 @@ def optimise(
             draw_optimum(scene, found, picture, figure.suffix)
         else:
             draw_front(scene, found, picture, figure.suffix)
-    for line in optimum_lines(found) if isinstance(found, Optimum) else front_lines(found):
-        echo(line)
+    echo(*(optimum_lines(found) if isinstance(found, Optimum) else front_lines(found)))
     echo(f"wrote {out} and {figure}")
     return 0 if found.feasible and found.converged and not found.stopped else 1

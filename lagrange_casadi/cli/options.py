@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import os
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
@@ -16,10 +15,12 @@ import click
 from ..base.numerals import real, whole
 from ..base.vocabulary import BACKENDS, PRECISIONS
 from ..errors import DeclarationError
+from .help import Body
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
+    from ..base.table_file import TableFile
     from ..declare.even_points import EvenPoints
     from ..declare.times import Over
     from ..studies.sweep import Axis
@@ -29,6 +30,9 @@ OVER = "JOINT=START:STOP:COUNT"
 BOUNDS = "NAME=LEAST:LARGEST"
 HDF5 = (".h5", ".hdf5")
 """Endings of the files of results."""
+
+_COMMA = f"{__name__}.decimal_comma"
+"""The flag in a context's notes, which is read before the file that it is about."""
 
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
@@ -75,23 +79,17 @@ CASE = _Case(path_type=Path)
 
 def even_points(text: str) -> EvenPoints:
     """START:STOP:COUNT, both ends included; START and STOP may have a unit, as 80ms."""
-    try:
+    with _expected("START:STOP:COUNT, as in 0:0.08:801", text):
         start, stop, count = text.split(":")
         return _value(start), _value(stop), whole(count)
-    except ValueError:
-        raise click.BadParameter(
-            f"expected START:STOP:COUNT, as in 0:0.08:801, got '{text}'"
-        ) from None
 
 
 def steps_over(text: str) -> Over:
     """JOINT=START:STOP:COUNT; which units START and STOP may have is the joint's affair."""
-    try:
-        joint, steps = (part.strip() for part in text.split("="))
+    with _expected(f"{OVER}, as in O=0:720deg:721", text):
+        joint, steps = _named(text)
         start, stop, count = steps.split(":")
         return joint, _value(start), _value(stop), whole(count)
-    except ValueError:
-        raise click.BadParameter(f"expected {OVER}, as in O=0:720deg:721, got '{text}'") from None
 
 
 def axis(text: str) -> tuple[str, Axis]:
@@ -100,13 +98,15 @@ def axis(text: str) -> tuple[str, Axis]:
     """
     from ..studies.sweep import Range, Values
 
-    name, words = (word.strip() for word in text.partition("=")[::2])
-    parts = words.split(":")
-    if not (name and words) or len(parts) not in (1, 3, 4):
-        raise click.BadParameter(
-            "expected NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..., as"
-            f" in l=0.1:0.4:31, got '{text}'"
-        )
+    with _expected(
+        "NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..., as in"
+        " l=0.1:0.4:31",
+        text,
+    ):
+        name, words = _named(text)
+        parts = words.split(":")
+        if len(parts) not in (1, 3, 4):
+            raise ValueError(text)
     try:
         if len(parts) == 1:
             return name, Values(
@@ -131,40 +131,22 @@ def length(text: str) -> float:
     """A length, which may have a unit, as 5mm."""
     from ..base.units import number
 
-    try:
+    with _expected("a length [m], as in 0.005 or 5mm", text):
         return number(_value(text), "m", finite=False)
-    except ValueError:
-        raise click.BadParameter(
-            f"expected a length [m], as in 0.005 or 5mm, got '{text}'"
-        ) from None
 
 
 def setting(text: str) -> tuple[str, float | str]:
     """NAME=VALUE; a value with a unit remains a text, and is checked later."""
-    name, equals, value = (word.strip() for word in text.partition("="))
-    with suppress(ValueError):
-        if equals:
-            return name, _value(value)
-    raise click.BadParameter(
-        f"expected NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg, got '{text}'"
-    )
-
-
-def pair(text: str) -> tuple[str, str]:
-    """NAME=NAME."""
-    name, _, other = (word.strip() for word in text.partition("="))
-    if not name or not other:
-        raise click.BadParameter(f"expected NAME=NAME, got '{text}'")
-    return name, other
+    with _expected("NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg", text):
+        name, word = _named(text)
+        return name, _value(word)
 
 
 def counts(text: str) -> tuple[str, float]:
     """NAME=NUMBER; or NUMBER, which is for all names, as the empty one."""
-    name, equals, word = (part.strip() for part in text.rpartition("="))
-    with suppress(ValueError):
-        if bool(name) == bool(equals):
-            return name, real(word)
-    raise click.BadParameter(f"expected NUMBER or NAME=NUMBER, as in 4096 or O=4096, got '{text}'")
+    with _expected("NUMBER or NAME=NUMBER, as in 4096 or O=4096", text):
+        name, word = _named(text) if "=" in text else ("", text)
+        return name, real(word)
 
 
 def place(text: str) -> tuple[str, float | str]:
@@ -175,71 +157,30 @@ def place(text: str) -> tuple[str, float | str]:
     return name, value
 
 
-def parameters(settings: Sequence[tuple[str, float | str]]) -> dict[str, Any]:
-    """Settings as a mapping. Raises ``click.UsageError`` for a parameter set twice."""
-    found: dict[str, Any] = {}
-    for name, value in settings:
-        if name in found:
-            raise click.UsageError(f"--set: parameter '{name}' is set twice")
-        found[name] = value
-    return found
-
-
-def asked(options: Mapping[str, object]) -> dict[str, Any]:
-    """Options as a study takes them: ``settings`` as its ``parameters``, and ``want`` as what is
-    ``wanted``, None if nothing is named.
-    """
-    found: dict[str, Any] = dict(options)
-    if "settings" in found:
-        found["parameters"] = parameters(found.pop("settings"))
-    if "want" in found:
-        found["wanted"] = found.pop("want") or None
-    return found
-
-
-def check_ending(option: str, path: Path, endings: Collection[str]) -> None:
-    """Raise ``click.UsageError`` for the name of a file that has none of some endings."""
-    if path.suffix not in endings:
-        raise click.UsageError(
-            f"{option} {path}: expected a name that ends in {' or '.join(endings)}"
-        )
-
-
-def separated(
-    _context: click.Context, _parameter: click.Parameter, words: Sequence[str]
-) -> tuple[str, ...]:
-    """Names of an option that is repeatable, and of which one may hold several, with commas
-    between.
-    """
-    return tuple(name.strip() for word in words for name in word.split(","))
-
-
-def table(text: str) -> float:
-    """A number of nodes, or an accuracy."""
-    try:
-        return int(text) if re.fullmatch(r"[0-9]+", text) else real(text)
-    except ValueError:
-        raise click.BadParameter(
-            f"expected a number of nodes or an accuracy, as in 128 or 1e-6, got '{text}'"
-        ) from None
-
-
-def bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
-    """NAME=LEAST:LARGEST; numbers may have a unit, as 30deg."""
-    name, _, words = (word.strip() for word in text.partition("="))
-    try:
-        low, high = (_value(word) for word in words.split(":"))
-    except ValueError:
-        raise click.BadParameter(f"expected {BOUNDS}, as in l=0.15:0.4, got '{text}'") from None
-    return name, (low, high)
+def pair(text: str) -> tuple[str, str]:
+    """NAME=NAME."""
+    with _expected("NAME=NAME", text):
+        return _named(text)
 
 
 def tolerance(text: str) -> tuple[str, str]:
     """NAME=VALUE; the parameter's unit decides which values are allowed."""
-    name, equals, value = (word.strip() for word in text.partition("="))
-    if not (name and equals and value):
-        raise click.BadParameter(f"expected NAME=VALUE, as in l=0.1mm or m1=1%, got '{text}'")
-    return name, value
+    with _expected("NAME=VALUE, as in l=0.1mm or m1=1%", text):
+        return _named(text)
+
+
+def bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
+    """NAME=LEAST:LARGEST; numbers may have a unit, as 30deg."""
+    with _expected(f"{BOUNDS}, as in l=0.15:0.4", text):
+        name, words = _named(text)
+        low, high = (_value(word) for word in words.split(":"))
+        return name, (low, high)
+
+
+def table(text: str) -> float:
+    """A number of nodes, or an accuracy."""
+    with _expected("a number of nodes or an accuracy, as in 128 or 1e-6", text):
+        return int(text) if re.fullmatch(r"[0-9]+", text) else real(text)
 
 
 def share(text: str) -> float:
@@ -254,12 +195,21 @@ def share(text: str) -> float:
     return found
 
 
+def separated(
+    _context: click.Context, _option: click.Parameter, words: Sequence[str]
+) -> tuple[str, ...] | None:
+    """Names of an option that is repeatable, and of which one may hold several, with commas
+    between; None if there are none.
+    """
+    return tuple(name.strip() for word in words for name in word.split(",")) or None
+
+
 def ratios(
     context: click.Context, option: click.Parameter, words: Sequence[str]
 ) -> tuple[float, ...]:
     """Numbers other than 0, of an option that is repeatable, with commas between several."""
     found = []
-    for word in separated(context, option, words):
+    for word in separated(context, option, words) or ():
         try:
             found.append(real(word))
         except ValueError:
@@ -269,6 +219,35 @@ def ratios(
                 f"expected numbers other than 0, as in 5 or 5,10,20, got '{word}'"
             )
     return tuple(found)
+
+
+def target(option: str, given: Path | None, usual: str, endings: Collection[str]) -> Path:
+    """The file that an option names, else the ``usual`` one. Raises ``click.UsageError`` for a name
+    that has none of some endings.
+    """
+    path = given or Path(usual)
+    if path.suffix not in endings:
+        raise click.UsageError(
+            f"{option} {path}: expected a name that ends in {' or '.join(endings)}"
+        )
+    return path
+
+
+@contextmanager
+def _expected(what: str, text: str) -> Iterator[None]:
+    """Say what was expected in place of a text that cannot be read."""
+    try:
+        yield
+    except ValueError:
+        raise click.BadParameter(f"expected {what}, got '{text}'") from None
+
+
+def _named(text: str) -> tuple[str, str]:
+    """Split NAME=WORDS. Raises ``ValueError`` if one of them is missing."""
+    name, words = (part.strip() for part in text.partition("=")[::2])
+    if not (name and words):
+        raise ValueError(text)
+    return name, words
 
 
 def _value(word: str) -> Any:
@@ -299,19 +278,34 @@ def _together(*options: Option) -> Option:
     return decorate
 
 
+def _names(name: str, into: str) -> list[str]:
+    """An option's name, and that of its argument if it has another one."""
+    return [name, into] if into else [name]
+
+
 def value(
-    name: str, kind: Kind, metavar: str, says: str, *, default: float | None = None
+    name: str,
+    kind: Kind,
+    metavar: str,
+    says: str,
+    *,
+    default: float | None = None,
+    shown: bool = True,
 ) -> Option:
-    """A value of a kind, which help shows if it has a default."""
-    shown = default is not None
+    """A value of a kind; help shows its default if it has one and that is to be ``shown``."""
     return click.option(
-        name, type=kind, metavar=metavar, default=default, show_default=shown, help=says
+        name,
+        type=kind,
+        metavar=metavar,
+        default=default,
+        show_default=shown and default is not None,
+        help=says,
     )
 
 
 def several(
     name: str,
-    metavar: str,
+    metavar: str | None,
     says: str,
     *,
     kind: Kind | None = None,
@@ -320,9 +314,8 @@ def several(
     callback: Callable[..., Any] | None = None,
 ) -> Option:
     """Values of an option that is repeatable, for the argument ``into``."""
-    names = [name, into] if into else [name]
     return click.option(
-        *names,
+        *_names(name, into),
         type=kind,
         multiple=True,
         required=required,
@@ -332,17 +325,48 @@ def several(
     )
 
 
-def choice(name: str, words: Sequence[str], default: str, says: str) -> Option:
-    """One of some words."""
+def named(
+    name: str,
+    metavar: str,
+    says: str,
+    *,
+    kind: Kind,
+    into: str,
+    required: bool = False,
+    twice: str = "parameter '{}' is set twice",
+) -> Option:
+    """Pairs NAME=... of an option that is repeatable, for the argument ``into``, a mapping.
+
+    ``twice`` is what is said of a name that has two.
+    """
+
+    def mapping(
+        _context: click.Context, _option: click.Parameter, pairs: Sequence[tuple[str, object]]
+    ) -> dict[str, object]:
+        found: dict[str, object] = {}
+        for one, value in pairs:
+            if one in found:
+                raise click.UsageError(f"{name}: {twice.format(one)}")
+            found[one] = value
+        return found
+
+    return several(name, metavar, says, kind=kind, into=into, required=required, callback=mapping)
+
+
+def choice(name: str, words: Sequence[str], default: str, says: str, *, into: str = "") -> Option:
+    """One of some words, for the argument ``into``."""
     return click.option(
-        name, type=click.Choice(words), default=default, show_default=True, help=says
+        *_names(name, into),
+        type=click.Choice(words),
+        default=default,
+        show_default=True,
+        help=says,
     )
 
 
 def flag(name: str, says: str, *, into: str = "") -> Option:
     """A switch, for the argument ``into``."""
-    names = [name, into] if into else [name]
-    return click.option(*names, is_flag=True, help=says)
+    return click.option(*_names(name, into), is_flag=True, help=says)
 
 
 def file(name: str, says: str, *, metavar: str | None = None, required: bool = False) -> Option:
@@ -384,7 +408,7 @@ _FLAGS = click.option(
     help="Pass these further flags to the compiler, as one word.",
 )
 
-Declared = Callable[..., int | None] | click.Command
+Declared = Callable[[], Body] | click.Command
 """A command in the making: its function, or what options have made of it."""
 
 Option = Callable[[Declared], Declared]
@@ -393,8 +417,8 @@ Option = Callable[[Declared], Declared]
 def settings_by(
     says: str = "Set a parameter, in SI units or with a unit, as l=0.25 or phi=30deg; repeatable.",
 ) -> Option:
-    """Values of parameters: ``settings``, to be read by :func:`parameters`."""
-    return several("--set", "NAME=VALUE", says, kind=setting, into="settings")
+    """Values of parameters: ``parameters``."""
+    return named("--set", "NAME=VALUE", says, kind=setting, into="parameters")
 
 
 def instants(
@@ -408,36 +432,44 @@ def wanted(
     says: str = "Compute these outputs: effort, reaction:JOINT, section:LINK, motion, a kind such"
     " as section, or all; repeatable. Default: those of the case.",
 ) -> Option:
-    """Names of outputs: ``want``."""
-    return click.option("--want", multiple=True, callback=separated, metavar="OUTPUT", help=says)
+    """Names of outputs: ``wanted``, None if there are none."""
+    return several("--want", "OUTPUT", says, into="wanted", callback=separated)
 
 
 def table_file(says: str) -> Option:
     """Place of a table, ``csv``, and the marks in it."""
 
-    def decorate(command: Callable[..., object]) -> Callable[..., None]:
-        @click.option(
+    def remember(context: click.Context, _option: click.Parameter, comma: bool) -> None:
+        context.meta[_COMMA] = comma
+
+    def read(
+        context: click.Context, _option: click.Parameter, path: Path | None
+    ) -> TableFile | None:
+        from ..base.table_file import TableFile
+
+        if path is not None:
+            return TableFile(path, context.meta[_COMMA])
+        if context.meta[_COMMA]:
+            raise click.UsageError("--decimal-comma goes with --csv FILE.csv")
+        return None
+
+    return _together(
+        click.option(
             "--csv",
             type=PATH,
+            callback=read,
             metavar="FILE.csv|FILE.xlsx",
             help=f"{says} A name that ends in .xlsx makes a workbook.",
-        )
-        @click.option(
+        ),
+        click.option(
             "--decimal-comma",
             is_flag=True,
+            is_eager=True,
+            expose_value=False,
+            callback=remember,
             help="With --csv: write commas in numbers, and semicolons between cells.",
-        )
-        @functools.wraps(command)
-        def with_table(csv: Path | None, decimal_comma: bool, **given: object) -> None:
-            if decimal_comma and csv is None:
-                raise click.UsageError("--decimal-comma goes with --csv FILE.csv")
-            from ..base.table_file import TableFile
-
-            command(csv=csv and TableFile(csv, decimal_comma), **given)
-
-        return with_table
-
-    return decorate
+        ),
+    )
 
 
 over = value(

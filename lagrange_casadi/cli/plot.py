@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import click
-from tqdm import tqdm
 
 from ..base.publish import check_writable
 from ..base.units import typed
@@ -20,6 +19,7 @@ from ..studies.sweep.default_figures import default_plots
 from ..studies.sweep.plots import Spec, draw_sweep
 from .drawing import draw_with_progress
 from .echo import echo
+from .progress import bar_of
 from .strength_lines import not_evaluated_lines
 
 _UNDRAWN = "cannot be drawn"
@@ -29,7 +29,7 @@ def plot(
     file: Path,
     out: Path,
     over: Sequence[str],
-    at: Sequence[tuple[str, float | str]],
+    at: Mapping[str, float | str],
     against: Sequence[tuple[str, str]],
     si: bool,
     svg: bool,
@@ -40,13 +40,8 @@ def plot(
     if is_sweep(file):
         if si:
             raise click.UsageError("--si goes with the file of a run; figures of a sweep are in SI")
-        stays = dict(at)
-        if len(stays) < len(at):
-            raise click.UsageError(
-                "--at: a parameter stays at one value, got two for " + _twice(at)
-            )
         sweep = Sweep.open(file)
-        there = {name: _number(sweep, name, value) for name, value in stays.items()}
+        there = {name: _number(sweep, name, value) for name, value in at.items()}
         _draw(sweep, default_plots(sweep, over=over, at=there, against=against), out, svg)
     elif over or at or against:
         raise click.UsageError("--over, --at and --against go with a sweep's file")
@@ -55,8 +50,7 @@ def plot(
         with reported_as(_UNDRAWN, file), MANIFEST.filling(out) as draft:
             draw_with_progress(solution, drawn, draft, si, svg)
         if not drawn:
-            for line in not_evaluated_lines(solution):
-                echo(line, err=True)
+            echo(*not_evaluated_lines(solution), err=True)
     echo(f"wrote the figures in {out}/; {out}/{NAME} shows all of them")
 
 
@@ -67,13 +61,7 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path, svg: bool) -> None:
     """
     skipped, drawn = [], []
     with reported_as(_UNDRAWN, sweep.path), MANIFEST.filling(out) as draft:
-        for path, why in tqdm(
-            draw_sweep(sweep, specs, draft, svg),
-            total=len(specs),
-            desc="figures",
-            leave=False,
-            disable=None,
-        ):
+        for path, why in bar_of("figures", draw_sweep(sweep, specs, draft, svg), len(specs)):
             if why:
                 skipped.append(f"{path.name}: {why}")
             else:
@@ -81,8 +69,7 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path, svg: bool) -> None:
         if len(skipped) == len(specs):
             raise NoDesignError(f"there is nothing to draw: {'; '.join(dict.fromkeys(skipped))}")
         write_index(sweep.case, drawn, draft)
-    for line in skipped:
-        echo(f"note: not drawn: {line}", err=True)
+    echo(*(f"note: not drawn: {line}" for line in skipped), err=True)
 
 
 def _number(sweep: Sweep, name: str, value: float | str) -> float:
@@ -91,8 +78,3 @@ def _number(sweep: Sweep, name: str, value: float | str) -> float:
     if written_unit and (unit := sweep.parameters.get(name)) != written_unit:
         raise click.UsageError(f"--at: parameter '{name}' is in {unit}, got {value}")
     return float(found)
-
-
-def _twice(at: Sequence[tuple[str, float | str]]) -> str:
-    names = [name for name, _ in at]
-    return ", ".join(dict.fromkeys(f"'{name}'" for name in names if names.count(name) > 1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
@@ -104,6 +105,11 @@ class Bar(Silent):
         if self._bar is not None:
             with suppress(OSError):
                 self._bar.close()
+
+
+def bar_of(what: str, steps: Iterable[Any] = (), total: int | None = None) -> tqdm[Any]:
+    """Show a bar of ``what`` is done on a terminal, which is gone at the end."""
+    return tqdm(steps, total=total, desc=what, leave=False, disable=None)
 
 
 def shown(quiet: bool) -> Silent:

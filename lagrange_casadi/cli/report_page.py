@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
 from ..base.publish import check_writable
 from ..case import load_case, reference
 from ..codegen.compiler import statements
-from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, one_line
+from ..errors import DeclarationError, LagrangeCasadiError, one_line
 from ..instants.solution import Solution
 from ..portable.wasm import check_zig
 from ..report import ENDINGS, Live, with_motion, write_comparison, write_report
@@ -23,9 +24,9 @@ from ..store.untrusted import reported_as
 from ..studies.evaluate import evaluate
 from ..studies.sweep import Sweep, is_sweep
 from ..studies.sweep.axes import grouped
-from ..verification.certificate import failure
+from ..verification.certificate import refuse_failed
 from .echo import echo, say_step
-from .options import HDF5, asked, parameters
+from .options import HDF5
 from .strength_lines import not_evaluated_lines
 
 _UNSHOWN = "cannot be shown"
@@ -34,15 +35,15 @@ _UNSHOWN = "cannot be shown"
 def report(
     targets: Sequence[Path],
     out: Path | None,
-    beside: Sequence[tuple[str, float | str]],
+    beside: Mapping[str, float | str],
     case: Path | None,
     live: bool,
-    **options: object,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.report`."""
     target, *others = targets
     file = target.suffix in HDF5
-    if (live or any(options.values())) and all(one.suffix in HDF5 for one in targets):
+    if (live or any(given.values())) and all(one.suffix in HDF5 for one in targets):
         raise click.UsageError(
             "--set, --t, --over, --want and --live go with a case, not with a file"
         )
@@ -55,7 +56,7 @@ def report(
     if others or beside:
         if live:
             raise click.UsageError("--live goes with one case, and not with --beside")
-        _of_two(targets, out, beside, options)
+        _of_two(targets, out, beside, given)
         return
     if file:
         out = out or Path(f"{target.stem}.html")
@@ -71,8 +72,8 @@ def report(
         scene = loaded.scene
         out = out or Path(f"{loaded.name}.html")
         check_writable(out)
-        given, engine = asked(options), None
         given["wanted"] = with_motion(given["wanted"] or scene.wanted)
+        engine = None
         if live:
             timing = scene.timing(given["t"], given["over"])
             say_step(2, f"deriving the equations of {loaded.name}")
@@ -85,14 +86,21 @@ def report(
         if live:
             say_step(4, f"writing {out}")
         write_report(solution, out, engine)
-    _announce(solution, out)
+    shown, total = shown_instants(solution).size, solution.t.size
+    if shown < total:
+        echo(
+            f"note: pictures and charts show {shown} of {total} instants, which is as many as fit;"
+            " tables are of all",
+            err=True,
+        )
+    _announce(out, solution)
 
 
 def _of_two(
     targets: Sequence[Path],
     out: Path | None,
-    beside: Sequence[tuple[str, float | str]],
-    options: Mapping[str, object],
+    beside: Mapping[str, float | str],
+    options: Mapping[str, Any],
 ) -> None:
     """Write the page of two runs, or of a case and the design ``beside`` it."""
     first, *others = targets
@@ -102,12 +110,14 @@ def _of_two(
     out = out or Path(f"{name}.html")
     check_writable(out)
     solutions: list[Solution] = []
-    for target, more in zip((first, *(others or (first,))), ((), beside), strict=True):
+    for target, more in zip((first, *(others or (first,))), ({}, beside), strict=True):
         if target.suffix not in HDF5:
             scene = load_case(target).scene
-            given = asked(options)
-            given["wanted"] = with_motion(given["wanted"] or scene.wanted)
-            given["parameters"] |= parameters(more)
+            given = {
+                **options,
+                "wanted": with_motion(options["wanted"] or scene.wanted),
+                "parameters": {**options["parameters"], **more},
+            }
             solutions.append(evaluate(scene, **given))
         elif is_sweep(target):
             raise click.UsageError(f"{target} is a sweep: its page cannot be combined with another")
@@ -119,13 +129,7 @@ def _of_two(
         write_comparison(solutions, out, apart)
     if same_runs(*solutions):
         echo("note: both runs are the same: all their values are equal", err=True)
-    for solution in solutions:
-        for line in not_evaluated_lines(solution):
-            echo(line, err=True)
-    echo(f"wrote {out}: open it in a browser")
-    for solution in solutions:
-        if solution.failed:
-            raise CertificateError(f"{failure(solution)}; {out} says so")
+    _announce(out, *solutions)
 
 
 def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
@@ -158,20 +162,13 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
     echo(f"wrote {out}: open it in a browser")
 
 
-def _announce(solution: Solution, out: Path) -> None:
-    """Say what was written.
+def _announce(out: Path, *solutions: Solution) -> None:
+    """Say what was written, and what it lacks.
 
-    Raises :class:`CertificateError` where the certificate fails: the page is there, and says so.
+    Raises :class:`CertificateError` where a certificate fails: the page is there, and says so.
     """
-    shown, total = shown_instants(solution).size, solution.t.size
-    if shown < total:
-        echo(
-            f"note: pictures and charts show {shown} of {total} instants, which is as many as fit;"
-            " tables are of all",
-            err=True,
-        )
-    for line in not_evaluated_lines(solution):
-        echo(line, err=True)
+    for solution in solutions:
+        echo(*not_evaluated_lines(solution), err=True)
     echo(f"wrote {out}: open it in a browser")
-    if solution.failed:
-        raise CertificateError(f"{failure(solution)}; {out} says so")
+    for solution in solutions:
+        refuse_failed(solution, f"{out} says so")

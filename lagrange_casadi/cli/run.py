@@ -6,8 +6,8 @@ import math
 import os
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import nullcontext, suppress
-from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
@@ -25,7 +25,7 @@ from ..declare.scene import Scene
 from ..declare.times import Timing
 from ..declare.wanted_names import among
 from ..elastic.vibration import vibration
-from ..errors import CertificateError, DeclarationError
+from ..errors import DeclarationError
 from ..instants.frames import TIME, columns
 from ..instants.ordering import ordered
 from ..instants.solution import Solution
@@ -36,10 +36,10 @@ from ..store.runs import check_target, save
 from ..studies.evaluate import evaluate
 from ..studies.peaks import forces, refine, resultants
 from ..studies.sensitivities import Changes, sensitivities
-from ..verification.certificate import failure, summary
+from ..verification.certificate import refuse_failed, summary
 from .drawing import draw_with_progress
 from .echo import echo
-from .options import HDF5, asked, check_ending
+from .options import HDF5, target
 from .report import Rows, card, ratio
 from .strength_lines import evaluated, not_evaluated_lines, strength_cards, strength_lines, worst
 
@@ -53,7 +53,7 @@ _BLOCK = 1024
 
 def run(
     case: Path,
-    want: Sequence[str],
+    wanted: Sequence[str] | None,
     out: Path | None,
     figures: Path | None,
     no_figures: bool,
@@ -64,30 +64,26 @@ def run(
     elastic: bool,
     no_certificate: bool,
     verbose: bool,
-    **options: object,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.run`."""
     if figures and no_figures:
         raise click.UsageError("--figures and --no-figures exclude each other")
     if svg and no_figures:
         raise click.UsageError("--svg and --no-figures exclude each other")
-    if out:
-        check_ending("--out", out, HDF5)
     loaded = load_case(case)
-    scene = loaded.scene
-    out = out or Path(f"{loaded.name}.h5")
+    scene, usual = loaded.scene, Path(f"{loaded.name}.h5")
+    out = target("--out", out, str(usual), HDF5)
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
     _check_places(out, folder, csv)
-    given = asked(options)
     solution = evaluate(
         scene,
-        wanted=want or None,
+        wanted=wanted,
         certificate=not no_certificate,
         elastic=(scene.elastic or True) if elastic else None,
         **given,
     )
-    usual = Path(f"{loaded.name}_figures") if out == Path(f"{loaded.name}.h5") else None
-    place = folder or usual
+    place = folder or (Path(f"{loaded.name}_figures") if out == usual else None)
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
     heads = columns(solution) if csv else {}
     written = (
@@ -97,24 +93,22 @@ def run(
         if folder and draft:
             draw_with_progress(solution, loaded.figures, draft, svg=svg)
             drawn = figures_in(draft)
-        save(solution, out, dump_specs(loaded.figures), grids=_grids(solution, grids, want))
-    say = partial(echo, err=csv is not None and is_standard_output(csv.path))
-    wanted = want or scene.wanted
+        save(solution, out, dump_specs(loaded.figures), grids=_grids(solution, grids, wanted or ()))
     names = [*forces(solution), *resultants(solution)] if refine_peaks else ()
-    rows = Rows.of(solution, refine(scene, solution, names) if names else (), want, verbose)
+    rows = Rows.of(solution, refine(scene, solution, names) if names else (), wanted or (), verbose)
     strength = scene if refine_peaks else None
     head = [_head(solution, refine_peaks if rows.rows else None), *rows.cards()]
-    if want or verbose:
-        details = [*strength_lines(solution, wanted, strength), *elastic_lines(solution, wanted)]
+    shown, details = wanted or scene.wanted, list[str]()
+    if wanted or verbose:
+        details = [*strength_lines(solution, shown, strength), *elastic_lines(solution, shown)]
     else:
-        head += elastic_card(solution, wanted)
-        head += strength_cards(solution, wanted, strength)
-        details = []
+        head += elastic_card(solution, shown)
+        head += strength_cards(solution, shown, strength)
     rest = [*slope_lines(solution, scene, given["backend"]), *details, *rows.notes()]
     rest += _notes(scene, solution, scene.timing(given["t"], given["over"]))
     if folder and not loaded.figures:
         parts = [*beams_of(solution.description), *fitted_of(solution.description)]
-        rest += not_evaluated_lines(solution, among("safety", parts, wanted))
+        rest += not_evaluated_lines(solution, among("safety", parts, shown))
     if not no_certificate:
         rest.append(summary(solution.certificate))
     rest += replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn)
@@ -124,10 +118,9 @@ def run(
         + (f", and {csv.path}" if csv else "")
     )
     capacity = None if verbose else max(_SCREEN - len(head) - len(rest) - 1, _FEWEST)
-    for line in (*head, *rows.table(capacity), *rest):
-        say(line)
-    if solution.failed:
-        raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")
+    piped = csv is not None and is_standard_output(csv.path)
+    echo(*head, *rows.table(capacity), *rest, err=piped)
+    refuse_failed(solution, f"{out} is marked as not certified")
 
 
 def _rows(columns: Sequence[Array]) -> Iterator[list[float]]:
@@ -136,11 +129,13 @@ def _rows(columns: Sequence[Array]) -> Iterator[list[float]]:
         yield from np.column_stack([column[start : start + _BLOCK] for column in columns]).tolist()
 
 
-def _grids(solution: Solution, grids: bool | None, want: Sequence[str]) -> bool | list[str] | None:
+def _grids(
+    solution: Solution, grids: bool | None, wanted: Sequence[str]
+) -> bool | list[str] | None:
     """Links whose grids are stored: pieces of bent bars where they were asked for by name."""
     pieces = pieces_of(solution.description)
     links = solution.links_with_sections
-    asked = {link for link in links if link in pieces and f"section:{link}" in want}
+    asked = {link for link in links if link in pieces and f"section:{link}" in wanted}
     if grids is not None or not asked:
         return grids
     return [link for link in links if link not in pieces or link in asked]

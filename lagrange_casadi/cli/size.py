@@ -5,26 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
 from ..beams.profiles import read_profiles
 from ..case import load_case
-from ..studies.sizing import Sized, size
+from ..studies.sizing import Sized
+from ..studies.sizing import size as choose
 from .echo import echo
-from .options import asked
 from .strength_lines import evaluated, safety_lines
 
 
-def size_command(
+def size(
     case: Path,
     profiles: Path | None,
     safety: float,
     deflection: float | None,
     links: Sequence[str],
     criterion: str,
-    yielding: str,
-    **options: object,
+    yield_criterion: str,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.size`."""
     loaded = load_case(case)
@@ -34,15 +35,15 @@ def size_command(
             f"--profiles: expected a table of profiles; the folder of the case has none, {beside}"
         )
     table = read_profiles(profiles or beside)
-    found = size(
+    found = choose(
         loaded.scene,
         table,
         safety=safety,
         links=links or None,
         deflection=deflection,
         criterion=criterion,
-        yield_criterion=yielding,
-        **asked(options),
+        yield_criterion=yield_criterion,
+        **given,
     )
     stiff = (
         "" if deflection is None else f", and a deflection of at most {deflection:g} of its length"
@@ -52,13 +53,11 @@ def size_command(
         f" {safety:g}{stiff}:"
     )
     for sized in found.links:
-        for line in _lines(sized):
-            echo(line)
-    safety_of = partial(found.solution.safety, criterion=criterion, yield_criterion=yielding)
+        echo(*_lines(sized))
+    safety_of = partial(found.solution.safety, criterion=criterion, yield_criterion=yield_criterion)
     for name, why in found.left.items():
         echo(f"{name}: not sized: {why}")
-        for line in evaluated(name, lambda link: list(safety_lines(safety_of(link)))):
-            echo(line)
+        echo(*evaluated(name, lambda link: list(safety_lines(safety_of(link)))))
     solution = found.solution
     verdict = "holds" if solution.certified else "fails" if solution.failed else "not computed"
     loads = f"{found.evaluations} evaluations of the loads"

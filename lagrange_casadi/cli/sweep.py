@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -17,32 +18,27 @@ from ..studies.sweep import sweep as carry_out
 from ..studies.sweep.axes import counted, grouped
 from ..studies.sweep.notes import fatigue_notes, resting_note, turning_note
 from .echo import echo
-from .options import HDF5, asked, check_ending
+from .options import HDF5, target
 from .progress import shown
 
 
 def sweep(
     case: Path,
-    axes: Sequence[tuple[str, Axis]],
+    axes: Mapping[str, Axis],
     designs: Path | None,
     quiet: bool,
     out: Path | None,
-    **options: object,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.sweep`."""
     if bool(axes) == bool(designs):
         raise click.UsageError(
             "expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv"
         )
-    if len({name for name, _ in axes}) < len(axes):
-        twice = next(name for k, (name, _) in enumerate(axes) if name in dict(axes[:k]))
-        raise click.UsageError(f"--grid: parameter '{twice}' is swept twice")
-    if out:
-        check_ending("--out", out, HDF5)
     loaded = load_case(case)
     scene = loaded.scene
-    swept = read_designs(designs, scene.parameters) if designs else dict(axes)
-    out, given = out or Path(f"{loaded.name}_sweep.h5"), asked(options)
+    out = target("--out", out, f"{loaded.name}_sweep.h5", HDF5)
+    swept = read_designs(designs, scene.parameters) if designs else axes
     with closing(shown(quiet)) as progress:
         found = carry_out(loaded, swept, out=out, progress=progress, **given)
     _report(found)

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
+from typing import Any
 
 from ..base.streams import is_standard_output
 from ..base.table_file import TableFile, head
@@ -16,19 +17,18 @@ from ..studies.sweep.axes import DESIGN, counted, grouped
 from ..studies.sweep.best import conditions_in, counts, missed, with_errors
 from ..studies.sweep.meanings import STATUS, in_words
 from .echo import echo
-from .options import asked
 
 _WIDE = 6
 _LISTED = 6
 _WIDTH = 10
 
 
-def best(file: Path, where: Sequence[str], csv: TableFile | None, **options: object) -> None:
+def best(file: Path, where: Sequence[str], csv: TableFile | None, **given: Any) -> None:
     """See :func:`.commands.best`."""
     if csv:
         csv.check()
     sweep = Sweep.open(file)
-    found = find(sweep, where=where, **asked(options))
+    found = find(sweep, where=where, **given)
     if not found:
         satisfied, with_result = (grouped(count) for count in counts(sweep, where))
         raise NoDesignError(

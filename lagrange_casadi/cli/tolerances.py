@@ -4,17 +4,16 @@ of them is to blame.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 from ..base.table_file import Cell, TableFile
 from ..case import load_case
-from ..errors import DeclarationError
 from ..studies.tolerances import Spreads
 from ..studies.tolerances import tolerances as spreads
 from .echo import echo
-from .options import asked
 
 _FEW = 3
 """Parameters that are named for each peak."""
@@ -22,17 +21,14 @@ _FEW = 3
 
 def tolerances(
     case: Path,
-    within: Sequence[tuple[str, str]],
+    within: Mapping[str, str],
     csv: TableFile | None,
-    **options: object,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.tolerances`."""
-    widths = dict(within)
-    if len(widths) < len(within):
-        raise DeclarationError("tolerance: a parameter is listed twice")
     if csv:
         csv.check()
-    found = spreads(load_case(case).scene, widths, **asked(options))
+    found = spreads(load_case(case).scene, within, **given)
     _print(found)
     if csv:
         csv.write(*_rows(found))

@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-
-from tqdm import tqdm
+from typing import Any
 
 from ..base.publish import check_writable, writing
 from ..case import load_case
@@ -17,7 +16,8 @@ from ..shapes.pictures import PICTURES
 from ..studies.trade import METHODS, Trade
 from ..studies.trade import trade as measure
 from .echo import echo
-from .options import asked, check_ending
+from .options import target
+from .progress import bar_of
 
 
 def trade(
@@ -25,26 +25,23 @@ def trade(
     accuracy: float | None,
     out: Path | None,
     figure: Path | None,
-    **options: object,
+    **given: Any,
 ) -> None:
     """See :func:`.commands.trade`."""
     if accuracy is not None and not 0.0 < accuracy < math.inf:
         raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
     loaded = load_case(case)
-    out, figure = (
-        out or Path(f"{loaded.name}_trade.json"),
-        figure or Path(f"{loaded.name}_trade.png"),
-    )
-    for option, target, endings in (("--out", out, (".json",)), ("--figure", figure, PICTURES)):
-        check_ending(option, target, endings)
-        check_writable(target)
-    with tqdm(total=len(METHODS), desc="methods", leave=False, disable=None) as bar:
+    out = target("--out", out, f"{loaded.name}_trade.json", (".json",))
+    check_writable(out)
+    figure = target("--figure", figure, f"{loaded.name}_trade.png", PICTURES)
+    check_writable(figure)
+    with bar_of("methods", total=len(METHODS)) as bar:
 
         def progress(method: EvaluationMethod) -> None:
             bar.set_postfix_str(method.options)
             bar.update()
 
-        found = measure(loaded.scene, progress=progress, **asked(options))
+        found = measure(loaded.scene, progress=progress, **given)
     with writing(out, figure) as (numbers, picture):
         numbers.write(f"{json.dumps(found.as_dict(), indent=1)}\n".encode())
         draw_trade(found, picture, figure.suffix)

@@ -19,12 +19,13 @@ import numpy as np
 
 from ..arguments import Symbolic, public
 from ..base.arrays import Array, Expression, Operand
+from ..base.brief import Brief
 from ..errors import DeclarationError
 from .curves import Curve, rows
 
 
-@dataclass(frozen=True, eq=False)
-class Density:
+@dataclass(frozen=True, eq=False, repr=False)
+class Density(Brief):
     """Mass along a link: on the i-th interval of ``breaks`` (ratios from 0 to 1) the polynomial
     sum_j cells[i][j] u^j.
 
@@ -147,8 +148,8 @@ class Density:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class Slices:
+@dataclass(frozen=True, eq=False, repr=False)
+class Slices(Brief):
     """Second moments of mass per length [kg m] of a link's slices, on the axes of its
     cross-section: like densities along it.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..arguments import NotNegative, Positive, Symbolic, public
 from ..base.arrays import Expression, Json, Operand
+from ..base.brief import Brief
 from ..beams.material import Material
 from ..errors import DeclarationError, shown
 
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Pin:
+@dataclass(frozen=True, eq=False, repr=False)
+class Pin(Brief):
     """A pin through an eye between two cheeks of a fork [m].
 
     ``eye`` is the width of the eye, ``cheek`` that of each cheek, ``gap`` that between eye and

@@ -11,6 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from ..base.brief import Brief
+from ..errors import DeclarationError
 from .parts import Body, Expression, Point, Vector
 
 JointKind = Literal[
@@ -97,8 +99,8 @@ class Axis:
         return "slide" if self.move == "slide" else "angle"
 
 
-@dataclass(frozen=True, eq=False)
-class Joint:
+@dataclass(frozen=True, eq=False, repr=False)
+class Joint(Brief):
     """A joint between a point of its parent and a point of its child.
 
     - ``revolute`` holds the two points together; the coordinate is the child's direction less the
@@ -213,3 +215,16 @@ class Joint:
         """
         axes = self.axes
         return axes[0].kind if len(axes) == 1 else None
+
+
+def check_ends(what: str, kind: JointKind, parent: Point, child: Point) -> None:
+    """Raise :class:`DeclarationError` for a joint of a body with itself, and for a parent that has
+    no direction for what the joint holds.
+    """
+    if parent.body is child.body:
+        raise DeclarationError(f"{what} joins '{parent.body.name}' to itself")
+    if kind not in ("revolute", "spherical") and not parent.body.oriented:
+        raise DeclarationError(
+            f"{what}: its parent '{parent.body.name}' is a point mass, which has no direction for"
+            f" {'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
+        )

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import casadi as ca
 
@@ -17,6 +17,9 @@ from .parts import Expression, Link, PointMass, RigidMass
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
+
+Rigid: TypeAlias = Callable[[Expression, Expression], tuple[tuple[Expression, ...], Expression]]
+"""Reader of a centre and moments of inertia."""
 
 ALL = "all"
 """Name of the mass of everything that moves."""
@@ -29,9 +32,8 @@ def mass_properties_of(
     centre: tuple[Expression, ...] | None,
     inertia: Expression,
     checked: Callable[..., Expression],
-    rigid: Callable[[Expression, Expression], tuple[tuple[Expression, ...], Expression]]
-    | None = None,
-    beam: Beam | None = None,
+    rigid: Rigid | None,
+    beam: Beam | None,
 ) -> Density | RigidMass:
     """The mass of a link by one of the ways; ``checked`` takes what is said of an expression, and
     the expression.

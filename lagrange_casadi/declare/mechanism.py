@@ -17,6 +17,7 @@ import casadi as ca
 
 from ..arguments import public
 from ..arithmetic.scalars import column
+from ..base.brief import listed
 from ..base.symbolic import Graphs, symbolic
 from ..base.units import Number
 from ..beams.beam import Beam
@@ -25,10 +26,10 @@ from ..renamed import renamed
 from .density import Density
 from .expressions import bound, check_line, check_name, unit_vector, value_of
 from .fitted import Fitted
-from .joints import Axis, Joint, JointKind
+from .joints import Axis, Joint, JointKind, check_ends
 from .limits import check_connected, parameter_values
 from .loads import Between, LoadDensity, friction, line_load
-from .mass_properties import beam_of, mass_properties_of
+from .mass_properties import Rigid, beam_of, mass_properties_of
 from .measures import Measures
 from .ownership import Ownership
 from .parts import (
@@ -97,11 +98,9 @@ class Mechanism(Graphs):
         self.bodies["ground"] = Ground("ground")
 
     def __repr__(self) -> str:
-        names = ", ".join(body.name for body in self.moving)
-        return (
-            f"<Mechanism {self.name}: {names or 'no body yet'}; joints:"
-            f" {', '.join(self.joints) or 'none yet'}>"
-        )
+        bodies = listed((body.name for body in self.moving), "no body yet")
+        joints = listed(self.joints, "none yet")
+        return f"<{type(self).__name__} {self.name}: {bodies}; joints: {joints}>"
 
     @property
     def ground(self) -> Ground:
@@ -231,13 +230,22 @@ class Mechanism(Graphs):
             If the name is taken, or the arguments do not determine the mass.
         """
         self.ownership.free("link", name, self.bodies)
+        return self._link(name, length, (mass, density, centre, inertia), beam)
+
+    def _link(
+        self,
+        name: str,
+        length: Expression,
+        masses: tuple[Expression, Density | None, Expression, Expression],
+        beam: Beam | None,
+        rigid: Rigid | None = None,
+        beside: Vector | None = None,
+    ) -> Link:
         what, checked = f"link '{name}'", self.ownership.expression
         beam = beam_of(what, beam, checked)
-        mass_properties = mass_properties_of(
-            what, mass, density, centre, inertia, checked, beam=beam
-        )
+        mass_properties = mass_properties_of(what, *masses, checked, rigid, beam)
         length = checked(f"{what}: length", length, "m")
-        self.bodies[name] = link = Link(name, length, mass_properties, beam)
+        self.bodies[name] = link = Link(name, length, mass_properties, beam, beside=beside)
         return link
 
     def point_mass(self, name: str, mass: Expression) -> PointMass:
@@ -1083,14 +1091,7 @@ class Mechanism(Graphs):
         own, what = self.ownership, f"joint '{name}'"
         own.free("joint", name, self.joints)
         start, end = own.point(what, parent), own.point(what, child)
-        if start.body is end.body:
-            raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
-        if kind != "revolute" and not start.body.oriented:
-            raise DeclarationError(
-                f"{what}: its parent '{start.body.name}' is a point mass, which has no direction"
-                f" for {'the weld' if kind == 'weld' else 'the axis'}; make the other body the"
-                " parent"
-            )
+        check_ends(what, kind, start, end)
         unit = (
             (1.0, 0.0)
             if axis is None

@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from ..arguments import fitting, public
+from ..base.brief import Brief
 from ..errors import DeclarationError, shown
 from ..renamed import renamed
 from .curves import curve, rows
@@ -28,8 +29,8 @@ _POINTS, _SAME = 8, 1e-11
 
 
 @renamed
-@dataclass(frozen=True, eq=False)
-class Motion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(Brief):
     """A law of motion as a function from the symbol t [s] to the coordinate [rad or m].
 
     ``span`` is the time the law covers, and ``knots`` are the times between which the second

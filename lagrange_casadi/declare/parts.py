@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from ..arguments import Symbolic, public
+from ..base.brief import Brief
 from ..base.numerals import readable
 from ..base.units import Number, in_words, number
 from ..beams.beam import Beam
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 End = Literal["base", "tip"]
 
 
-@dataclass(frozen=True, eq=False)
-class Parameter:
+@dataclass(frozen=True, eq=False, repr=False)
+class Parameter(Brief):
     """A number that may change without deriving or compiling again."""
 
     name: str
@@ -67,8 +68,8 @@ class Parameter:
         return ""
 
 
-@dataclass(frozen=True, eq=False)
-class Body:
+@dataclass(frozen=True, eq=False, repr=False)
+class Body(Brief):
     """Something joints attach to: the ground, a link, or a point mass."""
 
     name: str
@@ -79,8 +80,8 @@ class Body:
         return True
 
 
-@dataclass(frozen=True, eq=False)
-class Point:
+@dataclass(frozen=True, eq=False, repr=False)
+class Point(Brief):
     """A place on a body, in the body's own axes [m]; ``end`` where it is the base or the tip of a
     link.
     """
@@ -98,7 +99,7 @@ class Point:
 
 
 @public
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Ground(Body):
     """The fixed frame."""
 
@@ -107,8 +108,8 @@ class Ground(Body):
         return Point(self, x, y, z=z)
 
 
-@dataclass(frozen=True, eq=False)
-class RigidMass:
+@dataclass(frozen=True, eq=False, repr=False)
+class RigidMass(Brief):
     """Mass [kg], place of the centre of mass in the link's axes [m], and moment of inertia about it
     [kg m^2].
 
@@ -121,7 +122,7 @@ class RigidMass:
 
 
 @public
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Link(Body):
     """A link: its axis runs from its base (station 0) to its tip (station ``length``).
 
@@ -155,7 +156,7 @@ class Link(Body):
         return Point(self, x, y, z=z)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PointMass(Body):
     """A mass at a point, without extent and so without a direction."""
 
@@ -167,8 +168,8 @@ class PointMass(Body):
         return False
 
 
-@dataclass(frozen=True, eq=False)
-class Path:
+@dataclass(frozen=True, eq=False, repr=False)
+class Path(Brief):
     """A point of a body whose place, velocity and acceleration are outputs, and whose motion may be
     given.
     """
@@ -177,8 +178,8 @@ class Path:
     point: Point
 
 
-@dataclass(frozen=True, eq=False)
-class Force:
+@dataclass(frozen=True, eq=False, repr=False)
+class Force(Brief):
     """A force [N] at a point, in ground axes, or where ``turning`` in the body's own."""
 
     name: str
@@ -199,8 +200,8 @@ class Force:
         return (self.point,)
 
 
-@dataclass(frozen=True, eq=False)
-class Torque:
+@dataclass(frozen=True, eq=False, repr=False)
+class Torque(Brief):
     """A torque [N m] on a body at a point, and the opposite on another one, or on the ground.
 
     ``value`` is that about z; in space ``across`` are those about x and y, and where ``turning``
@@ -225,8 +226,8 @@ class Torque:
         return (self.point, self.against)
 
 
-@dataclass(frozen=True, eq=False)
-class Spring:
+@dataclass(frozen=True, eq=False, repr=False)
+class Spring(Brief):
     """A spring and damper between two points: its tension is stiffness (distance - length) +
     damping (distance)'.
     """
@@ -244,8 +245,8 @@ class Spring:
         return (self.first, self.second)
 
 
-@dataclass(frozen=True, eq=False)
-class LineLoad:
+@dataclass(frozen=True, eq=False, repr=False)
+class LineLoad(Brief):
     """A load [N/m] along a link, ``between`` two distances from its base [m]: a polynomial of the
     place.
 
@@ -294,8 +295,8 @@ POSITIVE = ("radius", "length", "stribeck", "smooth")
 """Numbers of a friction that must not be zero."""
 
 
-@dataclass(frozen=True, eq=False)
-class Friction:
+@dataclass(frozen=True, eq=False, repr=False)
+class Friction(Brief):
     """Friction in a joint along a coordinate of its, that follows what the joint bears; ``symbol``
     stands for it until it is found.
 
@@ -352,8 +353,8 @@ class Friction:
 Load: TypeAlias = Force | Torque | Spring | LineLoad | Friction
 
 
-@dataclass(frozen=True, eq=False)
-class Constraint:
+@dataclass(frozen=True, eq=False, repr=False)
+class Constraint(Brief):
     """Phi(q, t) = 0 in joint coordinates (paper eq. 5).
 
     The multiplier of a ``transmission`` acts where its parts touch.
@@ -369,8 +370,8 @@ class Constraint:
     lift: ca.SX | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Row:
+@dataclass(frozen=True, eq=False, repr=False)
+class Row(Brief):
     """A non-holonomic row A(q) q' + b = 0 in joint coordinates and rates (paper eq. 3),
     in place of one drive's effort.
     """

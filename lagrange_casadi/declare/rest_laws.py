@@ -17,6 +17,7 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import Symbolic, public
+from ..base.brief import Brief
 from ..errors import DeclarationError, UnknownNameError
 from .expressions import plain
 from .parts import Expression
@@ -24,8 +25,8 @@ from .parts import Expression
 _CUBE = 1.0 / 3.0
 
 
-@dataclass(frozen=True, eq=False)
-class RestLaw:
+@dataclass(frozen=True, eq=False, repr=False)
+class RestLaw(Brief):
     """A law from rest to rest, ``shape(u)``, and its largest ``speed``, ``acceleration`` and
     ``jerk``, for one way in one time.
 

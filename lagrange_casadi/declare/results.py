@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, overload
 
 import casadi as ca
 
+from ..base.brief import Brief
 from ..base.quantities import Output, force_members
 from ..base.tables import table_of
 from ..errors import DeclarationError, UnknownNameError
@@ -44,8 +45,8 @@ class Asked:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class UserOutput:
+@dataclass(frozen=True, eq=False, repr=False)
+class UserOutput(Brief):
     """An output of the user's own: an expression of time, parameters, measures and results, and its
     unit.
     """

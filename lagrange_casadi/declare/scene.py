@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any, NoReturn
 
 from ..arguments import Outputs, fitting, public, texts
+from ..base.brief import listed
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.units import within
 from ..base.vocabulary import Precision
@@ -335,16 +336,14 @@ class Scene(Graphs):
 
     def __repr__(self) -> str:
         start, stop = self.t[:2]
-        motion = ", ".join(self.motion) or "nothing"
-        wanted = ", ".join(self.wanted)
         asked = (
             f"from {start} to {stop} s"
             if self.over is None
             else f"over {self.over[0]} from {self.over[1]} to {self.over[2]}"
         )
         return (
-            f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted},"
-            f" {self.timing().count} instants {asked}>"
+            f"<Scene of {self.mechanism.name}: drives {listed(self.motion, 'nothing')}, wants"
+            f" {listed(self.wanted)}, {self.timing().count} instants {asked}>"
         )
 
     def _repr_html_(self) -> str:

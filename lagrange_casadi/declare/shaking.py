@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .mechanism import Mechanism
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Shaking(UserOutput):
     """A component of a shaking force or moment, and the names of the bodies that it is of."""
 

@@ -15,9 +15,8 @@ from ..geometry.vectors import times
 from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
-from .joints import IN_SPACE, Joint, JointKind, Triad
+from .joints import Joint, JointKind, Triad, check_ends
 from .loads import Between, LoadDensity, line_load
-from .mass_properties import beam_of, mass_properties_of
 from .measures import Measures
 from .mechanism import Mechanism
 from .parts import (
@@ -43,7 +42,7 @@ Or the directions of the child's x and y axes, in the parent's axes.
 
 @public
 @symbolic
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class SpatialMechanism(Mechanism):
     """A mechanism under declaration whose links lie in space.
 
@@ -156,12 +155,7 @@ class SpatialMechanism(Mechanism):
                 return place, moments
             return reference.local(place), rotated(moments, reference)
 
-        beam = beam_of(what, beam, self.ownership.expression)
-        mass_properties = mass_properties_of(
-            what, mass, density, centre, inertia, self.ownership.expression, rigid, beam
-        )
-        length = self.ownership.expression(f"{what}: length", length, "m")
-        self.bodies[name] = link = Link(name, length, mass_properties, beam, beside=aside)
+        link = self._link(name, length, (mass, density, centre, inertia), beam, rigid, aside)
         if reference is not None:
             self.references[name] = reference
         return link
@@ -600,15 +594,7 @@ class SpatialMechanism(Mechanism):
             start, end, directions, zero = self._at_reference(
                 what, parent, child, at, directions, turned
             )
-        if start.body is end.body:
-            raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
-        if not start.body.oriented and (
-            (IN_SPACE[kind] and kind not in ("revolute", "spherical")) or kind == "weld"
-        ):
-            raise DeclarationError(
-                f"{what}: its parent '{start.body.name}' is a point mass, which has no direction"
-                " for an axis; make the other body the parent"
-            )
+        check_ends(what, kind, start, end)
         if not start.body.oriented or not end.body.oriented:
             kind = "spherical" if kind == "revolute" else kind
         given = placed or bool(turned)

@@ -8,6 +8,7 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..base.brief import Brief
 from .parts import Expression
 from .rest_laws import RestLaw
 from .validity import Evaluator
@@ -16,8 +17,8 @@ _SAME = 1e-9
 """Relative size of a jump, of the largest of its kind, that is rounding."""
 
 
-@dataclass(frozen=True, eq=False)
-class Stretch:
+@dataclass(frozen=True, eq=False, repr=False)
+class Stretch(Brief):
     """A move or a dwell of a motion: when it is, from where and how far it goes, and by which law;
     a dwell has none.
     """

@@ -10,12 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..equations.strains import Moduli, moduli_of, strains
 from ..strength.member import Member
 
 
-@dataclass(frozen=True, eq=False)
-class Compliance:
+@dataclass(frozen=True, eq=False, repr=False)
+class Compliance(Brief):
     """A link of a solution as an elastic beam, by the moduli of its material [Pa]."""
 
     member: Member

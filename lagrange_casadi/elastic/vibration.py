@@ -18,6 +18,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..declare.description import Description, density_of
 from ..declare.end_conditions import ENDS, Ends, ends_of
 from ..errors import DeclarationError
@@ -37,8 +38,8 @@ _FEWEST = 4
 
 
 @renamed
-@dataclass(frozen=True)
-class Vibration:
+@dataclass(frozen=True, repr=False)
+class Vibration(Brief):
     """The first bending frequency of a link [Hz], and what it means for forces that were computed
     with rigid links.
 

@@ -24,6 +24,7 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from ..arguments import public
+from ..base.brief import Brief
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
@@ -33,8 +34,8 @@ from .courses import along, courses_on, fits_of, length, size
 from .ranges import positive, share
 
 
-@dataclass(frozen=True, eq=False)
-class Belt:
+@dataclass(frozen=True, eq=False, repr=False)
+class Belt(Brief):
     """A belt: its ``constraint``, whose multiplier is the difference of its tensions [N], and the
     ``ratio`` of the rates.
     """

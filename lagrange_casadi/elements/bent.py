@@ -13,6 +13,7 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import public
+from ..base.brief import Brief
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link, Point
 from ..declare.spatial import SpatialMechanism
@@ -20,8 +21,8 @@ from ..errors import DeclarationError
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Bent:
+@dataclass(frozen=True, eq=False, repr=False)
+class Bent(Brief):
     """A bar of straight ``pieces``, links called NAME_1, NAME_2 and so on, and its ``corners`` from
     the base to the tip.
     """

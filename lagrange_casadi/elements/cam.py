@@ -18,6 +18,7 @@ from typing import Any, cast
 import casadi as ca
 
 from ..arguments import Count, Elastic, public
+from ..base.brief import Brief
 from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
@@ -29,8 +30,8 @@ from .cam_profile import CamProfile, profile_of
 from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
 
 
-@dataclass(frozen=True, eq=False)
-class Design:
+@dataclass(frozen=True, eq=False, repr=False)
+class Design(Brief):
     """Position of the contact, by the symbol ``angle`` of the cam [rad], from the cam's centre in
     ground axes.
 
@@ -51,8 +52,8 @@ class Design:
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Cam:
+@dataclass(frozen=True, eq=False, repr=False)
+class Cam(Brief):
     """A disc cam: its ``constraint``, whose multiplier is the force of its contact, and its
     ``design``.
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from ..arguments import public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..base.publish import writing
 from ..base.table_file import TableFile
 from ..errors import DeclarationError, LagrangeCasadiError, shown
@@ -33,8 +34,8 @@ _MILLIMETRES = 1e3
 
 @renamed
 @public
-@dataclass(frozen=True, eq=False)
-class CamProfile:
+@dataclass(frozen=True, eq=False, repr=False)
+class CamProfile(Brief):
     """A cam's profile at angles of one turn of the cam, each (n,), in its own axes.
 
     ``x`` and ``y`` [m] are where the follower touches it while the cam is at ``angle`` [rad], and

@@ -10,14 +10,15 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ..arguments import public
+from ..base.brief import Brief
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Expression, Link, Point
 from ..errors import DeclarationError
 
 
-@dataclass(frozen=True, eq=False)
-class Cylinder:
+@dataclass(frozen=True, eq=False, repr=False)
+class Cylinder(Brief):
     """A cylinder: its links ``barrel`` and ``rod``, its ``slide``, which is what a scene drives,
     and its areas [m^2].
 

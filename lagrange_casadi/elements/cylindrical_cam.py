@@ -26,6 +26,7 @@ import numpy as np
 
 from ..arguments import Count, Elastic, Symbolic, public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Expression, Link, Point
@@ -41,8 +42,8 @@ _SAME = 1e-9
 _SAMPLED = 721
 
 
-@dataclass(frozen=True, eq=False)
-class Groove:
+@dataclass(frozen=True, eq=False, repr=False)
+class Groove(Brief):
     """Position of the roller, by the symbol ``angle`` of the drum [rad], in ground axes.
 
     ``place`` is its centre, ``normal`` of length one along the contact's force, ``travel`` the
@@ -61,8 +62,8 @@ class Groove:
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class CylindricalCam:
+@dataclass(frozen=True, eq=False, repr=False)
+class CylindricalCam(Brief):
     """A cylindrical cam: its ``constraint``, whose multiplier is the force of its contact, and its
     ``design``.
 

@@ -27,6 +27,7 @@ from typing import Literal
 import casadi as ca
 
 from ..arguments import public
+from ..base.brief import Brief
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
@@ -40,8 +41,8 @@ _FLATTEST, _STEEPEST = math.pi / 4, 75 * math.pi / 180
 """Pressure and helix angles are below these [rad]."""
 
 
-@dataclass(frozen=True, eq=False)
-class Gears:
+@dataclass(frozen=True, eq=False, repr=False)
+class Gears(Brief):
     """Gears that mesh: their ``constraint``, whose multiplier is the force along the pitch circle
     [N], and their ``kind``.
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..arguments import public
+from ..base.brief import Brief
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Expression, Link, Point
@@ -19,8 +20,8 @@ from .ranges import positive
 from .wheel import wheel
 
 
-@dataclass(frozen=True, eq=False)
-class Planetary:
+@dataclass(frozen=True, eq=False, repr=False)
+class Planetary(Brief):
     """A planetary set: its ``planets``, which ``pins`` hold on the carrier, and how they mesh with
     ``sun`` and ``ring``.
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from ..arguments import public
+from ..base.brief import Brief
 from ..declare.expressions import plain
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link, Point
@@ -18,8 +19,8 @@ from ..errors import DeclarationError
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Plate:
+@dataclass(frozen=True, eq=False, repr=False)
+class Plate(Brief):
     """A plate: its ``link``, and its ``corners`` as points of it."""
 
     link: Link

@@ -15,6 +15,7 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import public
+from ..base.brief import Brief
 from ..declare.directions import triad_of
 from ..declare.expressions import unit_vector
 from ..declare.joints import Joint, Triad
@@ -25,8 +26,8 @@ from ..errors import DeclarationError
 from ..geometry.vectors import dot, minus, plus, times
 
 
-@dataclass(frozen=True, eq=False)
-class Bearings:
+@dataclass(frozen=True, eq=False, repr=False)
+class Bearings(Brief):
     """A fixed and a floating bearing: their joints, whose reactions are the loads of the bearings,
     and the ``coordinate`` by which the shaft turns.
 
@@ -38,8 +39,8 @@ class Bearings:
     coordinate: str
 
 
-@dataclass(frozen=True, eq=False)
-class Bushes:
+@dataclass(frozen=True, eq=False, repr=False)
+class Bushes(Brief):
     """Two bushes on a rod: their joints, whose reactions are the loads of the rod on the bushes,
     and the ``coordinate`` by which they slide.
     """

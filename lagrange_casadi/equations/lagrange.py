@@ -32,6 +32,7 @@ import casadi as ca
 from ..arguments import Graph, public
 from ..arithmetic.scalars import entries
 from ..base.arrays import Expression
+from ..base.brief import Brief
 from ..errors import DeclarationError
 from .integrability import Course, no_rates
 
@@ -52,8 +53,8 @@ def _none() -> ca.SX:
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class LagrangeSystem:
+@dataclass(frozen=True, eq=False, repr=False)
+class LagrangeSystem(Brief):
     """A system given by its energy: CasADi SX graphs over symbols.
 
     Parameters

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arithmetic.scalars import column, graph
 from ..base.arrays import Array, Expression
+from ..base.brief import Brief
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
@@ -91,8 +92,8 @@ def template(scene: Scene) -> Template:
     )
 
 
-@dataclass(frozen=True, eq=False)
-class ModelData(Graphs):
+@dataclass(frozen=True, eq=False, repr=False)
+class ModelData(Graphs, Brief):
     """A mechanism and its motion as plain data, beside the functions of a :class:`.Program`.
 
     ``laws`` are the motions of the driven coordinates. ``timing`` is how the scene's own instants

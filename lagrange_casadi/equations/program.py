@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arithmetic.scalars import graph, inputs_of
 from ..base.arrays import Array, Expression
+from ..base.brief import listed
 from ..base.graph_text import dumps, loads
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic, symbolic_property
@@ -39,7 +40,7 @@ Turns: TypeAlias = tuple[tuple[int, int], ...]
 """Numbers of parts of an angle, and the sign of each."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Program(Graphs):
     """A compiled scene: CasADi functions and plain data, with no reference to its declaration, so
     that it can be sent to other processes and stored as text.
@@ -61,6 +62,13 @@ class Program(Graphs):
     loop_angles: Mapping[Output, Mapping[Column, int]]
     completion: Completion | None = None
     identity: str | None = None
+
+    def __repr__(self) -> str:
+        return (
+            f"<Program of {self.data.name}: {len(self.outputs)} outputs,"
+            f" {len(self.columns) - len(self.outputs)} checks; parameters:"
+            f" {listed(self.data.parameters)}>"
+        )
 
     @cached_property
     def names(self) -> tuple[str, ...]:

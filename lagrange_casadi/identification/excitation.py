@@ -18,6 +18,7 @@ import numpy as np
 from ..arguments import Count, Positive, public
 from ..arithmetic.ipopt import ipopt
 from ..base.arrays import Array, Expression
+from ..base.brief import Brief
 from ..base.symbolic import symbolic
 from ..base.units import number
 from ..base.vocabulary import Backend
@@ -45,8 +46,8 @@ _OPTIONS = {"tol": 1e-4, "hessian_approximation": "limited-memory"}
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Excitation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Excitation(Brief):
     """A periodic motion of drives, and how well it determines the parameters.
 
     ``sines`` and ``cosines`` are amplitudes of each harmonic, and ``centres`` the means, by drive

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..errors import AccuracyError, DeclarationError, UnknownNameError
 from .base import Base, Ranking, base_of, inverse, triangle
 from .consistency import Consistency
@@ -45,8 +46,8 @@ derivative that is rounding, over its size, or over this share of the largest of
 """
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Brief):
     """Measured quantities beside the model of them, each (t,); NaN where one is missing."""
 
     t: Array

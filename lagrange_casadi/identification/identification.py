@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arguments import NotNegative, Positive, public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..base.vocabulary import Backend
 from ..case import Case, scene_of
 from ..declare.scene import Scene
@@ -49,8 +50,8 @@ class BaseParameter:
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Identification:
+@dataclass(frozen=True, eq=False, repr=False)
+class Identification(Brief):
     """Parameters that were found, and their standard errors.
 
     ``name`` is that of the mechanism. ``values`` and ``errors`` are those of the unknown

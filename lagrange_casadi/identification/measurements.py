@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ..arguments import NotNegative, Positive, public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..base.recorded_table import MEASURED, SIZES, RecordedTable, count_sizes
 from ..base.units import UNITS
 from ..declare.curves import curve, derivatives
@@ -35,8 +36,8 @@ _REACH = 4.0
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Measurements:
+@dataclass(frozen=True, eq=False, repr=False)
+class Measurements(Brief):
     """Columns over time.
 
     Parameters

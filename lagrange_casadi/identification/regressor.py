@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
+from ..base.brief import Brief
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
@@ -57,6 +58,13 @@ class DrivenMotion(NamedTuple):
     rate: Array
     acceleration: Array
 
+    def __repr__(self) -> str:
+        instants, drives = self.d.shape
+        return (
+            f"<DrivenMotion of {drives} drives: {instants} instants from {self.t[0]:.5g} to"
+            f" {self.t[-1]:.5g} s>"
+        )
+
     def some(self, rows: npt.NDArray[np.intp] | npt.NDArray[np.bool_]) -> DrivenMotion:
         """Return the motion at some of the instants."""
         return DrivenMotion(*(column[rows] for column in self))
@@ -71,8 +79,8 @@ class Along(NamedTuple):
     ratio: float
 
 
-@dataclass(frozen=True, eq=False)
-class Regressor(Graphs):
+@dataclass(frozen=True, eq=False, repr=False)
+class Regressor(Graphs, Brief):
     """Compiled derivatives of ``quantities`` by the ``unknown`` parameters of a scene.
 
     The motion of the drives is an input, not the law of the scene, so derivatives are those at a

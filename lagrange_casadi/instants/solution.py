@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ..arguments import public
 from ..base.arrays import Array, during
+from ..base.brief import Brief
 from ..base.quantities import Kinds, Output, motions_of
 from ..base.tables import Table
 from ..declare.description import Description, density_of, kinds_of_described
@@ -43,8 +44,8 @@ if TYPE_CHECKING:
 
 
 @renamed
-@dataclass(frozen=True)
-class Provenance:
+@dataclass(frozen=True, repr=False)
+class Provenance(Brief):
     """Origin of the numbers.
 
     Holds no clock, no user and no path; ``method`` are the options of the

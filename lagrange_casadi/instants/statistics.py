@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array, Operand
+from ..base.brief import Brief
 from .sizes import largest
 
 
@@ -23,8 +24,8 @@ class Extreme:
     xi: float | None = None
 
 
-@dataclass(frozen=True)
-class Statistics:
+@dataclass(frozen=True, repr=False)
+class Statistics(Brief):
     """A quantity over the time of a solution, in ``unit``: means by trapezia, and the smallest and
     largest value of the instants.
 

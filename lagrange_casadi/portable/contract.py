@@ -13,6 +13,7 @@ from typing import TypeVar
 import casadi as ca
 import numpy as np
 
+from ..base.brief import Brief
 from ..base.quantities import Output, motion_names, motions_of
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, table_of
@@ -86,8 +87,8 @@ class LinkContract:
     constant: str
 
 
-@dataclass(frozen=True)
-class Contract:
+@dataclass(frozen=True, repr=False)
+class Contract(Brief):
     """An exported program's interface.
 
     ``inputs`` and ``outputs`` are the members of these structs in order; ``rests`` is true if each

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from .. import codegen
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..base.quantities import Output
 from ..base.symbolic import symbolic_property
 from ..codegen.stages import plain
@@ -131,8 +132,8 @@ class Bends(NamedTuple):
     changes: Array
 
 
-@dataclass(frozen=True, eq=False)
-class Slopes:
+@dataclass(frozen=True, eq=False, repr=False)
+class Slopes(Brief):
     """Quantities of a scene and their derivatives by all parameters, at points."""
 
     points: PointFunction

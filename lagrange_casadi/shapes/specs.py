@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from ..arguments import Finite, public
+from ..base.brief import Brief
 from ..base.quantities import Output
 from ..base.tables import PLANE
 from ..instants.solution import Solution
@@ -33,8 +34,8 @@ class _Drawn:
 
 
 @public
-@dataclass(frozen=True)
-class TimePlot(_Drawn):
+@dataclass(frozen=True, repr=False)
+class TimePlot(_Drawn, Brief):
     """Quantities over time, those of each unit on axes of their own; of a section force, one curve
     for each ratio in ``xi``.
 
@@ -56,8 +57,8 @@ class TimePlot(_Drawn):
 
 
 @public
-@dataclass(frozen=True)
-class SpanPlot(_Drawn):
+@dataclass(frozen=True, repr=False)
+class SpanPlot(_Drawn, Brief):
     """A section force along its link at the instant nearest to ``t``."""
 
     kind: ClassVar[str] = "span"

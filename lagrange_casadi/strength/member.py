@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..beams.beam import Beam, beam_from_numbers
 from ..declare.description import beams_of, in_space
 from ..equations.stress import FORCES, CrossSections
@@ -54,8 +55,8 @@ class Cell:
         return self.member.cross.factors(self.index, u)
 
 
-@dataclass(frozen=True, eq=False)
-class Member:
+@dataclass(frozen=True, eq=False, repr=False)
+class Member(Brief):
     """A link of a solution with its beam, whose numbers are those of the solution's parameters."""
 
     link: str

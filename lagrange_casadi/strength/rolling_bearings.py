@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arguments import NotNegative, Positive, public
+from ..base.brief import Brief
 from ..base.csv_rows import read_rows
 from ..base.units import count as whole
 from ..declare.fitted import Rolling
@@ -60,8 +61,8 @@ _AXIAL = 2.3
 
 
 @public
-@dataclass(frozen=True)
-class RollingBearing:
+@dataclass(frozen=True, repr=False)
+class RollingBearing(Brief):
     """A ball bearing: bore, outer diameter and width [m], ratings C and C0 [N], and the ``source``
     of these.
     """

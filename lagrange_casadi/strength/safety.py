@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arguments import public
+from ..base.brief import Brief
 from ..declare.description import Description
 from ..declare.end_conditions import effective_lengths
 from ..equations import buckling as columns
@@ -37,8 +38,8 @@ class Verdict:
 
 @renamed
 @public
-@dataclass(frozen=True)
-class Safety:
+@dataclass(frozen=True, repr=False)
+class Safety(Brief):
     """The factors of safety of a link; ``not_evaluated`` are those that are missing, each with its
     reason.
     """

@@ -23,6 +23,7 @@ from numpy.polynomial import chebyshev
 
 from ..arguments import Share, public
 from ..base.arrays import Array, Operand
+from ..base.brief import Brief
 from ..beams.beam import Notch
 from ..equations.stress import KINDS, concentration, squared
 from ..errors import DeclarationError, UnknownNameError, shown
@@ -59,8 +60,8 @@ class StressPeak:
     least: float | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Largest:
+@dataclass(frozen=True, eq=False, repr=False)
+class Largest(Brief):
     """The stress largest in size along a link and over its fibres at every instant, each (t,):
     value, ratio xi/l, fibre's name.
     """

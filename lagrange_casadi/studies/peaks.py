@@ -18,6 +18,7 @@ import numpy as np
 
 from ..arguments import Count, public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..base.quantities import Output, compared, parts_along
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
@@ -243,8 +244,8 @@ def rates(program: Program) -> ca.Function:
     return both.expand("rates", {"cse": True})
 
 
-@dataclass(frozen=True, eq=False)
-class ContinuousSolution:
+@dataclass(frozen=True, eq=False, repr=False)
+class ContinuousSolution(Brief):
     """A solution, and what its quantities and their time derivatives are at any time of its span.
 
     ``again`` makes that of the same parameters at other instants, for outputs that are wanted.

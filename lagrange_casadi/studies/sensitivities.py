@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
+from ..base.brief import listed
 from ..base.quantities import Output
 from ..base.vocabulary import Backend
 from ..declare.scene import Scene
@@ -45,7 +46,7 @@ class Changes:
 
 
 @public
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sensitivities:
     """The derivatives of a ``solution`` by the parameters of its scene, each made when it is asked
     for.
@@ -59,6 +60,9 @@ class Sensitivities:
     slopes: Slopes
     p: Array
     continuous: ContinuousSolution
+
+    def __repr__(self) -> str:
+        return f"<Sensitivities of {self.solution.case} by {listed(self.parameters)}>"
 
     @property
     def parameters(self) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ import casadi as ca
 
 from ..arguments import Positive, public
 from ..arithmetic.scalars import column
+from ..base.brief import Brief
 from ..base.numerals import readable
 from ..beams.profiles import Profile
 from ..declare.description import Template, beams_of, values_of
@@ -36,7 +37,7 @@ _TURNS = 100
 """Largest number of evaluations of loads before a search is given up."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StiffSafety(Safety):
     """The factors of safety of a link, and against ``deflection``: what is allowed over the
     largest. Of that 1 is enough, of the others ``enough``.
@@ -61,8 +62,8 @@ class StiffSafety(Safety):
 _BENT = "deflection"
 
 
-@dataclass(frozen=True)
-class Sized:
+@dataclass(frozen=True, repr=False)
+class Sized(Brief):
     """The profile chosen for a link: its mass [kg], its factors of safety, and the next lighter
     one, which is not safe, with its factors where the rest is as chosen; None where it is the
     lightest.
@@ -75,8 +76,8 @@ class Sized:
     lighter: tuple[Profile, Safety] | None
 
 
-@dataclass(frozen=True)
-class Sizing:
+@dataclass(frozen=True, repr=False)
+class Sizing(Brief):
     """Result of a choice: a :class:`Sized` for each link, the parameters, and the number of
     evaluations of loads.
 

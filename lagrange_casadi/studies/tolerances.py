@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arguments import Outputs, public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..base.numerals import real
 from ..base.status import Status
 from ..base.units import Within, number, typed
@@ -25,8 +26,8 @@ from .designs.prepared import prepare
 _LARGEST = 1_000_000
 
 
-@dataclass(frozen=True, eq=False)
-class Spread:
+@dataclass(frozen=True, eq=False, repr=False)
+class Spread(Brief):
     """Spread of the peak of a quantity.
 
     ``nominal`` is the peak without tolerances, with its sign. To first order ``worst`` is how far
@@ -48,8 +49,8 @@ class Spread:
     high: float
 
 
-@dataclass(frozen=True, eq=False)
-class Spreads:
+@dataclass(frozen=True, eq=False, repr=False)
+class Spreads(Brief):
     """Effect of tolerances [units of the parameters] on a scene's peaks, by full name, the one with
     the largest relative spread first.
 

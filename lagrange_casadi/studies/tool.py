@@ -16,6 +16,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..declare.description import beams_of
 from ..declare.parts import Body, Point
 from ..declare.pushed import with_push
@@ -29,8 +30,8 @@ from ..strength.member import Member
 from .evaluate import evaluate
 
 
-@dataclass(frozen=True, eq=False)
-class ToolDeflection:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolDeflection(Brief):
     """Displacement of a point by bending, stretch and twist of links, at instants ``t`` [s].
 
     ``by_link`` is the part of every link that has a beam, in ground axes [m], (t, 2), in space (t,

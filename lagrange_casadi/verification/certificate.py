@@ -10,7 +10,7 @@ mechanism of the plane is one in space whose z is zero. Each residual is relativ
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +19,8 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import SPACE
 from ..declare.declared import Declared
+from ..declare.scene import kinds
+from ..errors import CertificateError
 from ..instants.section_law import SectionLaw
 from ..instants.solution import Solution
 from .balance import balance, forces_reported
@@ -104,6 +106,20 @@ def failure(solution: Solution) -> str:
     return f"the certificate fails: {worse}, but at most {solution.tolerance:.2g} is rounding"
 
 
+def refuse_failed(solution: Solution, then: str = "") -> None:
+    """Raise :class:`.CertificateError` for a solution whose certificate fails, which says ``then``
+    what became of it.
+    """
+    if solution.failed:
+        raise CertificateError(failure(solution) + (f"; {then}" if then else ""))
+
+
+def certified_outputs(outputs: Sequence[str]) -> list[str]:
+    """The outputs that a certificate needs, by their kinds, of those that a scene has."""
+    return ["effort", "motion", *(kind for kind in kinds(outputs) if kind in _ACTING)]
+
+
+_ACTING = ("reaction", "multiplier", "load", "friction")
 _SAID = {"ends": "section ends"}
 _NOTHING = "not computed; it needs motion, efforts, reactions and loads"
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
+from ...base.brief import Brief
 
 KEPT = ("value", "peak_t", "xi", "mean", "rms")
 """Results of each design, by name in C."""
@@ -17,8 +18,8 @@ Results: TypeAlias = dict[str, Any]
 """Arrays to be filled, a row a design, by their names in C; None for what is not asked for."""
 
 
-@dataclass(frozen=True, eq=False)
-class Outcome:
+@dataclass(frozen=True, eq=False, repr=False)
+class Outcome(Brief):
     """Results of n designs, a row each; rows of designs without a result hold NaN.
 
     ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each

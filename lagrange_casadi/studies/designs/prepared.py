@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from ...arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
+from ...base.brief import listed
 from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...base.units import Number
@@ -207,6 +208,12 @@ class Prepared:
         self._place = {name: k for k, name in enumerate(self._declared)}
         self._defaults = engine.program.data.defaults
         self._answers = _Answers(engine, self._defaults)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Prepared {self._engine.program.data.name}: {len(self.outputs)} outputs; parameters:"
+            f" {listed(self.parameters)}>"
+        )
 
     @property
     def parameters(self) -> tuple[str, ...]:

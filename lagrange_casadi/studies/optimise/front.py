@@ -18,6 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.brief import Brief
 from ...errors import NoDesignError
 from .optimum import Optimum
 from .problem import Problem
@@ -37,8 +38,8 @@ _BETTER = 1e-6
 """Relative improvement of an objective beyond rounding."""
 
 
-@dataclass(frozen=True, eq=False)
-class FrontPoint:
+@dataclass(frozen=True, eq=False, repr=False)
+class FrontPoint(Brief):
     """A design of a front: its ``objectives``, and what the first one gains for a unit of each
     other one, ``trades``.
 
@@ -50,8 +51,8 @@ class FrontPoint:
     optimum: Optimum
 
 
-@dataclass(frozen=True, eq=False)
-class Front:
+@dataclass(frozen=True, eq=False, repr=False)
+class Front(Brief):
     """Designs of which none is better in all ``minimised`` terms, from the least of the first one
     on.
 

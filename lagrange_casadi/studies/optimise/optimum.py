@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.brief import Brief
 from .problem import Problem
 from .sampled_design import EvaluatedDesign
 from .search_run import CONVERGED, HOLDS, SearchRun
@@ -55,8 +56,8 @@ class Start:
     ending: str
 
 
-@dataclass(frozen=True, eq=False)
-class LocalOptimum:
+@dataclass(frozen=True, eq=False, repr=False)
+class LocalOptimum(Brief):
     """A design at which ``starts`` starts have converged."""
 
     values: Mapping[str, float]
@@ -64,8 +65,8 @@ class LocalOptimum:
     starts: int
 
 
-@dataclass(frozen=True, eq=False)
-class Optimum:
+@dataclass(frozen=True, eq=False, repr=False)
+class Optimum(Brief):
     """The best design of a search.
 
     ``values`` are those of the parameters that were chosen, ``parameters`` those of all.

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from ...arguments import LATER, public
 from ...base.arrays import Array
+from ...base.brief import Brief
 from ...base.units import Number, number, typed
 from ...declare.even_points import points
 from ...declare.limits import parameter_faults
@@ -249,8 +250,8 @@ class Grid:
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class Listed:
+@dataclass(frozen=True, eq=False, repr=False)
+class Listed(Brief):
     """A list of designs: ``rows`` (designs, names) of values; ``lines`` are the line numbers of
     the rows in a file ``source``.
 

@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from ...arguments import LATER, Count, Index, Outputs, public, texts
 from ...base.arrays import Array
+from ...base.brief import listed
 from ...base.seal import VerifiedFile, kind_of, verify
 from ...declare.description import Description
 from ...errors import (
@@ -99,8 +100,8 @@ class Sweep:
 
     def __repr__(self) -> str:
         return (
-            f"<Sweep of {self.case}: {counted(self.size)} over {', '.join(self.parameters)};"
-            f" {', '.join(self.columns)}>"
+            f"<Sweep of {self.case}: {counted(self.size)} over {listed(self.parameters)};"
+            f" {listed(self.columns)}>"
         )
 
     def _repr_html_(self) -> str:
