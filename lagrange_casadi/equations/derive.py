@@ -421,6 +421,8 @@ def _value(
         # One graph serves both precisions.
         return section.at(asked.output.member, Place(asked.ratio), END["single"])
     if asked.output not in found:
+        if asked.passive:
+            return ca.SX(0)
         drives = ", ".join(
             str(key.part) for key in found if isinstance(key, Output) and key.group == "effort"
         )
