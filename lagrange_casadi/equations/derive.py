@@ -260,7 +260,7 @@ class _JointForces:
         want = moving.want
         links = moving.scene.mechanism.links.values()
         coordinates = moving.body.coordinates
-        forces = internal_forces(moving.body, moving.solved, want, moving.scene.weights)
+        forces = internal_forces(moving.body, moving.solved, want, moving.scene)
         friction = forces.friction
         dependent = {
             key: value
