@@ -295,3 +295,13 @@ def test_links_that_meet_at_a_point_mass_come_back(tmp_path):
     save_model(scene, tmp_path / "model.json")
     there, back = efforts(scene), efforts(read(tmp_path / "model.json"))
     assert np.abs(back - there).max() < 1e-12 * np.abs(there).max()
+
+
+def test_a_scene_of_one_instant_comes_back(tmp_path):
+    m = Mechanism("still")
+    arm = m.link("arm", length=0.5, mass=2.0)
+    m.revolute("hinge", m.ground, arm)
+    save_model(Scene(m, {"hinge": polynomial(0.3)}, t=(0.5, 0.5, 1)), tmp_path / "model.json")
+    scene = read(tmp_path / "model.json")
+    assert scene.t == (0.5, 0.5, 1)
+    assert evaluate(scene).effort("hinge") == pytest.approx(2.0 * 9.81 * 0.25 * np.cos(0.3))
