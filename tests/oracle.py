@@ -14,7 +14,8 @@ the null space of the balance, which forces equilibrium leaves open.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -27,6 +28,7 @@ LEAST_STEADY = 1e-7
 _SAME_SLOPE = 1e-4
 _VAGUE = (1e-11, 1e-5)
 _OPEN = 1e-7
+_ROUNDS = 60
 FORCES = ("fx", "fy", "mz")
 
 
@@ -103,12 +105,14 @@ class Extra:
     unit of its force does.
 
     ``effect(place)`` lists (point, fx, fy, mz) of a unit multiplier; None for what only says where
-    something goes.
+    something goes. ``presses(place, force)`` lists what acts besides, for a multiplier of this
+    size: it moves no other multiplier, or one by a part of its own change.
     """
 
     name: str
     gap: Callable | None
     effect: Callable | None
+    presses: Callable | None = None
 
 
 @dataclass
@@ -142,7 +146,8 @@ class Oracle:
     from a posture, ``spreads`` those along bodies.
 
     ``unaided`` are driven joints that bear no effort; ``pushed`` the joints that do, where these
-    are not the driven ones.
+    are not the driven ones. Where more of them push than are needed, the sum of squares of their
+    efforts is the least, by the ``weights`` of joints that have one.
     """
 
     bodies: Sequence[Body]
@@ -154,6 +159,7 @@ class Oracle:
     arithmetic: Double | Digits = DOUBLE
     pushed: Sequence[str] | None = None
     spreads: Sequence[Callable] = ()
+    weights: Mapping[str, float] = field(default_factory=dict)
 
     def solve(
         self,
@@ -346,7 +352,19 @@ class Oracle:
         )
         keep = np.array([b.oriented or k < 2 for b in self.bodies for k in range(3)])
         matrix, right = matrix[keep], right[keep]
-        found = self.arithmetic.solve(matrix, right, 1e-11)
+        null = None
+        if self.arithmetic is DOUBLE:
+            scales = np.array([1.0, 1.0, self.size] * len(self.bodies))[keep, None]
+            null = self._null(result, matrix / scales)
+        least, null = self._least(labels, null) if self.weights else (None, null)
+
+        def solved(parts):
+            left = right - self._on_bodies(frames, parts)[keep]
+            found = self.arithmetic.solve(matrix, left, 1e-11)
+            return found if least is None else found + least @ found
+
+        found, pressed = self._pressed(solved, labels, place)
+        right, given = right - self._on_bodies(frames, pressed)[keep], given + pressed
         left = np.max(np.abs(matrix @ found - right))
         size = np.max(np.abs(right)) + np.max(np.abs(found))
         assert left <= 1000 * self.arithmetic.tolerance * size, (
@@ -366,20 +384,53 @@ class Oracle:
         for b in self.bodies:
             if b.density is not None:
                 result.sections[b.name] = self._section(frames, b, acting + given, spread)
-        if self.arithmetic is DOUBLE:
-            scales = np.array([1.0, 1.0, self.size] * len(self.bodies))[keep, None]
-            self._find_open(result, frames, labels, unknowns, matrix / scales)
+        if null is not None:
+            self._find_open(result, frames, labels, unknowns, null)
 
-    def _find_open(self, result, frames, labels, unknowns, matrix):
-        """What the null space of the balance changes: forces and moments that hold each other,
-        whatever is given.
+    def _pressed(self, solved, labels, place):
+        """Unknowns that balance all bodies, by what acts besides them, and what presses on them for
+        the multipliers among these.
+        """
+        pressing = [extra for extra in self.extras if extra.presses]
+        found, pressed = solved([]), []
+        for _ in range(_ROUNDS if pressing else 0):
+            sizes = {name: x for (name, *_), x in zip(labels, found, strict=True)}
+            pressed = [p for extra in pressing for p in extra.presses(place, sizes[extra.name])]
+            found, last = solved(pressed), found
+            if np.max(np.abs(found - last)) <= self.arithmetic.tolerance * np.max(np.abs(found)):
+                return found, pressed
+        assert not pressing, "what presses on the oracle's bodies does not converge"
+        return found, pressed
+
+    def _least(self, labels, null):
+        """What brings any unknowns to those with the least efforts, and what is open then."""
+        weights = np.array(
+            [
+                math.sqrt(self.weights[name]) if label == "effort" else 0.0
+                for name, label, _ in labels
+            ]
+        )
+        pushing = null * weights[:, None]
+        _, values, basis = np.linalg.svd(pushing)
+        values = np.concatenate([values, np.zeros(basis.shape[0] - values.size)])
+        kept = values > _LEAST * max(values, default=0.0)
+        ways = null @ basis[kept].T
+        back = np.linalg.lstsq(ways * weights[:, None], -np.diag(weights), rcond=None)[0]
+        return ways @ back, null @ basis[~kept].T
+
+    def _null(self, result, matrix):
+        """The null space of the balance: forces and moments that hold each other, whatever is
+        given.
         """
         lengths = np.linalg.norm(matrix, axis=0)
         lengths[lengths == 0.0] = 1.0
         _, values, basis = np.linalg.svd(matrix / lengths)
         values = np.concatenate([values, np.zeros(basis.shape[0] - values.size)])
         result.vague |= bool(np.any((values > _VAGUE[0]) & (values < _VAGUE[1])))
-        null = (basis[values < _LEAST] / lengths).T
+        return (basis[values < _LEAST] / lengths).T
+
+    def _find_open(self, result, frames, labels, unknowns, null):
+        """What the null space of the balance changes."""
         own: dict[str, np.ndarray] = {}
         for (name, label, parts), row in zip(labels, null, strict=True):
             for member, part in (

@@ -224,6 +224,8 @@ class Comparison:
         if exact.steadiness < _UNJUDGED or exact.vague:
             return
         for extra in model.extras:
+            if extra.effect is None:
+                continue
             acts = [
                 max(abs(fx), abs(fy), abs(mz) / self.size)
                 for _, fx, fy, mz in extra.effect(model.places(exact))
@@ -232,7 +234,7 @@ class Comparison:
         ratios = self._ratios(exact, model.places(exact))
         rounding = 64 * ROUNDING / exact.steadiness**2
         for name, value in self._named(exact, model, ratios).items():
-            mine, loose = self._mine(name, i), _open(exact, name)
+            mine, loose = self._mine(name, i), _open(exact, self._source(name)[0])
             if mine is None:
                 self.withheld[name.partition("@")[0]].append(loose)
             elif loose:
@@ -283,6 +285,18 @@ class Comparison:
             }
         named |= {f"effort:{name}": x for name, x in exact.efforts.items()}
         named |= {f"multiplier:{name}": x for name, x in exact.multipliers.items()}
+        for name, spot in self.d.paths.items():
+            for k, jet in zip("xy", place(spot.point), strict=False):
+                named |= {
+                    f"output:{name}_{k}": jet.v,
+                    f"output:{name}_v{k}": jet.d,
+                    f"output:{name}_a{k}": jet.a,
+                }
+        for name, contact in self.d.contacts.items():
+            told = contact.outputs(exact.multipliers[name])
+            named |= {f"output:{output}": x for output, x in told.items()}
+        for name, (of, factor) in self.d.outputs.items():
+            named[f"output:{name}"] = factor * self._force(exact, of, named)
         named = {name: float(x) for name, x in named.items() if name in known}
         for link in self.solution.links_with_sections:
             for u in ratios[link]:
@@ -292,6 +306,22 @@ class Comparison:
                     for force, x in zip(FORCES, forces, strict=True)
                 }
         return named
+
+    def _source(self, name: str) -> tuple[str, float]:
+        """What an output is so many times of, as the multiplier of a contact; others themselves."""
+        _, _, output = name.partition("output:")
+        contact = output.partition("_")[0]
+        if contact in self.d.contacts:
+            return f"multiplier:{contact}", 1.0
+        return self.d.outputs.get(output, (name, 1.0))
+
+    def _force(self, exact, name, named) -> float:
+        """A force by its name; of a section at the ratio that is told."""
+        full, _, ratio = name.partition("@")
+        if not ratio:
+            return named[full]
+        _, link, force = full.split(":")
+        return exact.sections[link](float(ratio))[FORCES.index(force)]
 
     def _ratios(self, exact, place) -> dict[str, list[float]]:
         """Where to look at each link: its ends, anywhere, and beside its stations; not where a
@@ -407,8 +437,15 @@ class Comparison:
         """What a quantity is compared with, and its factor there: moments are forces at an arm of
         the mechanism's size.
         """
+        name, factor = self._source(name)
+        if factor != 1.0:
+            kind, scale = self._kind(name)
+            return kind, scale / abs(factor)
         name = name.partition("@")[0]
         group, part, *_ = name.split(":")
+        if group == "output":  # of a path
+            order = {"v": "rate", "a": "acceleration"}.get(part[-2])
+            return (order, 1.0 / self.size) if order else ("place", 1.0)
         if group == "pose":
             return ("angle" if name.endswith("angle") else "place"), 1.0
         joint = self.d.joints.get(part.removesuffix("_rate").removesuffix("_acceleration"))

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import oracle
@@ -56,6 +57,11 @@ class Draft:
         self.laws: dict[str, tuple[str, Formula]] = {}
         self.constraints: dict[str, Formula] = {}
         self.rows: dict[str, tuple[Formula, str]] = {}
+        self.contacts: dict[str, Any] = {}  # of random_elements
+        self.guides: dict[str, list[tuple[str, Formula]]] = {}  # laws of points, and their gaps
+        self.paths: dict[str, Spot] = {}
+        self.outputs: dict[str, tuple[str, float]] = {}  # so many times what
+        self.pushed: dict[str, float] | None = None  # weights by joint
         self.loads: dict[str, Callable] = {}
         self.spreads: dict[str, Callable] = {}
         self.gravity: Place = (0.0, -9.81)
@@ -70,6 +76,7 @@ class Draft:
         self.whole = False  # whether the first of them may turn all the way round
         self.defaults: dict[str, float] = {}  # coordinates at which joints stand by default
         self.fits = True  # whether there are as many drives as freedoms, and they move all
+        self.holds = True  # whether what is pushed holds all the motion, far from any dead centre
         self._counts: dict[str, int] = {}
         self._spreads: dict[str, float] = {}
 
@@ -450,12 +457,29 @@ class Draft:
         """The oracle of an instant, in doubles."""
         extras = [_extra(name, f, t, holds=True) for name, f in self.constraints.items()]
         extras += [_extra(name, f, t, holds=False) for name, (f, _) in self.rows.items()]
+        extras += [contact.extra(name, t) for name, contact in self.contacts.items()]
+        guides = [gap for laws in self.guides.values() for _, gap in laws]
+        extras += [
+            oracle.Extra(f"guide{k}", lambda place, gap=gap: gap.jet(place, t), None)
+            for k, gap in enumerate(guides)
+        ]
         loads = [lambda place, load=load: load(place, t) for load in self.loads.values()]
         unaided = [joint for _, joint in self.rows.values()]
         joints, bodies = list(self.joints.values()), list(self.bodies.values())
         spreads = [lambda place, one=one: one(place, t) for one in self.spreads.values()]
+        pushed = self.pushed or {}
+        more = len(pushed) > len(self.laws) + len(guides)
         return oracle.Oracle(
-            bodies, joints, self.gravity, loads, extras, unaided, arithmetic, spreads=spreads
+            bodies,
+            joints,
+            self.gravity,
+            loads,
+            extras,
+            unaided,
+            arithmetic,
+            pushed=[*pushed] or None,
+            spreads=spreads,
+            weights=pushed if more else {},
         )
 
     def drives(self, t: float) -> dict[str, tuple[float, float, float]]:

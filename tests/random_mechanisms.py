@@ -13,6 +13,8 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
+import random_drives as drives
+import random_elements as elements
 from random_draft import Draft
 from random_growth import LEAST, attempt, close, dyad, freedom, hang, twice, values
 from random_loads import line_load, load
@@ -22,8 +24,9 @@ from random_patterns import PATTERNS
 _HEAD = """import casadi as ca
 from casadi import cos, sin, sqrt
 from lagrange_casadi import Mechanism, Scene, curve, density, evaluate, motion, table
+from lagrange_casadi.elements import belt, cylinder, disc_cam, gears, two_bearings, wheel
 """
-_ALONG = 1
+_ALONG, _ELEMENTS, _DRIVES, _ASKED = 1, 2, 3, 4
 SPACING = 0.4
 """Of the samples of a motion [s]."""
 
@@ -43,6 +46,7 @@ class Drawn:
     seed: int
     draft: Draft
     instants: tuple[float, float, int]
+    grid: tuple[float, float, int]
     posture: dict[str, float]
     keywords: dict
     path: Path
@@ -52,14 +56,17 @@ class Drawn:
     def source(self) -> str:
         """The declaration in Python."""
         d = self.draft
-        laws = ", ".join(f'"{joint}": {text}' for joint, (text, _) in d.laws.items())
-        scene = f"scene = Scene(m, motion={{{laws}}}, t={self.instants}, posture={self.posture})"
+        laws = [f'"{joint}": {text}' for joint, (text, _) in d.laws.items()]
+        laws += [f'"{name}": ({", ".join(t for t, _ in led)})' for name, led in d.guides.items()]
+        drives = ""
+        if d.pushed:
+            even = set(d.pushed.values()) == {1.0}
+            drives = f", drives={[*d.pushed] if even else d.pushed}"
+        scene = (
+            f"scene = Scene(m, motion={{{', '.join(laws)}}}, t={self.instants},"
+            f" posture={self.posture}{drives})"
+        )
         return "\n".join([_HEAD, f'm = Mechanism("{d.name}")', "t = m.time", *d.lines, scene, ""])
-
-    @property
-    def grid(self) -> tuple[float, float, int]:
-        """Start, stop and count of the instants."""
-        return self.keywords["t"]
 
     def scene(self):
         """The scene as the source declares it."""
@@ -82,6 +89,9 @@ def draw(seed: int) -> Drawn:
         if d is not None and _drive(d):
             if d.chance(0.03):
                 _misdrive(d)
+            else:
+                drives.move(d, np.random.default_rng((seed, _DRIVES)))
+                drives.lead(d, np.random.default_rng((seed, _DRIVES, 1)))
             return _finish(seed, d)
 
 
@@ -119,6 +129,7 @@ def _structure(seed: int, rng: np.random.Generator) -> Draft | None:
             whole = []
     if not any(body.mass for body in d.bodies.values()):
         return None
+    elements.add(d, np.random.default_rng((seed, _ELEMENTS)))
     d.leads = [*whole[:1], *d.leads]
     d.whole = bool(whole) and freedom(d) == 1
     return d if len(d.bodies) <= 14 else None
@@ -233,6 +244,11 @@ def _finish(seed: int, d: Draft) -> Drawn:
     elif d.chance(0.1):
         grid = d.choose((d.start, d.start, 1), (d.start, d.start + 0.05, 2))
     path = follow(d, grid[1], 0.05 if d.whole else 0.1)
+    own = np.random.default_rng((seed, _ASKED))
+    if path.motions and d.fits:
+        elements.lose(d, own, path.motions[0])
+        drives.push(d, own, path)
+        drives.ask(d, own)
     if path.end < grid[1] and d.chance(0.8) and path.end > grid[0] + 0.05:
         stop = grid[0] + float(f"{0.9 * (path.end - grid[0]):.2g}")
         scene_grid = (scene_grid[0], max(stop, scene_grid[0] + 0.01), scene_grid[2])
@@ -254,7 +270,8 @@ def _finish(seed: int, d: Draft) -> Drawn:
         posture = {name: value for name, value in posture.items() if d.chance(0.7)}
     if d.chance(0.3):
         d.lines = _shuffled(d)
-    keywords = {"t": grid}
+    asked = drives.over(d, own, scene_grid, grid) if path.end >= grid[1] else None
+    keywords = {"t": grid} if asked is None else {"over": asked}
     if moved := {
         name: value for name, (default, value) in d.parameters.items() if default != value
     }:
@@ -266,7 +283,7 @@ def _finish(seed: int, d: Draft) -> Drawn:
             + ["effort"]
         )
         keywords["wanted"] = ["motion", *(name for name in sorted(names) if d.chance(0.4))]
-    return Drawn(seed, d, scene_grid, posture, keywords, path.until(grid[1]), told)
+    return Drawn(seed, d, scene_grid, grid, posture, keywords, path.until(grid[1]), told)
 
 
 def _shuffled(d: Draft) -> list[str]:
@@ -275,12 +292,13 @@ def _shuffled(d: Draft) -> list[str]:
     made = {
         name: line
         for line in d.lines
-        for name in re.findall(r"\w+", line.partition(" = m.")[0])
-        if " = m." in line
+        for name in re.findall(r"\w+", line.partition(" = ")[0])
+        if " = " in line
     }
     while waiting:
         for line in waiting:
-            own = {name for name in re.findall(r"\w+", line) if name in made and made[name] != line}
+            words = re.findall(r"\w+", re.sub('"[^"]*"', "", line))
+            own = {name for name in words if name in made and made[name] != line}
             if own <= known:
                 break
         waiting.remove(line)

@@ -73,6 +73,7 @@ def is_regular(drawn: Drawn) -> bool:
     return (
         drawn.told
         and drawn.draft.fits
+        and drawn.draft.holds
         and path.end >= drawn.grid[1]
         and path.steadiness > NEAR
         and path.passes == math.inf

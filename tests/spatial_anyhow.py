@@ -12,7 +12,7 @@ import dataclasses
 
 import numpy as np
 from arithmetic import DOUBLE
-from spatial_bodies import AXES, GROUND, Joint, Mechanism, Rigid, Rod
+from spatial_bodies import AXES, GROUND, Coupling, Joint, Mechanism, Rigid, Rod
 from spatial_bridge import across_axis
 from spatial_draft import (
     Drawn,
@@ -152,6 +152,25 @@ class _Draft:
         for name, far, at in ((f"p{number}", one, start), (f"q{number}", other, end)):
             self.join(name, "spherical" if bar else self.pick(CLOSING), far, link.name, at)
 
+    def couple(self, rng, number) -> Coupling:
+        """An equation of a user's own: of coordinates, or of a point on a plane, which may follow a
+        coordinate.
+        """
+        keys = [(j.name, k) for j in self.joints if j.kind in DRIVEN for k in range(j.count)]
+        count = min(len(keys), int(rng.integers(2, 4)))
+        if count == 2 and rng.random() < 0.6:
+            name = str(rng.choice([one for one in self.bodies if not one.startswith("bar")]))
+            (r, R), point = self.poses[name], point_on(rng, self.bodies[name])
+            way = direction(rng)
+            terms = {keys[rng.integers(len(keys))]: rng.uniform(-0.5, 0.5)}
+            terms = terms if rng.random() < 0.5 else {}
+            points = {(name, tuple(map(float, point))): tuple(map(float, way))}
+            return Coupling(f"plane{number}", terms, float(way @ (r + R @ point)), points)
+        if count < 2:
+            raise OpenLoopError("there is nothing to couple")
+        chosen = rng.permutation(len(keys))[:count]
+        return Coupling(f"tie{number}", {keys[k]: float(rng.uniform(-1.5, 1.5)) for k in chosen})
+
 
 def _driven(rng, mechanism, guess, idle):
     """Coordinates that together place all but the spins of bars, steadily."""
@@ -184,7 +203,9 @@ def anyhow(rng) -> Drawn:
     if any(sum(bar in (joint.parent, joint.child) for joint in draft.joints) > 2 for bar in bars):
         raise OpenLoopError("a bar carries more than its ends, and does not spin freely")
     acts = acting(rng, [one for one in bodies if one.name not in bars])
-    mechanism = Mechanism(bodies, draft.joints, **acts)
+    own = np.random.default_rng(int(1e9 * abs(acts["gravity"][1])))
+    couplings = [draft.couple(own, k) for k in range(own.choice([0, 1, 2], p=[0.7, 0.2, 0.1]))]
+    mechanism = Mechanism(bodies, draft.joints, **acts, couplings=couplings)
     guess = {name: pose for name, pose in draft.poses.items() if name != GROUND}
     laws = {
         key: Law(0.0, rng.uniform(-1, 1), rng.uniform(0, 0.05), 3.0)

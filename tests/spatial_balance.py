@@ -97,7 +97,14 @@ class Balance:
         """
         a = self.motion.arithmetic
         found = [
-            Tie(c.name, {key: a.number(x) for key, x in c.terms.items()}, [])
+            Tie(
+                c.name,
+                {key: a.number(x) for key, x in c.terms.items()},
+                [
+                    (body, self.poses[body].at(vector(a, point)), vector(a, way))
+                    for (body, point), way in c.points.items()
+                ],
+            )
             for c in self.mechanism.couplings
         ]
         for row in self.mechanism.rows:

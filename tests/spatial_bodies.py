@@ -272,13 +272,14 @@ class Spring:
 
 @dataclass(frozen=True)
 class Coupling:
-    """Gears and the like: the sum of coefficients times coordinates, by (joint, index), is the
-    ``offset``.
+    """Gears, points on planes and the like: the sum of coefficients times coordinates, by (joint,
+    index), and of directions times places, by (body, point), is the ``offset``.
     """
 
     name: str
     terms: dict
     offset: Any = 0
+    points: dict = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

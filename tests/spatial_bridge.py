@@ -121,6 +121,8 @@ def declared(
         )
     for rub in rubs:
         m.friction(rub.name, m.joints[rub.joint.name], along=rub.along, **rub.numbers)
+    for coupling in one.couplings:
+        m.constraint(coupling.name, _total(m, one, coupling, parts))
     for row in one.rows:
         m.nonholonomic(row.name, _rates(m, one, row, parts), replaces=m.joints[row.replaces[0]])
     laws = {coordinate(one.joint(name), k): _law(law) for (name, k), law in drawn.laws.items()}
@@ -330,21 +332,33 @@ def _coordinates(joint, turned, apart):
 
 def _rates(m, mechanism, row, parts):
     """What a row says is nothing, in the package's symbols."""
+    q = {key: _of(m, mechanism, key, m.coordinate) for key in row.keys}
+    terms, directions = row.of(ca, q)
+    found = sum(x * _of(m, mechanism, key, m.rate) for key, x in terms.items())
+    return found + _along(m.velocity, directions, parts)
 
-    def of(key, measure):
-        joint = mechanism.joint(key[0])
-        return measure(
-            m.joints[joint.name],
-            *NAMES[joint.kind][key[1] : key[1] + 1] if joint.kind in NAMES else (),
-        )
 
-    terms, directions = row.of(ca, {key: of(key, m.coordinate) for key in row.keys})
-    found = sum(x * of(key, m.rate) for key, x in terms.items())
-    for (body, point), way in directions.items():
-        found += sum(
-            x * v for x, v in zip(way, m.velocity(parts[body].at(*map(float, point))), strict=True)
-        )
-    return found
+def _total(m, mechanism, coupling, parts):
+    """What a coupling says is nothing, in the package's symbols."""
+    terms = coupling.terms.items()
+    found = sum(float(x) * _of(m, mechanism, key, m.coordinate) for key, x in terms)
+    return found + _along(m.place, coupling.points, parts) - float(coupling.offset)
+
+
+def _of(m, mechanism, key, measure):
+    """The coordinate of a key, or its rate."""
+    joint = mechanism.joint(key[0])
+    axes = NAMES[joint.kind][key[1] : key[1] + 1] if joint.kind in NAMES else ()
+    return measure(m.joints[joint.name], *axes)
+
+
+def _along(measure, directions, parts):
+    """Places or velocities of points, along their directions."""
+    return sum(
+        x * component
+        for (body, point), way in directions.items()
+        for x, component in zip(way, measure(parts[body].at(*map(float, point))), strict=True)
+    )
 
 
 def _law(law):

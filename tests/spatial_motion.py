@@ -174,6 +174,10 @@ class Motion:
             total = -a.number(0 if kind else coupling.offset)
             for key, coefficient in coupling.terms.items():
                 total += a.number(coefficient) * values[key][kind]
+            for (body, point), way in coupling.points.items():
+                pose = poses[body]
+                of = (pose.at, pose.velocity, pose.acceleration)[kind]
+                total += vector(a, way) @ of(vector(a, point))
             found.append(a.array([total]))
         return np.concatenate(found) if found else self.arithmetic.zeros(0)
 
@@ -203,6 +207,11 @@ class Motion:
             line = self.arithmetic.zeros(1, self.count) * self.arithmetic.number(0)
             for key in {*coupling.terms} & {*self.number}:
                 line[0, self.number[key]] = self.arithmetic.number(coupling.terms[key])
+            for (body, point), way in coupling.points.items():
+                way, c = vector(self.arithmetic, way), self.column[body]
+                arm = poses[body].R @ vector(self.arithmetic, point)
+                line[0, c : c + 3] += way
+                line[0, c + 3 : c + 6] += cross(arm, way)
             rows.append(line)
         return np.concatenate(rows) if rows else self.arithmetic.zeros(0, self.count)
 
@@ -213,7 +222,7 @@ class Motion:
             for j in self.mechanism.joints
             for u in ([size] * 3 if j.name in self.loose else [size] * 3 + [1.0] * 3)
         ]
-        rows += [1.0] * len(self.mechanism.couplings)
+        rows += [size if coupling.points else 1.0 for coupling in self.mechanism.couplings]
         return Factored.of(self.slope(poses, values), np.array(rows), self.units)
 
     def start(self, guess, drives):

@@ -65,7 +65,9 @@ class Result:
 
     @property
     def open(self) -> set:
-        """What is open: (joint, member) of reactions, and (joint, index) of efforts."""
+        """What is open: (joint, member) of reactions, (joint, index) of efforts, and (name,
+        "multiplier").
+        """
         unit = np.array([1.0] * 3 + [self.size] * 3)[:, None]
         found = set()
         for joint, ways in self.loose_reactions.items():
@@ -74,11 +76,11 @@ class Result:
                 for m, row in zip(REACTION, ways / unit, strict=True)
                 if np.linalg.norm(row) > _OPEN
             }
-        return found | {
-            key
-            for key, row in self.loose_efforts.items()
-            if np.linalg.norm(row) > _OPEN * self.size
+        rows = self.loose_efforts | {
+            (name, "multiplier"): np.array([float(way[name]) for way in self.wrenches.null])
+            for name in self.multipliers
         }
+        return found | {key for key, row in rows.items() if np.linalg.norm(row) > _OPEN * self.size}
 
     def open_section(self, rod: str, xi) -> tuple[bool, ...]:
         """Which of a section's six forces are open."""

@@ -15,7 +15,8 @@ from spatial_bodies import GROUND, Rod
 from spatial_bridge import coordinate, declared, plain, postures
 from spatial_oracle import REACTION, SECTION
 
-from lagrange_casadi import evaluate
+from lagrange_casadi import Scene, SpatialMechanism, evaluate
+from lagrange_casadi.motion import harmonic
 
 LOCK = 0.2
 MADE = {
@@ -152,3 +153,46 @@ def test_a_quaternion_of_any_axes_turns_to_them():
         assert np.allclose(axes @ axes.T, np.eye(3), rtol=0, atol=1e-15)
         assert np.allclose(turned(again).full().reshape(3, 3), axes, rtol=0, atol=1e-15)
         assert np.linalg.norm(again) == pytest.approx(1.0, abs=1e-15)
+
+
+def hung(pin, block):
+    """A plate that hangs on a block which slides, its tip on a rail, a point of it at a height."""
+    m = SpatialMechanism("hung")
+    place = block(m)
+    inertia = (5e-3, 0.02, 0.022)
+    plate = m.link("plate", length=0.5, mass=1.0, centre=(0.25, 0.05, 0.0), inertia=inertia)
+    m.prismatic("x", m.ground, place, axis=(1, 0, 0))
+    pin(m, place, plate)
+    m.slot("rail", m.ground.at(0, 0.3, 0.1), plate.tip, axis=(1, 0, 0))
+    m.constraint("level", m.place(plate.at(0.2, 0.2, 0.0))[2] - 0.05)
+    return m
+
+
+@pytest.mark.parametrize(
+    ("pin", "sign"),
+    [
+        (lambda m, block, plate: m.spherical("pin", block, plate), 1),
+        (lambda m, block, plate: m.spherical("pin", plate, block), -1),
+        (lambda m, block, plate: m.revolute("pin", block, plate, axis=(0, 0, 1)), 1),
+    ],
+    ids=["spherical", "turned round", "revolute"],
+)
+def test_a_body_hangs_on_a_point_mass(pin, sign):
+    """As it does on a block without inertia: no joint holds a direction at a point."""
+
+    def solved(pin, block, sign):
+        rough = {"pin:turn_1": 0.2 * sign, "pin:turn_2": -0.2 * sign, "pin:turn_3": 0.6 * sign}
+        laws = {"x": harmonic(0.1, 0.1, 1.0)}
+        return evaluate(Scene(hung(pin, block), laws, t=(0.0, 1.0, 21), posture=rough))
+
+    body = solved(
+        lambda m, block, plate: m.spherical("pin", block, plate),
+        lambda m: m.link("block", length=0.1, mass=0.5, centre=(0, 0, 0), inertia=(0, 0, 0)),
+        1,
+    )
+    point = solved(pin, lambda m: m.point_mass("block", 0.5), sign)
+    assert point.certified
+    size = np.abs(body.effort("x")).max()
+    np.testing.assert_allclose(point.effort("x"), body.effort("x"), rtol=0.0, atol=1e-12 * size)
+    forces, there = sign * point.reaction("pin").fx, body.reaction("pin").fx
+    np.testing.assert_allclose(forces, there, rtol=0.0, atol=1e-12 * size)

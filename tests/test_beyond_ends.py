@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from balance import assert_balanced
 
-from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi import Mechanism, Scene, evaluate, read, save_model
 from lagrange_casadi.errors import ParameterError
 from lagrange_casadi.motion import polynomial
 
@@ -72,3 +72,29 @@ def test_the_lines_make_what_was_meant(station):
 
 def test_a_station_on_its_link_is_none_of_it():
     assert evaluate(crank(0.05)).certified
+
+
+def test_a_line_may_be_told_by_a_place_beyond_the_end(tmp_path):
+    """A block that slides past the tip of its rail loads the same sections, wherever the line is
+    told; and so does the model that a file holds, which tells it where the block is.
+    """
+
+    def slide(start):
+        m = Mechanism("rail")
+        rail, block = m.link("rail", length=0.4, mass=1.0), m.point_mass("block", 2.0)
+        m.revolute("O", m.ground, rail)
+        m.prismatic("P", rail.at(start), block, axis=(1, 0))
+        laws = {"O": polynomial(0.3, 2.0), "P": polynomial(0.5 - start, 0.4)}
+        return Scene(m, laws, t=(0.0, 0.2, 5))
+
+    scene = slide(0.1)
+    save_model(scene, tmp_path / "rail.json")
+    within = evaluate(scene)
+    for other in (slide(0.5), slide(-0.2)):
+        beyond = evaluate(other)
+        assert beyond.certified
+        for name in ("axial", "shear", "bending"):
+            forces, there = (getattr(one.section("rail"), name) for one in (beyond, within))
+            np.testing.assert_allclose(forces, there, rtol=0.0, atol=1e-12 * np.abs(there).max())
+    again = evaluate(read(tmp_path / "rail.json"), t=scene.t)
+    np.testing.assert_allclose(again.effort("O"), within.effort("O"), rtol=1e-12)

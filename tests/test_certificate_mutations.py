@@ -85,7 +85,7 @@ def test_every_kind_is_noticed(made):
 
 
 @pytest.mark.sampled(4)
-@pytest.mark.parametrize("seed", [0, 3, 4, 5, 6, 7, 8])
+@pytest.mark.parametrize("seed", [0, 3, 4, 5, 7, 8, 9])
 def test_whatever_can_be_declared_is_noticed(seed):
     """Of random mechanisms what is not there whatever moves: motions of what has no mass need no
     force.

@@ -10,6 +10,7 @@ from internals import MOVES, LawError, case_of, json_model, python
 from internals import laws_parsed as parsed
 
 from lagrange_casadi import (
+    Mechanism,
     Scene,
     SpatialMechanism,
     errors,
@@ -301,3 +302,32 @@ def test_forces_in_the_plane_are_those_of_space(plane, tmp_path):
         there, back = one.reaction(joint), other.reaction(joint)
         assert np.abs(back.fx - there.fx).max() < 1e-10 * max(np.abs(there.fx).max(), 1.0)
         assert np.abs(back.fy - there.fy).max() < 1e-10 * max(np.abs(there.fy).max(), 1.0)
+
+
+def test_links_that_meet_at_a_point_mass_come_back(tmp_path):
+    """Pins at a mass have no angle: none is looked for that a file should move."""
+    m = Mechanism("knuckle")
+    crank, rod, rocker = (
+        m.link(name, length=length, mass=1.0)
+        for name, length in (("crank", 0.1), ("rod", 0.3), ("rocker", 0.25))
+    )
+    pin = m.point_mass("pin", 0.4)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, pin)
+    m.revolute("C", rocker.tip, pin)
+    m.revolute("D", m.ground.at(0.3, 0.0), rocker)
+    scene = Scene(m, {"O": polynomial(0.3, 2.0)}, posture={"rod": 0.8, "rocker": 1.7})
+    save_model(scene, tmp_path / "model.json")
+    there, back = efforts(scene), efforts(read(tmp_path / "model.json"))
+    assert np.abs(back - there).max() < 1e-12 * np.abs(there).max()
+
+
+def test_a_scene_of_one_instant_comes_back(tmp_path):
+    m = Mechanism("still")
+    arm = m.link("arm", length=0.5, mass=2.0)
+    m.revolute("hinge", m.ground, arm)
+    save_model(Scene(m, {"hinge": polynomial(0.3)}, t=(0.5, 0.5, 1)), tmp_path / "model.json")
+    scene = read(tmp_path / "model.json")
+    assert scene.t == (0.5, 0.5, 1)
+    assert evaluate(scene).effort("hinge") == pytest.approx(2.0 * 9.81 * 0.25 * np.cos(0.3))

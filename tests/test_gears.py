@@ -383,3 +383,32 @@ def test_wheels_are_discs():
     ):
         with pytest.raises(DeclarationError, match="wheel 'other'"):
             wheel(m, "other", **told)
+
+
+def test_a_rack_in_a_loop_that_a_guide_closes():
+    """The guide holds a direction too, which is an equation by itself: the shoe may as well be a
+    point, which has none.
+    """
+
+    def solved(shoe):
+        m = Mechanism("rack_in_a_loop")
+        cart, arm = m.link("cart", length=0.1, mass=1.0), m.link("arm", length=0.4, mass=1.0)
+        bar, last = m.link("bar", length=0.5, mass=0.5), shoe(m)
+        m.prismatic("x", m.ground, cart, axis=(1, 0))
+        m.revolute("A", cart, arm)
+        m.prismatic("B", arm.at(0.1, 0.04), bar.at(0.2), axis=(1, 0))
+        gears(m, "mesh", cart, bar.at(0.2), radii=0.04, carrier=arm)
+        m.revolute("D", bar.tip, last)
+        m.prismatic("C", m.ground.at(0.0, 0.4), last, axis=(1, 0))
+        rough = {"arm": 0.8, "bar": 0.8, "B": 0.03, "C": 0.4}
+        return evaluate(Scene(m, {"x": harmonic(0.0, 0.1, 1.0)}, t=(0, 0.4, 9), posture=rough))
+
+    point = solved(lambda m: m.point_mass("shoe", 0.3))
+    link = solved(lambda m: m.link("shoe", length=0.05, mass=0.3))
+    assert link.certified
+    for one, other in (
+        (link.multiplier("mesh"), point.multiplier("mesh")),
+        (link.effort("x"), point.effort("x")),
+        (link.reaction("A").fy, point.reaction("A").fy),
+    ):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-12 * np.abs(other).max())

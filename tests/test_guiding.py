@@ -98,6 +98,24 @@ def test_it_is_the_motion_of_the_motors(scene, motors, loads):
                 assert abs(values[0] - found.outputs[output][k]) < 1e-12 * size, output
 
 
+def test_a_point_is_led_of_a_link_that_hangs_on_nothing_else():
+    """The arm slides on a beam that two slots guide, so it is placed by its point."""
+    m = Mechanism("trammel")
+    beam, arm = m.link("beam", length=1.0, mass=2.0), m.link("arm", length=0.4, mass=1.0)
+    left, right = m.point_mass("left", 0.5), m.point_mass("right", 0.5)
+    m.revolute("A", left, beam)
+    m.revolute("B", right, beam.tip)
+    m.slot("x", m.ground, left, axis=(1, 0))
+    m.slot("y", m.ground, right, axis=(0, 1))
+    m.prismatic("along", beam, arm.tip, axis=(1, 0), angle="-90 deg")
+    m.path("tool", arm.tip)
+    laws = {"tool": (motion.harmonic(-0.2, 0.03, 1.0), motion.harmonic(0.3, 0.03, 1.0, 0.5))}
+    rough = {"beam": 0.9, "x": -0.6, "y": 0.8, "along": 0.4, "arm": -0.7}
+    scene = Scene(m, laws, t=(0, 0.5, 21), posture=rough, drives=["x", "along"])
+    assert_balanced(scene)
+    assert evaluate(scene).certified
+
+
 def test_the_point_is_where_its_laws_say():
     found = evaluate(guided())
     x, y = 0.05 + 0.1 * np.sin(2 * np.pi * found.t), 0.6 + 0.05 * np.sin(2 * np.pi * found.t + 1.0)

@@ -63,7 +63,11 @@ def test_all_is_as_the_oracle_has_it_and_certified(case):
             own = solution.effort(coordinate(drawn.mechanism.joint(joint), number))
             assert near(own[k], effort, moment), joint
         for name, multiplier in one.multipliers.items():
-            assert near(solution.multiplier(name)[k], multiplier, moment), name
+            own = solution.multiplier(name)
+            if (name, "multiplier") in one.open:
+                assert np.isnan(own).all(), name
+            else:
+                assert near(own[k], multiplier, moment), name
         for joint, reaction in one.reactions.items():
             for i, member in enumerate(REACTION):
                 own = solution.outputs.get(

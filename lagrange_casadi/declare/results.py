@@ -31,11 +31,14 @@ _Part: TypeAlias = Load | Friction | Constraint | Row
 class Asked:
     """A result that an output is made of, and the symbol that stands for it; of a section force the
     ratio xi/l.
+
+    A ``passive`` effort is zero if the joint is not a drive; any other is refused.
     """
 
     output: Output
     symbol: ca.SX
     ratio: Expression | None = None
+    passive: bool = False
 
     @property
     def wanted(self) -> str:
@@ -134,11 +137,13 @@ class Results:
             return measures.joint(*ownership.moving_joint(of)).accelerations[0]
         return measures.point(ownership.point("acceleration", of)).accelerations
 
-    def effort(self, joint: Joint) -> ca.SX:
-        """The symbol of the effort of the drive at a joint, along its coordinate."""
-        return self._ask(
-            Output("effort", self.mechanism.ownership.moving_joint(joint)[1].coordinate)
-        )
+    def effort(self, joint: Joint, *, passive: bool = False) -> ca.SX:
+        """The symbol of the effort of the drive at a joint, along its coordinate.
+
+        If ``passive``, the joint may be no drive, and its effort is zero then.
+        """
+        coordinate = self.mechanism.ownership.moving_joint(joint)[1].coordinate
+        return self._ask(Output("effort", coordinate), passive=passive)
 
     def reaction(self, joint: Joint) -> Force | SpatialForce:
         """The symbols of a joint's reaction: what its parent does to its child, without the drive's
@@ -206,15 +211,17 @@ class Results:
         ]
         return SpatialForce(*found) if space else Force(*found)
 
-    def _ask(self, output: Output, ratio: Expression | None = None) -> ca.SX:
+    def _ask(
+        self, output: Output, ratio: Expression | None = None, *, passive: bool = False
+    ) -> ca.SX:
         asked = self.mechanism.asked
         for one in asked:
             same = one.ratio is ratio or (
                 isinstance(ratio, float) and isinstance(one.ratio, float) and one.ratio == ratio
             )
-            if one.output == output and same:
+            if one.output == output and same and one.passive == passive:
                 return one.symbol
-        asked.append(Asked(output, ca.SX.sym(str(output)), ratio))
+        asked.append(Asked(output, ca.SX.sym(str(output)), ratio, passive))
         return asked[-1].symbol
 
     def _own(

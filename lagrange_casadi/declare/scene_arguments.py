@@ -112,13 +112,20 @@ def links_with_beams(mechanism: Mechanism) -> list[str]:
 def rough_posture(mechanism: Mechanism, posture: Mapping[str, object]) -> dict[str, float]:
     """Return rough directions of links and coordinates of joints [rad, m] by name.
 
-    Raises what a :class:`.Scene` does.
+    In space a link that a joint holds at a point mass has turns there, which are no coordinates of
+    the joint: from what has no direction none are measured. Raises what a :class:`.Scene` does.
     """
     coordinates = mechanism.coordinates
-    places = [*(() if mechanism.space else mechanism.links), *coordinates]
+    turns = (
+        axis.coordinate
+        for joint in mechanism.joints.values()
+        for body in joint.bodies
+        for axis in joint.axes_of(body)
+    )
+    places = [*coordinates, *turns] if mechanism.space else [*mechanism.links, *coordinates]
     for name in posture:
         if name not in places:
-            raise UnknownNameError("link or joint in posture", name, places)
+            raise UnknownNameError("link or joint in posture", name, dict.fromkeys(places))
     slides = {name for name, (_, axis) in coordinates.items() if axis.kind == "slide"}
     return {name: _rough(name, value, name not in slides) for name, value in posture.items()}
 

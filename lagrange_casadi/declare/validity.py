@@ -146,6 +146,8 @@ def _of(mechanism: Mechanism, precision: Precision) -> ParameterConstraints:
     for joint in mechanism.joints.values():
         found += _of_axes(joint, precision)
         for point in (joint.parent, joint.child):
+            if joint.slides and point is joint.parent:
+                continue  # a place on the line along which the child slides, and loads the parent
             found += _of_load_point(
                 f"joint '{joint.name}'", point, precision, space=mechanism.space
             )

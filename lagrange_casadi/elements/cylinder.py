@@ -67,9 +67,9 @@ def cylinder(
     -------
     Cylinder
         The links NAME_barrel and NAME_rod, the pins NAME_rear and NAME_front, and the slide NAME,
-        whose coordinate is the stroke. If a scene lists it in drives, outputs are
-        NAME_cap_pressure and NAME_rod_pressure [Pa], the lower of which is the back pressure;
-        NAME_flow [m^3/s], positive into the cap side; and NAME_power [W].
+        whose coordinate is the stroke. Outputs are NAME_cap_pressure and NAME_rod_pressure [Pa],
+        the lower of which is the back pressure; NAME_flow [m^3/s], positive into the cap side; and
+        NAME_power [W]. If the slide is not a drive of the scene, the cylinder bears no force.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def cylinder(
     mechanism.revolute(f"{name}_rear", rear, barrel)
     slide = mechanism.prismatic(name, barrel, piston.base, axis=(1.0, 0.0))
     mechanism.revolute(f"{name}_front", piston.tip, front)
-    push, rate = mechanism.results.effort(slide), mechanism.rate(slide)
+    push, rate = mechanism.results.effort(slide, passive=True), mechanism.rate(slide)
     mechanism.output(
         f"{name}_cap_pressure", ca.fmax((push + back * rod_area) / cap_area, back), unit="Pa"
     )

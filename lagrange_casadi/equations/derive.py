@@ -260,7 +260,7 @@ class _JointForces:
         want = moving.want
         links = moving.scene.mechanism.links.values()
         coordinates = moving.body.coordinates
-        forces = internal_forces(moving.body, moving.solved, want, moving.scene.weights)
+        forces = internal_forces(moving.body, moving.solved, want, moving.scene)
         friction = forces.friction
         dependent = {
             key: value
@@ -421,6 +421,8 @@ def _value(
         # One graph serves both precisions.
         return section.at(asked.output.member, Place(asked.ratio), END["single"])
     if asked.output not in found:
+        if asked.passive:
+            return ca.SX(0)
         drives = ", ".join(
             str(key.part) for key in found if isinstance(key, Output) and key.group == "effort"
         )

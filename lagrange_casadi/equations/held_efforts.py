@@ -44,7 +44,7 @@ def held_efforts(scene: Scene) -> HeldEfforts:
     moving = Moving.of(scene, want)
     losses = (t.loss.name for t in transmissions_of(mechanism).values() if t.loss is not None)
     signs = {name: ca.SX.sym(f"sign_{name}") for name in (*frictions_of(mechanism), *losses)}
-    forces = internal_forces(moving.body, moving.solved, want, scene.weights, signs)
+    forces = internal_forces(moving.body, moving.solved, want, scene, signs)
     efforts = {key: value for key, value in forces.columns.items() if isinstance(key, Output)}
     slopes = ca.jacobian(column(efforts.values()), forces.free)
     found: dict[Column, Any] = dict(forces.columns)

@@ -35,7 +35,7 @@ from ..declare.joints import Joint
 from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link, Point, Vector
-from ..declare.scene import Wanted
+from ..declare.scene import Scene, Wanted
 from ..geometry.frames import Frame, Velocities
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import ZERO, cross, dot, plus, times
@@ -88,15 +88,16 @@ def internal_forces(
     multibody: Multibody,
     kinematics: Kinematics,
     want: Wanted,
-    weights: Mapping[str, Expression] | None,
+    scene: Scene,
     signs: Mapping[str, Expression] | None = None,
 ) -> InternalForces:
     """Derive the efforts, reactions, multipliers of constraints and rows, laws of links and
     frictions that are wanted.
 
-    ``weights`` are those of the drives, where these are others than the joints whose motion is
-    given. ``signs`` are those of frictions at rest, which are open without: see :func:`.solve`.
+    Guides of points and poses bear nothing, and load no link. ``signs`` are those of frictions at
+    rest, which are open without: see :func:`.solve`.
     """
+    weights = scene.weights
     along, across = multibody.terms()
     along = kinematics.evaluate(along)
     unknowns, values, free = multipliers_of(multibody, kinematics, along)
@@ -132,7 +133,7 @@ def internal_forces(
     )
     by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
     joints = multibody.mechanism.joints
-    supporting = needed_reactions(multibody.mechanism, want.reactions, want.sections)
+    supporting = needed_reactions(scene.mechanism, want.reactions, want.sections)
     found = {name: _reaction(multibody, joints[name], by_joint) for name in supporting}
     columns: dict[Column, Any] = (
         {Output("effort", joint): force for joint, force in drives.items()} if want.effort else {}

@@ -67,11 +67,9 @@ class Coordinate:
     def resting(self) -> tuple[float, ...]:
         """Variables at zero."""
         if self.spherical is not None:
-            return AXES[
-                [
-                    axis.coordinate for axis in self.spherical.joint.axes if axis.kind == "angle"
-                ].index(self.name)
-            ]
+            freedoms = self.spherical.joint.freedoms
+            turns = [freedom.name for freedom in freedoms if freedom.move == "turn"]
+            return AXES[turns.index(self.axis.name)]
         return (1.0, 0.0, 0.0) if self.kind == "angle" else (0.0,)
 
     @property

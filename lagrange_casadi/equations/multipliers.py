@@ -4,12 +4,12 @@ in which they are alone.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 
 import casadi as ca
 
 from ..arithmetic.scalars import column
+from .blocks import Block
 from .kinematics import Kinematics
 from .meshes import transmissions_of
 from .multibody import LoopEquations, Multibody
@@ -38,9 +38,7 @@ def multipliers_of(
         free = ca.vertcat(free, open_here)
         found = system.solve_transposed(residual, open_here)
         if touching := [loop for loop in block.loop_equations if loop.name in meshed]:
-            found, values = _where_they_touch(
-                multibody, block.loop_equations, touching, found, values
-            )
+            found, values = _where_they_touch(multibody, block, touching, found, values)
         symbols, values = ca.vertcat(local, symbols), ca.vertcat(found, values)
     if multibody.rows:
         mu = column(program.multiplier for program in multibody.rows)
@@ -58,7 +56,7 @@ def multipliers_of(
 
 def _where_they_touch(
     multibody: Multibody,
-    loops: Sequence[LoopEquations],
+    block: Block,
     touching: Sequence[LoopEquations],
     found: ca.SX,
     values: ca.SX,
@@ -71,8 +69,7 @@ def _where_they_touch(
     them, where each acts in one mesh, for the two do the same work; and what presses apart does
     none.
     """
-    sizes = [0, *itertools.accumulate(loop.multipliers.numel() for loop in loops)]
-    rows = [sizes[k] for k, loop in enumerate(loops) if loop in touching]
+    rows = [k for k, equation in enumerate(block.equations) if equation.loop in touching]
     symbols = column(loop.multipliers for loop in touching)
     local = column(found[row] for row in rows)
     every = transmissions_of(multibody.mechanism)

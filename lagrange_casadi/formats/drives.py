@@ -22,14 +22,18 @@ def driven(model: Model) -> Model:
 
     Those of the file have theirs; others are taken in the order of joints, and rest where they are.
     """
-    names = [name for joint in model.joints.values() for name in joint.coordinates]
+    names = [name for joint in model.joints.values() for name, _ in _twists(model, joint)]
     rates = _rates(model, names)
     rank = int(np.linalg.matrix_rank(rates, RANK)) if rates.size else 0
-    needed = len(names) - rank - sum(model.bodies[one].rod is not None for one in spinning(model))
+    idle = sum(model.bodies[one].rod is not None for one in spinning(model))
+    idle += 3 * sum(body.point for body in model.bodies.values())
+    needed = len(names) - rank - idle
     chosen = [k for k, name in enumerate(names) if name in model.motions]
-    single = [len(model.joints[name.partition(":")[0]].coordinates) for name in names]
-    later = [name.partition(":")[0] not in model.preferred for name in names]
-    for k in sorted(range(len(names)), key=lambda k: (later[k], single[k] > 2, k)):
+    drivable = {name for joint in model.joints.values() for name in joint.coordinates}
+    able = [k for k, name in enumerate(names) if name in drivable]
+    single = {k: len(model.joints[names[k].partition(":")[0]].coordinates) for k in able}
+    later = {k: names[k].partition(":")[0] not in model.preferred for k in able}
+    for k in sorted(able, key=lambda k: (later[k], single[k] > 2, k)):
         if len(chosen) >= needed:
             break
         rest = [j for j in range(len(names)) if j not in (*chosen, k)]
@@ -73,12 +77,25 @@ def _rates(model: Model, names: list[str]) -> Array:
 def _twists(model: Model, joint: Joint) -> Iterator[tuple[str, Array]]:
     """Yield the velocity of the child against the parent for each coordinate: that of the point at
     the ground's origin over the mechanism's size, and the angular one.
+
+    A point mass has no direction, so a joint holds none there: in place of the joint's turns are
+    three of the mass itself, which are no coordinates.
     """
     near, far = model.frames(joint)
+    ends = (model.bodies[one] for one in (joint.parent, joint.child) if one != GROUND)
+    point = next((body.frame.place for body in ends if body.point), None)
     for name, (_, move, axis) in zip(joint.coordinates, MOVES[joint.kind], strict=True):
+        if point is not None and move != "slide":
+            continue
         along = far.axes[:, 2] if axis == "w" else near.axes[:, "xyz".index(axis)]
         speed, spin = along, np.zeros(3)
         if move != "slide":
             slide = joint.lead / (2.0 * np.pi) * along if move == "screw" else 0.0
             speed, spin = np.cross(near.place, along) + slide, along
         yield name, np.concatenate([speed / extent(model), spin])
+    if point is not None:
+        for k, along in enumerate(np.eye(3)):
+            yield (
+                f"{joint.name} {k}",
+                np.concatenate([np.cross(point, along) / extent(model), along]),
+            )

@@ -61,7 +61,7 @@ def model_of(scene: Scene, parameters: Mapping[str, float], file: Path) -> Model
         scene, t=(start, start, 1), wanted=["motion"], parameters=parameters, backend="vm"
     )
     described = solution.description
-    model = Model(described["name"], file, span=(start, stop, 101))
+    model = Model(described["name"], file, span=(start, stop, 101 if stop > start else 1))
     what = f"mechanism '{model.name}'"
     for name in (*described["constraints"], *described["rows"]):
         raise DeclarationError(f"{what}: constraint '{name}' cannot be written into a model file")
