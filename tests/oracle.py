@@ -397,7 +397,8 @@ class Oracle:
             sizes = {name: x for (name, *_), x in zip(labels, found, strict=True)}
             pressed = [p for extra in pressing for p in extra.presses(place, sizes[extra.name])]
             found, last = solved(pressed), found
-            if np.max(np.abs(found - last)) <= self.arithmetic.tolerance * np.max(np.abs(found)):
+            near = 100 * self.arithmetic.tolerance * np.max(np.abs(found))
+            if np.max(np.abs(found - last)) <= near:
                 return found, pressed
         assert not pressing, "what presses on the oracle's bodies does not converge"
         return found, pressed
