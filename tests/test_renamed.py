@@ -15,10 +15,10 @@ pytestmark = pytest.mark.quick
 
 
 def things(name):
-    """Every class or function of the package with a name."""
+    """Every class or function of the package with a name, commands apart."""
     found = {}
     for module in pkgutil.walk_packages(lagrange_casadi.__path__, "lagrange_casadi."):
-        if module.name.endswith("__main__"):
+        if module.name.endswith("__main__") or module.name.startswith("lagrange_casadi.cli"):
             continue
         thing = vars(importlib.import_module(module.name)).get(name)
         if (inspect.isclass(thing) or inspect.isfunction(thing)) and thing.__module__:

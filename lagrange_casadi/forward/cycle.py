@@ -43,8 +43,8 @@ _SPEED, _TIME, _BY, _TIME_BY = 0, 1, slice(2, 5), slice(5, 8)
 of both by the speed at the start, the added torque and the flywheel's inertia, in ``units``.
 """
 
-_ZERO = 1e-3
-"""A state that counts as zero."""
+_ZERO, _ROUGH = 1e-3, 1e3
+"""A state that counts as zero; and one of which Newton's method needs few digits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,7 +247,8 @@ def _turned(machine: Machine, begin: Start, span: float, accuracy: float) -> Tur
         terminal(lambda _angle, y: float(y[_SPEED]) - _SLOWEST),
         terminal(lambda angle, y: machine.margin(0.0, angle, usual * y[_SPEED])),
     ]
-    run = integrated(rates, (begin.angle, begin.angle + span), state, accuracy, _ZERO, events)
+    sizes = np.array([_ZERO] * 3 + [_ROUGH] * 5)  # whether the speed matters is told by the third
+    run = integrated(rates, (begin.angle, begin.angle + span), state, accuracy, sizes, events)
     angle, (speed, t) = float(run.t[-1]), run.y[:2, -1] * (usual, 1.0 / usual)
     if run.t_events[1].size:  # from there evenly slower
         slower = float(machine.at(0.0, angle, speed)[a])

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..base.arrays import Array
+from ..base.brief import Brief
 from ..declare.description import Description
 from ..declare.stated import Triple
 from ..errors import DeclarationError
@@ -19,8 +20,8 @@ _SAME = 1e-9
 """Distance of two places [m] that are one node."""
 
 
-@dataclass(frozen=True)
-class Load:
+@dataclass(frozen=True, repr=False)
+class Load(Brief):
     """A force [N] and a moment [N m] about the place ``at`` [m], on the link's axes.
 
     ``name`` is that of the output it is reported as: ``reaction:A``, ``effort:O``, ``load:gas``,
@@ -33,8 +34,8 @@ class Load:
     moment: Triple
 
 
-@dataclass(frozen=True)
-class LoadCase:
+@dataclass(frozen=True, repr=False)
+class LoadCase(Brief):
     """Everything that loads a link at time ``t`` [s], on its own axes, from its origin.
 
     ``governs`` are the quantities that are largest at this instant. The link bears ``loads``, and
