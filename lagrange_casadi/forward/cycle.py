@@ -247,7 +247,8 @@ def _turned(machine: Machine, begin: Start, span: float, accuracy: float) -> Tur
         terminal(lambda _angle, y: float(y[_SPEED]) - _SLOWEST),
         terminal(lambda angle, y: machine.margin(0.0, angle, usual * y[_SPEED])),
     ]
-    sizes = np.array([_ZERO] * 3 + [_ROUGH] * 5)  # whether the speed matters is told by the third
+    # The third shows whether anything depends on the speed.
+    sizes = np.array([_ZERO] * 3 + [_ROUGH] * 5)
     run = integrated(rates, (begin.angle, begin.angle + span), state, accuracy, sizes, events)
     angle, (speed, t) = float(run.t[-1]), run.y[:2, -1] * (usual, 1.0 / usual)
     if run.t_events[1].size:  # from there evenly slower
