@@ -236,17 +236,22 @@ def gear(d: Draft) -> bool | None:
             (second.point, -f[0], -f[1], -(reach[0] * f[1] - reach[1] * f[0])),
         ]
 
+    d.contacts[name] = _mesh(name, formula, force, angle, (first, second), carrier, (r1, r2))
+    return None
+
+
+def _mesh(name: str, formula: Formula, force: Callable, angle: float, *axes) -> Contact:
+    """Teeth whose flanks lean by an angle [deg]: ``force(place, along, apart)`` lists what the
+    force along the common tangent and the one that presses apart do.
+    """
     steep = math.tan(math.radians(angle))
-    d.contacts[name] = Contact(
+    return Contact(
         formula,
         lambda place: force(place, 1.0, 0.0),
         lambda place, size: force(place, 0.0, abs(size) * steep),
         lambda size: {f"{name}_tangential": size, f"{name}_radial": abs(size) * steep},
-        (first, second),
-        carrier,
-        (r1, r2),
+        *axes,
     )
-    return None
 
 
 def rack(d: Draft) -> bool | None:
@@ -287,13 +292,7 @@ def rack(d: Draft) -> bool | None:
         body = (bar, *_seen(place, bar, (x.v + r * e[0], y.v + r * e[1])))
         return [(first.point, *f, r * along), (body, -f[0], -f[1], 0.0)]
 
-    steep = math.tan(math.radians(angle))
-    d.contacts[name] = Contact(
-        formula,
-        lambda place: force(place, 1.0, 0.0),
-        lambda place, size: force(place, 0.0, abs(size) * steep),
-        lambda size: {f"{name}_tangential": size, f"{name}_radial": abs(size) * steep},
-    )
+    d.contacts[name] = _mesh(name, formula, force, angle)
     return None
 
 
