@@ -20,7 +20,7 @@ from .laws import Motions
 from .places import Places
 from .posture import about_z, opened
 from .python_text import Call, comment, of_pi, safe, signed, text_of, vector
-from .record import MOVES, Body, Coupling, Joint, Model, Tie
+from .record import GROUND, MOVES, Body, Coupling, Joint, Model, Tie
 
 _FRAME = '''
 
@@ -121,8 +121,9 @@ class _Case:
             ends = [self.places.written(base), self.places.written(tip)]
             arguments.append(Call("between=", ends))
             if any(
-                body.name in (self.model.joints[one].parent, self.model.joints[one].child)
-                for one in self.open
+                body.name in (one.parent, one.child)
+                for one in self.model.joints.values()
+                if one.name in self.open or (one.sprung and one.kind == "prismatic")
             ):
                 arguments.append(self.short.direction(own.axes[:, 1], "beside"))
         else:  # no joint gives its posture: it is on its own axes
@@ -138,6 +139,17 @@ class _Case:
             else:
                 arguments.append(Call("inertia=", [vector(row) for row in inertia.tolist()]))
         self.call(f"{name} = m.link", *arguments)
+        self.less_weight(body, mass)
+
+    def less_weight(self, body: Body, mass: str) -> None:
+        """Declare the force at the centre of mass that takes from a body what it does not weigh."""
+        lift = (body.weight - 1.0) * self.model.gravity
+        if not body.mass or not np.any(lift):
+            return
+        load, point = self.places.unused(f"lift_{body.name}"), body.frame.at(body.centre)
+        parts = zip("xyz", lift.tolist(), strict=True)
+        force = [f"{axis}={text_of(one)} * {mass}" for axis, one in parts if one]
+        self.call("m.force", json.dumps(load), self.places.point(body.name, point), *force)
 
     def joint(self, joint: Joint) -> None:
         """Declare a joint at its place, or between two points where these are apart."""
@@ -163,10 +175,32 @@ class _Case:
             arguments += self.axes(joint, near.axes, far)
             arguments.append(f"at={self.places.written(self.places.at[joint.name])}")
         self.called(joint.name)
-        used = bool(self.model.ties) or any(
-            joint.name in (one.first, one.second) for one in self.model.couplings.values()
-        )
+        used = bool(self.model.ties) or joint.sprung
+        used |= any(joint.name in (one.first, one.second) for one in self.model.couplings.values())
         self.call(f"{name} = m.{joint.kind}" if used else f"m.{joint.kind}", *arguments)
+        if joint.sprung:
+            self.spring(joint, name, near)
+
+    def spring(self, joint: Joint, name: str, near: Frame) -> None:
+        """Declare the spring and the damper of a joint that turns or slides."""
+        load = self.places.unused(f"spring_{joint.name}")
+        free = joint.free - self.motions.offset(joint.name)
+        if joint.kind == "revolute":
+            numbers = {"stiffness": joint.stiffness, "angle": free, "damping": joint.damping}
+            given = [f"{key}={text_of(one)}" for key, one in numbers.items()]
+            self.call("m.torsion_spring", json.dumps(load), name, *given)
+            return
+        stretched = f"(m.coordinate({name}){signed(-free)})"
+        effort = f"{text_of(-joint.stiffness)} * {stretched}"
+        self.lines.append(f"{load} = {effort} - {text_of(joint.damping)} * m.rate({name})")
+        for body, sign in ((joint.child, ""), (joint.parent, "-")):
+            if body != GROUND:
+                along = self.short.values(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
+                parts = zip("xyz", along.tolist(), strict=True)
+                force = [f"{axis}={sign}{load} * {text_of(one)}" for axis, one in parts if one]
+                point = self.places.point(body, near.place)
+                held = self.places.unused(f"{load}_{body}")
+                self.call("m.force", json.dumps(held), point, *force, "turning=True")
 
     def axes(self, joint: Joint, axes: Array, far: Frame) -> list[object]:
         """Return the arguments that say along and about what a joint moves."""

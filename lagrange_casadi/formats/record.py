@@ -58,7 +58,8 @@ class Body:
 
     ``frame`` is where it is in the reference posture. ``places`` are points of it that have a name.
     A uniform slender ``rod`` lies between two places, and has sections; a ``point`` mass has no
-    axes. ``where`` is what messages call it: the line and the element of the file.
+    axes. ``where`` is what messages call it: the line and the element of the file. ``weight`` is
+    its weight over mass times gravity: 0 if gravity does not act on it.
     """
 
     name: str
@@ -70,6 +71,7 @@ class Body:
     rod: tuple[Array, Array] | None = None
     point: bool = False
     where: str = ""
+    weight: float = 1.0
 
     @classmethod
     def slender(cls, name: str, mass: float, rod: tuple[Array, Array], where: str = "") -> Body:
@@ -86,7 +88,9 @@ class Joint:
     The frames coincide where its coordinates are zero. It turns about z and slides along z of the
     parent's frame; a planar joint's normal is z and its slides are along x and y; of a free and a
     spherical joint slides and turns are along and about x, y, z; of a universal joint the axes are
-    z of the parent's frame and z of the child's. ``lead`` [m] is a screw's.
+    z of the parent's frame and z of the child's. ``lead`` [m] is a screw's. A revolute or prismatic
+    joint may have a spring and a damper: the effort -``stiffness`` (coordinate - ``free``)
+    - ``damping`` rate acts on the child, in N, m, s and rad.
     """
 
     name: str
@@ -97,6 +101,14 @@ class Joint:
     on_child: Frame
     lead: float = 0.0
     where: str = ""
+    stiffness: float = 0.0
+    free: float = 0.0
+    damping: float = 0.0
+
+    @property
+    def sprung(self) -> bool:
+        """Return whether it has a spring or a damper."""
+        return bool(self.stiffness or self.damping)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -263,12 +275,12 @@ class Model:
         self.named[kind, stated] = name
         return name
 
-    def add(self, part: type[Part], stated: str, where: str, *given: Any) -> str:
+    def add(self, part: type[Part], stated: str, where: str, *given: Any, **more: Any) -> str:
         """Add a body, joint, coupling or tie under its name of the file; return its name here."""
         parts: dict[type[Part], dict[str, Any]] = {Body: self.bodies, Coupling: self.couplings}
         parts |= {Joint: self.joints, Tie: self.ties}
         name = self.name_of("joint" if part is Tie else part.__name__.lower(), stated, where)
-        parts[part][name] = replace(part(name, *given), where=where)
+        parts[part][name] = replace(part(name, *given), where=where, **more)
         return name
 
     def find(self, kind: str, stated: str, where: str) -> str:
