@@ -20,7 +20,7 @@ from .laws import Motions
 from .places import Places
 from .posture import about_z, opened
 from .python_text import Call, comment, of_pi, safe, signed, text_of, vector
-from .record import GROUND, MOVES, Body, Coupling, Joint, Model, Tie
+from .record import GROUND, MOVES, Body, Coupling, Joint, Model, Spring, Tie
 
 _FRAME = '''
 
@@ -66,6 +66,8 @@ class _Case:
             self.body(body)
         for joint in model.joints.values():
             self.joint(joint)
+        for spring in self.model.springs:
+            self.spring(spring)
         for coupling in model.couplings.values():
             self.coupling(coupling)
         for tie in model.ties.values():
@@ -116,6 +118,7 @@ class _Case:
         assert body.inertia is not None
         axes, centre = body.frame.axes, self.short.place(body.frame.at(body.centre))
         own = Frame(np.array(base), self.places.link_axes(body.name))
+        sprung = [one.joint for one in self.model.springs]
         arguments: list[object] = [json.dumps(body.name)]
         if body.name in self.places.held:
             ends = [self.places.written(base), self.places.written(tip)]
@@ -123,7 +126,7 @@ class _Case:
             if any(
                 body.name in (one.parent, one.child)
                 for one in self.model.joints.values()
-                if one.name in self.open or (one.sprung and one.kind == "prismatic")
+                if one.name in self.open or one.name in sprung
             ):
                 arguments.append(self.short.direction(own.axes[:, 1], "beside"))
         else:  # no joint gives its posture: it is on its own axes
@@ -175,32 +178,37 @@ class _Case:
             arguments += self.axes(joint, near.axes, far)
             arguments.append(f"at={self.places.written(self.places.at[joint.name])}")
         self.called(joint.name)
-        used = bool(self.model.ties) or joint.sprung
-        used |= any(joint.name in (one.first, one.second) for one in self.model.couplings.values())
+        used = bool(self.model.ties) or any(
+            joint.name in (one.first, one.second) for one in self.model.couplings.values()
+        )
+        used |= any(joint.name == one.joint for one in self.model.springs)
         self.call(f"{name} = m.{joint.kind}" if used else f"m.{joint.kind}", *arguments)
-        if joint.sprung:
-            self.spring(joint, name, near)
 
-    def spring(self, joint: Joint, name: str, near: Frame) -> None:
-        """Declare the spring and the damper of a joint that turns or slides."""
-        load = self.places.unused(f"spring_{joint.name}")
-        free = joint.free - self.motions.offset(joint.name)
+    def spring(self, one: Spring) -> None:
+        """Declare the spring and the damper of a joint that turns or slides: what they do to its
+        child, they do to its parent in the opposite direction.
+        """
+        joint, load = self.model.joints[one.joint], self.places.unused(f"spring_{one.joint}")
+        name, rest = self.variables[f"joint {joint.name}"], one.rest
+        rest -= self.motions.offset(joint.name)
         if joint.kind == "revolute":
-            numbers = {"stiffness": joint.stiffness, "angle": free, "damping": joint.damping}
-            given = [f"{key}={text_of(one)}" for key, one in numbers.items()]
+            numbers = {"stiffness": one.stiffness, "angle": rest, "damping": one.damping}
+            given = [f"{key}={text_of(number)}" for key, number in numbers.items()]
             self.call("m.torsion_spring", json.dumps(load), name, *given)
             return
-        stretched = f"(m.coordinate({name}){signed(-free)})"
-        effort = f"{text_of(-joint.stiffness)} * {stretched}"
-        self.lines.append(f"{load} = {effort} - {text_of(joint.damping)} * m.rate({name})")
+        pull = f"{text_of(-one.stiffness)} * (m.coordinate({name}){signed(-rest)})"
+        self.lines.append(f"{load} = {pull} - {text_of(one.damping)} * m.rate({name})")
+        near = self.model.frames(joint)[0]
         for body, sign in ((joint.child, ""), (joint.parent, "-")):
             if body != GROUND:
                 along = self.short.values(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
                 parts = zip("xyz", along.tolist(), strict=True)
-                force = [f"{axis}={sign}{load} * {text_of(one)}" for axis, one in parts if one]
-                point = self.places.point(body, near.place)
-                held = self.places.unused(f"{load}_{body}")
-                self.call("m.force", json.dumps(held), point, *force, "turning=True")
+                force = [f"{axis}={text_of(part)} * {sign}{load}" for axis, part in parts if part]
+                name, point = (
+                    self.places.unused(f"{load}_{body}"),
+                    self.places.point(body, near.place),
+                )
+                self.call("m.force", json.dumps(name), point, *force, "turning=True")
 
     def axes(self, joint: Joint, axes: Array, far: Frame) -> list[object]:
         """Return the arguments that say along and about what a joint moves."""

@@ -58,8 +58,8 @@ class Body:
 
     ``frame`` is where it is in the reference posture. ``places`` are points of it that have a name.
     A uniform slender ``rod`` lies between two places, and has sections; a ``point`` mass has no
-    axes. ``where`` is what messages call it: the line and the element of the file. ``weight`` is
-    its weight over mass times gravity: 0 if gravity does not act on it.
+    axes. ``weight`` is how much of gravity acts on it. ``where`` is what messages call it: the line
+    and the element of the file.
     """
 
     name: str
@@ -70,8 +70,8 @@ class Body:
     places: Mapping[str, Array] = field(default_factory=dict)
     rod: tuple[Array, Array] | None = None
     point: bool = False
-    where: str = ""
     weight: float = 1.0
+    where: str = ""
 
     @classmethod
     def slender(cls, name: str, mass: float, rod: tuple[Array, Array], where: str = "") -> Body:
@@ -88,9 +88,7 @@ class Joint:
     The frames coincide where its coordinates are zero. It turns about z and slides along z of the
     parent's frame; a planar joint's normal is z and its slides are along x and y; of a free and a
     spherical joint slides and turns are along and about x, y, z; of a universal joint the axes are
-    z of the parent's frame and z of the child's. ``lead`` [m] is a screw's. A revolute or prismatic
-    joint may have a spring and a damper: the effort -``stiffness`` (coordinate - ``free``)
-    - ``damping`` rate acts on the child, in N, m, s and rad.
+    z of the parent's frame and z of the child's. ``lead`` [m] is a screw's.
     """
 
     name: str
@@ -101,14 +99,6 @@ class Joint:
     on_child: Frame
     lead: float = 0.0
     where: str = ""
-    stiffness: float = 0.0
-    free: float = 0.0
-    damping: float = 0.0
-
-    @property
-    def sprung(self) -> bool:
-        """Return whether it has a spring or a damper."""
-        return bool(self.stiffness or self.damping)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -127,6 +117,18 @@ class Coupling:
     ratio: float
     offset: float = 0.0
     where: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Spring:
+    """A spring and a damper of a joint of one coordinate: its stiffness, the coordinate where it
+    has no force, and the damping, all in SI units.
+    """
+
+    joint: str
+    stiffness: float = 0.0
+    rest: float = 0.0
+    damping: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,6 +195,7 @@ class Model:
     joints: dict[str, Joint] = field(default_factory=dict)
     couplings: dict[str, Coupling] = field(default_factory=dict)
     ties: dict[str, Tie] = field(default_factory=dict)
+    springs: list[Spring] = field(default_factory=list)
     motions: dict[str, Law] = field(default_factory=dict)
     gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
     span: tuple[float, float, int] = (0.0, 1.0, 101)
