@@ -26,6 +26,7 @@ from lagrange_casadi.arithmetic.interpret import (
 from lagrange_casadi.arithmetic.lookups import cell, entries, is_entry, lookup
 from lagrange_casadi.base import cache, space, symbolic, vocabulary
 from lagrange_casadi.base import seal as base_seal
+from lagrange_casadi.base.apart import LostError, run_apart
 from lagrange_casadi.base.csv_rows import Row, read_rows
 from lagrange_casadi.base.graph_text import dumps as graph_dumps
 from lagrange_casadi.base.graph_text import loads as graph_loads
@@ -37,7 +38,7 @@ from lagrange_casadi.base.quantities import FORCES, Output, quotient
 from lagrange_casadi.base.recorded_table import RecordedTable
 from lagrange_casadi.base.seal import SIZE, kind_of, verify
 from lagrange_casadi.base.seal import seal as seal_seal
-from lagrange_casadi.base.space import cores
+from lagrange_casadi.base.space import cores, memory
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.table_file import TableFile
 from lagrange_casadi.base.tables import CONVENTIONS, PLANE, QUANTITIES, SPACE, SPATIAL_QUANTITIES
@@ -53,7 +54,7 @@ from lagrange_casadi.cli.run import slope_lines
 from lagrange_casadi.cli.strength_lines import not_evaluated_lines, strength_lines
 from lagrange_casadi.cluster import dask_workers
 from lagrange_casadi.cluster.dask_workers import Cluster
-from lagrange_casadi.codegen import compiler, find_compiler, library, printer, programs
+from lagrange_casadi.codegen import compiler, find_compiler, library, printer
 from lagrange_casadi.codegen.calls import Call
 from lagrange_casadi.codegen.compiler import FLAGS, LANES_PLACE
 from lagrange_casadi.codegen.emit import INSTANTS

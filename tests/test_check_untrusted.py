@@ -3,7 +3,6 @@ status come of it.
 """
 
 import importlib
-import json
 import os
 import shutil
 import subprocess
@@ -13,11 +12,13 @@ import h5py
 import numpy as np
 import pytest
 from forging import forging
+from internals import LostError, memory, run_apart
 
 from lagrange_casadi import evaluate, save
 from lagrange_casadi.cli import main
 
 check = importlib.import_module("lagrange_casadi.cli.check")
+process = importlib.import_module("lagrange_casadi.base.apart")
 
 
 @pytest.fixture
@@ -57,8 +58,8 @@ def test_it_finds_what_check_finds_and_imports_nothing_from_here(file, here, cap
         ),
         ("print('[' * 100_000)", "the process that reads it gave no answer (status 0)"),
         (
-            'print(\'{"findings": [3], "refused": "", "status": 1}\')',
-            "the process that reads it gave no answer (status 0)",
+            "print('{\"found\": [3]}')",
+            "answer[0] is not of the expected kind",
         ),
         (
             (
@@ -70,60 +71,40 @@ def test_it_finds_what_check_finds_and_imports_nothing_from_here(file, here, cap
     ],
 )
 def test_whatever_the_reader_does_is_a_line(here, capsys, monkeypatch, program, told):
-    monkeypatch.setattr(check, "_PROGRAM", program)
+    monkeypatch.setattr(process, "_PROGRAM", program)
     seconds = "0.5" if "sleep" in program else "30"
     assert main(["check", "--untrusted", "--time-limit", seconds, "x.h5"]) == 1
     assert capsys.readouterr() == ("", f"error: x.h5: {told}\n")
 
 
+MEMORY = "x: takes more memory to read than half of what is free"
 READS = {
-    "np.ones(10**16)": {
-        "findings": [],
-        "refused": "x: takes more memory to read than half of what is free",
-        "status": 1,
-    },
-    "bytearray(FREE)": {
-        "findings": [],
-        "refused": "x: takes more memory to read than half of what is free",
-        "status": 1,
-    },
-    "[] + 1": {
-        "findings": [],
-        "refused": 'x: cannot be read: TypeError: can only concatenate list (not "int") to list',
-        "status": 1,
-    },
-    "(os.write(1, b'noise'), ['x' * 10**6])[1]": {
-        "findings": ["x" * 1000],
-        "refused": "",
-        "status": 1,
-    },
-    "['y'] * 1000": {"findings": ["y"] * 100 + ["and 900 more"], "refused": "", "status": 1},
-    "[str(resource.getrlimit(resource.RLIMIT_CORE)[0])]": {
-        "findings": ["0"],
-        "refused": "",
-        "status": 1,
-    },
+    "__import__('numpy').ones(10**16)": MEMORY,
+    f"bytearray({int(0.9 * memory())})": MEMORY,
+    "[] + 1": 'x: cannot be read: TypeError: can only concatenate list (not "int") to list',
+    "open('written', 'w').write('x' * 10**5)": "x: cannot be read: OSError: [Errno 27] File too",
+    "(__import__('os').write(1, b'noise'), ['whole'])[1]": ["whole"],
+    "['x'] * 10**6": ["x"] * 10**6,
+    "list(__import__('resource').getrlimit(4))[:1]": [0],
+    "__import__('pathlib').os.environ['PLACE']": "given",
 }
 
 
-def test_the_reader_answers_in_few_words_and_within_limits():
-    program = f"""
-import importlib, os, resource, sys, numpy as np
-import lagrange_casadi.cli
-from lagrange_casadi.base.space import memory
-module, FREE = importlib.import_module("lagrange_casadi.cli.check"), int(0.9 * memory())
-for read in {list(READS)}:
-    if os.fork() == 0:
-        module._findings = lambda _: eval(read)
-        module.answer("x")
-        os._exit(0)
-    os.wait()
-    print(flush=True)
-"""
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=120
-    )
-    assert [json.loads(line) for line in done.stdout.splitlines()] == list(READS.values())
+@pytest.mark.parametrize("read", READS)
+def test_a_function_answers_within_limits(read, here):
+    """What it returns, or why it returned nothing."""
+    expected, limits = READS[read], {"seconds": 30, "variables": {"PLACE": "given"}}
+    if isinstance(expected, str) and expected.startswith("x: "):
+        with pytest.raises(LostError) as error:
+            run_apart(eval, read, folder=here, **limits)
+        assert f"x: {error.value}".startswith(expected)
+    else:
+        assert run_apart(eval, read, folder=here, **limits) == expected
+
+
+def test_findings_are_told_in_few_words(monkeypatch):
+    monkeypatch.setattr(check, "_findings", lambda _: ["y" * 10**6] * 1000)
+    assert check.found_in("x") == ["y" * 1000] * 100 + ["and 900 more"]
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ import pytest
 import sweeps
 from commands import words
 from compiled import fake_compiler
-from internals import cache, compiler, programs
+from internals import cache, compiler
 from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, evaluate
@@ -58,7 +58,7 @@ def test_a_compiler_that_hangs_is_stopped_with_all_it_started(
     tmp_path, fresh_cache, monkeypatch, pid
 ):
     fake_compiler(tmp_path, monkeypatch, f"{TELLS} {HANGS.format(pid=pid)}")
-    monkeypatch.setenv(programs.VARIABLE, "0.5")
+    monkeypatch.setenv(compiler.VARIABLE, "0.5")
     with pytest.raises(
         CompilerError,
         match=(
@@ -74,7 +74,7 @@ def test_one_that_does_not_listen_is_stopped_too(tmp_path, fresh_cache, monkeypa
     fake_compiler(
         tmp_path, monkeypatch, f"{TELLS} trap '' TERM INT HUP; {HANGS.format(pid=pid)}; sleep 1000"
     )
-    monkeypatch.setenv(programs.VARIABLE, "0.5")
+    monkeypatch.setenv(compiler.VARIABLE, "0.5")
     with pytest.raises(CompilerError, match=r"did not end within 0\.5 s"):
         evaluate(slider_crank(), backend="c")
     all_gone(pid)
@@ -82,7 +82,7 @@ def test_one_that_does_not_listen_is_stopped_too(tmp_path, fresh_cache, monkeypa
 
 def test_a_chosen_compiler_that_hangs_at_its_version_is_an_error(tmp_path, monkeypatch, pid):
     fake_compiler(tmp_path, monkeypatch, HANGS.format(pid=pid))
-    monkeypatch.setenv(programs.VARIABLE, "4")
+    monkeypatch.setenv(compiler.VARIABLE, "4")
     with pytest.raises(
         CompilerError,
         match=r"^\$CC = '.*fake-cc' did not report its version within 0\.2 s; \$LAGRANGE_CASADI_CO",
@@ -95,7 +95,7 @@ def test_another_that_hangs_at_its_version_is_passed_over(tmp_path, monkeypatch,
     fake_compiler(tmp_path, monkeypatch, HANGS.format(pid=pid)).rename(tmp_path / "cc")
     monkeypatch.delenv("CC")
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
-    monkeypatch.setenv(programs.VARIABLE, "4")
+    monkeypatch.setenv(compiler.VARIABLE, "4")
     with pytest.warns(
         UserWarning,
         match=r"the compiler cc is passed over: it did not report its version within 0\.2 s",
@@ -106,16 +106,16 @@ def test_another_that_hangs_at_its_version_is_passed_over(tmp_path, monkeypatch,
 
 
 def test_an_ordinary_compiler_may_take_its_time(monkeypatch):
-    monkeypatch.delenv(programs.VARIABLE, raising=False)
-    assert programs.limit() == 600
+    monkeypatch.delenv(compiler.VARIABLE, raising=False)
+    assert compiler.limit() == 600
     for text, seconds in (("30", 30), (" 2.5 ", 2.5), ("inf", 1e6)):
-        monkeypatch.setenv(programs.VARIABLE, text)
-        assert programs.limit() == seconds
+        monkeypatch.setenv(compiler.VARIABLE, text)
+        assert compiler.limit() == seconds
 
 
 @pytest.mark.parametrize("text", ["soon", "0", "-1", "nan", "1_0"])
 def test_a_time_limit_that_is_none_is_one_line(here, fresh_cache, monkeypatch, capsys, text):
-    monkeypatch.setenv(programs.VARIABLE, text)
+    monkeypatch.setenv(compiler.VARIABLE, text)
     compiler._find_compiler.cache_clear()
     assert main(["run", str(CASE), "--no-figures", "--t", "0:0.08:9", "--backend", "c"]) == 1
     assert (
@@ -271,7 +271,7 @@ def test_half_of_what_was_kept_is_built_again_in_silence(fresh_cache, recwarn, g
 
 def test_what_a_killed_compiler_left_is_not_believed(tmp_path, fresh_cache, monkeypatch):
     """It wrote half of its output, and was stopped."""
-    monkeypatch.setenv(programs.VARIABLE, "0.5")
+    monkeypatch.setenv(compiler.VARIABLE, "0.5")
     real = shutil.which("cc")
     fake_compiler(tmp_path, monkeypatch, f'{TELLS} for last; do :; done; {real} "$@"; sleep 1000')
     with pytest.raises(CompilerError, match="did not end"):

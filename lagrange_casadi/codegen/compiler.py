@@ -26,10 +26,10 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from ..base import cache
+from ..base import cache, programs
+from ..base.numerals import real
 from ..base.vocabulary import Precision
 from ..errors import CompilerError, lacking, warn
-from . import programs
 
 if TYPE_CHECKING:
     from _ctypes import CFuncPtr
@@ -53,6 +53,10 @@ FLAGS: dict[Language, tuple[str, ...]] = {
 instruction, no call. No start files: those that gcc links in where -ffast-math is asked for make
 the whole process flush to zero what is subnormal."""
 
+VARIABLE = "LAGRANGE_CASADI_COMPILER_TIMEOUT"
+"""The variable that sets another time limit of compilers, in seconds."""
+
+_LIMIT, _LONGEST = 600.0, 1e6
 LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
 """Place of ``lanes.h`` in an emitted file."""
 
@@ -224,7 +228,7 @@ def _version(command: tuple[str, ...]) -> str | None:
     Raises ``subprocess.TimeoutExpired``.
     """
     try:
-        run = programs.run([*command, "--version"], programs.limit() / _ANSWER)
+        run = programs.run([*command, "--version"], limit() / _ANSWER)
     except OSError as error:
         if lacking(error):
             raise CompilerError(f"cannot start {' '.join(command)}: {error.strerror}") from None
@@ -236,7 +240,7 @@ def _version(command: tuple[str, ...]) -> str | None:
 
 def _silent(error: subprocess.TimeoutExpired) -> str:
     return (
-        f"did not report its version within {error.timeout:g} s; ${programs.VARIABLE} sets"
+        f"did not report its version within {error.timeout:g} s; ${VARIABLE} sets"
         f" {_ANSWER} times as many"
     )
 
@@ -402,6 +406,24 @@ def built(
     raise CompilerError(complaint(compiler, run))
 
 
+def limit() -> float:
+    """Seconds that a compiler may take for one file.
+
+    Raises :class:`CompilerError` where the variable is no number above 0.
+    """
+    text = os.environ.get(VARIABLE, "").strip()
+    try:
+        seconds = real(text) if text else _LIMIT
+        if not seconds > 0.0:
+            raise ValueError
+    except ValueError:
+        raise CompilerError(
+            f"${VARIABLE} = '{text}': expected a number of seconds above 0; without it they are"
+            f" {_LIMIT:g}"
+        ) from None
+    return min(seconds, _LONGEST)
+
+
 def compiled(
     command: Sequence[str], folder: Path | None = None
 ) -> subprocess.CompletedProcess[str]:
@@ -411,11 +433,11 @@ def compiled(
     time.
     """
     try:
-        return programs.run(command, programs.limit(), folder)
+        return programs.run(command, limit(), folder)
     except subprocess.TimeoutExpired as error:
         raise CompilerError(
             f"{command[0]} did not end within {error.timeout:g} s and was stopped;"
-            f" ${programs.VARIABLE} sets another limit"
+            f" ${VARIABLE} sets another limit"
         ) from None
 
 

@@ -11,34 +11,10 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from ..base.numerals import real
-from ..base.publish import uninterrupted
-from ..errors import CompilerError
+from .publish import uninterrupted
 
-VARIABLE = "LAGRANGE_CASADI_COMPILER_TIMEOUT"
-"""The variable that sets another time limit, in seconds."""
-
-_LIMIT, _LONGEST = 600.0, 1e6
 _GRACE = 0.5
 """Seconds in which a program may tidy up after it was asked to end."""
-
-
-def limit() -> float:
-    """Seconds that a compiler may take for one file.
-
-    Raises :class:`CompilerError` where the variable is no number above 0.
-    """
-    text = os.environ.get(VARIABLE, "").strip()
-    try:
-        seconds = real(text) if text else _LIMIT
-        if not seconds > 0.0:
-            raise ValueError
-    except ValueError:
-        raise CompilerError(
-            f"${VARIABLE} = '{text}': expected a number of seconds above 0; without it they are"
-            f" {_LIMIT:g}"
-        ) from None
-    return min(seconds, _LONGEST)
 
 
 def run(
@@ -46,9 +22,10 @@ def run(
     seconds: float,
     folder: Path | None = None,
     variables: Mapping[str, str] | None = None,
+    given: str = "",
 ) -> subprocess.CompletedProcess[str]:
-    """Run a program to its end, in a folder, with ``variables`` besides those of this process; what
-    it says is read as UTF-8, whatever it is.
+    """Run a program to its end, in a folder, with ``variables`` besides those of this process. It
+    reads what is ``given``; what it says is read as UTF-8, whatever it is.
 
     Raises ``OSError`` where it cannot be started, ``subprocess.TimeoutExpired`` where it has not
     ended in time.
@@ -60,14 +37,14 @@ def run(
                 command,
                 cwd=folder,
                 env={**os.environ, **(variables or {})},
-                stdin=subprocess.DEVNULL,
+                stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 encoding="utf-8",
                 errors="replace",
                 start_new_session=True,
             )
-        out, err = process.communicate(timeout=seconds)
+        out, err = process.communicate(given, timeout=seconds)
     except BaseException:
         if process:
             _end(process)
@@ -87,6 +64,7 @@ def _end(process: subprocess.Popen[str]) -> None:
                 process.kill()
         with suppress(subprocess.TimeoutExpired):
             process.wait(_GRACE)
-    for pipe in (process.stdout, process.stderr):
+    for pipe in (process.stdin, process.stdout, process.stderr):
         if pipe:
-            pipe.close()
+            with suppress(OSError):
+                pipe.close()

@@ -1,0 +1,119 @@
+"""Functions that read foreign files with libraries that were not made for these: they run in a
+process of their own, within limits of time, memory and files.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import signal
+import sys
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from ..errors import (
+    LagrangeCasadiError,
+    MissingPackageError,
+    ModelFileError,
+    PathError,
+    StoreError,
+    one_line,
+)
+from . import programs
+from .space import cores, memory
+
+_PROGRAM = """
+import sys
+sys.path = [place for place in sys.path if place] + sys.argv[1:]
+from {here} import answer
+from {module} import {name}
+answer({name})
+"""
+"""The process. Modules in the current folder, where files arrive, are not for it."""
+
+_PLACE = str(Path(__file__).parents[2])
+_ERRORS = {one.__name__: one for one in (MissingPackageError, ModelFileError, PathError)}
+_LENGTH = 1000
+"""Characters of a message that are told."""
+
+
+class LostError(Exception):
+    """A function gave no answer; the message goes on a sentence that begins with its file."""
+
+
+def run_apart(
+    function: Callable[..., Any],
+    *given: Any,
+    seconds: float,
+    most: float = math.inf,
+    folder: Path | None = None,
+    variables: Mapping[str, str] | None = None,
+) -> Any:
+    """Return what a function of a module returns for what is ``given``, both as JSON has them.
+
+    It runs in a process of its own, in a folder and with ``variables`` besides those of this
+    process. That process may take ``seconds``, half of the memory that is free and at most ``most``
+    bytes, and writes no file. It is ended, with all that it started, by any exception here.
+
+    Raises errors of ours that the function raises, :class:`LostError`, and
+    ``subprocess.TimeoutExpired``.
+    """
+    names = {"here": __name__, "module": function.__module__, "name": function.__name__}
+    command = [sys.executable, "-c", _PROGRAM.format_map(names), _PLACE]
+    task = json.dumps([given, most, seconds])
+    done = programs.run(command, seconds, folder, variables, task)
+    if done.returncode < 0:
+        crash = signal.strsignal(-done.returncode)
+        raise LostError(f"reading it crashed ({crash}): it is damaged or forged")
+    with suppress(ValueError, RecursionError):
+        match json.loads(done.stdout):
+            case {"found": found}:
+                return found
+            case {"lost": str() as words}:
+                raise LostError(words[:_LENGTH])
+            case {"error": str() as kind, "words": str() as words}:
+                raise _ERRORS.get(kind, StoreError)(words[:_LENGTH])
+    last = done.stderr.strip().rpartition("\n")[2][:_LENGTH]
+    status = f"(status {done.returncode}){last and ': '}{last}"
+    raise LostError(f"the process that reads it gave no answer {status}")
+
+
+def answer(function: Callable[..., Any]) -> None:
+    """Run a function within limits and print what it returns as JSON, and nothing else, whatever
+    libraries print.
+    """
+    given, most, seconds = json.load(sys.stdin)
+    with os.fdopen(os.dup(1), "w") as out:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for number in (1, 2):
+            os.dup2(nowhere, number)
+        _limit(most, seconds)
+        try:
+            told: dict[str, Any] = {"found": function(*given)}
+        except LagrangeCasadiError as error:
+            told = {"error": type(error).__name__, "words": str(error)}
+        except MemoryError:
+            told = {"lost": "takes more memory to read than half of what is free"}
+        except Exception as error:
+            told = {"lost": f"cannot be read: {type(error).__name__}: {one_line(error)}"}
+        out.write(json.dumps(told))
+
+
+def _limit(most: float, seconds: float) -> None:
+    """Let this process take so much memory and time at most, write no file, and leave no image of
+    it behind, where the system can see to that.
+    """
+    with suppress(ImportError, OSError, ValueError):
+        import resource  # there is none on Windows
+
+        def limit(kind: int, amount: float) -> None:
+            resource.setrlimit(kind, (int(min(amount, sys.maxsize)), resource.getrlimit(kind)[1]))
+
+        limit(resource.RLIMIT_CORE, 0)
+        limit(resource.RLIMIT_FSIZE, 0)
+        limit(resource.RLIMIT_CPU, (seconds + 1.0) * cores())  # should this program be killed
+        taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        limit(resource.RLIMIT_AS, taken + min(most, memory() / 2))
