@@ -66,10 +66,9 @@ class _Case:
             self.body(body)
         for joint in model.joints.values():
             self.joint(joint)
-        for spring in self.model.springs:
-            self.spring(spring)
         for coupling in model.couplings.values():
             self.coupling(coupling)
+        self.loads()
         for tie in model.ties.values():
             self.called(tie.name)
             self.lines += _tie_lines(self.places, tie)
@@ -118,7 +117,7 @@ class _Case:
         assert body.inertia is not None
         axes, centre = body.frame.axes, self.short.place(body.frame.at(body.centre))
         own = Frame(np.array(base), self.places.link_axes(body.name))
-        sprung = [one.joint for one in self.model.springs]
+        sprung = [one.joint for one in self.model.springs if one.stiffness]
         arguments: list[object] = [json.dumps(body.name)]
         if body.name in self.places.held:
             ends = [self.places.written(base), self.places.written(tip)]
@@ -142,17 +141,6 @@ class _Case:
             else:
                 arguments.append(Call("inertia=", [vector(row) for row in inertia.tolist()]))
         self.call(f"{name} = m.link", *arguments)
-        self.less_weight(body, mass)
-
-    def less_weight(self, body: Body, mass: str) -> None:
-        """Declare the force at the centre of mass that takes from a body what it does not weigh."""
-        lift = (body.weight - 1.0) * self.model.gravity
-        if not body.mass or not np.any(lift):
-            return
-        load, point = self.places.unused(f"lift_{body.name}"), body.frame.at(body.centre)
-        parts = zip("xyz", lift.tolist(), strict=True)
-        force = [f"{axis}={text_of(one)} * {mass}" for axis, one in parts if one]
-        self.call("m.force", json.dumps(load), self.places.point(body.name, point), *force)
 
     def joint(self, joint: Joint) -> None:
         """Declare a joint at its place, or between two points where these are apart."""
@@ -181,34 +169,8 @@ class _Case:
         used = bool(self.model.ties) or any(
             joint.name in (one.first, one.second) for one in self.model.couplings.values()
         )
-        used |= any(joint.name == one.joint for one in self.model.springs)
+        used = used or any(joint.name == one.joint for one in self.model.springs)
         self.call(f"{name} = m.{joint.kind}" if used else f"m.{joint.kind}", *arguments)
-
-    def spring(self, one: Spring) -> None:
-        """Declare the spring and the damper of a joint that turns or slides: what they do to its
-        child, they do to its parent in the opposite direction.
-        """
-        joint, load = self.model.joints[one.joint], self.places.unused(f"spring_{one.joint}")
-        name, rest = self.variables[f"joint {joint.name}"], one.rest
-        rest -= self.motions.offset(joint.name)
-        if joint.kind == "revolute":
-            numbers = {"stiffness": one.stiffness, "angle": rest, "damping": one.damping}
-            given = [f"{key}={text_of(number)}" for key, number in numbers.items()]
-            self.call("m.torsion_spring", json.dumps(load), name, *given)
-            return
-        pull = f"{text_of(-one.stiffness)} * (m.coordinate({name}){signed(-rest)})"
-        self.lines.append(f"{load} = {pull} - {text_of(one.damping)} * m.rate({name})")
-        near = self.model.frames(joint)[0]
-        for body, sign in ((joint.child, ""), (joint.parent, "-")):
-            if body != GROUND:
-                along = self.short.values(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
-                parts = zip("xyz", along.tolist(), strict=True)
-                force = [f"{axis}={text_of(part)} * {sign}{load}" for axis, part in parts if part]
-                name, point = (
-                    self.places.unused(f"{load}_{body}"),
-                    self.places.point(body, near.place),
-                )
-                self.call("m.force", json.dumps(name), point, *force, "turning=True")
 
     def axes(self, joint: Joint, axes: Array, far: Frame) -> list[object]:
         """Return the arguments that say along and about what a joint moves."""
@@ -241,6 +203,55 @@ class _Case:
         offset = one.offset - (second - one.ratio * first)
         arguments += [f"offset={of_pi(offset)}"] if offset else []
         self.call("m.gear", *arguments)
+
+    def loads(self) -> None:
+        """Declare springs and dampers of joints, and what bears bodies on which not all of gravity
+        acts.
+        """
+        for one in self.model.springs:
+            joint, rest = self.variables[f"joint {one.joint}"], self.motions.offset(one.joint)
+            if one.damping:
+                name = json.dumps(self.load(f"{one.joint}_damping"))
+                self.call("m.friction", name, joint, f"viscous={text_of(one.damping)}")
+            if one.stiffness and self.model.joints[one.joint].kind == "prismatic":
+                self.pull(one, f"m.coordinate({joint}){signed(rest - one.rest)}")
+            elif one.stiffness:
+                told = f"stiffness={text_of(one.stiffness)}", f"angle={of_pi(one.rest - rest)}"
+                name = json.dumps(self.load(f"{one.joint}_spring"))
+                self.call("m.torsion_spring", name, joint, *told)
+        for body in self.model.bodies.values():
+            lift = (body.weight - 1.0) * self.model.gravity
+            if body.mass and np.any(lift):
+                point = self.places.point(body.name, body.frame.at(body.centre))
+                mass = self.places.masses.get(body.mass) or text_of(body.mass)
+                force = [
+                    f"{key}={text_of(one)} * {mass}"
+                    for key, one in zip("xyz", lift.tolist(), strict=True)
+                    if one
+                ]
+                self.call("m.force", json.dumps(self.load(f"{body.name}_lift")), point, *force)
+
+    def pull(self, one: Spring, stretched: str) -> None:
+        """Declare the spring of a joint that slides, as a force on its child along the axis, and
+        the opposite one on its parent.
+        """
+        joint, pull = self.model.joints[one.joint], self.places.variable(f"{one.joint}_spring")
+        self.lines.append(f"{pull} = {text_of(-one.stiffness)} * ({stretched})")
+        near = self.model.frames(joint)[0]
+        for body, sign in ((joint.child, ""), (joint.parent, "-")):
+            if body != GROUND:
+                along = self.short.values(self.places.link_axes(body).T @ near.axes[:, 2], 1.0)
+                parts = zip("xyz", along.tolist(), strict=True)
+                force = [f"{axis}={text_of(part)} * {sign}{pull}" for axis, part in parts if part]
+                name = json.dumps(self.load(f"{one.joint}_spring_{body}"))
+                point = self.places.point(body, near.place)
+                self.call("m.force", name, point, *force, "turning=True")
+
+    def load(self, wanted: str) -> str:
+        """Return a name for a load, which no part has."""
+        while wanted in self.model.parts:
+            wanted = f"{wanted}_"
+        return wanted
 
     def end(self) -> None:
         """End with the motion of each drive."""

@@ -1,121 +1,234 @@
 """Models of MuJoCo, ``.xml``: compiled by MuJoCo itself, which knows defaults and the inertia of
-shapes.
+shapes, in a process of its own, on a copy of the files of the model's folder that it names.
 
-Files that a model names are read in its own folder alone. A body with several joints has bodies
-without mass between these.
+A body with several joints has bodies without mass between these. What is compiled to other values
+than MuJoCo's defaults is read, or has no effect here, or is named in a note.
 """
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
+import tempfile
+from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
+from ..base.apart import LostError, run_apart
 from ..base.arrays import Array
 from ..errors import MissingPackageError, shown
 from .elements import Element, parsed
-from .frames import Frame, turned
-from .record import GROUND, LARGEST, Body, Coupling, Joint, Model
+from .frames import Frame
+from .mujoco_model import compiled
+from .record import GROUND, Body, Coupling, Joint, Model, Spring
 
-if TYPE_CHECKING:
-    from types import ModuleType
+_SECONDS, _MEMORY = 15.0, 2e9
+"""Time [s] and memory [bytes] that MuJoCo may take."""
 
-    import mujoco
+_MOST, _LARGEST, _PLACES, _DEEPEST = 3000, 2**28, 32, 20
+"""Files of a model, bytes of these together, folders where they are looked for, and parts in parts
+of it, at most.
+"""
+
+_UP, _DEPTH = 8, 20
+"""Steps upwards in a name, and folders without files above the copy, more than all names that make
+a path have together.
+"""
 
 _FOLDERS = ("assetdir", "meshdir", "texturedir")
-_FILES = ("file", "fileup", "filedown", "filefront", "fileback", "fileleft", "fileright", "content")
-_DEEPEST = 20
+_BLANK = b"\xef\xbb\xbf \t\r\n"
 _UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
+_SWITCHES = ("gravity", "equality", "constraint", "spring", "damper", "passive")
+_READ = (
+    *("body_parentid", "body_mass", "body_inertia", "body_ipos", "body_iquat", "body_jntadr"),
+    *("body_jntnum", "body_gravcomp", "jnt_type", "jnt_pos", "jnt_axis", "jnt_qposadr"),
+    *("jnt_dofadr", "jnt_stiffness", "dof_damping", "qpos0", "qpos_spring", "eq_active0"),
+    *("eq_obj1id", "eq_obj2id", "eq_data", "site_bodyid", "site_pos", "site_quat"),
+    *("actuator_trnid", "geom_contype", "opt.gravity"),
+    *(f"disable {name}" for name in _SWITCHES),
+)
+"""Fields of a compiled model that are read, switched flags too."""
+
+_IDLE = "|".join(
+    (  # Counts, names, addresses, looks.
+        r"n(?!key|plugin)\w*|signature|flg_\w+|[BDM]_\w+|map\w+|efm\w+|tree_\w+",
+        r"(?!body_mocap)\w+_\w*(adr|num|id)",
+        r"(vis|stat|cam|light|mat|tex|text|mesh|skin|hfield|bvh|oct|sensor|site)_\w+",
+        r"(tuple|numeric)_\w+|\w+_(user|group|sameframe|margin|solref\w*|solimp\w*|invweight0)",
+        r"body_(bvh\w+|conaffinity|contype|pos|quat|simple|subtreemass)|dof_(M0|length)",
+        r"geom_(aabb|castshadow|conaffinity|condim|friction|gap|pos|priority|quat|rbound|rgba)",
+        r"geom_(size|solmix|type)|exclude_signature|eq_(type|objtype)",
+        # Contacts, and how MuJoCo goes on in time.
+        r"opt\.((ccd|sdf|ls|noslip|o)_\w+|iterations|tolerance|solver|jacobian|cone|impratio)",
+        r"opt\.(integrator|timestep|apirate|magnetic|sleep_tolerance|\w+flags|disableactuator)",
+        r"disable (limit|contact|frictionloss|clampctrl|warmstart|filterparent|actuation|refsafe)",
+        r"disable (sensor|midphase|eulerdamp|autoreset|nativeccd|island|multiccd)",
+        r"enable (override|energy|fwdinv|invdiscrete|sleep|diagexact|ipc|speculative|multiccd)",
+        r"enable (island)",
+    )
+)
+"""Fields without effect on the motion and the forces that are asked for here: looks, names,
+addresses, what contacts are computed with.
+"""
+
+_WORDS = {
+    r"dof_frictionloss": "Friction of joints",
+    r"\w+_armature": "Armature, the inertia of motors at joints",
+    r"jnt_(limited|range)": "Limits of joints",
+    r"pair_\w+|geom_(adhesion|surfacevel)": "Contacts",
+    r"(tendon|ten|wrap)_\w+": "Tendons",
+    r"actuator_\w+|jnt_actfrc\w+": "Actuators, except which joints they drive",
+    r"flex\w+": "Deformable bodies",
+    r"n?plugin\w*|\w+_plugin": "Plugins",
+    r"nkey|key_\w+": "Keyframes",
+    r"body_mocapid": "Motion of mocap bodies",
+    r"opt\.(density|viscosity|wind)": "Forces of a medium (density, viscosity, wind)",
+}
+"""Fields that are not read, in words; others have their own names in a note."""
 
 
 def read(model: Model, text: str) -> None:
     """Read a file. Raises :class:`.ModelFileError`, and :class:`.MissingPackageError` without
     MuJoCo.
     """
-    folder = model.file.parent.resolve()
-    _inside(model, folder, parsed(model, text, "mujoco"), folder, 0)
-    try:
-        import mujoco
-    except ImportError as error:
-        words = f"{model.file.name}: a model of MuJoCo is compiled by MuJoCo: pip install mujoco"
-        broken = "" if isinstance(error, ModuleNotFoundError) else f"; it is broken here: {error}"
-        raise MissingPackageError(words + broken) from None
-    try:
-        compiled = mujoco.MjModel.from_xml_path(str(model.file))
-    except ValueError as error:
-        raise model.refuse("", f"MuJoCo refuses it: {error}") from None
-    _Reader(model, compiled, mujoco).read()
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place, *["_"] * _DEPTH)
+        for name, content in _files(model, text).items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(content)
+        limits: dict[str, Any] = {"seconds": _SECONDS, "most": _MEMORY, "folder": folder}
+        try:
+            told = run_apart(compiled, model.file.name, _READ, _IDLE, **limits)
+        except MissingPackageError as error:
+            raise MissingPackageError(f"{model.file.name}: {error}") from None
+        except subprocess.TimeoutExpired:
+            raise model.refuse("", f"MuJoCo did not compile it within {_SECONDS:g} s") from None
+        except LostError as error:
+            raise model.refuse("", str(error)) from None
+    if "refused" in told:
+        raise model.refuse("", f"MuJoCo refuses it: {told['refused']}")
+    _Reader(model, told).read()
 
 
-def _inside(model: Model, folder: Path, line: Element, base: Path, depth: int) -> None:
-    """Raise :class:`.ModelFileError` for a file outside of the folder, and for a number that no
-    machine has; included files are read.
+def _files(model: Model, text: str) -> dict[str, bytes]:
+    """Return the contents of a model's file and of those that it and its parts name, by their path
+    in its folder.
+
+    Raises :class:`.ModelFileError` for a name that leads out of the folder, and for too much.
     """
-    for key, data in line.given.items():
-        if any(map(_gigantic, data.split())):
-            raise line.refuse(f"{key}: expected numbers of at most {LARGEST:g}, got {shown(data)}")
-        if key not in (*_FOLDERS, *_FILES):
-            continue
-        there = (base / data).resolve()
-        if Path(data).is_absolute() or not there.is_relative_to(folder):
-            raise line.refuse(f"{key} {shown(data)} leads out of its folder")
-        if line.name == "include" and there.is_file():
-            if depth > _DEEPEST:
-                raise line.refuse("includes are too deep")
-            included = there.read_text(encoding="utf-8", errors="replace")
-            _inside(model, folder, parsed(model, included, ""), there.parent, depth + 1)
-    for one in line.inside:
-        _inside(model, folder, one, base, depth)
+    root, found = model.file.parent.resolve(), {model.file.name: text.encode()}
+    bases, inner = {""}, {""}  # the folders of parts, and those that parts state
+    named, parts = dict[str, Element](), set[str]()
+    tried, done, inside, astray = set(found), set(found), set[str](), set[str]()
+    waiting = [parsed(model, text, "mujoco")]
+    for _ in range(_DEEPEST):
+        while waiting:
+            line = waiting.pop()
+            waiting += line.inside
+            for key, name in line.given.items():
+                if not key.startswith("file") and key not in _FOLDERS:
+                    continue
+                if name.startswith(("/", "\\")) or ":" in name or name.count("..") > _UP:
+                    raise line.refuse(f"{key} {shown(name)} leads out of its folder")
+                if key in _FOLDERS:
+                    inner.add(name)
+                    continue
+                named.setdefault(name, line)
+                parts |= {name} if line.name in ("include", "model") else set()
+        if len(bases) * len(inner) > _PLACES or len(named) > _MOST:
+            raise model.refuse("", "names too many files or folders")
+        for base, folder, name in product(sorted(bases), sorted(inner), named):
+            path = os.path.normpath(os.path.join(base, folder, name))
+            if path not in tried:
+                tried.add(path)
+                there = _within(root, path)
+                astray |= {name} if there is None else set()
+                if there is not None and there.is_file():
+                    left = _LARGEST - sum(map(len, found.values()))
+                    if there.stat().st_size > left:
+                        raise named[name].refuse(f"more than {_LARGEST // 2**20} MB in all")
+                    found[path] = there.read_bytes()
+            inside |= {name} if path in found else set()
+            content = b"" if path in done else found.get(path, b"")
+            if content.lstrip(_BLANK).startswith(b"<") or (content and name in parts):
+                done.add(path)
+                bases.add(os.path.dirname(path))
+                waiting.append(parsed(model, content.decode(errors="replace"), ""))
+        if not waiting:
+            break
+    else:
+        raise model.refuse("", "includes are too deep")
+    for name in sorted(astray - inside):
+        raise named[name].refuse(f"file {shown(name)} leads out of its folder")
+    return found
 
 
-def _gigantic(word: str) -> bool:
+def _within(root: Path, path: str) -> Path | None:
+    """Return where a path of a folder leads, links resolved; None where that is elsewhere."""
     try:
-        return abs(float(word)) > LARGEST and not word.strip("+-").isalpha()
-    except ValueError:
-        return False
+        there = (root / path).resolve()
+    except (OSError, RuntimeError, ValueError):  # links in a circle, a name that no file has
+        return None
+    return there if there.is_relative_to(root) else None
 
 
 class _Reader:
-    """A compiled model under way."""
+    """A compiled model under way: ``m`` are its fields, dots in names as lines."""
 
-    def __init__(self, model: Model, compiled: mujoco.MjModel, mujoco: ModuleType) -> None:
-        self.model, self.m, self.mujoco = model, compiled, mujoco
-        self.data = mujoco.MjData(compiled)
-        mujoco.mj_kinematics(compiled, self.data)
+    def __init__(self, model: Model, told: dict[str, Any]) -> None:
+        self.model, self.names, self.kinds = model, told["names"], told["kinds"]
+        self.others, self.stated = told["others"], told["name"]
+        fields = {**told["fields"], "xpos": told["xpos"], "xmat": told["xmat"]}
+        named = {name.replace(".", "_"): np.array(values) for name, values in fields.items()}
+        self.m = SimpleNamespace(**named)
+        self.off = {name for name in _SWITCHES if told["fields"].get(f"disable {name}")}
+        if self.off >= {"spring", "damper"}:
+            self.off.add("passive")
         self.bodies: dict[int, str] = {0: GROUND}
         self.joints: dict[int, str] = {}
 
     def read(self) -> None:
         """Read the model."""
         model, m = self.model, self.m
-        stated = m.names.partition(b"\0")[0].decode(errors="replace")  # its own is the first one
-        model.name = model.name_of("mechanism", stated or model.name, "")
-        model.gravity = model.numbers("option", m.opt.gravity.tolist(), "gravity")
-        for k in range(1, m.nbody):
+        model.name = model.name_of("mechanism", self.stated or model.name, "")
+        if "gravity" in self.off:
+            model.gravity = np.zeros(3)
+        else:
+            model.gravity = model.numbers("option", m.opt_gravity.tolist(), "gravity")
+        for k in range(1, len(m.body_mass)):
             self.body(k)
-        for k in range(m.neq):
-            if m.eq_active0[k]:
+        if not self.off & {"equality", "constraint"}:
+            for k in np.flatnonzero(m.eq_active0).tolist():
                 self.equality(k)
-        kinds = self.mujoco.mjtTrn
-        for k in range(m.nu):
-            if kinds(int(m.actuator_trntype[k])) in (kinds.mjTRN_JOINT, kinds.mjTRN_JOINTINPARENT):
-                model.preferred.append(self.joints[int(m.actuator_trnid[k, 0])])
+        for kind, (j, *_) in zip(self.kinds["actuator_trntype"], m.actuator_trnid, strict=True):
+            if kind in ("JOINT", "JOINTINPARENT") and int(j) in self.joints:
+                model.preferred.append(self.joints[int(j)])
         self.left_out()
 
     def called(self, kind: str, k: int) -> str:
         """Return the name of an object, or its number."""
-        data = self.mujoco.mj_id2name(self.m, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind}"), k)
-        return data or f"{kind.lower()}_{k}"
+        return self.names[kind][k] or f"{kind}_{k}"
 
     def body(self, k: int) -> None:
         """Declare a body, and the joints that it hangs on."""
-        model, m, stated = self.model, self.m, self.called("BODY", k)
-        where, mass = f"body {shown(stated)}", float(m.body_mass[k])
-        frame = self.frame(where, self.data.xpos[k], self.data.xquat[k])
+        model, m, stated = self.model, self.m, self.called("body", k)
+        where = f"body {shown(stated)}"
+        mass = model.number(where, float(m.body_mass[k]), "mass")
+        frame = Frame(
+            model.numbers(where, m.xpos[k].tolist(), "place"),
+            model.rotation(where, m.xmat[k].reshape(3, 3)),
+        )
         own = self.frame(where, m.body_ipos[k], m.body_iquat[k])
-        inertia = own.tensor(np.diag(m.body_inertia[k]))
-        name = model.add(Body, stated, where, mass, own.place, inertia, frame)
+        moments = model.numbers(where, m.body_inertia[k].tolist(), "inertia")
+        weight = 1.0 if "passive" in self.off else 1.0 - float(m.body_gravcomp[k])
+        given = mass, own.place, own.tensor(np.diag(moments)), frame
+        name = model.add(
+            Body, stated, where, *given, weight=model.number(where, weight, "gravcomp")
+        )
         self.bodies[k], above = name, self.bodies[int(m.body_parentid[k])]
         first, count = int(m.body_jntadr[k]), int(m.body_jntnum[k])
         if not count:
@@ -129,72 +242,73 @@ class _Reader:
             above = below
 
     def joint(self, j: int, above: str, below: str, frame: Frame) -> None:
-        """Declare a joint; in the reference posture its coordinate is ``ref``."""
-        model, m, stated = self.model, self.m, self.called("JOINT", j)
+        """Declare a joint, with its spring; in the reference posture its coordinate is zero."""
+        model, m, stated = self.model, self.m, self.called("joint", j)
         kind = ("free", "spherical", "prismatic", "revolute")[int(m.jnt_type[j])]
         where = f"joint {shown(stated)}"
         far = Frame() if kind == "free" else self.frame(where, m.jnt_pos[j])
-        at = far if kind == "free" else frame.then(far)
         if kind in ("prismatic", "revolute"):
-            ref = model.number(where, float(m.qpos0[m.jnt_qposadr[j]]), "ref")
-            along = Frame.about(m.jnt_axis[j])
-            at, far = at.then(along), far.then(along)
-            if kind == "revolute":
-                far = far.then(Frame(axes=turned(np.array([0.0, 0.0, 1.0]), -ref)))
-            else:
-                at = at.then(Frame(np.array([0.0, 0.0, -ref])))
-        near = model.frame_of(above).relative(at)
-        self.joints[j] = model.add(Joint, stated, where, kind, above, below, near, far)
+            axis = model.numbers(where, m.jnt_axis[j].tolist(), "axis")
+            far = far.then(Frame.about(model.direction(where, axis)))
+        near = model.frame_of(above).relative(frame.then(far))
+        name = self.joints[j] = model.add(Joint, stated, where, kind, above, below, near, far)
+        stiffness = 0.0 if "spring" in self.off else m.jnt_stiffness[j]
+        damping = 0.0 if "damper" in self.off else m.dof_damping[m.jnt_dofadr[j]]
+        if not stiffness and not damping:
+            return
+        if kind not in ("prismatic", "revolute"):
+            model.notes.append(f"Spring and damper of {where}, which has no axis: not read.")
+            return
+        at = m.jnt_qposadr[j]
+        numbers = stiffness, m.qpos_spring[at] - m.qpos0[at], damping
+        spring = model.numbers(where, [float(one) for one in numbers], "spring and damper")
+        model.springs.append(Spring(name, *spring.tolist()))
 
     def equality(self, k: int) -> None:
         """Declare an equality: connect and weld close loops, joint couples two of them."""
-        model, m, stated = self.model, self.m, self.called("EQUALITY", k)
-        where, data = f"equality {shown(stated)}", m.eq_data[k]
+        model, m, stated = self.model, self.m, self.called("equality", k)
+        where, data, kind = f"equality {shown(stated)}", m.eq_data[k], self.kinds["eq_type"][k]
         one, other = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
-        kinds = self.mujoco.mjtEq
-        kind = kinds(int(m.eq_type[k]))
-        sites = int(m.eq_objtype[k]) == int(self.mujoco.mjtObj.mjOBJ_SITE)
-        if kind == kinds.mjEQ_JOINT:
+        if kind == "JOINT":
             if np.any(data[2:5]) or other < 0:
-                raise model.refuse(where, "is not supported: its polynomial is not linear")
-            starts = [float(m.qpos0[m.jnt_qposadr[j]]) for j in (one, other)]
+                raise model.refuse(
+                    where, "is not supported: it does not couple two joints linearly"
+                )
             offset, ratio = model.numbers(where, data[:2].tolist(), "polycoef", 2).tolist()
-            offset += starts[0] - ratio * starts[1]
             joints = self.joints[other], self.joints[one]
             model.add(Coupling, stated, where, *joints, ratio, offset)
             return
-        if kind not in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD):
+        if kind not in ("CONNECT", "WELD"):
             raise model.refuse(where, "is not supported; valid: connect, weld, joint")
-        if sites:
-            near, far = (self.frame(where, m.site_pos[k], m.site_quat[k]) for k in (one, other))
+        if self.kinds["eq_objtype"][k] == "SITE":
+            near, far = (self.frame(where, m.site_pos[i], m.site_quat[i]) for i in (one, other))
             one, other = int(m.site_bodyid[one]), int(m.site_bodyid[other])
-        elif kind == kinds.mjEQ_CONNECT:
+        elif kind == "CONNECT":
             near, far = self.frame(where, data[:3]), self.frame(where, data[3:6])
-        else:
-            far = self.frame(where, data[:3])
-            near = self.frame(where, data[3:6], data[6:10]).then(far)
-        shape = "weld" if kind == kinds.mjEQ_WELD else "spherical"
+        else:  # the anchor is given on both bodies
+            near, far = self.frame(where, data[3:6], data[6:10]), self.frame(where, data[:3])
+        # Without a scale of its torque a weld holds no direction.
+        shape = "weld" if kind == "WELD" and data[10] else "spherical"
         ends = self.bodies[one], self.bodies[other]
         model.add(Joint, stated, where, shape, *ends, near, far)
 
     def frame(self, where: str, place: Array, quaternion: Array = _UPRIGHT) -> Frame:
         """Return the frame of a place and a quaternion, which MuJoCo takes even as no numbers."""
-        found, axes = self.model.numbers(where, place.tolist(), "place"), np.zeros(9)
-        turn = self.model.numbers(where, quaternion.tolist(), "quaternion", 4)
-        self.mujoco.mju_quat2Mat(axes, turn)
-        return Frame(found, self.model.rotation(where, axes.reshape(3, 3)))
+        found = self.model.numbers(where, place.tolist(), "place")
+        w, *axis = self.model.numbers(where, quaternion.tolist(), "quaternion", 4).tolist()
+        v = np.array(axis)
+        turned = (w * w - v @ v) * np.eye(3) + 2.0 * (np.outer(v, v) - w * np.cross(v, np.eye(3)))
+        return Frame(found, self.model.rotation(where, turned))
 
     def left_out(self) -> None:
         """Note what was not read."""
-        m, notes = self.m, self.model.notes
-        data = {
-            "Springs of joints": np.any(m.jnt_stiffness),
-            "Damping of joints": np.any(m.dof_damping),
-            "Friction of joints": np.any(m.dof_frictionloss),
-            "Armature, the inertia of motors at joints": np.any(m.dof_armature),
-            "Contacts": m.npair > 0 or (np.any(m.geom_contype) and m.ngeom > 1),
-            "Tendons": m.ntendon > 0,
-            "Actuators, except which joints they drive": m.nu > 0,
-            "Keyframes": m.nkey > 0,
-        }
-        notes += [f"{what}: not read." for what, there in data.items() if there]
+        words = dict.fromkeys(_words(name) for name in self.others)
+        if np.any(self.m.geom_contype) and len(self.m.geom_contype) > 1:
+            words |= {"Contacts": None}
+        self.model.notes += [f"{one}: not read." for one in words]
+
+
+def _words(field: str) -> str:
+    """Return what a field that is not read is called in a note."""
+    found = (words for pattern, words in _WORDS.items() if re.fullmatch(pattern, field))
+    return next(found, f"What MuJoCo calls {field}")

@@ -69,7 +69,7 @@ class Places:
         masses = Counter(body.mass for body in self.model.bodies.values() if body.mass > 0.0)
         first = {body.mass: body.name for body in reversed(self.model.bodies.values())}
         for mass in (mass for mass, count in masses.items() if count > 1):
-            name = self.masses[mass] = self.unused(f"mass_{first[mass]}")
+            name = self.masses[mass] = self._parameter(f"mass_{first[mass]}")
             yield f'{name} = m.parameter("{name}", {text_of(mass)}, "kg", low=0.0)'
         for joint, place in self.at.items():
             if place not in self._named and any(place):
@@ -78,15 +78,15 @@ class Places:
         sizes = Counter((k, abs(x)) for place in self._named for k, x in enumerate(place) if x)
         for k, size in (one for one, count in sizes.items() if count > 1):
             owner = next(at for at in self._named if abs(at[k]) == size)
-            name = self._lengths[k, size] = self.unused(f"{joint_at[owner]}_{'xyz'[k]}")
+            name = self._lengths[k, size] = self._parameter(f"{joint_at[owner]}_{'xyz'[k]}")
             yield f'{name} = m.parameter("{name}", {text_of(size)}, "m")'
 
     def named(self) -> Iterator[str]:
         """Yield lines that name the places of joints."""
         return (f"{name} = {Call('', self.components(at))}" for at, name in self._named.items())
 
-    def unused(self, wanted: str) -> str:
-        """Return a name for a parameter or a load, which no part may have."""
+    def _parameter(self, wanted: str) -> str:
+        """Return a name for a parameter, which no part may have."""
         while wanted in self.model.parts:
             wanted = f"{wanted}_"
         return self.variable(wanted)
