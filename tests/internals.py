@@ -169,6 +169,7 @@ from lagrange_casadi.figures.trade_plot import draw_trade
 from lagrange_casadi.formats import case_of, json_model
 from lagrange_casadi.formats.laws import LawError, python
 from lagrange_casadi.formats.laws import parsed as laws_parsed
+from lagrange_casadi.formats.mjcf import LIMITS as MODEL_LIMITS
 from lagrange_casadi.formats.record import MOVES
 from lagrange_casadi.geometry.frames import Frame
 from lagrange_casadi.geometry.rotation import Rotation

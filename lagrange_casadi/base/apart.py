@@ -48,6 +48,7 @@ def run_apart(
     function: Callable[..., Any],
     *given: Any,
     seconds: float,
+    busy: float = math.inf,
     most: float = math.inf,
     folder: Path | None = None,
     variables: Mapping[str, str] | None = None,
@@ -55,16 +56,21 @@ def run_apart(
     """Return what a function of a module returns for what is ``given``, both as JSON has them.
 
     It runs in a process of its own, in a folder and with ``variables`` besides those of this
-    process. That process may take ``seconds``, half of the memory that is free and at most ``most``
-    bytes, and writes no file. It is ended, with all that it started, by any exception here.
+    process. That process may take ``seconds``, ``busy`` seconds of processor time, half of the
+    memory that is free and at most ``most`` bytes, and writes no file. It is ended, with all that
+    it started, by any exception here.
 
     Raises errors of ours that the function raises, :class:`LostError`, and
     ``subprocess.TimeoutExpired``.
     """
     names = {"here": __name__, "module": function.__module__, "name": function.__name__}
     command = [sys.executable, "-c", _PROGRAM.format_map(names), _PLACE]
-    task = json.dumps([given, most, seconds])
+    # Should this program be killed, that process ends too.
+    busy = min(busy, (seconds + 1.0) * cores())
+    task = json.dumps([given, most, busy])
     done = programs.run(command, seconds, folder, variables, task)
+    if 0 < -done.returncode == getattr(signal, "SIGXCPU", 0):
+        raise LostError(f"takes more than {busy:g} s of processor time to read")
     if done.returncode < 0:
         crash = signal.strsignal(-done.returncode)
         raise LostError(f"reading it crashed ({crash}): it is damaged or forged")
@@ -85,12 +91,12 @@ def answer(function: Callable[..., Any]) -> None:
     """Run a function within limits and print what it returns as JSON, and nothing else, whatever
     libraries print.
     """
-    given, most, seconds = json.load(sys.stdin)
+    given, most, busy = json.load(sys.stdin)
     with os.fdopen(os.dup(1), "w") as out:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for number in (1, 2):
             os.dup2(nowhere, number)
-        _limit(most, seconds)
+        _limit(most, busy)
         try:
             told: dict[str, Any] = {"found": function(*given)}
         except LagrangeCasadiError as error:
@@ -102,9 +108,9 @@ def answer(function: Callable[..., Any]) -> None:
         out.write(json.dumps(told))
 
 
-def _limit(most: float, seconds: float) -> None:
-    """Let this process take so much memory and time at most, write no file, and leave no image of
-    it behind, where the system can see to that.
+def _limit(most: float, busy: float) -> None:
+    """Let this process take so many bytes of memory and seconds of processor time at most, write no
+    file, and leave no image of it behind, where the system can see to that.
     """
     with suppress(ImportError, OSError, ValueError):
         import resource  # there is none on Windows
@@ -114,6 +120,6 @@ def _limit(most: float, seconds: float) -> None:
 
         limit(resource.RLIMIT_CORE, 0)
         limit(resource.RLIMIT_FSIZE, 0)
-        limit(resource.RLIMIT_CPU, (seconds + 1.0) * cores())  # should this program be killed
+        limit(resource.RLIMIT_CPU, math.ceil(busy))
         taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
         limit(resource.RLIMIT_AS, taken + min(most, memory() / 2))

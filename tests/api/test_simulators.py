@@ -1,7 +1,6 @@
 """Models of Gazebo and of MuJoCo: against declarations by hand, and MuJoCo's own efforts."""
 
 import re
-import sys
 
 import numpy as np
 import pytest
@@ -274,13 +273,110 @@ def test_a_loop_that_an_equality_connects(reading):
     assert "ratio=-2.0" in case_of(path)
 
 
+HELD = """
+<body name="a" pos="0 0 1"><joint name="j1" axis="0 1 0"/>
+  <geom type="capsule" size="0.02" fromto="0 0 0 0.5 0 0" mass="1"/></body>
+<body name="b" pos="1 0 1"><freejoint/><geom type="box" size="0.1 0.1 0.1" mass="2"/></body>
+"""
+WELD = '<equality><weld body1="a" body2="b" anchor="-0.5 0.1 0.2" {}/></equality>'
+ARM = """
+<body name="arm" {} pos="0 0 1"><joint name="j" axis="0 1 0" {}/>
+  <geom type="capsule" size="0.02" fromto="0 0 0 0.5 0 0" mass="1"/></body>
+"""
+WEIGHT = -9.81 * 0.25
+READ = {  # the effort at rest, by hand
+    "weight of an arm": (mjcf(ARM.format("", "")), "j", WEIGHT),
+    "a weld's anchor": (mjcf(HELD, WELD.format("")), "j1", WEIGHT - 2 * 9.81),
+    "a weld's anchor and pose": (  # the anchor, at (-0.5, 0.1, 0.2) of b, is at (1, 0, 0) of a
+        mjcf(HELD, WELD.format('relpose="1 0 0 1 0 0 0"')), "j1", WEIGHT - 2 * 9.81 * 1.5,
+    ),
+    "a weld without torque": (
+        mjcf(HELD.replace('<freejoint/>', '<joint name="x" axis="1 0 0"/>'),
+             WELD.format('torquescale="0" active="false"')), "j1", WEIGHT,
+    ),
+    "no gravity": (mjcf(ARM.format("", ""), '<option><flag gravity="disable"/></option>'), "j", 0),
+    "half of the weight": (mjcf(ARM.format('gravcomp="0.5"', "")), "j", WEIGHT / 2),
+    "weight that nothing bears": (
+        mjcf(ARM.format('gravcomp="1"', ""),
+             '<option><flag spring="disable" damper="disable"/></option>'), "j", WEIGHT,
+    ),
+    "a spring": (
+        mjcf(ARM.format("", 'stiffness="3" springref="0.2" ref="0.5"')), "j", WEIGHT + 3 * 0.3,
+    ),
+    "no equalities": (
+        mjcf(ARM.format("", "") + HELD.replace("<freejoint/>", '<joint name="x" axis="1 0 0"/>'),
+             WELD.format("") + '<option><flag equality="disable"/></option>'), "j1", WEIGHT,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", READ)
+def test_what_a_model_states_is_read(what, reading):
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    text, joint, effort = READ[what]
+    solution = evaluate(read(reading(text, "robot.xml")), t=(0, 0, 1))
+    assert solution.certified
+    assert abs(solution.effort(joint)[0] - effort) < 1e-12 * 40
+
+
+def test_coordinates_of_coupled_joints_are_counted_from_their_references(reading):
+    """MuJoCo couples q - ref: q2 = 0.2 - 2 q1."""
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    first = ARM.format("", 'ref="0.4"')
+    second = ARM.format("", 'ref="-3.5"').replace('"j"', '"k"').replace('"arm"', '"other"')
+    pair = '<equality><joint joint1="k" joint2="j" polycoef="0.2 -2 0 0 0"/></equality>'
+    scene = read(reading(mjcf(first + second, pair), "robot.xml"))
+    solution = evaluate(Scene(scene.mechanism, {"j": harmonic(0.3, 0.0, 1.0)}, t=(0, 0, 1)))
+    assert abs(solution.motion("k").value[0] + 0.4) < 1e-12
+
+
+def test_what_is_not_read_is_named(reading):
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    joint = 'frictionloss="1" armature="0.1" range="-1 1"'
+    motor = '<dcmotor joint="j" motorconst="1" resistance="1" input="pos vel" controller="1 0 1"/>'
+    general = '<general joint="j" gainprm="1" biasprm="0 1 1"/>'
+    option = '<option density="1000"/>'
+    body = f"{ARM.format('', joint)}<body mocap='true'/>"
+    for actuator in (motor, general) if hasattr(mujoco_model(), "nactuator") else (general,):
+        more = f"{option}<actuator>{actuator}</actuator>"
+        text = re.sub(r"\n#   ", " ", case_of(reading(mjcf(body, more), "robot.xml")))
+        for words in (
+            *("Friction of joints", "Armature, the inertia of motors at joints"),
+            *("Limits of joints", "Actuators, except which joints they drive"),
+            *("Motion of mocap bodies", "Forces of a medium (density, viscosity, wind)"),
+        ):
+            assert f"# {words}: not read." in text
+    assert '"j": polynomial(0.0)' in text
+
+
+def mujoco_model():
+    """An empty model of the version that is installed."""
+    mujoco = pytest.importorskip("mujoco")
+    return mujoco.MjModel.from_xml_string("<mujoco/>")
+
+
 MJCF_MISUSE = {
     "another root": ("<robot/>", "line 1, <robot>: expected <mujoco>"),
     "entities": ('<!DOCTYPE mujoco SYSTEM "x"><mujoco/>', "line 1: document types and entities"),
     "gigantic": (
         mjcf('<body><inertial mass="1e300" pos="0 0 0" diaginertia="1 1 1"/></body>'),
-        "<inertial>: mass: expected numbers of at most 1e+12, got '1e300'",
+        "body 'body_1': mass: expected a finite number of at most 1e+12, got 1e+300",
     ),
+    **{
+        f"{what} of {number}": (
+            mjcf(
+                f'<body name="a"><joint name="j" axis="{axis} 1 0"/><inertial pos="0 0 0"'
+                f' mass="{mass}" diaginertia="{moment} 1 1"/></body>'
+            ),
+            part,
+        )
+        for number in ("inf", "nan", "1e+300")
+        for what, part, axis, mass, moment in (
+            ("mass", "'a'", 0, number, 1),
+            ("inertia", "'a'", 0, 1, number),
+            ("axis", "'j'", number, 1, 1),
+        )
+    },
     "what it refuses": (mjcf('<body><joint type="hinge"/></body>'), "MuJoCo refuses it: "),
     "out of the folder": (
         mjcf("", '<asset><mesh name="m" file="../../m.stl"/></asset>'),
@@ -300,7 +396,7 @@ MJCF_MISUSE = {
     ),
     "distance": (
         mjcf(LINKS, '<equality><joint joint1="C" joint2="O" polycoef="0 0 1 0 0"/></equality>'),
-        "is not supported: its polynomial is not linear",
+        "equality 'equality_0': is not supported: it does not couple two joints linearly",
     ),
 }
 
@@ -323,17 +419,17 @@ def test_what_is_included_stays_in_the_folder_too(reading, tmp_path):
 
 
 def test_without_mujoco_it_is_refused_by_name(reading, monkeypatch):
-    monkeypatch.setitem(sys.modules, "mujoco", None)
+    missing = reading("raise ModuleNotFoundError()", "mujoco.py")
+    monkeypatch.setenv("PYTHONPATH", str(missing.parent))
     with pytest.raises(
-        errors.MissingPackageError, match="is compiled by MuJoCo: pip install mujoco"
+        errors.MissingPackageError, match=r"robot.xml: a model .* by MuJoCo: pip install mujoco$"
     ):
         read(reading(mjcf(LINKS), "robot.xml"))
 
 
-def test_a_broken_mujoco_is_refused_by_name(reading, monkeypatch, tmp_path):
-    (tmp_path / "mujoco.py").write_text('raise ImportError("its core\\nis missing")\n')
-    monkeypatch.delitem(sys.modules, "mujoco", raising=False)
-    monkeypatch.syspath_prepend(tmp_path)
+def test_a_broken_mujoco_is_refused_by_name(reading, monkeypatch):
+    broken = reading('raise ImportError("its core\\nis missing")\n', "mujoco.py")
+    monkeypatch.setenv("PYTHONPATH", str(broken.parent))
     words = "pip install mujoco; it is broken here: its core is missing"
     with pytest.raises(errors.MissingPackageError, match=words):
         read(reading(mjcf(LINKS), "robot.xml"))
