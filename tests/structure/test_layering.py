@@ -23,7 +23,6 @@ CASE = Path(__file__).parents[2] / "cases" / "four_bar"
 ORDER = (
     "version",
     "errors",
-    "renamed",
     "methods",
     "base",
     "arguments",
