@@ -101,7 +101,7 @@ def identity(case="x"):
     mechanism = {"name": case, "gravity": [0.0, -9.81], "constraints": [], **tables}
     grid = {"l": "0.1:0.2:11"}
     return {
-        "schema_version": 2,
+        "schema_version": 1,
         "case": case,
         "versions": {},
         **words,

@@ -60,7 +60,7 @@ def test_layout(solution, file):
         assert dict(h["t"].attrs)["units"] == "s"
         assert list(h.attrs)[-1] == "complete"
         assert h.attrs["schema"] == "lagrange-casadi"
-        assert h.attrs["schema_version"] == 2
+        assert h.attrs["schema_version"] == 1
         assert h.attrs["case"] == "slider_crank"
         assert h.attrs["conventions"] == CONVENTIONS
         assert h.attrs["Conventions"] == "CF-1.8"
@@ -153,7 +153,7 @@ def test_other_files_are_refused(tmp_path, file):
     with pytest.raises(StoreError, match=r"it has no seal: .*run it again"):
         load(tmp_path / "other.h5")
     edit(file, lambda h: h.attrs.__setitem__("schema_version", 99))
-    with pytest.raises(StoreError, match="schema version 99, this program reads versions 2 to 7"):
+    with pytest.raises(StoreError, match="schema version 99, this program reads version 1"):
         load(file)
     with pytest.raises(PathError, match="is a folder, not a file"):
         load(tmp_path)

@@ -58,7 +58,6 @@ def test_the_file_is_whole_and_others_read_it(over):
     with xarray.open_dataset(over.path) as read:
         assert read.coords["over"].attrs["long_name"] == "coordinate of joint 'O'"
     assert over.identity["t"] == [0.0, TURN, 37, "O", 0.0]
-    assert over.identity["schema_version"] == 3
 
 
 def test_tables_have_the_axis_as_a_column(over, tmp_path):
@@ -125,7 +124,6 @@ def test_sweeps_over_times_do_not_know_of_it(tmp_path):
     with h5py.File(found.path) as file:
         assert "over" not in file
         assert file.attrs["t"] == "[0.0, 0.08, 81]"
-        assert file.attrs["schema_version"] == 2
 
 
 def test_a_sweep_goes_on_only_over_the_same_instants(tmp_path):

@@ -65,7 +65,6 @@ def test_they_are_columns_as_others(swept):
     assert found.values["l"] in GRID["l"]
     assert column[1, GRID["l"].index(found.values["l"])] < below
     with h5py.File(swept.path) as file:
-        assert file.attrs["schema_version"] == 5
         assert (
             file["sensitivity/l/peak/effort/O"].attrs["long_name"]
             == "derivative by l of the peak: effort of the drive"
@@ -74,7 +73,6 @@ def test_they_are_columns_as_others(swept):
 
 def test_a_sweep_without_them_is_another_one(slider_crank, swept, tmp_path):
     plain = sweep(slider_crank, GRID, t=SPAN, wanted=WANTED[:2], out=tmp_path / "b.h5", workers=1)
-    assert plain.identity["schema_version"] == 2
     assert not [name for name in plain.columns if name.startswith("sensitivity")]
     np.testing.assert_array_equal(plain["peak:effort:O"], swept["peak:effort:O"])
     assert is_of(swept, slider_crank.scene)

@@ -279,7 +279,6 @@ def test_a_file_keeps_the_drives_coordinate(kept):
     assert back.peak("effort:O") == solution.peak("effort:O")
     assert check(path) == []
     with h5py.File(path) as file:
-        assert file.attrs["schema_version"] == 3
         assert dict(file["over"].attrs)["long_name"] == "coordinate of joint 'O'"
     for engine in ("h5netcdf", "netcdf4"):
         with xarray.open_dataset(path, engine=engine) as read:

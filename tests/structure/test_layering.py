@@ -1,5 +1,5 @@
-"""Imports run one way: no room imports one that stands above it, no module stands in a circle, and
-each leaf can be taken away.
+"""What layers promise beside the contracts of imports in pyproject.toml: each leaf can be taken
+away, and what is compiled is not declared again.
 """
 
 import ast
@@ -7,9 +7,7 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
 from functools import cache
-from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -20,59 +18,11 @@ import lagrange_casadi
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
 CASE = Path(__file__).parents[2] / "cases" / "four_bar"
-ORDER = (
-    "version",
-    "errors",
-    "renamed",
-    "methods",
-    "base",
-    "arguments",
-    "arithmetic",
-    "geometry",
-    "beams",
-    "declare",
-    "elements",
-    "equations",
-    "peak_search",
-    "codegen",
-    "instants",
-    "verification",
-    "strength",
-    "elastic",
-    "sensitivity",
-    "store",
-    "bearings",
-    "density",
-    "motion",
-    "shapes",
-    "shipped_cases",
-    "case_modules",
-    "case",
-    "studies",
-    "peaks",
-    "portable",
-    "exports",
-    "figures",
-    "report",
-    "animation",
-    "actuators",
-    "cluster",
-    "formats",
-    "load_cases",
-    "identification",
-    "forward",
-    "cli",
+DECLARED = (
+    *("version", "errors", "methods", "base", "arguments", "arithmetic", "geometry", "beams"),
+    *("declare", "elements", "equations"),
 )
-"""A room imports only those before it, late imports too."""
-
-DECLARED = ORDER[: ORDER.index("equations") + 1]
 """The rooms up to where a scene is compiled. All others read what it is compiled to."""
-
-LEAVES = (
-    *("exports", "figures", "report", "animation", "actuators", "cluster"),
-    *("formats", "load_cases", "identification", "forward", "cli"),
-)
-"""What nothing but the command line imports."""
 
 MOST_ANY = 94
 """Parameters and results whose type is ``Any``, as what users give that is yet to be checked."""
@@ -115,82 +65,18 @@ def room(module: str) -> str:
     return module.partition(".")[0]
 
 
-@cache
-def imported(name: str) -> list[tuple[str, int]]:
-    """The package's own modules that a module imports, wherever in the file, or names in a text,
-    but for what types alone need.
-    """
-    return list(_imported(name))
-
-
-def _imported(name: str) -> Iterator[tuple[str, int]]:
-    path, known = modules()[name], modules()
-    package = [
-        "lagrange_casadi",
-        *(name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]),
-    ]
-    checked = [
-        node
-        for node in nodes_of(path)
-        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
-    ]
-    typed = {inner for node in checked for inner in ast.walk(node)}
-    for node in nodes_of(path):
-        found: list[str] = []
-        if isinstance(node, ast.ImportFrom) and node not in typed:
-            above = ".".join(package[: len(package) - node.level + 1]) if node.level else ""
-            base = ".".join(filter(None, (above, node.module)))
-            found = [
-                one if one.removeprefix("lagrange_casadi.") in known else base
-                for one in (f"{base}.{a.name}" for a in node.names)
-            ]
-        elif isinstance(node, ast.Import):
-            found = [alias.name for alias in node.names]
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            found = [node.value]
-        for one in found:
-            if (
-                (own := one.removeprefix("lagrange_casadi.")) != one
-                and own in known
-                and own != name
-            ):
-                yield own, node.lineno
-
-
-@pytest.mark.quick
-def test_every_module_has_its_place():
-    assert {room(name) for name in modules()} == set(ORDER)
-
-
 @pytest.mark.quick
 def test_the_map_shows_the_rooms_and_files_that_are_there():
     root = Path(__file__).parents[2]
     page = (root / "docs" / "architecture.md").read_text()
-    rooms = [name for name in ORDER if (PACKAGE / name).is_dir()]
-    assert re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE) == rooms
+    rooms = {room(name) for name in modules() if (PACKAGE / room(name)).is_dir()}
+    assert {*re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)} == rooms
     here = {
         *(path.name for path in modules().values()),
         *(path.relative_to(PACKAGE).as_posix() for path in modules().values()),
     }
     for named in re.findall(r"[\w/]+\.py\b", page):
         assert named in here or (root / named).exists(), named
-
-
-@pytest.mark.quick
-def test_imports_run_downward_only():
-    for name in modules():
-        for other, line in imported(name):
-            assert ORDER.index(room(other)) <= ORDER.index(room(name)), (
-                f"{name}:{line} imports {other}"
-            )
-
-
-@pytest.mark.quick
-def test_nothing_but_the_command_line_imports_a_leaf():
-    for name in modules():
-        for other, line in imported(name):
-            if room(other) in LEAVES and room(name) != room(other):
-                assert room(name) == "cli", f"{name}:{line} imports {other}"
 
 
 @pytest.mark.quick
@@ -213,30 +99,6 @@ def test_what_is_compiled_is_not_declared_again():
 
 
 @pytest.mark.quick
-def test_what_is_compiled_knows_no_mechanism():
-    """Nothing after the first stage imports what mechanisms are declared with, but for readers of
-    models, which stand before it.
-    """
-    parts = ("declare.mechanism", "declare.spatial", "declare.joints", "declare.possible")
-    for name in modules():
-        for other, line in imported(name):
-            if room(name) not in (*DECLARED, "formats"):
-                assert other not in parts, f"{name}:{line} imports {other}"
-                assert room(other) != "elements", f"{name}:{line} imports {other}"
-
-
-def test_no_module_stands_in_a_circle():
-    try:
-        list(
-            TopologicalSorter(
-                {name: {other for other, _ in imported(name)} for name in modules()}
-            ).static_order()
-        )
-    except CycleError as error:
-        pytest.fail(f"a circle: {' -> '.join(error.args[1])}")
-
-
-@pytest.mark.quick
 def test_only_the_table_of_methods_names_what_is_above():
     """A method of the table answers from a module that is there, and each is asked for by the
     module that has it.
@@ -252,7 +114,7 @@ def test_only_the_table_of_methods_names_what_is_above():
             if last.endswith(("import_module", "__import__")) and name != "methods":
                 assert ast.unparse(node.args[0]).startswith("'distributed"), f"{name}:{node.lineno}"
     assert asked.keys() == METHODS.keys()
-    for word, answer in METHODS.items():
+    for answer in METHODS.values():
         module, _, function = answer.partition(":")
         tree = tree_of(modules()[module])
         defined = {
@@ -265,9 +127,6 @@ def test_only_the_table_of_methods_names_what_is_above():
             for alias in node.names
         }
         assert function in defined | brought, answer
-        assert (
-            ORDER.index(room(module)) > ORDER.index(room(asked[word])) or room(asked[word]) == "cli"
-        ), word
 
 
 WITHOUT = """
@@ -377,11 +236,10 @@ def test_every_leaf_can_be_taken_away(tmp_path):
 
     What is no leaf imports without all of them.
     """
-    leaves = json.dumps({leaf: GOES[leaf][2] for leaf in LEAVES})
+    leaves = json.dumps({leaf: GOES[leaf][2] for leaf in GOES})
     command = [sys.executable, "-c", WITHOUT, str(CASE), leaves]
     subprocess.run(command, check=True, cwd=tmp_path)
-    for leaf in LEAVES:
-        modules_lost, refusing, commands = GOES[leaf]
+    for leaf, (modules_lost, refusing, commands) in GOES.items():
         out, err = ((tmp_path / leaf / name).read_text() for name in ("out", "err"))
         assert "Traceback" not in err, f"{leaf}: {err}"
         lost, refused = json.loads(out.splitlines()[-1])
