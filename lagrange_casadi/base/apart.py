@@ -102,7 +102,8 @@ def answer(function: Callable[..., Any]) -> None:
         except LagrangeCasadiError as error:
             told = {"error": type(error).__name__, "words": str(error)}
         except MemoryError:
-            told = {"lost": "takes more memory to read than half of what is free"}
+            limit = f"{most / 1e9:g} GB or " if most < math.inf else ""
+            told = {"lost": f"takes more memory to read than {limit}half of what is free"}
         except Exception as error:
             told = {"lost": f"cannot be read: {type(error).__name__}: {one_line(error)}"}
         out.write(json.dumps(told))
@@ -116,7 +117,9 @@ def _limit(most: float, busy: float) -> None:
         import resource  # there is none on Windows
 
         def limit(kind: int, amount: float) -> None:
-            resource.setrlimit(kind, (int(min(amount, sys.maxsize)), resource.getrlimit(kind)[1]))
+            hard = resource.getrlimit(kind)[1]
+            there = sys.maxsize if hard == resource.RLIM_INFINITY else hard
+            resource.setrlimit(kind, (int(min(amount, there)), hard))
 
         limit(resource.RLIMIT_CORE, 0)
         limit(resource.RLIMIT_FSIZE, 0)

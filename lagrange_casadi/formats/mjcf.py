@@ -26,7 +26,7 @@ from .frames import Frame
 from .mujoco_model import compiled
 from .record import GROUND, Body, Coupling, Joint, Model, Spring
 
-LIMITS: dict[str, float] = {"seconds": 120.0, "busy": 12.0, "most": 2e9}
+LIMITS: dict[str, Any] = {"seconds": 120.0, "busy": 12.0, "most": 2e9}
 """Time, processor time [s] and memory [bytes] that MuJoCo may take."""
 
 _MOST, _LARGEST, _PLACES, _DEEPEST = 3000, 2**28, 32, 20

@@ -58,7 +58,7 @@ def test_it_finds_what_check_finds_and_imports_nothing_from_here(file, here, cap
         ),
         ("print('[' * 100_000)", "the process that reads it gave no answer (status 0)"),
         (
-            "print('{\"found\": [3]}')",
+            "print('{{\"found\": [3]}}')",
             "answer[0] is not of the expected kind",
         ),
         (
