@@ -68,6 +68,7 @@ class _Case:
             self.joint(joint)
         for coupling in model.couplings.values():
             self.coupling(coupling)
+        self.loads()
         for tie in model.ties.values():
             self.called(tie.name)
             self.lines += _tie_lines(self.places, tie)
@@ -137,6 +138,7 @@ class _Case:
                 arguments.append(vector(np.diag(diagonal).tolist(), "inertia"))
             else:
                 arguments.append(Call("inertia=", [vector(row) for row in inertia.tolist()]))
+            arguments += ["accept_inertia=True"] if body.strange else []
         self.call(f"{name} = m.link", *arguments)
 
     def joint(self, joint: Joint) -> None:
@@ -166,6 +168,7 @@ class _Case:
         used = bool(self.model.ties) or any(
             joint.name in (one.first, one.second) for one in self.model.couplings.values()
         )
+        used = used or any(joint.name == one.joint for one in self.model.springs)
         self.call(f"{name} = m.{joint.kind}" if used else f"m.{joint.kind}", *arguments)
 
     def axes(self, joint: Joint, axes: Array, far: Frame) -> list[object]:
@@ -199,6 +202,37 @@ class _Case:
         offset = one.offset - (second - one.ratio * first)
         arguments += [f"offset={of_pi(offset)}"] if offset else []
         self.call("m.gear", *arguments)
+
+    def loads(self) -> None:
+        """Declare springs and dampers of joints, and what bears bodies on which not all of gravity
+        acts.
+        """
+        for one in self.model.springs:
+            joint, rest = self.variables[f"joint {one.joint}"], self.motions.offset(one.joint)
+            if one.damping:
+                name = json.dumps(self.load(f"{one.joint}_damping"))
+                self.call("m.friction", name, joint, f"viscous={text_of(one.damping)}")
+            if one.stiffness:
+                law = f"stiffness={text_of(one.stiffness)}", f"angle={of_pi(one.rest - rest)}"
+                name = json.dumps(self.load(f"{one.joint}_spring"))
+                self.call("m.torsion_spring", name, joint, *law)
+        for body in self.model.bodies.values():
+            lift = (body.weight - 1.0) * self.model.gravity
+            if body.mass and np.any(lift):
+                point = self.places.point(body.name, body.frame.at(body.centre))
+                mass = self.places.masses.get(body.mass) or text_of(body.mass)
+                force = [
+                    f"{key}={text_of(one)} * {mass}"
+                    for key, one in zip("xyz", lift.tolist(), strict=True)
+                    if one
+                ]
+                self.call("m.force", json.dumps(self.load(f"{body.name}_lift")), point, *force)
+
+    def load(self, wanted: str) -> str:
+        """Return a name for a load, which no part has."""
+        while wanted in self.model.parts:
+            wanted = f"{wanted}_"
+        return wanted
 
     def end(self) -> None:
         """End with the motion of each drive."""
