@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ..base.publish import filling
 from ..base.vocabulary import SIMPLE
-from ..errors import DeclarationError, PathError, UnknownNameError
+from ..errors import DeclarationError, ModelFileError, PathError, UnknownNameError
 from ..shipped_cases import shipped_cases
 from .echo import echo
 
@@ -47,13 +47,22 @@ def _sentence(file: Path) -> str:
     return (ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").partition("\n")[0]
 
 
-def new(folder: Path, like: str | None, source: Path | None) -> None:
+def new(folder: Path, like: str | None, source: Path | None, accept_inertias: bool) -> None:
     """See :func:`.commands.new`."""
     if like is not None and source is not None:
         raise DeclarationError("--like and --from exclude each other")
-    files = (
-        _copied(SIMPLE if like is None else like, folder) if source is None else _translated(source)
-    )
+    if source is not None:
+        from ..formats import case_of
+
+        try:
+            files = {"case.py": case_of(source, accept_inertias=accept_inertias).encode()}
+        except ModelFileError as error:
+            words = str(error).replace("accept_inertias=True", "--accept-inertias")
+            raise ModelFileError(words) from None
+    elif accept_inertias:
+        raise DeclarationError("--accept-inertias needs --from FILE")
+    else:
+        files = _copied(SIMPLE if like is None else like, folder)
     if os.path.lexists(folder):
         raise PathError(f"{folder} exists: expected a new folder")
     with filling(folder) as draft:
@@ -66,13 +75,6 @@ def new(folder: Path, like: str | None, source: Path | None) -> None:
         f"wrote {folder / 'case.py'}: {'change' if source is None else 'read'} it, then"
         f" lagrange-casadi run {shlex.quote(str(folder))}"
     )
-
-
-def _translated(source: Path) -> dict[str, bytes]:
-    """The files of a case by their names, of a model of another program."""
-    from ..formats import case_of
-
-    return {"case.py": case_of(source).encode()}
 
 
 def _copied(like: str, folder: Path) -> dict[str, bytes]:

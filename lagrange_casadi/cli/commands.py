@@ -308,6 +308,7 @@ def cases() -> Body:
     metavar="FILE",
     help="Begin with a model of another program: .json, .asmt, .urdf, .sdf or .xml (MuJoCo).",
 )
+@flag("--accept-inertias", "Take moments of inertia that no body has as FILE gives them.")
 def new() -> Body:
     """Begin a case of your own in a new FOLDER.
 

@@ -113,12 +113,14 @@ class RigidMass(Brief):
     """Mass [kg], place of the centre of mass in the link's axes [m], and moment of inertia about it
     [kg m^2].
 
-    In space the moments of inertia are a matrix, three rows of three, on the link's axes.
+    In space the moments of inertia are a matrix, three rows of three, on the link's axes. They are
+    those of some body, unless they are ``accepted`` as they are.
     """
 
     mass: Expression
     centre: tuple[Expression, ...]
     inertia: Any
+    accepted: bool = False
 
 
 @public

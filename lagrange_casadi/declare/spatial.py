@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ..arguments import public
 from ..base.symbolic import symbolic
@@ -28,6 +28,7 @@ from .parts import (
     Link,
     Point,
     PointMass,
+    RigidMass,
     Torque,
     Vector,
 )
@@ -86,6 +87,7 @@ class SpatialMechanism(Mechanism):
         density: Density | None = None,
         centre: Vector | None = None,
         inertia: Expression = None,
+        accept_inertia: bool = False,
         beam: Beam | None = None,
     ) -> Link:
         """Declare a link: a body with a straight x axis from its base to its tip.
@@ -111,6 +113,9 @@ class SpatialMechanism(Mechanism):
             without sections.
         inertia : tuple or matrix, optional
             Three moments of inertia about the centre, or a matrix of three rows [kg m^2].
+        accept_inertia : bool
+            True for moments of inertia that no body has, as some files of robots give them: with a
+            negative one the energy may be negative.
         beam : Beam, optional
             Cross-section and material; the mass follows from them unless it is given too.
 
@@ -156,6 +161,11 @@ class SpatialMechanism(Mechanism):
             return reference.local(place), rotated(moments, reference)
 
         link = self._link(name, length, (mass, density, centre, inertia), beam, rigid, aside)
+        if accept_inertia:
+            if not isinstance(link.mass, RigidMass):
+                raise DeclarationError(f"{what}: accept_inertia needs centre= and inertia=")
+            accepted = replace(link.mass, accepted=True)
+            self.bodies[name] = link = replace(link, mass=accepted)
         if reference is not None:
             self.references[name] = reference
         return link

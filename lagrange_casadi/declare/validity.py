@@ -266,6 +266,8 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
     assert not isinstance(mass, Density)
     found.append(Demand.saying(mass, False, f"{what}: mass must not be negative, got {{got}} kg"))
     if isinstance(mass_properties, RigidMass):
+        if mass_properties.accepted:
+            return mass, found
         if isinstance(mass_properties.inertia, tuple):
             return mass, [*found, *_of_inertia(what, mass_properties)]
         words = f"{what}: inertia must not be negative, got {{got}} kg m^2"

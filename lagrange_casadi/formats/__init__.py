@@ -40,13 +40,15 @@ LARGEST = 64 * 2**20
 
 
 @public
-def read(path: str | os.PathLike[str]) -> Scene:
+def read(path: str | os.PathLike[str], *, accept_inertias: bool = False) -> Scene:
     """Read a mechanism from a file of another program.
 
     Parameters
     ----------
     path
         The file; its ending is the format, see the page on models of other programs.
+    accept_inertias
+        True for moments of inertia as the file gives them, also those that no body has.
 
     Returns
     -------
@@ -59,7 +61,8 @@ def read(path: str | os.PathLike[str]) -> Scene:
         For what the package does not support, with file, line and element.
     """
     name: dict[str, Any] = {"__name__": "lagrange_casadi_case"}
-    exec(compile(case_of(path), f"<{Path(path).name}>", "exec"), name)  # our own text, see as_case
+    text = case_of(path, accept_inertias=accept_inertias)
+    exec(compile(text, f"<{Path(path).name}>", "exec"), name)  # our own text, see as_case
     try:
         scene: Scene = name["scene"]()
     except LagrangeCasadiError as error:
@@ -67,9 +70,10 @@ def read(path: str | os.PathLike[str]) -> Scene:
     return scene
 
 
-def case_of(path: str | os.PathLike[str]) -> str:
+def case_of(path: str | os.PathLike[str], *, accept_inertias: bool = False) -> str:
     """Return the text of a case for a file of another program."""
-    return case_text(driven(checked(_model(Path(path)))))
+    model = checked(_model(Path(path)), accept_inertias=accept_inertias)
+    return case_text(driven(model))
 
 
 @public

@@ -140,6 +140,7 @@ class _Case:
                 arguments.append(vector(np.diag(diagonal).tolist(), "inertia"))
             else:
                 arguments.append(Call("inertia=", [vector(row) for row in inertia.tolist()]))
+            arguments += ["accept_inertia=True"] if body.strange else []
         self.call(f"{name} = m.link", *arguments)
 
     def joint(self, joint: Joint) -> None:

@@ -12,16 +12,32 @@ from .posture import EXACT, SLACK, apart, assemble, extent, hang, outward
 from .record import GROUND, Body, Model
 
 
-def checked(model: Model) -> Model:
-    """Return a model that can be declared, its frames without rounding.
+def checked(model: Model, *, accept_inertias: bool = False) -> Model:
+    """Return a model that can be declared, its frames without rounding; moments of inertia that no
+    body has are taken as they are if these are accepted.
 
     Raises :class:`.ModelFileError`, which names the element, for impossible bodies, joints of
     unknown bodies, and parts that hang on nothing.
     """
     if not model.bodies:
         raise model.refuse("", "has no body that moves")
+    if not any(body.mass for body in model.bodies.values()):
+        raise model.refuse("", "no body that moves has a mass: give the bodies masses")
+    wrong: dict[str, str] = {}
     for body in model.bodies.values():
-        model.bodies[body.name] = _body(model, body)
+        model.bodies[body.name] = _body(model, body, wrong)
+    if wrong and not accept_inertias:
+        raise model.refuse(
+            model.bodies[next(iter(wrong))].where,
+            "no body has such principal moments of inertia, none negative and none larger than the"
+            f" sum of the other two: {'; '.join(wrong.values())}; correct them, or take them as"
+            " they are by accept_inertias=True",
+        )
+    for words in wrong.values():
+        model.notes.append(
+            f"{words}: no body has such principal moments of inertia; they are as in the file."
+            + (" The energy of this one may be negative." if "negative" in words else "")
+        )
     for joint in model.closures:
         for name in (joint.parent, joint.child):
             where = f"{joint.where}: joint '{joint.name}'"
@@ -48,33 +64,35 @@ def checked(model: Model) -> Model:
     return model
 
 
-def _body(model: Model, body: Body) -> Body:
-    """Return a body whose mass can be: no mass is negative, no moment exceeds the other two."""
+def _body(model: Model, body: Body, wrong: dict[str, str]) -> Body:
+    """Return a body whose mass can be, with symmetric moments of inertia; say what is wrong with
+    these, but for a drawing's rounding. A mass without them that is welded is a lump at its centre.
+    """
     what = f"body '{body.name}'"
     if body.mass < 0.0:
         raise model.refuse(body.where, f"{what}: a mass of {body.mass:g} kg is impossible")
-    if body.inertia is None or not np.any(body.inertia):
-        if body.mass > 0.0 and not body.point:
+    inertia = np.zeros((3, 3)) if body.inertia is None else (body.inertia + body.inertia.T) / 2.0
+    if not np.any(inertia) and body.mass > 0.0 and not body.point:
+        joints = [one for one in model.joints.values() if body.name in (one.parent, one.child)]
+        if not any(one.kind == "weld" for one in joints):
             words = f"{what} has a mass of {body.mass:g} kg and no inertia"
             words += "; give its moments of inertia about the centre of mass"
             raise model.refuse(body.where, words)
-        return replace(body, inertia=np.zeros((3, 3)))
-    inertia = (body.inertia + body.inertia.T) / 2.0
+        model.notes.append(f"{what} has no inertia: its mass is a lump at its centre.")
     moments = np.linalg.eigvalsh(inertia)
-    excess = float(2.0 * moments[2] - moments.sum())
-    text = ", ".join(f"{moment:.6g}" for moment in moments)
-    if moments[0] < -1e-9 * moments[2] or excess > 1e-3 * moments[2] or moments[2] <= 0.0:
-        raise model.refuse(
-            body.where,
-            f"{what}: no body has the principal moments of inertia {text} kg m^2: none is negative,"
-            " and none is larger than the sum of the other two",
-        )
-    if excess > EXACT * moments[2]:
+    excess, off = float(2.0 * moments[2] - moments.sum()), EXACT * float(np.abs(moments).max())
+    text = f"{what} ({', '.join(f'{moment:.6g}' for moment in moments)} kg m^2, of which"
+    if moments[0] < min(-off, -1e-9 * moments[2]):
+        wrong[body.name] = f"{text} {moments[0]:.3g} is negative)"
+    elif excess > 1e-3 * moments[2]:
+        wrong[body.name] = f"{text} the last is too large by {excess:.3g})"
+    elif excess > off:
         model.notes.append(
             f"{what}: its largest principal moment of inertia exceeds the sum of the other two by"
             f" {excess:.1e} kg m^2, which is taken as rounding"
         )
-    return replace(body, inertia=inertia)
+    strange = excess > off or bool(moments[0] < -off)
+    return replace(body, inertia=inertia, strange=strange)
 
 
 def _connected(model: Model) -> None:

@@ -1,5 +1,7 @@
 """Elements of files, which know their place: what is missing or wrong in one is a
 :class:`.ModelFileError` that names it. XML is read as data: no document types, no entities.
+
+An element marks what readers take of it, and :func:`note_unread` names what they left.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from xml.parsers import expat
 import numpy as np
 
 from ..base.arrays import Array
+from ..base.brief import listed
 from ..errors import ModelFileError, shown
 from .record import Model
 
@@ -20,20 +23,36 @@ if TYPE_CHECKING:
 
 _DEEPEST = 200
 _MOST = 500_000
+_LONGEST = 60
+"""Characters of a name in a note, at most."""
+
+_DRAWN = ("visual", "collision", "material", "light", "scene", "gui")
+"""Elements with shapes and colours, wherever they stand."""
+
+_SWITCH = {"true": True, "1": True, "false": False, "0": False}
+"""Words that switch something on or off."""
 
 
 @dataclass(eq=False)
 class Element:
-    """An element of a model's file: its name, line, attributes, text, and what is in it."""
+    """An element of a model's file: its name, line, attributes, text, and what is in it.
+
+    ``part`` is the name of what it belongs to. ``seen`` is whether a reader took the element,
+    ``taken`` are the attributes that readers took, and an empty name for its text.
+    """
 
     form: ClassVar[str] = "<{}>"
+    blank: ClassVar[tuple[str, ...]] = ("",)
 
     model: Model
     name: str
     line: int
     given: dict[str, Any] = field(default_factory=dict)
-    text: str = ""
+    pieces: list[str] = field(default_factory=list)
     inside: list[Self] = field(default_factory=list)
+    part: str = ""
+    seen: bool = False
+    taken: set[str] = field(default_factory=set)
 
     @property
     def where(self) -> str:
@@ -46,12 +65,19 @@ class Element:
         return self.where
 
     def all(self, *names: str) -> Iterator[Self]:
-        """Yield the elements in it of these names."""
-        return (one for one in self.inside if one.name in names)
+        """Yield the elements in it of these names, and mark them."""
+        for one in self.inside:
+            if one.name in names:
+                one.seen = True
+                yield one
 
     def first(self, *names: str) -> Self | None:
         """Return the first element in it of these names."""
         return next(self.all(*names), None)
+
+    def optional(self, name: str) -> Self:
+        """Return the first element in it of a name, an empty one if there is none."""
+        return self.first(name) or type(self)(self.model, name, self.line, part=self.part)
 
     def refuse(self, words: str) -> ModelFileError:
         """Return the error of this element."""
@@ -77,14 +103,31 @@ class Element:
         return str(self.stated(name, None))
 
     def stated(self, name: str, usual: object) -> object:
-        """Return what an attribute gives; ``usual`` if there is none, unless that is None."""
+        """Return what an attribute gives; ``usual`` if it is blank or missing, unless that is
+        None.
+        """
+        self.taken.add(name)
         if usual is None and name not in self.given:
             raise self.refuse(f"lacks {name}=")
-        return self.given.get(name, usual)
+        found = self.given.get(name, usual)
+        return usual if usual is not None and str(found).strip() in self.blank else found
+
+    @property
+    def text(self) -> str:
+        """The text in it, without blanks at its ends."""
+        self.taken.add("")
+        return "".join(self.pieces).strip()
+
+    def usual(self, name: str, value: object) -> None:
+        """Keep for a note that a number is not given, and is what the format says."""
+        self.model.usual.setdefault(f"{name} {value}", {})[self.part or f"line {self.line}"] = None
 
     def amount(self, name: str, usual: float | None = None, what: str = "") -> float:
         """Return the number in an attribute; ``usual`` if there is no such attribute."""
-        return self.model.number(self.at(name), self.stated(name, usual), what or name)
+        given = self.stated(name, usual)
+        if usual and given is usual:
+            self.usual(name, f"{usual:g}")
+        return self.model.number(self.at(name), given, what or name)
 
     def triple(self, name: str, usual: object = None, what: str = "") -> Array:
         """Return three numbers in an attribute; ``usual`` if there is no such attribute."""
@@ -98,12 +141,40 @@ class Element:
         """Return what a word in an attribute means."""
         return valid[self.known(name, self.attribute(name), valid)]
 
-    def inner(self, name: str = "", usual: float = 0.0) -> float:
-        """Return the number that is the text of an element in it, without a name its own."""
-        found = self.first(name) if name else self
-        if found is None:
+    def inner(self, name: str, usual: float = 0.0) -> float:
+        """Return the number that is the text of an element in it; ``usual`` if that is blank or
+        missing.
+        """
+        found = self.optional(name)
+        if not (data := found.text):
+            if usual:
+                self.usual(name, f"{usual:g}")
             return usual
-        return self.model.number(found.where, found.text.strip(), name or self.name)
+        return self.model.number(found.where, data, name)
+
+    def switch(self, name: str, usual: bool) -> bool:
+        """Return what an attribute or an element in it switches on or off."""
+        data = self.stated(name, "") if name in self.given else self.optional(name).text
+        return _SWITCH[self.known(name, str(data).lower(), _SWITCH)] if data else usual
+
+    def leave(self, name: str) -> None:
+        """Unmark an attribute or an element in it, which was looked at but not read."""
+        self.taken.discard(name)
+        for one in self.all(name):
+            one.seen = False
+
+    def left(self, path: str = "") -> Iterator[tuple[str, str, str]]:
+        """Yield what no reader took of it: the path where it stands, its name, and its part."""
+        for key in self.given:
+            if key not in (*self.taken, "name") and not key.startswith("xmlns"):
+                yield path, f"{key}=", self.part
+        if "" not in self.taken and self.text:
+            yield path, "text", self.part
+        for one in self.inside:
+            if one.seen:
+                yield from one.left(f"{path}/{one.name}".lstrip("/"))
+            else:
+                yield path, one.name, one.part or f"line {one.line}"
 
     def numbers(self, what: str, count: int) -> Array:
         """Return so many numbers of its text."""
@@ -128,17 +199,35 @@ def six_moments(stated: Callable[[str, float], float], usual: float = 0.0) -> Ar
     )
 
 
+def note_unread(model: Model, root: Element) -> None:
+    """Note what no reader took of a file, a line for each kind of place and one for shapes; and
+    what is as the format says because the file does not.
+    """
+    groups: dict[str, dict[str, dict[str, None]]] = {}
+    for path, name, part in root.left():
+        of = ", shapes and colours" if name in _DRAWN else f" of {path}" if path else ""
+        groups.setdefault(of, {}).setdefault(name[:_LONGEST], {})[part[:_LONGEST]] = None
+    for of, names in groups.items():
+        parts = dict.fromkeys(part for each in names.values() for part in each)
+        model.notes.append(f"Not read{of}: {', '.join(names)} ({listed(parts)}).")
+    for lacking in {tuple(each): None for each in model.usual.values()}:
+        words = ", ".join(word for word, each in model.usual.items() if tuple(each) == lacking)
+        model.notes.append(f"Not given, so as the format says: {words} ({listed(lacking)}).")
+
+
 def parsed(model: Model, text: str, root: str) -> Element:
     """Return the root element of a text; with an empty name, any root element.
 
     Raises :class:`.ModelFileError`.
     """
-    parser, stack, count = expat.ParserCreate(), [Element(model, "", 0)], 0
+    # The text is decoded, whatever encoding it states.
+    parser, stack, count = expat.ParserCreate("utf-8"), [Element(model, "", 0)], 0
 
     def start(name: str, given: dict[str, str]) -> None:
         nonlocal count
         count += 1
-        one = Element(model, name, parser.CurrentLineNumber, given)
+        part = given.get("name") or given.get("reference") or stack[-1].part
+        one = Element(model, name, parser.CurrentLineNumber, given, part=part)
         if len(stack) > _DEEPEST or count > _MOST:
             raise one.refuse("too deep, or too many elements")
         stack[-1].inside.append(one)
@@ -148,7 +237,7 @@ def parsed(model: Model, text: str, root: str) -> Element:
         stack.pop()
 
     def characters(data: str) -> None:
-        stack[-1].text += data
+        stack[-1].pieces.append(data)
 
     def refuse(*_: object) -> None:
         where = f"line {parser.CurrentLineNumber}"

@@ -15,7 +15,7 @@ from ..base.arrays import Array
 from ..errors import shown
 from .elements import Element
 from .frames import Frame
-from .record import MOVES, Body, Coupling, Joint, Law, Model
+from .record import GROUND, MOVES, Body, Coupling, Joint, Law, Model
 
 SCHEMA, VERSION = "lagrange_casadi.model", 1
 """Name of the format in a file."""
@@ -33,6 +33,7 @@ class _Object(Element):
     """An object of the file; its name is its path."""
 
     form = "'{}'"
+    blank = ()
 
     @property
     def where(self) -> str:
@@ -178,6 +179,8 @@ def _plain_frame(frame: Frame) -> dict[str, Array]:
 
 def _body(one: _Object) -> None:
     name, mass, given = one.word("name"), one.amount("mass"), one.given.get("inertia")
+    if name == GROUND:
+        raise one.refuse("body 'ground': the name is taken")
     centre, frame, inertia, rod = one.triple("centre", (0.0, 0.0, 0.0)), one.frame(), None, None
     places = one.table("places")
     named = {place: places.triple(place, what="place") for place in places.given}

@@ -58,8 +58,9 @@ class Body:
 
     ``frame`` is where it is in the reference posture. ``places`` are points of it that have a name.
     A uniform slender ``rod`` lies between two places, and has sections; a ``point`` mass has no
-    axes. ``weight`` is how much of gravity acts on it. ``where`` is what messages call it: the line
-    and the element of the file.
+    axes. ``weight`` is how much of gravity acts on it. ``strange`` moments of inertia, which no
+    body has, are taken as they are. ``where`` is what messages call it: the line and the element
+    of the file.
     """
 
     name: str
@@ -71,6 +72,7 @@ class Body:
     rod: tuple[Array, Array] | None = None
     point: bool = False
     weight: float = 1.0
+    strange: bool = False
     where: str = ""
 
     @classmethod
@@ -121,14 +123,14 @@ class Coupling:
 
 @dataclass(frozen=True, eq=False)
 class Spring:
-    """A spring and a damper of a joint of one coordinate: its stiffness, the coordinate where it
-    has no force, and the damping, all in SI units.
+    """A damper and a spring of a joint of one coordinate: damping and stiffness in SI units, and
+    the coordinate where the spring has no force.
     """
 
     joint: str
+    damping: float = 0.0
     stiffness: float = 0.0
     rest: float = 0.0
-    damping: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,8 +187,9 @@ class Model:
     coordinates at the start, from which loops that are open in the reference posture are assembled;
     bodies that are only ``drawn`` are moved instead. ``drives`` are the joints whose efforts make
     the motion, where these are not those that have one; ``preferred`` are joints that are driven
-    first. ``named`` are the names here by the kind of a part and its name of the file. ``rounded``
-    is by how much axes are off right angles, and where.
+    first. ``named`` are the names here by the kind of a part and its name of the file. ``usual``
+    are numbers that are the format's, with the parts that do not give them. ``rounded`` is by how
+    much axes are off right angles, and where.
     """
 
     name: str
@@ -205,6 +208,7 @@ class Model:
     preferred: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     named: dict[tuple[str, str], str] = field(default_factory=dict)
+    usual: dict[str, dict[str, None]] = field(default_factory=dict)
     rounded: tuple[float, str] = (0.0, "")
 
     @property
@@ -271,7 +275,7 @@ class Model:
         """Return a name of the file as one that parts may have, and keep what it was."""
         name = re.sub(r"\W", "_", stated.strip(), flags=re.ASCII)
         name = name if name[:1].isalpha() else f"{kind[0]}_{name}"
-        if (kind, stated) in self.named or (name == GROUND and kind == "body"):
+        if (kind, stated) in self.named:
             raise self.refuse(where, f"{kind} {shown(stated)}: the name is taken")
         while name in self.parts:
             name = f"{name}_{kind}"
@@ -297,6 +301,26 @@ class Model:
         """Add a coupling of two joints that the file names."""
         first, second = (self.find("joint", one, where) for one in joints)
         self.add(Coupling, stated, where, first, second, ratio, offset)
+
+    def moving(self, stated: str) -> str:
+        """Return the name here of a joint of the file that moves; empty for any other one."""
+        joint = self.joints.get(self.named.get(("joint", stated), ""))
+        return joint.name if joint is not None and joint.kind != "weld" else ""
+
+    def follow(self, stated: str, leader: str, where: str, ratio: float, offset: float) -> None:
+        """Let a joint follow another one of the file: it is held where that one is fixed, and free
+        where there is none.
+        """
+        name, words = self.moving(stated), f"Joint {shown(stated)} follows {shown(leader)}, which"
+        if name and self.moving(leader):
+            self.couple(f"{stated}_mimic", where, (leader, stated), ratio, offset)
+        elif name and ("joint", leader) in self.named:
+            self.motions[name] = Law(repr(offset), where=where)
+            self.notes.append(f"{words} is fixed: it is held at {offset:g}.")
+        elif name:
+            self.notes.append(f"{words} is no joint of the file: it is free.")
+        else:
+            self.notes.append(f"Joint {shown(stated)} is fixed, and follows no other one.")
 
     def attach(self, body: str, parent: str, kind: str, where: str) -> None:
         """Attach a body as it is: by a ``weld``, or by a ``free`` joint."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 
 from ..base.arrays import Array
 from ..errors import shown
-from .elements import Element, parsed, six_moments
+from .elements import Element, note_unread, parsed, six_moments
 from .frames import Frame
-from .record import GROUND, Body, Coupling, Joint, Model
+from .record import GROUND, Body, Coupling, Joint, Model, Spring
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -23,68 +26,57 @@ KINDS: dict[str, str] = {
 }
 """Types of joints; a gearbox couples two others."""
 
+_DYNAMICS = ("damping", "spring_stiffness", "spring_reference")
+"""Numbers of the spring and the damper that a revolute or prismatic joint can have."""
+
 _DEEPEST = 200
-_IGNORED = ("pose", "link", "joint", "frame", "static", "self_collide", "enable_wind")
 
 
 def read(model: Model, text: str) -> None:
-    """Read a file. Raises :class:`.ModelFileError`, which names line and element."""
+    """Read a file: the first model that moves, of its first world or on its own.
+
+    Raises :class:`.ModelFileError`, which names line and element.
+    """
     root = parsed(model, text, "sdf")
-    world = root.first("world")
-    model.gravity = np.array([0.0, 0.0, -9.8])  # of a world whose file gives none
-    if world is not None and (line := world.first("gravity")) is not None:
-        model.gravity = line.numbers("gravity", 3)
-    line = (world or root).needed("model")
-    for one in (world or root).all("model"):
-        if one is not line:
-            named = shown(one.given.get("name"))
-            model.notes.append(f"Model {named} of line {one.line} is ignored.")
-    for one in root.all("world"):
-        if one is not world:
-            one.ignore()
+    world = root.first("world") or root
+    found = [one for one in world.inside if one.name == "model"]
+    line = next((one for one in found if not one.switch("static", False)), None)
+    if line is None:
+        raise world.refuse("has no model that moves" if found else "lacks <model>")
+    line.seen, model.gravity = True, np.array([0.0, 0.0, -9.8])  # of a world that gives none
+    for one in (world.first("physics"), world):
+        if one is not None and (given := one.first("gravity")) is not None:
+            model.gravity = given.numbers("gravity", 3)
     model.name = model.name_of("mechanism", line.attribute("name"), line.where)
-    _Reader(model, line).read()
+    # Axes are on the frame of the model until 1.4, and on that of the joint since.
+    on_model = root.stated("version", "1.7") in ("1.0", "1.2", "1.3", "1.4")
+    named = line.by_name("link", "frame", "joint")
+    for one in line.all("frame"):
+        one.seen = False  # until something lies on it
+    _Reader(model, line, named, on_model).read()
+    note_unread(model, root)
 
 
-class _Reader:
-    """A model under way: its links, frames and joints by name."""
+class Joints:
+    """Joints of a model under way, by name, with what else has a place.
 
-    def __init__(self, model: Model, line: Element) -> None:
-        self.model, self.line = model, line
-        self.named = line.by_name("link", "frame", "joint")
-        self.own = self.pose(line.first("pose"))
+    ``on`` are the links with their bodies and places, and ``own`` is the frame of the model.
+    """
+
+    def __init__(
+        self, model: Model, named: dict[str, Element], on: dict[str, tuple[str, Frame]]
+    ) -> None:
+        self.model, self.named, self.on = model, named, on
+        self.own, self.on_model = Frame(), False
 
     def read(self) -> None:
-        """Read the model."""
-        model, joints = self.model, list(self.line.all("joint"))
-        for link in self.line.all("link"):
-            self.body(link)
+        """Read the joints."""
+        joints = [one for one in self.named.values() if one.name == "joint"]
         for joint in joints:
             if kind := joint.choice("type", KINDS):
                 self.joint(joint, kind)
         for joint in joints:
             self.couplings(joint)
-        hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
-        if GROUND not in hung and model.bodies:
-            first = next(iter(model.bodies.values()))
-            model.attach(first.name, GROUND, "weld", first.where)
-            model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
-        for one in self.line.inside:
-            if one.name in ("model", "include"):
-                raise one.refuse("is not supported; put its links into the model itself")
-            if one.name not in _IGNORED:
-                one.ignore()
-
-    def body(self, link: Element) -> None:
-        """Declare a link as a body."""
-        inertial = link.first("inertial")
-        if inertial is None or (moments := inertial.first("inertia")) is None:
-            words = "lacks <inertia>, in place of which Gazebo has 1 kg and 1 kg m^2"
-            raise (inertial or link).refuse(words)
-        mass, centre = inertial.inner("mass", 1.0), self.pose(inertial.first("pose"))
-        inertia, name = centre.tensor(six_moments(moments.inner, 1.0)), link.attribute("name")
-        given = mass, centre.place, inertia, self.frame(name, ())
-        self.model.add(Body, name, link.where, *given)
 
     def joint(self, line: Element, kind: str) -> None:
         """Declare a joint, whose frames coincide as the model stands."""
@@ -100,25 +92,30 @@ class _Reader:
                     raise line.refuse("its two axes are not at right angles")
                 far = Frame.about(second, frame.place)
         if kind == "screw":
-            lead = line.needed("screw_thread_pitch").inner()
+            lead = line.inner("screw_thread_pitch", 1.0)
         near, far = model.frame_of(parent).relative(near), model.frame_of(child).relative(far)
-        model.add(Joint, data, line.where, kind, parent, child, near, far, lead)
+        name = model.add(Joint, data, line.where, kind, parent, child, near, far, lead)
+        for key in ("axis", "axis2"):
+            if (axis := line.first(key)) is not None:
+                losses = axis.optional("dynamics")
+                resist(model, name, losses, losses.inner, first=key == "axis")
 
     def couplings(self, line: Element) -> None:
         """Declare what ties a joint to another one: a mimic, a gearbox."""
         model, data, axis = self.model, line.attribute("name"), line.first("axis")
         if axis is not None and (mimic := axis.first("mimic")) is not None:
-            keys = ("multiplier", "offset", "reference")
-            ratio, offset, reference = (mimic.inner(key) for key in keys)
-            joints, offset = (mimic.attribute("joint"), data), offset - ratio * reference
-            model.couple(f"{data}_mimic", mimic.where, joints, ratio, offset)
+            ratio = mimic.inner("multiplier", 1.0)
+            offset, reference = (mimic.inner(key) for key in ("offset", "reference"))
+            leader, offset = mimic.attribute("joint"), offset - ratio * reference
+            model.follow(data, leader, mimic.where, ratio, offset)
         if line.given["type"] != "gearbox":
             return
         ratio = line.inner("gearbox_ratio", 1.0)
-        carrier = line.needed("gearbox_reference_body").text.strip()
+        carrier = line.needed("gearbox_reference_body").text
         ends = []
         for side in ("parent", "child"):
-            bodies = {self.end(line, side), model.named.get(("body", carrier), GROUND)}
+            on = self.on[line.known("link", carrier, self.on)][0]
+            bodies = {self.end(line, side), on}
             found = [
                 name for name, one in model.joints.items() if {one.parent, one.child} == bodies
             ]
@@ -130,14 +127,15 @@ class _Reader:
 
     def axis(self, line: Element, key: str, frame: Frame) -> Array:
         """Return the direction of a joint's axis, on the ground's axes."""
-        data = line.needed(key)
-        xyz, given, on = data.first("xyz"), np.array([0.0, 0.0, 1.0]), frame
-        if xyz is not None:
+        data = line.optional(key)
+        xyz, given, on = data.optional("xyz"), np.array([0.0, 0.0, 1.0]), frame
+        if xyz.text:
             given = xyz.numbers("xyz", 3)
-            if expressed := xyz.given.get("expressed_in"):
-                on = self.known(xyz, expressed, ())
-        legacy = data.first("use_parent_model_frame")
-        if legacy is not None and legacy.text.strip() in ("1", "true"):
+        else:
+            line.usual(key, "0 0 1")
+        if expressed := str(xyz.stated("expressed_in", "")):
+            on = self.known(xyz, expressed, ())
+        elif data.switch("use_parent_model_frame", self.on_model):
             on = self.own
         given = self.model.direction(data.where, given)
         return np.asarray(on.axes @ given / np.linalg.norm(given))
@@ -145,48 +143,103 @@ class _Reader:
     def end(self, line: Element, key: str) -> str:
         """Return the body of a joint's parent or child, which may be given by a frame on it."""
         data = line.needed(key)
-        name = data.text.strip()
+        name = data.text
         for _ in range(len(self.named) + 1):
-            if name == "world":
-                return GROUND
-            if ("body", name) in self.model.named:
-                return self.model.named["body", name]
+            if name in self.on:
+                return self.on[name][0]
             frame = self.named.get(name)
             if frame is None or frame.name != "frame":
                 break
-            name = frame.given.get("attached_to", "")
-        valid = ", ".join(["world", *(one.given["name"] for one in self.line.all("link"))])
-        raise data.refuse(f"unknown link {shown(data.text.strip())}; valid: {valid}")
+            frame.seen, name = True, str(frame.stated("attached_to", ""))
+        raise data.refuse(f"unknown link {shown(data.text)}; valid: {', '.join(self.on)}")
 
     def frame(self, name: str, above: tuple[str, ...]) -> Frame:
         """Return where a link, frame or joint is; poses may be given relative to each other."""
+        if name in self.on:
+            return self.on[name][1]
         line = self.named[name]
+        line.seen = True
         if name in above or len(above) > _DEEPEST:
             what = "itself" if name in above else "too many others"
             raise line.refuse(f"its pose is relative to {what}")
         pose, on = line.first("pose"), ""
         if pose is not None:
-            on = pose.given.get("relative_to", "") or pose.given.get("frame", "")
+            on = str(pose.stated("relative_to", "") or pose.stated("frame", ""))
         if not on and line.name == "joint":
-            on = line.needed("child").text.strip()
+            on = line.needed("child").text
         elif not on and line.name == "frame":
-            on = line.given.get("attached_to", "")
-        return self.known(line, on, (*above, name)).then(self.pose(pose))
+            on = str(line.stated("attached_to", ""))
+        return self.known(line, on, (*above, name)).then(_pose(pose))
 
     def known(self, line: Element, name: str, above: tuple[str, ...]) -> Frame:
         """Return the frame of a name."""
         if name in ("", "__model__"):
             return self.own
-        if name == "world":
-            return Frame()
-        return self.frame(line.known("frame", name, self.named), above)
+        return self.frame(line.known("frame", name, {**self.on, **self.named}), above)
 
-    def pose(self, line: Element | None) -> Frame:
-        """Return the frame of a pose: a place, and roll, pitch and yaw."""
-        if line is None or not line.text.strip():
-            return Frame()
-        if line.given.get("rotation_format", "euler_rpy") != "euler_rpy":
-            raise line.refuse("rotation_format: expected euler_rpy")
-        six = line.numbers("pose", 6)
-        angles = np.radians(six[3:]) if line.given.get("degrees") in ("true", "1") else six[3:]
-        return Frame.posed(six[:3], angles)
+
+class _Reader(Joints):
+    """A model under way."""
+
+    def __init__(
+        self, model: Model, line: Element, named: dict[str, Element], on_model: bool
+    ) -> None:
+        super().__init__(model, named, {"world": (GROUND, Frame())})
+        self.line, self.own, self.on_model = line, _pose(line.first("pose")), on_model
+
+    def read(self) -> None:
+        """Read the model."""
+        model = self.model
+        for link in self.line.all("link"):
+            self.body(link)
+        super().read()
+        hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
+        if GROUND not in hung and model.bodies:
+            first = next(iter(model.bodies.values()))
+            model.attach(first.name, GROUND, "weld", first.where)
+            model.notes.append(f"No joint leads to the world: '{first.name}' is fixed.")
+        for one in self.line.all("model", "include"):
+            raise one.refuse("is not supported; put its links into the model itself")
+
+    def body(self, link: Element) -> None:
+        """Declare a link as a body."""
+        inertial, name = link.optional("inertial"), link.attribute("name")
+        if inertial.switch("auto", False):
+            raise inertial.refuse("auto: is not supported; give mass and inertia")
+        mass, centre = inertial.inner("mass", 1.0), _pose(inertial.first("pose"))
+        inertia = centre.tensor(six_moments(inertial.optional("inertia").inner, 1.0))
+        frame, weight = self.frame(name, ()), float(link.switch("gravity", True))
+        here = self.model.add(Body, name, link.where, mass, centre.place, inertia, frame)
+        self.model.bodies[here] = replace(self.model.bodies[here], weight=weight)
+        self.on[name] = here, frame
+
+
+def resist(
+    model: Model, joint: str, line: Element, number: Callable[[str, float], float], *, first: bool
+) -> None:
+    """Read the spring and the damper of a joint's first axis or second one, as far as its kind can
+    have these; what else has a number there is left.
+    """
+    single = first and model.joints[joint].kind in ("revolute", "prismatic")
+    able, found = _DYNAMICS if single else (), [0.0, 0.0, 0.0]
+    for k, key in enumerate((*_DYNAMICS, "friction")):
+        value = number(key, 0.0)
+        if key in able and (value >= 0.0 or key != "damping"):
+            found[k] = value
+        elif value:
+            line.leave(key)
+    if found[2] and not found[1]:
+        line.leave("spring_reference")
+    if found[0] or found[1]:
+        model.springs.append(Spring(joint, *found))
+
+
+def _pose(line: Element | None) -> Frame:
+    """Return the frame of a pose: a place, and roll, pitch and yaw."""
+    if line is None or not line.text:
+        return Frame()
+    if line.stated("rotation_format", "euler_rpy") != "euler_rpy":
+        raise line.refuse("rotation_format: expected euler_rpy")
+    six = line.numbers("pose", 6)
+    angles = np.radians(six[3:]) if line.switch("degrees", False) else six[3:]
+    return Frame.posed(six[:3], angles)

@@ -2,18 +2,22 @@
 
 The root link is the ground. Links without mass that are fixed to another one are frames of it.
 Loops are given by a second joint of a link, and by ``<constraint>`` (proposed for urdfdom),
-``<loop>`` and ``<coupling>`` (URDF+), ``<loop_joint>`` (Isaac Sim) and
-``<drake:ball_constraint>``.
+``<loop>`` and ``<coupling>`` (URDF+), ``<loop_joint>`` (Isaac Sim), ``<drake:ball_constraint>``
+and joints of SDF in ``<gazebo>``.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from ..base.brief import listed
 from ..errors import shown
-from .elements import Element, parsed, six_moments
+from .elements import Element, note_unread, parsed, six_moments
 from .frames import Frame
 from .record import GROUND, Body, Joint, Model
+from .sdf import Joints, resist
 
 KINDS: dict[str, str] = {
     "revolute": "revolute",
@@ -32,8 +36,6 @@ KINDS: dict[str, str] = {
 _LOOPS = ("constraint", "loop", "loop_joint")
 _ONE = ("parent", "predecessor", "link1")
 _OTHER = ("child", "successor", "link2")
-_KNOWN = ("link", "joint", "material", "gazebo", "transmission", "ros2_control", "coupling",
-          "drake:ball_constraint", "sensor", "safety_controller")  # fmt: skip
 
 
 def read(model: Model, text: str) -> None:
@@ -45,6 +47,7 @@ def read(model: Model, text: str) -> None:
             raise one.refuse(f"is a macro of xacro; expand it first: {data}")
     model.name = model.name_of("mechanism", root.given.get("name", model.name), root.where)
     _Robot(model, root).read()
+    note_unread(model, root)
 
 
 class _Robot:
@@ -58,15 +61,16 @@ class _Robot:
 
     def read(self) -> None:
         """Read the robot."""
-        children = {self.side(joint, _OTHER)[0] for joint in self.joints}
-        roots = [name for name in self.links if name not in children]
+        ends = [[self.end(joint, names)[0] for names in (_ONE, _OTHER)] for joint in self.joints]
+        roots = [name for name in self.links if name not in {child for _, child in ends}]
         if len(roots) != 1:
-            found = ", ".join(map(repr, roots)) or "none"
+            none = "none: each link is the child of a joint" if self.links else "no link"
+            found = ", ".join(map(repr, roots)) or none
             raise self.root.refuse(f"expected one root link, found {found}")
         self.on[roots[0]] = (GROUND, Frame())
         waiting = list(self.joints)
         while waiting:
-            ready = [one for one in waiting if self.side(one, _ONE)[0] in self.on]
+            ready = [one for one in waiting if self.end(one, _ONE)[0] in self.on]
             if not ready:
                 raise waiting[0].refuse("its links are not connected to the root")
             self.grow(ready[0])
@@ -77,28 +81,34 @@ class _Robot:
             self.ball_constraint(line)
         for joint in self.joints:
             if (mimic := joint.first("mimic")) is not None:
-                name, first = joint.attribute("name"), mimic.attribute("joint")
+                name, leader = joint.attribute("name"), mimic.attribute("joint")
                 law = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
-                self.model.couple(f"{name}_mimic", mimic.where, (first, name), *law)
+                self.model.follow(name, leader, mimic.where, *law)
         for coupling in self.root.all("coupling"):
             self.coupling(coupling)
+        for one in self.root.all("gazebo"):
+            self.gazebo(one)
         self.actuators()
-        self.left_out()
+        if self.frames:
+            self.model.notes.append(f"Frames without mass are left out: {', '.join(self.frames)}.")
 
     def grow(self, line: Element) -> None:
         """Read a joint: its link is placed by it, or closes a loop."""
         kind = line.choice("type", KINDS)
-        (parent, _), (child, _) = self.side(line, _ONE), self.side(line, _OTHER)
-        origin = self.origin(line.first("origin"))
+        parent, child = (self.end(line, names)[0] for names in (_ONE, _OTHER))
+        origin, stated = self.origin(line.optional("origin")), line.attribute("name")
         if child not in self.on:
             body, frame = self.on[parent]
             if kind == "weld" and self.links[child].first("inertial") is None:
                 self.on[child] = (body, frame.then(origin))
                 self.frames += [child] if body != GROUND else []
+                self.model.named["joint", stated] = ""
                 return
             self.on[child] = (self.body(child, self.placed(parent).then(origin)), Frame())
         axes = self.axes(line, kind)
-        self.add(line, kind, (parent, origin.then(axes)), (child, axes))
+        name = self.add(line, kind, (parent, origin.then(axes)), (child, axes))
+        if (losses := line.first("dynamics")) is not None:
+            resist(self.model, name, losses, losses.amount, first=True)
 
     def placed(self, link: str) -> Frame:
         """Return where a link is in the zero posture."""
@@ -107,11 +117,11 @@ class _Robot:
 
     def add(
         self, line: Element, kind: str, one: tuple[str, Frame], other: tuple[str, Frame]
-    ) -> None:
-        """Declare a joint between frames of two links."""
+    ) -> str:
+        """Declare a joint between frames of two links; return its name here."""
         ends = [self.on[link][1].then(frame) for link, frame in (one, other)]
         bodies = [self.on[link][0] for link, _ in (one, other)]
-        self.model.add(Joint, line.attribute("name"), line.where, kind, *bodies, *ends)
+        return self.model.add(Joint, line.attribute("name"), line.where, kind, *bodies, *ends)
 
     def loop(self, line: Element) -> None:
         """Read a loop that an element of its own closes."""
@@ -119,7 +129,8 @@ class _Robot:
         (parent, near), (child, far) = self.side(line, _ONE), self.side(line, _OTHER)
         near = near.then(self.axes(line, kind, "parent_axis", "axis"))
         apart = kind == "universal" or line.first("child_axis") is not None
-        if axis is not None and axis.given.get("frame") == "parent" and not apart:
+        if axis is not None and not apart and axis.given.get("frame") == "parent":
+            axis.taken.add("frame")
             # The axis is given on the parent alone: the child's is where it is at zero.
             known = self.placed(child).relative(self.placed(parent).then(near))
             far = Frame(far.place, self.model.rotation(line.where, known.axes))
@@ -139,44 +150,40 @@ class _Robot:
 
     def coupling(self, line: Element) -> None:
         """Read a coupling of two links' joints."""
-        above = {self.side(one, _OTHER)[0]: one for one in reversed(self.joints)}
-        links = [self.side(line, side)[0] for side in (_ONE, _OTHER)]
+        above = {self.end(one, _OTHER)[0]: one for one in reversed(self.joints)}
+        links = [self.end(line, side)[0] for side in (_ONE, _OTHER)]
         for link in links:
             if link not in above:
                 raise line.refuse(f"link {shown(link)} has no joint")
-        if len({self.side(above[link], _ONE)[0] for link in links}) > 1:
+        if len({self.end(above[link], _ONE)[0] for link in links}) > 1:
             raise line.refuse("is supported only if both its links have the same parent")
         joints = [above[link].attribute("name") for link in links]
         ratio = line.needed("ratio").amount("value", what="ratio")
         self.model.couple(line.attribute("name"), line.where, joints, ratio)
 
+    def gazebo(self, line: Element) -> None:
+        """Read what Gazebo adds: joints of SDF, and which links have no weight."""
+        model, stated = self.model, str(line.stated("reference", ""))
+        if not stated:
+            on = {link: (self.on[link][0], self.placed(link)) for link in self.links}
+            Joints(model, line.by_name("joint"), {"world": (GROUND, Frame()), **on}).read()
+        elif body := model.bodies.get(model.named.get(("body", stated), "")):
+            off = line.switch("turnGravityOff", False) or not line.switch("gravity", True)
+            model.bodies[body.name] = replace(body, weight=float(not off))
+
     def actuators(self) -> None:
         """Read which joints have a drive."""
+        model, fixed = self.model, []
         for group in self.root.all("transmission", "ros2_control"):
             for joint in group.all("joint"):
                 if group.name == "transmission" or joint.first("command_interface") is not None:
-                    name = self.model.find("joint", joint.attribute("name"), joint.where)
-                    self.model.preferred.append(name)
-        if any(group.first("actuator") for group in self.root.all("transmission")):
-            words = "Reductions of transmissions are not read: efforts are at joints."
-            self.model.notes.append(words)
-
-    def left_out(self) -> None:
-        """Note what was not read."""
-        losses = {
-            joint.given["name"]: None
-            for joint in self.joints
-            for one in joint.all("dynamics")
-            for key in ("damping", "friction")
-            if one.given.get(key) and one.amount(key)
-        }
-        if losses:
-            self.model.notes.append(f"Damping and friction are not read: {', '.join(losses)}.")
-        if self.frames:
-            self.model.notes.append(f"Frames without mass are left out: {', '.join(self.frames)}.")
-        for one in self.root.inside:
-            if one.name not in (*_KNOWN, *_LOOPS):
-                one.ignore()
+                    if name := model.moving(stated := joint.attribute("name")):
+                        model.preferred.append(name)
+                    else:
+                        fixed.append(stated)
+        if fixed:
+            words = f"Drives of joints that are fixed or not in the file: {listed(fixed)}."
+            model.notes.append(words)
 
     def body(self, stated: str, frame: Frame) -> str:
         """Declare a link as a body."""
@@ -184,7 +191,7 @@ class _Robot:
         inertial, inertia = link.first("inertial"), np.zeros((3, 3))
         if inertial is not None:
             mass = inertial.needed("mass").amount("value", what="mass")
-            centre, moments = self.origin(inertial.first("origin")), inertial.first("inertia")
+            centre, moments = self.origin(inertial.optional("origin")), inertial.first("inertia")
             if moments is not None:
                 inertia = centre.tensor(six_moments(moments.amount))
         return self.model.add(Body, stated, link.where, mass, centre.place, inertia, frame)
@@ -194,20 +201,24 @@ class _Robot:
         if kind in ("weld", "free", "spherical"):
             return Frame()
         if (found := line.first(*(names or ("axis",)))) is None:
+            line.usual("axis", "1 0 0")
             return Frame.about(np.array([1.0, 0.0, 0.0]))
         return Frame.about(found.direction("xyz", "axis"))
 
-    def origin(self, line: Element | None) -> Frame:
+    def origin(self, line: Element) -> Frame:
         """Return the frame that ``xyz`` and ``rpy`` of an element give."""
-        if line is None:
-            return Frame()
         return Frame.posed(line.triple("xyz", "0 0 0"), line.triple("rpy", "0 0 0"))
 
-    def side(self, line: Element, names: tuple[str, ...]) -> tuple[str, Frame]:
-        """Return one link of a joint or a loop, and the frame on it that the dialect gives."""
+    def end(self, line: Element, names: tuple[str, ...]) -> tuple[str, Element]:
+        """Return one link of a joint or a loop, and the element that names it."""
         found = line.first(*names)
         if found is None and names == _OTHER:  # some write link1 twice
             found = next(iter(list(line.all("link1"))[1:2]), None)
         found = found or line.needed(*names)
+        return line.known("link", found.attribute("link"), self.links), found
+
+    def side(self, line: Element, names: tuple[str, ...]) -> tuple[str, Frame]:
+        """Return one link of a loop, and the frame on it that the dialect gives."""
+        link, found = self.end(line, names)
         origin = found.first("origin") or line.first(f"{found.name}_origin") or found
-        return found.known("link", found.attribute("link"), self.links), self.origin(origin)
+        return link, self.origin(origin)

@@ -147,10 +147,15 @@ MISUSE = {
         changed(bodies=[{"name": "arm", "mass": 2.0}]),
         "bodies[0]: body 'arm' has a mass of 2 kg and no inertia",
     ),
+    "no mass": (
+        changed(bodies=[ROD | {"mass": 0}]),
+        "no body that moves has a mass: give the bodies masses",
+    ),
+    "the ground": (changed(bodies=[ROD | {"name": "ground"}]), "body 'ground': the name is taken"),
     "negative mass": (changed(bodies=[ROD | {"mass": -2}]), "a mass of -2 kg is impossible"),
     "impossible inertia": (
         changed(bodies=[{"name": "arm", "mass": 2.0, "inertia": [1, 1, 3]}]),
-        "body 'arm': no body has the principal moments of inertia 1, 1, 3 kg m^2",
+        "body 'arm' (1, 1, 3 kg m^2, of which the last is too large by 1); correct them, or take",
     ),
     "gigantic": (
         changed(bodies=[ROD | {"mass": 1e300}]),

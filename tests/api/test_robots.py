@@ -10,6 +10,7 @@ import pytest
 from internals import case_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, errors, evaluate, load_case, read
+from lagrange_casadi.cli import main
 from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -243,15 +244,20 @@ MISUSE = {
     "two roots": (robot(BASE, link("a")), "expected one root link, found 'base', 'a'"),
     "no root": (
         robot(link("a"), link("b"), joint("p", "a", "b"), joint("q", "b", "a")),
-        "expected one root link, found none",
+        "expected one root link, found none: each link is the child of a joint",
     ),
     "an island": (
         robot(BASE, link("a"), link("b"), joint("p", "a", "b"), joint("q", "b", "a")),
         "line 5, <joint name='p'>: its links are not connected to the root",
     ),
+    "no link": (robot(), "expected one root link, found no link"),
     "unknown link": (
         robot(BASE, joint("p", "base", "a")),
-        "<child>: unknown link 'a'; valid: base",
+        "line 3, <joint name='p'>: unknown link 'a'; valid: base",
+    ),
+    "unknown parent": (
+        robot(BASE, joint("p", "world", "base")),
+        "line 3, <joint name='p'>: unknown link 'world'; valid: base",
     ),
     "unknown type": (
         robot(BASE, link("a"), joint("p", "base", "a", kind="hinge")),
@@ -274,10 +280,6 @@ MISUSE = {
     "no damping": (
         robot(BASE, link("a"), joint("p", "base", "a", more='<dynamics damping="much"/>')),
         "line 4, <dynamics>: damping: expected a number, got 'much'",
-    ),
-    "mimic of none": (
-        robot(BASE, link("a"), joint("p", "base", "a", more='<mimic joint="q"/>')),
-        "line 4, <mimic>: unknown joint 'q'; valid: p",
     ),
     "an axis that is too short": (
         robot(BASE, link("a"), joint("p", "base", "a", axis="1e-300 0 0")),
@@ -313,3 +315,142 @@ def test_a_billion_laughs_are_refused(tmp_path):
     path.write_text(f'<!DOCTYPE r [<!ENTITY e0 "ha">{entities}]><robot name="&e20;"/>')
     with pytest.raises(errors.ModelFileError, match="document types and entities are refused"):
         read(path)
+
+
+def effort_at(scene, laws, of):
+    """The effort of a joint at the start."""
+    return float(evaluate(Scene(scene.mechanism, laws, t=(0.0, 0.0, 1))).effort(of)[0])
+
+
+MOVE, RATE, ACCELERATION = polynomial(0.3, 0.4, 0.5), 0.4, 1.0
+ARM = joint("p", "base", "a", axis="0 -1 0")
+DRIVES = """<transmission name="t"><joint name="q"/><type>x</type></transmission>
+<transmission name="u"><joint name="none"/></transmission>"""
+FIXED = "Drives of joints that are fixed or not in the file: q, none."
+WEIGHT = 0.1 * 9.81 * np.cos(0.3)  # that of a link of 1 kg at 0.1 m, about its joint
+TURN = (0.01 + 0.1**2) * ACCELERATION
+
+
+@pytest.mark.parametrize(
+    ("parts", "effort", "notes"),
+    [
+        ([ARM], TURN + WEIGHT, []),
+        (
+            [joint("p", "base", "a", axis="0 -1 0", more='<dynamics damping="2" friction="3"/>')],
+            TURN + WEIGHT + 2.0 * RATE,
+            ["Not read of joint/dynamics: friction= (p)."],
+        ),
+        ([ARM, '<gazebo reference="a"><turnGravityOff>1</turnGravityOff></gazebo>'], TURN, []),
+        ([ARM, '<gazebo reference="a"><gravity>false</gravity></gazebo>'], TURN, []),
+        (
+            [ARM, '<link name="f"/>', joint("q", "a", "f", kind="fixed"), DRIVES],
+            TURN + WEIGHT,
+            [FIXED, "Not read of transmission: type (t)."],
+        ),
+        (
+            [joint("p", "base", "a", axis="0 -1 0", more='<mimic joint="none" offset="1"/>')],
+            TURN + WEIGHT,
+            ["Joint 'p' follows 'none', which is no joint of the file: it is free."],
+        ),
+        (
+            [ARM, link("lump", 0.5, "0.1 0 0", "0 0 0"), joint("q", "a", "lump", kind="fixed")],
+            TURN + 1.5 * WEIGHT + 0.5 * 0.1**2 * ACCELERATION,
+            ["body 'lump' has no inertia: its mass is a lump at its centre."],
+        ),
+    ],
+)
+def test_what_a_file_says_of_an_arm_is_read_or_noted(parts, effort, notes, reading):
+    path = reading(BASE, link("a"), *parts)
+    assert effort_at(read(path), {"p": MOVE}, "p") == pytest.approx(effort, rel=1e-13)
+    text = case_of(path)
+    assert [note for note in notes if f"# {note}" not in text] == []
+
+
+def test_a_joint_that_follows_a_fixed_one_is_held(reading):
+    """It is at its offset, whatever the ratio; the fixed one is a frame, or has a mass."""
+    mimic = '<mimic joint="q" multiplier="2" offset="0.2"/>'
+    for frame in ('<link name="f"/>', link("f")):
+        path = reading(
+            BASE, link("a"), ARM, frame, joint("q", "a", "f", kind="fixed"), link("finger"),
+            joint("r", "f", "finger", axis="0 -1 0", more=mimic),
+        )  # fmt: skip
+        assert '"r": polynomial(0.2)' in case_of(path)
+        assert "# Joint 'r' follows 'q', which is fixed: it is held at 0.2." in case_of(path)
+
+
+def test_a_joint_of_gazebo_closes_a_loop(reading):
+    """The same four-bar as a loop of URDF+: the joint lies on the child, in the zero posture."""
+    parts = [part for part in TREE if 'name="C"' not in part]
+    parts.append(joint("C", "base", "rocker", "0.65 0 0"))
+    ends = (
+        '<predecessor link="coupler"><origin xyz="0.45 0.1 0"/></predecessor>'
+        '<successor link="rocker"><origin xyz="0 0.1 0"/></successor>'
+    )
+    loop = f'<loop name="B" type="continuous">{ends}<axis xyz="0 0 1"/></loop>'
+    on_gazebo = (
+        '<gazebo><joint name="B" type="revolute"><pose>0 0.1 0 0 0 0</pose><parent>coupler</parent>'
+        "<child>rocker</child><axis><xyz>0 0 1</xyz></axis></joint></gazebo>"
+    )
+    # A coupler that leads off the line to the rocker, so that no link is at its dead centre.
+    laws = {"O": harmonic(0.0, 0.2, 0.5)}
+    one, other = (
+        evaluate(Scene(read(reading(*parts, closed)).mechanism, laws, t=(0.0, 0.3, 4)))
+        for closed in (loop, on_gazebo)
+    )
+    assert one.certified
+    assert np.allclose(other.effort("O"), one.effort("O"), rtol=1e-11)
+
+
+BAD = [
+    BASE, link("a"), ARM,
+    link("b", 1.0, "0.1 0 0", "0.001 0.002 0.02"), joint("q", "a", "b", kind="fixed"),
+    link("c", 1.0, "0.1 0 0", "-0.001 0.02 0.02"), joint("r", "a", "c", kind="fixed"),
+]  # fmt: skip
+
+
+def test_all_impossible_inertias_are_named_and_can_be_accepted(reading, tmp_path, capfd):
+    path = reading(*BAD)
+    each = (
+        "body 'b' (0.001, 0.002, 0.02 kg m^2, of which the last is too large by 0.017)",
+        "body 'c' (-0.001, 0.02, 0.02 kg m^2, of which -0.001 is negative)",
+    )
+    with pytest.raises(errors.ModelFileError) as error:
+        read(path)
+    assert "; ".join(each) in str(error.value)
+    found = effort_at(read(path, accept_inertias=True), {"p": MOVE}, "p")
+    inertia = 0.01 + 0.002 + 0.02 + 3 * 0.1**2
+    assert found == pytest.approx(inertia * ACCELERATION + 3 * WEIGHT, rel=1e-13)
+    case = str(tmp_path / "case")
+    assert main(["new", case, "--from", str(path)]) == 2
+    assert main(["new", case, "--accept-inertias"]) == 2
+    assert main(["new", case, "--from", str(path), "--accept-inertias"]) == 0
+    out, err = capfd.readouterr()
+    assert "take them as they are by --accept-inertias" in err
+    assert "--accept-inertias needs --from FILE" in err
+    words = " ".join(out.split())
+    end = ": no body has such principal moments of inertia; they are as in the file."
+    assert f"{each[0]}{end} body" in words
+    assert f"{each[1]}{end} The energy of this one may be negative." in words
+    assert effort_at(load_case(case).scene, {"p": MOVE}, "p") == found
+
+
+@pytest.mark.parametrize("excess", [1e-11, 1e-7, 9e-4])
+def test_inertia_that_is_rounded_is_taken_as_it_is(excess, reading):
+    """Moments of flat parts, of which a drawing has rounded one."""
+    path = reading(BASE, link("a", inertia=f"0.005 0.005 {0.01 * (1 + excess)!r}"),
+                   joint("p", "base", "a", axis="0 0 1"))  # fmt: skip
+    effort = (0.01 * (1 + excess) + 0.1**2) * ACCELERATION
+    assert effort_at(read(path), {"p": MOVE}, "p") == pytest.approx(effort, rel=1e-13)
+    assert "which is taken as rounding" in " ".join(case_of(path).split())
+
+
+def test_a_link_called_ground_is_renamed(reading):
+    path = reading(BASE, link("ground"), joint("p", "base", "ground", axis="0 -1 0"))
+    assert effort_at(read(path), {"p": MOVE}, "p") == pytest.approx(TURN + WEIGHT, rel=1e-13)
+    assert "# ground in the file" in case_of(path)
+
+
+def test_blank_attributes_are_what_the_format_says(reading):
+    turned = ARM.replace('rpy="0 0 0"', 'rpy=""').replace('xyz="0 0 0"', 'xyz=" "')
+    path = reading(BASE, link("a").replace('ixy="0"', 'ixy=""'), turned)
+    assert effort_at(read(path), {"p": MOVE}, "p") == pytest.approx(TURN + WEIGHT, rel=1e-13)

@@ -7,7 +7,7 @@ import pytest
 from internals import case_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, errors, evaluate, read
-from lagrange_casadi.motion import harmonic
+from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -140,7 +140,15 @@ def test_a_model_that_stands_on_nothing_is_fixed(reading):
 
 SDF_MISUSE = {
     "no model": ('<sdf version="1.7"/>', "<sdf>: lacks <model>"),
-    "no inertia": (model('<link name="a"/>'), "<link name='a'>: lacks <inertia>, in place of"),
+    "static": (model("<static>true</static>", link("a")), "has no model that moves"),
+    "a switch": (
+        model(f'<link name="a">{inertial()}<gravity>off</gravity></link>'),
+        "<link name='a'>: unknown gravity 'off'; valid: true, 1, false, 0",
+    ),
+    "automatic": (
+        model('<link name="a"><inertial auto="true"/></link>'),
+        "<inertial>: auto: is not supported; give mass and inertia",
+    ),
     "unknown type": (
         model(link("a"), joint("J", "piston", "world", "a")),
         "<joint name='J'>: unknown type 'piston'; valid: revolute",
@@ -170,7 +178,7 @@ SDF_MISUSE = {
     ),
     "unknown frame": (
         model('<link name="a"><pose relative_to="x">0 0 0 0 0 0</pose>' + inertial() + "</link>"),
-        "<link name='a'>: unknown frame 'x'; valid: a",
+        "<link name='a'>: unknown frame 'x'; valid: world, a",
     ),
     "oblique": (
         model(
@@ -181,11 +189,6 @@ SDF_MISUSE = {
         "its two axes are not at right angles",
     ),
     "nested": (model(link("a"), "<include><uri>b</uri></include>"), "<include>: is not supported"),
-    "mimic of none": (
-        model(link("a"), joint("J", "revolute", "world", "a",
-              "<axis><xyz>0 0 1</xyz><mimic joint='K'/></axis>")),
-        "<mimic>: unknown joint 'K'; valid: J",
-    ),
 }  # fmt: skip
 
 
@@ -195,6 +198,115 @@ def test_misuse_of_sdf_names_line_and_element(what, reading):
     with pytest.raises(errors.ModelFileError, match=re.escape(words)) as error:
         read(reading(text))
     assert re.match(r"model\.sdf: line \d+", str(error.value))
+
+
+def arm(*inside, dynamics="", version="1.10", before="", inertia=None):
+    """A link of 1 kg that turns about y of a joint at its base, which is turned about z."""
+    held = inertial(pose="0.1 0 0 0 0 0") if inertia is None else inertia
+    axis = f"<axis><xyz>0 -1 0</xyz><dynamics>{dynamics}</dynamics></axis>"
+    return (
+        f'<sdf version="{version}"><world name="w">{before}<model name="m">'
+        f'<link name="a"><pose>0 0 0 0 0 1.5707963267948966</pose>{held}{"".join(inside)}</link>'
+        f"{joint('J', 'revolute', 'world', 'a', axis)}</model></world></sdf>"
+    )
+
+
+WEIGHT, TURN, ACROSS = 0.1 * 9.8 * np.cos(0.3), 0.01 + 0.1**2, 0.001
+"""Of the arm's effort: that of gravity, and moments of inertia about its joint across and along."""
+
+
+@pytest.mark.parametrize(
+    ("text", "effort", "notes"),
+    [
+        (arm(), TURN + WEIGHT, []),
+        (arm("<gravity>false</gravity>"), TURN, []),
+        (arm(before="<gravity>0 0 -1.96</gravity>"), TURN + WEIGHT / 5, []),
+        (arm(before="<physics><gravity>0 0 0</gravity></physics>"), TURN, []),
+        (
+            arm(dynamics="<damping>2</damping><spring_stiffness>5</spring_stiffness>"
+                         "<spring_reference>0.1</spring_reference><friction>3</friction>"),
+            TURN + WEIGHT + 2.0 * 0.4 + 5.0 * (0.3 - 0.1),
+            ["Not read of world/model/joint/axis/dynamics: friction (J)."],
+        ),
+        (
+            arm(before='<model name="ground_plane"><static>true</static></model>'),
+            TURN + WEIGHT,
+            ["Not read of world: model (ground_plane)."],
+        ),
+        # On the frame of the model, so along the arm.
+        (arm(version="1.4"), ACROSS, []),
+        (arm(inertia=inertial(inertia="1 5 1").replace("<iyy>5</iyy>", "<iyy> </iyy>")),
+         1.01 + WEIGHT, ["Not given, so as the format says: iyy 1 (a)."]),
+        (arm(inertia="<inertial><pose>0.1 0 0 0 0 0</pose></inertial>"), 1.01 + WEIGHT,
+         ["Not given, so as the format says: mass 1, ixx 1, iyy 1, izz 1 (a)."]),
+        (arm(inertia=""), 1.0, ["Not given, so as the format says: mass 1, ixx 1, iyy 1, izz 1"]),
+    ],
+)  # fmt: skip
+def test_what_a_file_says_of_an_arm_is_read_or_noted(text, effort, notes, reading):
+    """The joint moves with 0.4 rad/s and 1 rad/s^2 at 0.3 rad; the joint's frame is the link's."""
+    path = reading(text)
+    laws = {"J": polynomial(0.3, 0.4, 0.5)}
+    solution = evaluate(Scene(read(path).mechanism, laws, t=(0.0, 0.0, 1)))
+    assert solution.certified
+    assert solution.effort("J")[0] == pytest.approx(effort, rel=1e-12)
+    written = " ".join(case_of(path).split())
+    assert [note for note in notes if note not in written] == []
+
+
+def test_a_slide_has_a_damper_and_a_spring(reading):
+    dynamics = "<dynamics><damping>2</damping><spring_stiffness>5</spring_stiffness></dynamics>"
+    axis = f"<axis><xyz>1 0 0</xyz>{dynamics}</axis>"
+    path = reading(model(link("a"), joint("J", "prismatic", "world", "a", axis)))
+    laws = {"J": polynomial(0.3, 0.4, 0.5)}
+    solution = evaluate(Scene(read(path).mechanism, laws, t=(0.0, 0.0, 1)))
+    assert solution.effort("J")[0] == pytest.approx(1.0 + 2.0 * 0.4 + 5.0 * 0.3, rel=1e-13)
+
+
+def test_a_joint_that_follows_none_is_free(reading):
+    follow = "<axis><xyz>0 0 1</xyz><mimic joint='K'/></axis>"
+    path = reading(model(link("a"), joint("J", "revolute", "world", "a", follow)))
+    assert "# Joint 'J' follows 'K', which is no joint of the file: it is free." in case_of(path)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_tree_is_the_same_as_urdf_and_as_sdf(seed, reading):
+    """Random places, turns, axes, dampers and links without weight, written in both formats."""
+    random = np.random.default_rng(seed)
+    urdf, sdf, laws = ['<link name="base"/>'], [], {}
+    for k in range(4):
+        place, turn, axis, centre, angles = (
+            " ".join(map(repr, random.uniform(-1, 1, 3).tolist())) for _ in range(5)
+        )
+        sizes, mass, damping = random.uniform(0.01, 0.1, 3), *random.uniform(0.1, 3, 2).tolist()
+        xx, yy, zz = (sizes.sum() - sizes).tolist()
+        above, off = f"l{int(random.integers(k))}" if k else "base", bool(random.integers(2))
+        moments = f'ixx="{xx!r}" iyy="{yy!r}" izz="{zz!r}" ixy="0" ixz="0" iyz="0"'
+        kind = ("revolute", "prismatic")[int(random.integers(2))]
+        urdf.append(
+            f'<link name="l{k}"><inertial><origin xyz="{centre}" rpy="{angles}"/>'
+            f'<mass value="{mass!r}"/><inertia {moments}/></inertial></link>'
+            f'<joint name="j{k}" type="{kind}"><parent link="{above}"/><child link="l{k}"/>'
+            f'<origin xyz="{place}" rpy="{turn}"/><axis xyz="{axis}"/>'
+            f'<dynamics damping="{damping!r}"/></joint><gazebo reference="l{k}">'
+            f"<turnGravityOff>{str(off).lower()}</turnGravityOff></gazebo>"
+        )
+        on = "" if above == "base" else f' relative_to="{above}"'
+        held = inertial(repr(mass), f"{centre} {angles}", f"{xx!r} {yy!r} {zz!r}")
+        sdf.append(
+            f'<link name="l{k}"><pose{on}>{place} {turn}</pose>{held}'
+            f"<gravity>{str(not off).lower()}</gravity></link>"
+        )
+        axis = f"<xyz>{axis}</xyz><dynamics><damping>{damping!r}</damping></dynamics>"
+        parent = "world" if above == "base" else above
+        sdf.append(joint(f"j{k}", kind, parent, f"l{k}", f"<axis>{axis}</axis>"))
+        laws[f"j{k}"] = harmonic(*random.uniform(0.1, 1.0, 4).tolist())
+    paths = (
+        reading(f'<robot name="r">{"".join(urdf)}</robot>', "robot.urdf"),
+        reading(model(*sdf, gravity="0 0 -9.81")),
+    )
+    one, other = (evaluate(Scene(read(path).mechanism, laws, t=(0.0, 1.0, 4))) for path in paths)
+    for name in laws:
+        assert np.allclose(one.effort(name), other.effort(name), rtol=1e-11, atol=1e-11)
 
 
 def mjcf(body, after="", compiler=""):
