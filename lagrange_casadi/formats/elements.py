@@ -133,7 +133,8 @@ def parsed(model: Model, text: str, root: str) -> Element:
 
     Raises :class:`.ModelFileError`.
     """
-    parser, stack, count = expat.ParserCreate(), [Element(model, "", 0)], 0
+    # The text is decoded, whatever encoding it states.
+    parser, stack, count = expat.ParserCreate("utf-8"), [Element(model, "", 0)], 0
 
     def start(name: str, given: dict[str, str]) -> None:
         nonlocal count

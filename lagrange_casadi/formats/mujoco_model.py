@@ -1,4 +1,4 @@
-"""Models that MuJoCo has compiled, as plain numbers: what a process of its own tells of one."""
+"""Models that MuJoCo has compiled, as plain numbers: what is returned to another process."""
 
 from __future__ import annotations
 
