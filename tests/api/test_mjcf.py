@@ -112,7 +112,7 @@ def test_every_attribute_that_names_files_is_looked_at():
         re.findall(r"\b\w*(?:file|dir|path|uri|url)\w*", mujoco.mj_printSchema(False, False))
     )
     known = {name for name in found if name.startswith("file")} | {"assetdir", "meshdir"}
-    assert found - known == {"texturedir", "dir", "directional"}
+    assert found - known == {"texturedir", "dir", "directional", "strippath"}
 
 
 MJCF_MISUSE = {
