@@ -270,7 +270,7 @@ class _Reader:
             model.notes.append(f"Spring and damper of {where}, which has no axis: not read.")
             return
         at = m.jnt_qposadr[j]
-        numbers = stiffness, m.qpos_spring[at] - m.qpos0[at], damping
+        numbers = damping, stiffness, m.qpos_spring[at] - m.qpos0[at]
         spring = model.numbers(where, [float(one) for one in numbers], "spring and damper")
         model.springs.append(Spring(name, *spring.tolist()))
 

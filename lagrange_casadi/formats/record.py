@@ -121,14 +121,14 @@ class Coupling:
 
 @dataclass(frozen=True, eq=False)
 class Spring:
-    """A spring and a damper of a joint of one coordinate: its stiffness, the coordinate where it
-    has no force, and the damping, all in SI units.
+    """A damper and a spring of a joint of one coordinate: damping and stiffness in SI units, and
+    the coordinate where the spring has no force.
     """
 
     joint: str
+    damping: float = 0.0
     stiffness: float = 0.0
     rest: float = 0.0
-    damping: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
