@@ -45,8 +45,8 @@ class LostError(Exception):
 
 
 def run_apart(
-    function: Callable[..., Any],
-    *given: Any,
+    function: Callable[..., object],
+    *given: object,
     seconds: float,
     busy: float = math.inf,
     most: float = math.inf,
@@ -87,7 +87,7 @@ def run_apart(
     raise LostError(f"the process that reads it gave no answer {status}")
 
 
-def answer(function: Callable[..., Any]) -> None:
+def answer(function: Callable[..., object]) -> None:
     """Run a function within limits and print what it returns as JSON, and nothing else, whatever
     libraries print.
     """
@@ -98,7 +98,7 @@ def answer(function: Callable[..., Any]) -> None:
             os.dup2(nowhere, number)
         _limit(most, busy)
         try:
-            answered: dict[str, Any] = {"found": function(*given)}
+            answered: dict[str, object] = {"found": function(*given)}
         except LagrangeCasadiError as error:
             answered = {"error": type(error).__name__, "words": str(error)}
         except MemoryError:
