@@ -37,7 +37,7 @@ answer({name})
 _PLACE = str(Path(__file__).parents[2])
 _ERRORS = {one.__name__: one for one in (MissingPackageError, ModelFileError, PathError)}
 _LENGTH = 1000
-"""Characters of a message that are told."""
+"""Characters of a message that are returned."""
 
 
 class LostError(Exception):
@@ -45,8 +45,8 @@ class LostError(Exception):
 
 
 def run_apart(
-    function: Callable[..., Any],
-    *given: Any,
+    function: Callable[..., object],
+    *given: object,
     seconds: float,
     busy: float = math.inf,
     most: float = math.inf,
@@ -87,7 +87,7 @@ def run_apart(
     raise LostError(f"the process that reads it gave no answer {status}")
 
 
-def answer(function: Callable[..., Any]) -> None:
+def answer(function: Callable[..., object]) -> None:
     """Run a function within limits and print what it returns as JSON, and nothing else, whatever
     libraries print.
     """
@@ -98,15 +98,15 @@ def answer(function: Callable[..., Any]) -> None:
             os.dup2(nowhere, number)
         _limit(most, busy)
         try:
-            told: dict[str, Any] = {"found": function(*given)}
+            answered: dict[str, object] = {"found": function(*given)}
         except LagrangeCasadiError as error:
-            told = {"error": type(error).__name__, "words": str(error)}
+            answered = {"error": type(error).__name__, "words": str(error)}
         except MemoryError:
             limit = f"{most / 1e9:g} GB or " if most < math.inf else ""
-            told = {"lost": f"takes more memory to read than {limit}half of what is free"}
+            answered = {"lost": f"takes more memory to read than {limit}half of what is free"}
         except Exception as error:
-            told = {"lost": f"cannot be read: {type(error).__name__}: {one_line(error)}"}
-        out.write(json.dumps(told))
+            answered = {"lost": f"cannot be read: {type(error).__name__}: {one_line(error)}"}
+        out.write(json.dumps(answered))
 
 
 def _limit(most: float, busy: float) -> None:

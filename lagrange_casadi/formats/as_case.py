@@ -217,9 +217,9 @@ class _Case:
             if one.stiffness and self.model.joints[one.joint].kind == "prismatic":
                 self.pull(one, f"m.coordinate({joint}){signed(rest - one.rest)}")
             elif one.stiffness:
-                told = f"stiffness={text_of(one.stiffness)}", f"angle={of_pi(one.rest - rest)}"
+                law = f"stiffness={text_of(one.stiffness)}", f"angle={of_pi(one.rest - rest)}"
                 name = json.dumps(self.load(f"{one.joint}_spring"))
-                self.call("m.torsion_spring", name, joint, *told)
+                self.call("m.torsion_spring", name, joint, *law)
         for body in self.model.bodies.values():
             lift = (body.weight - 1.0) * self.model.gravity
             if body.mass and np.any(lift):

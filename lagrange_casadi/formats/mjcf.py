@@ -20,7 +20,7 @@ import numpy as np
 
 from ..base.apart import LostError, run_apart
 from ..base.arrays import Array
-from ..errors import MissingPackageError, shown
+from ..errors import MissingPackageError, PathError, shown
 from .elements import Element, parsed
 from .frames import Frame
 from .mujoco_model import compiled
@@ -29,9 +29,9 @@ from .record import GROUND, Body, Coupling, Joint, Model, Spring
 LIMITS: dict[str, Any] = {"seconds": 120.0, "busy": 12.0, "most": 2e9}
 """Time, processor time [s] and memory [bytes] that MuJoCo may take."""
 
-_MOST, _LARGEST, _PLACES, _DEEPEST = 3000, 2**28, 32, 20
-"""Files of a model, bytes of these together, folders where they are looked for, and parts in parts
-of it, at most.
+_MOST, _LARGEST, _LONGEST, _PLACES, _DEEPEST = 3000, 2**28, 2**24, 32, 20
+"""Files of a model, bytes of these and of its parts, folders where they are looked for, and parts
+in parts, at most.
 """
 
 _UP, _DEPTH = 8, 20
@@ -95,23 +95,31 @@ def read(model: Model, text: str) -> None:
     """Read a file. Raises :class:`.ModelFileError`, and :class:`.MissingPackageError` without
     MuJoCo.
     """
+    try:
+        found = _compiled(model, _files(model, text))
+    except MissingPackageError as error:
+        raise MissingPackageError(f"{model.file.name}: {error}") from None
+    except subprocess.TimeoutExpired:
+        raise model.refuse("", f"was not compiled within {LIMITS['seconds']:g} s") from None
+    except LostError as error:
+        raise model.refuse("", str(error)) from None
+    except OSError as error:
+        raise PathError(f"cannot copy and compile {model.file}: {error.strerror}") from None
+    if "refused" in found:
+        raise model.refuse("", f"MuJoCo refuses it: {found['refused']}")
+    _Reader(model, found).read()
+
+
+def _compiled(model: Model, files: dict[str, bytes]) -> dict[str, Any]:
+    """Return what MuJoCo compiles of files, in a folder of their own."""
     with tempfile.TemporaryDirectory() as place:
-        folder = Path(place, *["_"] * _DEPTH)
-        for name, content in _files(model, text).items():
+        # Names that lead out of it lead nowhere, for nobody can guess its own name.
+        folder = Path(place, *["_"] * _DEPTH, Path(place).name)
+        for name, content in files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(content)
-        try:
-            told = run_apart(compiled, model.file.name, _READ, _IDLE, folder=folder, **LIMITS)
-        except MissingPackageError as error:
-            raise MissingPackageError(f"{model.file.name}: {error}") from None
-        except subprocess.TimeoutExpired:
-            words = f"was not compiled within {LIMITS['seconds']:g} s"
-            raise model.refuse("", words) from None
-        except LostError as error:
-            raise model.refuse("", str(error)) from None
-    if "refused" in told:
-        raise model.refuse("", f"MuJoCo refuses it: {told['refused']}")
-    _Reader(model, told).read()
+        found = run_apart(compiled, model.file.name, _READ, _IDLE, folder=folder, **LIMITS)
+    return dict(found)
 
 
 def _files(model: Model, text: str) -> dict[str, bytes]:
@@ -124,7 +132,7 @@ def _files(model: Model, text: str) -> dict[str, bytes]:
     bases, inner = {""}, {""}  # the folders of parts, and those that parts state
     named, parts = dict[str, Element](), set[str]()
     tried, done, inside, astray = set(found), set(found), set[str](), set[str]()
-    waiting = [parsed(model, text, "mujoco")]
+    waiting, left = [parsed(model, text, "mujoco")], _LONGEST
     for _ in range(_DEEPEST):
         while waiting:
             line = waiting.pop()
@@ -148,8 +156,7 @@ def _files(model: Model, text: str) -> dict[str, bytes]:
                 there = _within(root, path)
                 astray |= {name} if there is None else set()
                 if there is not None and os.path.isfile(there):
-                    left = _LARGEST - sum(map(len, found.values()))
-                    if there.stat().st_size > left:
+                    if there.stat().st_size > _LARGEST - sum(map(len, found.values())):
                         raise named[name].refuse(f"more than {_LARGEST // 2**20} MB in all")
                     found[path] = there.read_bytes()
             inside |= {name} if path in found else set()
@@ -157,6 +164,9 @@ def _files(model: Model, text: str) -> dict[str, bytes]:
             if content.lstrip(_BLANK).startswith(b"<") or (content and name in parts):
                 done.add(path)
                 bases.add(os.path.dirname(path))
+                left -= len(content)
+                if left < 0:
+                    raise named[name].refuse(f"more than {_LONGEST // 2**20} MB of XML in parts")
                 waiting.append(parsed(model, content.decode(errors="replace"), ""))
         if not waiting:
             break
@@ -179,13 +189,13 @@ def _within(root: Path, path: str) -> Path | None:
 class _Reader:
     """A compiled model under way: ``m`` are its fields, dots in names as lines."""
 
-    def __init__(self, model: Model, told: dict[str, Any]) -> None:
-        self.model, self.names, self.kinds = model, told["names"], told["kinds"]
-        self.others, self.stated = told["others"], told["name"]
-        fields = {**told["fields"], "xpos": told["xpos"], "xmat": told["xmat"]}
+    def __init__(self, model: Model, found: dict[str, Any]) -> None:
+        self.model, self.names, self.kinds = model, found["names"], found["kinds"]
+        self.others, self.stated = found["others"], found["name"]
+        fields = {**found["fields"], "xpos": found["xpos"], "xmat": found["xmat"]}
         named = {name.replace(".", "_"): np.array(values) for name, values in fields.items()}
         self.m = SimpleNamespace(**named)
-        self.off = {name for name in _SWITCHES if told["fields"].get(f"disable {name}")}
+        self.off = {name for name in _SWITCHES if found["fields"].get(f"disable {name}")}
         if self.off >= {"spring", "damper"}:
             self.off.add("passive")
         self.bodies: dict[int, str] = {0: GROUND}

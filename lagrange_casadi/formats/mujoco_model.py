@@ -1,13 +1,20 @@
-"""Models that MuJoCo has compiled, as plain numbers: what a process of its own tells of one."""
+"""Models that MuJoCo has compiled, as plain numbers: what is returned to another process."""
 
 from __future__ import annotations
 
 import re
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.arrays import Array
 from ..errors import MissingPackageError, one_line
+
+if TYPE_CHECKING:
+    from mujoco import MjModel
+
+Value = Array | float
 
 _PLAIN = """
 <mujoco><worldbody><geom size="1"/><site/><body><geom size="1"/><joint/></body></worldbody></mujoco>
@@ -15,7 +22,7 @@ _PLAIN = """
 """A model of one thing of each kind that lies in the tree of bodies, all as MuJoCo's defaults."""
 
 
-def compiled(file: str, fields: list[str], usual: str) -> dict[str, Any]:
+def compiled(file: str, fields: list[str], usual: str) -> dict[str, object]:
     """Return what a model is compiled to.
 
     Parameters
@@ -78,7 +85,7 @@ def compiled(file: str, fields: list[str], usual: str) -> dict[str, Any]:
         "fields": {name: np.asarray(values[name]).tolist() for name in fields if name in values},
         "names": names,
         "kinds": {
-            name: [known(int(one)).name.partition("_")[2] for one in values[name]]
+            name: [known(int(one)).name.partition("_")[2] for one in np.asarray(values[name])]
             for name, known in kinds.items()
         },
         "xpos": data.xpos.tolist(),
@@ -87,7 +94,7 @@ def compiled(file: str, fields: list[str], usual: str) -> dict[str, Any]:
     }
 
 
-def _values(mujoco: Any, model: Any) -> dict[str, Any]:
+def _values(mujoco: ModuleType, model: MjModel) -> dict[str, Value]:
     """Return the arrays and switches of a model, its options and flags by name."""
     values = {name: getattr(model, name) for name in dir(model)}
     values |= {f"opt.{name}": getattr(model.opt, name) for name in dir(model.opt)}
@@ -106,10 +113,10 @@ def _values(mujoco: Any, model: Any) -> dict[str, Any]:
     }
 
 
-def _differs(value: Any, plain: Any) -> bool:
+def _differs(value: Value, plain: Value | None) -> bool:
     """Return whether a field is not as by default: a row of an array is not as the last one of the
     plain model, or is not zero if that has none.
     """
-    if plain is not None and np.ndim(plain):
+    if isinstance(plain, np.ndarray):
         plain = plain[-1] if len(plain) else None
     return bool(np.any(value) if plain is None else np.any(value != plain))

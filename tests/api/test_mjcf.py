@@ -106,6 +106,15 @@ def test_what_is_not_read_is_named(reading):
     assert '"j": polynomial(0.0)' in text
 
 
+def test_every_attribute_that_names_files_is_looked_at():
+    """MuJoCo's own list of attributes: of later versions too."""
+    found = set(
+        re.findall(r"\b\w*(?:file|dir|path|uri|url)\w*", mujoco.mj_printSchema(False, False))
+    )
+    known = {name for name in found if name.startswith("file")} | {"assetdir", "meshdir"}
+    assert found - known == {"texturedir", "dir", "directional", "strippath"}
+
+
 MJCF_MISUSE = {
     "another root": ("<robot/>", "line 1, <robot>: expected <mujoco>"),
     "entities": ('<!DOCTYPE mujoco SYSTEM "x"><mujoco/>', "line 1: document types and entities"),

@@ -124,6 +124,11 @@ ONES = {
         {"a.xml": '<mujoco><asset><model name="q" file="a.xml"/></asset></mujoco>'},
         "a.xml: reading it crashed",
     ),
+    "an encoding": (
+        {"a.xml": '<mujoco><include file="b.xml"/></mujoco>',
+         "b.xml": '<?xml version="1.0" encoding="rot13"?><mujocoinclude/>'},
+        "b.xml",
+    ),
     "a pipe": ({"a.xml": '<mujoco><include file="fifo.xml"/></mujoco>'}, "fifo.xml"),
     **{
         f"huge {k}": ({"a.xml": f"<mujoco>{part}</mujoco>"}, "a.xml: ")
