@@ -238,7 +238,8 @@ from lagrange_casadi.shapes.views import page as views_page
 from lagrange_casadi.shapes.views import upright, view, views
 from lagrange_casadi.shipped_cases import shipped_cases
 from lagrange_casadi.store import runs
-from lagrange_casadi.store.runs import SCHEMA, SCHEMA_VERSION, check, load
+from lagrange_casadi.store.attributes import SCHEMA_VERSION
+from lagrange_casadi.store.runs import SCHEMA, check, load
 from lagrange_casadi.store.runs import save as runs_save
 from lagrange_casadi.store.scales import LARGE, Scales
 from lagrange_casadi.store.untrusted import check_shape, reported_as

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 
 
 @renamed
+@public
 @dataclass(frozen=True, repr=False)
 class Provenance(Brief):
     """Origin of the numbers.

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import FunctionType
@@ -42,9 +43,12 @@ def reported_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
 def parsed(text: str | bytes, shape: Shape, what: str = "JSON") -> Any:
     """JSON of a shape.
 
-    Raises ``ValueError`` or ``TypeError`` for what is not JSON, and as :func:`check_shape` does.
+    Raises ``ValueError`` for what is not JSON, and as :func:`check_shape` does.
     """
-    found = json.loads(text)
+    try:
+        found = json.loads(text)
+    except (ValueError, TypeError, RecursionError):
+        raise ValueError(f"{what} is not JSON") from None
     check_shape(found, shape, what)
     return found
 
@@ -57,9 +61,8 @@ def check_shape(value: object, shape: Shape, what: str) -> None:
 
 def shown(value: str) -> str:
     """A text that can be shown. Raises ``ValueError`` for anything else."""
-    if not isinstance(value, str):
+    if not isinstance(value, str) or re.search("[\0\ud800-\udfff]", value):
         raise ValueError(f"{value!r:.40} is not a text")
-    value.encode()
     return value
 
 
