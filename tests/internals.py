@@ -326,6 +326,8 @@ from lagrange_casadi.studies.sweep.sheet import fitted, label
 from lagrange_casadi.studies.tolerances import read_tolerance
 from lagrange_casadi.studies.trade import COMPARED, Measurement, Trade, trade
 from lagrange_casadi.studies.trade import METHODS as TRADE_METHODS
+from lagrange_casadi.studies.trade import _in_turns as trade_in_turns
+from lagrange_casadi.studies.trade import _Work as TradeWork
 from lagrange_casadi.verification.accuracy import explained
 from lagrange_casadi.verification.certificate import COARSE, TOLERANCE, certify, tolerance
 from lagrange_casadi.verification.disturbed import TRIALS, Instants, effects, openness
