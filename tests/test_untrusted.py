@@ -53,6 +53,11 @@ VALUES = (
     h5py.Empty("f8"),
     np.uint8(1),
 )
+PYTHON = re.compile(
+    r"zip\(\)|\.index\(|JSON object|object is not|has no attribute|ambiguous|could not convert"
+)
+"""Words of Python's own errors, which say nothing of a file."""
+
 NODES = (None, True, 3, -1, 10**400, 0.5, float("nan"), "", "x", [], [None], {}, {"x": None})
 
 
@@ -130,6 +135,7 @@ def others(shape, fifo):
         h.create_virtual_dataset(place, layout)
 
     yield "gone", lambda h, place: h.__delitem__(place)
+    yield "elsewhere", lambda h, place: h.move(place, f"x/{place}")
     yield "a group", lambda h, place: (h.__delitem__(place), h.create_group(place))
     yield "a soft link", lambda h, place: elsewhere(h, place, h5py.SoftLink("/nowhere"))
     yield "a link to itself", lambda h, place: elsewhere(h, place, h5py.SoftLink(f"/{place}"))
@@ -215,6 +221,7 @@ def attempt(path, change, readers):
             else:
                 told = ""
             assert "\n" not in told
+            assert not PYTHON.search(told), told
     finally:
         path.write_bytes(original)
 

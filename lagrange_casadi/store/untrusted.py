@@ -37,7 +37,9 @@ def reported_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
     except (LagrangeCasadiError, MemoryError):
         raise
     except Exception as error:
-        raise StoreError(f"{path}: {what}: {one_line(error) or type(error).__name__}") from error
+        unquoted = ValueError(*error.args) if isinstance(error, KeyError) else error
+        text = one_line(unquoted) or type(error).__name__
+        raise StoreError(f"{path}: {what}: {text}") from error
 
 
 def parsed(text: str | bytes, shape: Shape, what: str = "JSON") -> Any:
@@ -45,12 +47,17 @@ def parsed(text: str | bytes, shape: Shape, what: str = "JSON") -> Any:
 
     Raises ``ValueError`` for what is not JSON, and as :func:`check_shape` does.
     """
-    try:
-        found = json.loads(text)
-    except (ValueError, TypeError, RecursionError):
-        raise ValueError(f"{what} is not JSON") from None
+    found = read_json(text, what)
     check_shape(found, shape, what)
     return found
+
+
+def read_json(text: str | bytes, what: str) -> Any:
+    """JSON of any shape. Raises ``ValueError`` for what is not JSON."""
+    try:
+        return json.loads(text)
+    except (ValueError, TypeError, RecursionError):
+        raise ValueError(f"{what} is not JSON") from None
 
 
 def check_shape(value: object, shape: Shape, what: str) -> None:
