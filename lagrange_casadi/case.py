@@ -22,7 +22,7 @@ from .arguments import public
 from .declare.expressions import error_text
 from .declare.scene import Scene
 from .errors import CaseError, LagrangeCasadiError, shown
-from .shapes.kept import dump_specs
+from .shapes.kept import dump_specs, parse_specs
 from .shapes.specs import Spec
 from .shipped_cases import shipped_cases
 
@@ -105,7 +105,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         )
     for spec in figures:
         try:
-            dump_specs([spec])
+            parse_specs(dump_specs([spec]))
         except (TypeError, ValueError, RecursionError) as error:
             raise CaseError(
                 f"case {given}: figures(): figure {shown(spec.name)} cannot be kept in a file:"

@@ -41,8 +41,11 @@ def escaped(text: str) -> str:
 
 
 def one_line(error: BaseException) -> str:
-    """Message of an error in one line that may be shown."""
-    return _line(str(error))
+    """Message of an error in one line that may be shown; empty if the error cannot say it."""
+    try:
+        return _line(str(error))
+    except Exception:  # of a class that is not ours
+        return ""
 
 
 def _line(text: str) -> str:

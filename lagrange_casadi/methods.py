@@ -32,6 +32,7 @@ METHODS: dict[str, str] = {
     "Sweep.report": "report.of_sweep:write_sweep_report",
     "figures.default_figures": "figures:default_figures",
     "figures.draw": "figures:draw",
+    "figures.parse": "shapes.kept:parse_specs",
     "optimise.dask": "cluster.dask_workers:Cluster",
     "sweep.dask": "cluster.dask_workers:Cluster",
 }

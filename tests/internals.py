@@ -239,7 +239,8 @@ from lagrange_casadi.shapes.views import page as views_page
 from lagrange_casadi.shapes.views import upright, view, views
 from lagrange_casadi.shipped_cases import shipped_cases
 from lagrange_casadi.store import runs
-from lagrange_casadi.store.runs import SCHEMA, SCHEMA_VERSION, check, load
+from lagrange_casadi.store.attributes import SCHEMA_VERSION
+from lagrange_casadi.store.runs import SCHEMA, check, load
 from lagrange_casadi.store.runs import save as runs_save
 from lagrange_casadi.store.scales import LARGE, Scales
 from lagrange_casadi.store.untrusted import check_shape, reported_as
@@ -326,6 +327,8 @@ from lagrange_casadi.studies.sweep.sheet import fitted, label
 from lagrange_casadi.studies.tolerances import read_tolerance
 from lagrange_casadi.studies.trade import COMPARED, Measurement, Trade, trade
 from lagrange_casadi.studies.trade import METHODS as TRADE_METHODS
+from lagrange_casadi.studies.trade import _in_turns as trade_in_turns
+from lagrange_casadi.studies.trade import _Work as TradeWork
 from lagrange_casadi.verification.accuracy import explained
 from lagrange_casadi.verification.certificate import COARSE, TOLERANCE, certify, tolerance
 from lagrange_casadi.verification.disturbed import TRIALS, Instants, effects, openness

@@ -24,8 +24,8 @@ from ..base.arrays import Array, Operand
 
 Kind = Literal["cell", "entry"]
 
-_PREFIX = "lagrange_casadi"
-_NAME = re.compile(rf"{_PREFIX}_(cell|entry)(_ends)?_[0-9a-f]{{16}}")
+PREFIX = "lagrange_casadi"
+_NAME = re.compile(rf"{PREFIX}_(cell|entry)(_ends)?_[0-9a-f]{{16}}")
 _BITS = 64
 """Entries are kept as whole numbers of so many bits: what is smaller beside the largest is zero."""
 
@@ -135,5 +135,5 @@ def _function(kind: Kind, numbers: tuple[float, ...], ends: bool = False) -> ca.
     x, table = ca.MX.sym("x"), ca.DM(numbers)
     found = ca.low(table, x, {"lookup_mode": "binary"}) if kind == "cell" else ca.MX(table)[x]
     return ca.Function(
-        f"{_PREFIX}_{kind}{'_ends' if ends else ''}_{digest}", [x], [found], {"never_inline": True}
+        f"{PREFIX}_{kind}{'_ends' if ends else ''}_{digest}", [x], [found], {"never_inline": True}
     )

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import csv
+import errno
 import math
+import os
 import re
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from io import TextIOWrapper
 from pathlib import Path
 from typing import IO, Any, BinaryIO
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
-from ..errors import DeclarationError
+from ..errors import DeclarationError, StoreError
 from .packages import check_installed
 from .publish import check_writable, writing
 
@@ -120,16 +122,23 @@ class TableFile:
         made = _cell_maker(sheet, WriteOnlyCell)
         count = 0
         try:
-            sheet.append(list(map(made, heads)))
-            for row in rows:
-                count += 1
-                if count == _ROWS:
-                    raise DeclarationError(
-                        f"{self.path}: a workbook has {_ROWS} rows at most; write CSV"
-                    )
-                sheet.append(list(map(made, row)))
-        finally:
-            sheet.close()
+            with closing(sheet):
+                sheet.append(list(map(made, heads)))
+                for row in rows:
+                    count += 1
+                    if count == _ROWS:
+                        raise DeclarationError(
+                            f"{self.path}: a workbook has {_ROWS} rows at most; write CSV"
+                        )
+                    sheet.append(list(map(made, row)))
+        except Exception as error:
+            if type(error).__module__ != "lxml.etree":
+                raise
+            code = getattr(errno, str(error).removeprefix("IO_"), errno.EIO)
+            raise StoreError(
+                f"cannot write {self.path}: the temporary folder {tempfile.gettempdir()}:"
+                f" {os.strerror(code)}"
+            ) from None
         with tempfile.TemporaryFile() as draft:
             book.save(draft)
             _copy_without_times(draft, file)

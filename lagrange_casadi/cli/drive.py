@@ -61,7 +61,7 @@ def drive(
     solution = evaluate(scene, wanted=certified_outputs(scene.outputs), **given)
     lines = [
         (
-            f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to"
+            f"{solution.case}: {solution.t.size} instants from {solution.t[0]:.5g} to"
             f" {solution.t[-1]:.5g} s"
         )
     ]

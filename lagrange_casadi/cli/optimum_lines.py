@@ -104,7 +104,8 @@ def _second(found: Optimum) -> str:
     if math.isnan(found.curvature):
         return ""
     if math.isinf(found.curvature):
-        return ", all parameters are at limits"
+        bounds = all(value != 0.0 for value in found.bounds.values())
+        return f", {'all parameters are at limits' if bounds else 'limits leave no parameter free'}"
     return f", least curvature {found.curvature:.3g}"
 
 

@@ -49,8 +49,8 @@ def size(
         "" if deflection is None else f", and a deflection of at most {deflection:g} of its length"
     )
     echo(
-        f"{loaded.name}: the lightest of {len(table)} profiles with a factor of safety of at least"
-        f" {safety:g}{stiff}:"
+        f"{loaded.scene.mechanism.name}: the lightest of {len(table)} profiles with a factor of"
+        f" safety of at least {safety:g}{stiff}:"
     )
     for sized in found.links:
         echo(*_lines(sized))

@@ -62,21 +62,21 @@ def _print(found: Trade) -> None:
         found.measurements[0].seconds,
     )
     echo(
-        f"{found.case}: every output at {found.instants} instants, one thread; errors at"
-        f" {found.compared} instants, relative to each quantity's peak; * nothing is faster and"
-        " more accurate"
+        f"{found.case}: every output at {found.instants} instants, processor time of one thread;"
+        f" errors at {found.compared} instants, relative to each quantity's peak; * nothing is"
+        " faster and more accurate; times within 20 % are held to be equal"
     )
     echo(
-        f"  {'method':<{width}} {'ns/instant':>11} {'x lanes':>8} {'largest':>9} {'median':>9}  "
-        " worst quantity"
+        f"  {'method':<{width}} {'ns/instant':>11} {'instructions':>12} {'x lanes':>8}"
+        f" {'largest':>9} {'median':>9}   worst quantity"
     )
     for one in found.measurements:
         mark = "*" if one in found.front else " "
         note = f"; {one.note}" if one.note else ""
         echo(
             f"{mark} {one.method.options:<{width}} {1e9 * one.seconds:>11.4g}"
-            f" {one.seconds / default:>8.2f} {one.largest:>9.1e} {one.median:>9.1e}  "
-            f" {one.worst}{note}"
+            f" {one.instructions:>12} {one.seconds / default:>8.2f}"
+            f" {one.largest:>9.1e} {one.median:>9.1e}   {one.worst}{note}"
         )
     for options, reason in found.refused.items():
         echo(f"  {options}: {reason}")

@@ -1,9 +1,9 @@
 """The search for peaks in C: one library for every scene, which is handed its curves as tables, and
 what evaluates them.
 
-It does what :mod:`..summits.search` does, which is the reference. The compiled code of many designs
-calls it with a pointer to its own function of times; :meth:`Search.peaks` calls it with a function
-of Python's.
+It does what :mod:`..peak_search.search` does, which is the reference. The compiled code of many
+designs calls it with a pointer to its own function of times; :meth:`Search.peaks` calls it with a
+function of Python's.
 """
 
 from __future__ import annotations
@@ -279,7 +279,7 @@ class Search:
         listed: Listed | None = None,
         sampled: bool = False,
     ) -> Peaks:
-        """Find peaks as :func:`..summits.search.peaks` does; exceptions of ``source`` are
+        """Find peaks as :func:`..peak_search.search.peaks` does; exceptions of ``source`` are
         raised.
         """
         values, places, watched = samples

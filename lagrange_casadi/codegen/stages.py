@@ -62,6 +62,11 @@ class Stages(Graphs):
     precision: Precision = "double"
     compensated: bool = False
 
+    def instructions(self, steps: int) -> int:
+        """Number of instructions an instant, with ``steps`` Newton steps if loops are iterated."""
+        loops = steps * self.loops.n_instructions() if self.loops is not None else 0
+        return int(self.drive.n_instructions() + loops + self.instant.n_instructions())
+
 
 @symbolic
 @functools.lru_cache(maxsize=32)

@@ -150,7 +150,7 @@ def error_text(error: BaseException) -> str:
             " casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and"
             " 'max'"
         )
-    return f"{type(error).__name__}: {text}"
+    return f"{type(error).__name__}{text and ': '}{text}"
 
 
 def bound(what: str, value: Operand, unit: str) -> float:

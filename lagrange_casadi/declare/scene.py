@@ -13,7 +13,7 @@ from ..arguments import Outputs, fitting, public, texts
 from ..base.brief import listed
 from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.units import within
-from ..base.vocabulary import Precision
+from ..base.vocabulary import PRECISIONS, Precision
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
 from ..methods import method
 from .density import Density
@@ -175,8 +175,9 @@ def kinds(names: Sequence[str]) -> list[str]:
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
     if name in (*_KINDS, *STRENGTH, SENSITIVITY):
+        why = ", because no link has a beam=" if name in STRENGTH else ""
         raise DeclarationError(
-            f"output '{name}': not an output of mechanism '{mechanism.name}'; valid:"
+            f"output '{name}': not an output of mechanism '{mechanism.name}'{why}; valid:"
             f" {', '.join(outputs(mechanism))}"
         )
     if kind in STRENGTH and part in mechanism.links:
@@ -503,6 +504,7 @@ class Scene(Graphs):
         """First and last instant [s], with the parameters with which the scene is assembled."""
         return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
 
+    @public
     def parameter_constraints(self, precision: Precision = "double") -> ParameterConstraints:
         """Return the conditions on the parameters, of parts and of moves of the motion.
 
@@ -516,6 +518,8 @@ class Scene(Graphs):
         ParameterConstraints
             The conditions.
         """
+        if precision not in PRECISIONS:
+            raise UnknownNameError("precision", precision, PRECISIONS)
         parts = demands(self.mechanism, precision)
         moved = [demand for law in self.laws.values() for demand in law.parameter_constraints]
         return ParameterConstraints(parts.symbols, (*parts.each, *moved)) if moved else parts
@@ -539,6 +543,7 @@ class Scene(Graphs):
                 list(values.values()), lambda expression: self.mechanism.number(expression, values)
             )
 
+    @public
     def timetable(self, name: str, parameters: Mapping[str, float] | None = None) -> Timetable:
         """Return the moves and dwells of a joint's motion in numbers.
 

@@ -150,7 +150,8 @@ def profile_of(name: str, function: ca.Function, p: Sequence[float], count: int)
     if not np.isfinite(np.delete(found, 5, axis=0)).all():
         raise DeclarationError(
             f"cam '{name}': the follower cannot touch the base circle, because the follower is too"
-            " short or too close to the cam's shaft"
+            " short or too close to the cam's shaft; point= says which of its points touches,"
+            " its tip by default"
         )
     size = float(np.abs(found[:2]).max())
     closes = bool(np.abs(found[:2, -1] - found[:2, 0]).max() <= _SAME * size)

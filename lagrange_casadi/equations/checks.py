@@ -43,8 +43,8 @@ class Check:
     far its three turns are from losing one, ``roll`` of a bar how far it is from lying along the
     direction that was declared for its y axis, ``hold`` of drives whether they can make the motion
     (see :mod:`.drives`), ``row`` and ``rowsize`` of a non-holonomic row, and ``turned`` of a joint,
-    how far an angle swings that is seen with its turns (see :mod:`.turns`), and ``beyond`` of a
-    load, constraint or row, how far what is put into its curves is beyond their ends (see
+    how far an angle swings that is seen with its turns (see :mod:`.revolutions`), and ``beyond``
+    of a load, constraint or row, how far what is put into its curves is beyond their ends (see
     :mod:`.ends`). Whether it is the only one says ``open`` of an output (see :mod:`.determinacy`),
     and of a friction whether it is at ``rest``, 1 or 0. ``jam`` says how far frictions are from
     holding each other, ``slip`` what is left of their laws, and ``bend`` how much one that slides

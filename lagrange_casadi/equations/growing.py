@@ -95,7 +95,7 @@ class Grown:
 
     def at_state(self, expression: Expression) -> ca.SX:
         """Expression with rates; angles that are not driven are symbols of their own, for
-        :mod:`.turns`.
+        :mod:`.revolutions`.
         """
         return self._measured(expression, counted=False)
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.lookups import PREFIX
 from ..base.arrays import Expression
 from ..declare.laws import motion_function
 from ..declare.motion import Motion
@@ -199,5 +200,9 @@ def _components(load: Force | Torque, unit: str, space: bool) -> str:
 
 def _short(expression: Expression) -> str:
     """An expression in words, cut where it is long."""
-    text = " ".join(str(expression).split()) if isinstance(expression, ca.SX) else f"{expression:g}"
+    if not isinstance(expression, ca.SX):
+        return f"{expression:g}"
+    text = " ".join(str(expression).split())
+    if PREFIX in text:
+        return f"a curve of {', '.join(map(str, ca.symvar(expression)))}"
     return text if len(text) <= _LONG else f"{text[:_LONG]}..."

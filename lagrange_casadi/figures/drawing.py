@@ -150,12 +150,6 @@ def _extent(solution: Solution) -> tuple[Box, float]:
     """The box that holds all at every instant, and its larger side [m]."""
     description = solution.description
     places = [placed(solution, spot) for spot in drawn_spots(description)]
-    places += [
-        placed(solution, spot)
-        for load in load_shapes(description)
-        if load.kind == "spring"
-        for spot in load.spots
-    ]
     for shape in shapes(description):
         if shape.disc and shape.centre:
             middle = placed(solution, Spot(shape.name, shape.centre))

@@ -1,5 +1,5 @@
-"""The quantities of a scene as curves over time, at any times: what :mod:`.summits` searches, by
-CasADi's virtual machine.
+"""The quantities of a scene as curves over time, at any times: what :mod:`.peak_search` searches,
+by CasADi's virtual machine.
 """
 
 from __future__ import annotations

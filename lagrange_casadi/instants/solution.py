@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from ..strength import Life, Safety, Stress
 
 
+@public
 @dataclass(frozen=True, repr=False)
 class Provenance(Brief):
     """Origin of the numbers.

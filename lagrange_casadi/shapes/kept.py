@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from ..errors import DeclarationError, StoreError, one_line
+from ..errors import DeclarationError
 from ..store.untrusted import parsed
 from .specs import KINDS, Spec
 
@@ -20,20 +20,19 @@ def dump_specs(specs: Sequence[Spec]) -> str:
 def parse_specs(text: str) -> tuple[Spec, ...]:
     """Specs from a file's text; none from an empty one.
 
-    Raises :class:`StoreError` for what are none.
+    Raises ``ValueError`` for others.
     """
-    try:
-        return tuple(
-            _parse(entry) for entry in parsed(text or "[]", [{"kind": str, "name": str}], "figures")
-        )
-    except (ValueError, TypeError, KeyError, RecursionError, DeclarationError) as error:
-        raise StoreError(f"the file's attribute 'figures' is damaged: {one_line(error)}") from None
+    return tuple(map(_parse, parsed(text or "[]", [{"kind": str, "name": str}], "figures")))
 
 
 def _parse(entry: dict[str, Any]) -> Spec:
     fields: dict[str, Any] = {
-        key: tuple(value) if isinstance(value, list) else value
-        for key, value in entry.items()
-        if key != "kind"
+        key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()
     }
-    return KINDS[entry["kind"]](**fields)
+    kind = fields.pop("kind")
+    if kind not in KINDS:
+        raise ValueError(f"figures: unknown kind {kind!r}; valid: {', '.join(KINDS)}")
+    try:
+        return KINDS[kind](**fields)
+    except DeclarationError as error:
+        raise ValueError(f"figures: {error}") from None

@@ -11,7 +11,7 @@ from ..base.quantities import Output
 from ..declare.description import Description
 from ..errors import DeclarationError
 from ..instants.solution import Solution
-from .shapes import Spot, joint_shapes, path_spots, shapes
+from .shapes import Spot, joint_shapes, load_shapes, path_spots, shapes
 
 
 def drawn_spots(description: Description) -> Iterator[Spot]:
@@ -25,6 +25,9 @@ def drawn_spots(description: Description) -> Iterator[Spot]:
         yield from (Spot(shape.name, at) for at in places_here or [shape.centre or (0.0, 0.0, 0.0)])
     for joint in joint_shapes(description):
         yield from (joint.parent, joint.child)
+    for load in load_shapes(description):
+        if load.kind == "spring":
+            yield from load.spots
     yield from path_spots(description).values()
 
 

@@ -7,11 +7,10 @@ finds the file of before, or the whole new one. What is read is held to its seal
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -27,33 +26,41 @@ from ..base.seal import kind_of, seal
 from ..base.tables import ANGLE, LENGTH
 from ..declare.description import (
     Description,
-    check_places,
     motions_of,
     pieces_of,
-    shape_of,
-    values_of,
 )
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..declare.wanted_names import SENSITIVITY
 from ..errors import (
-    DeclarationError,
     PathError,
     StoreError,
     UnknownNameError,
     one_line,
 )
-from ..instants.beyond_equilibrium import ENDS, Elasticity, Holding, held_outputs
+from ..instants.beyond_equilibrium import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
-from ..instants.solution import Provenance, Solution
+from ..instants.solution import Solution
 from ..verification.certificate import COARSE, TOLERANCE, blur, certify
+from .attributes import (
+    SCHEMA_VERSION,
+    attributes_to_write,
+    check_attributes,
+    figures_of,
+    read_attributes,
+)
 from .opening import SCHEMA, opened_file
 from .scales import LARGE, Scales
 from .slopes import add_slopes, check_slopes, slopes_of
-from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
-from .words import conventions, say, unlike, unlike_conventions
-
-SCHEMA_VERSION = 1
+from .untrusted import (
+    check_chunks,
+    check_dataset,
+    check_links,
+    parsed,
+    reported_as,
+    shown,
+)
+from .words import say, unlike, unlike_conventions
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
@@ -64,10 +71,6 @@ _AXES = {
 _OVER = "over"
 _BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
 """Attributes that a dataset may have beside those of what it holds."""
-_PROVENANCE = {key: key for key in ("backend", "precision", "compiler", "flags")} | {
-    "rung": "method"
-}
-"""Field of the provenance that each attribute of a file holds."""
 
 _GRID_TOLERANCE = 1e-12
 _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
@@ -110,14 +113,13 @@ def save(
     Raises
     ------
     StoreError
-        If the file cannot be written.
+        If the file cannot be written, or has attributes that :func:`load` or the command plot
+        refuses.
     """
-    if "\0" in figures or not figures.isascii():
-        raise DeclarationError(
-            f"save: figures: expected JSON of letters that every file can hold, got {figures!r:.60}"
-        )
     target, links = Path(path), _with_grids(solution, grids)
     check_target(target)
+    with reported_as("cannot be written", target):
+        attributes = attributes_to_write(solution, figures, links)
     _require_space(solution, target, len(links))
     with replacing(target, hdf5=True) as draft:
         with (
@@ -126,7 +128,8 @@ def save(
             h5py.File(bytes_, "w", track_order=True) as file,
         ):
             try:
-                _write(file, solution, figures, links, breathe)
+                _write(file, solution, links, breathe)
+                file.attrs.update(attributes)
             except RuntimeError as error:  # of HDF5
                 raise StoreError(f"cannot write {target}: {one_line(error)}") from error
             file.flush()
@@ -221,13 +224,13 @@ def load(path: str | os.PathLike[str]) -> Solution:
         return _read(file)
 
 
-def figure_specs(path: str | os.PathLike[str]) -> str:
-    """Figures of the case, as they were given to :func:`save`.
+def figure_specs(path: str | os.PathLike[str]) -> tuple[object, ...]:
+    """Specifications of the case's figures, as they were given to :func:`save`.
 
     Raises what :func:`load` does.
     """
     with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
-        return shown(file.attrs.get("figures", ""))
+        return figures_of(file.attrs)
 
 
 @public
@@ -267,6 +270,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
         )
         listed = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in listed if output not in outputs]
+        found += check_attributes(file.attrs)
         if not found:
             found += unlike_conventions(file, solution.table)
             found += _check_axes(file, solution)
@@ -318,19 +322,11 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
 
 
 def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
-    """Times and ratios: finite, and said to be these; and the parameters, which are stated
-    twice.
-    """
+    """Times and ratios: finite, and said to be these."""
     for axis, values in (("t", solution.t), ("xi", solution.xi)):
         if not np.isfinite(values).all():
             yield f"{axis}: values that are not finite"
         yield from unlike(file[axis], *_AXES[axis])
-    parameter_values = values_of(solution.description)
-    if (
-        parsed(file.attrs["parameters"], {str: float}, "parameters") != parameter_values
-        or solution.case != solution.description["name"]
-    ):
-        yield "case or parameters: differ from those of the mechanism"
 
 
 def _check_drive_axis(solution: Solution) -> Iterator[str]:
@@ -384,7 +380,6 @@ def _place(output: Output) -> str:
 def _write(
     file: h5py.File,
     solution: Solution,
-    figures: str,
     grids: Sequence[str],
     breathe: Callable[[], None],
 ) -> None:
@@ -408,40 +403,6 @@ def _write(
     breathe()
     add_slopes(file, scales, solution, partial(_empty, file))
     scales.finish()
-    provenance = solution.provenance
-    file.attrs["schema"] = SCHEMA
-    file.attrs["schema_version"] = SCHEMA_VERSION
-    file.attrs["case"] = solution.case
-    file.attrs.update(conventions(solution.table))
-    file.attrs["mechanism"] = json.dumps(solution.description)
-    file.attrs["parameters"] = json.dumps(values_of(solution.description))
-    file.attrs["certified"] = solution.certified
-    file.attrs["certificate_tolerance"] = solution.tolerance
-    file.attrs["outputs"] = json.dumps(list(solution.series))
-    if len(grids) < len(solution.links_with_sections):
-        file.attrs["grids"] = json.dumps(list(grids))
-        bare = (
-            Output("section", link, force)
-            for link in solution.links_with_sections
-            if link not in grids
-            for force in solution.table.forces
-        )
-        estimates = {str(o): solution.errors[str(o)] for o in bare if str(o) in solution.errors}
-        file.attrs["error_estimates"] = json.dumps(estimates)
-    file.attrs["undetermined"] = json.dumps(solution.undetermined)
-    if solution.elasticity != Elasticity():
-        file.attrs["by_elasticity"] = json.dumps(
-            [str(output) for output in solution.elasticity.completed]
-        )
-        file.attrs["open_because"] = json.dumps(solution.elasticity.reasons)
-    if solution.holding:
-        file.attrs["holding"] = json.dumps(
-            {name: held.reason for name, held in solution.holding.items()}
-        )
-    file.attrs["versions"] = json.dumps(dict(provenance.versions))
-    for key, name in _PROVENANCE.items():
-        file.attrs[key] = getattr(provenance, name)
-    file.attrs["figures"] = figures
 
 
 def _add(
@@ -502,14 +463,12 @@ def _create(
 
 def _read(file: h5py.File) -> Solution:
     check_links(file)
-    description = parsed(file.attrs["mechanism"], shape_of, "mechanism")
-    check_places(description)
+    stated = read_attributes(file.attrs)
+    description, errors, reasons = stated["description"], stated["errors"], stated.pop("holding")
     t, xi = (numbers(file[axis]) for axis in _AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
     outputs: dict[Output, Array] = {}
-    estimates = file.attrs.get("error_estimates", "{}")
-    errors: dict[str, float] = {**parsed(estimates, {str: float}, "error_estimates")}
 
     def visit(place: str, item: h5py.Group | h5py.Dataset) -> None:
         if (
@@ -524,34 +483,16 @@ def _read(file: h5py.File) -> Solution:
                 outputs[output] = numbers(item, t.shape)
 
     file.visititems(visit)
-    words = {name: shown(file.attrs[key]) for key, name in _PROVENANCE.items()}
-    provenance = Provenance(
-        **words, versions=parsed(file.attrs["versions"], {str: str}, "versions")
-    )
-    indeterminate = tuple(map(Output.of, parsed(file.attrs["undetermined"], [str], "undetermined")))
-    completed, reasons = (
-        parsed(file.attrs.get(key, "[]"), [str], key) for key in ("by_elasticity", "open_because")
-    )
-    elastic = Elasticity(tuple(map(Output.of, completed)), tuple(reasons))
-    certificate = {
-        name: numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())
-    }
-    case = shown(file.attrs["case"])
-    ordered, limit = in_order(outputs, description), float(file.attrs["certificate_tolerance"])
-    over = drive_axis(file[_OVER], t.shape, description) if _OVER in file else None
     solution = Solution(
-        case,
-        t,
-        xi,
-        ordered,
-        description,
-        provenance,
-        indeterminate,
-        certificate,
-        errors,
-        limit,
-        over,
-        elastic,
+        t=t,
+        xi=xi,
+        outputs=in_order(outputs, description),
+        certificate={
+            name: numbers(file["certificate"][name], t.shape)
+            for name in file.get("certificate", ())
+        },
+        over=drive_axis(file[_OVER], t.shape, description) if _OVER in file else None,
+        **stated,
     )
     for link in solution.links_with_sections:
         law = solution.section(link).law
@@ -561,17 +502,19 @@ def _read(file: h5py.File) -> Solution:
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is incomplete")
     return replace(
-        solution, sensitivities=slopes_of(file, solution, numbers), holding=_held(file, solution)
+        solution,
+        sensitivities=slopes_of(file, solution, numbers),
+        holding=_held(file, solution, reasons),
     )
 
 
-def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
-    """The ranges of the efforts that joints at rest leave open.
+def _held(file: h5py.File, solution: Solution, reasons: Mapping[str, str]) -> dict[str, Holding]:
+    """The ranges of the efforts that joints at rest leave open, with the reason of each.
 
     Raises ``ValueError`` for those of what is no drive.
     """
     found = {}
-    for name, reason in parsed(file.attrs.get("holding", "{}"), {str: str}, "holding").items():
+    for name, reason in reasons.items():
         if Output("effort", name) not in solution.outputs:
             raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
         least, largest = (

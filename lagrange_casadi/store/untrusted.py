@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import FunctionType
@@ -36,17 +37,27 @@ def reported_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
     except (LagrangeCasadiError, MemoryError):
         raise
     except Exception as error:
-        raise StoreError(f"{path}: {what}: {one_line(error) or type(error).__name__}") from error
+        unquoted = ValueError(*error.args) if isinstance(error, KeyError) else error
+        text = one_line(unquoted) or type(error).__name__
+        raise StoreError(f"{path}: {what}: {text}") from error
 
 
 def parsed(text: str | bytes, shape: Shape, what: str = "JSON") -> Any:
     """JSON of a shape.
 
-    Raises ``ValueError`` or ``TypeError`` for what is not JSON, and as :func:`check_shape` does.
+    Raises ``ValueError`` for what is not JSON, and as :func:`check_shape` does.
     """
-    found = json.loads(text)
+    found = read_json(text, what)
     check_shape(found, shape, what)
     return found
+
+
+def read_json(text: str | bytes, what: str) -> Any:
+    """JSON of any shape. Raises ``ValueError`` for what is not JSON."""
+    try:
+        return json.loads(text)
+    except (ValueError, TypeError, RecursionError):
+        raise ValueError(f"{what} is not JSON") from None
 
 
 def check_shape(value: object, shape: Shape, what: str) -> None:
@@ -57,9 +68,8 @@ def check_shape(value: object, shape: Shape, what: str) -> None:
 
 def shown(value: str) -> str:
     """A text that can be shown. Raises ``ValueError`` for anything else."""
-    if not isinstance(value, str):
+    if not isinstance(value, str) or re.search("[\0\ud800-\udfff]", value):
         raise ValueError(f"{value!r:.40} is not a text")
-    value.encode()
     return value
 
 

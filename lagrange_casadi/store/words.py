@@ -26,12 +26,12 @@ def say(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> None:
 def unlike(dataset: h5py.Dataset, unit: str, words: Mapping[str, str]) -> Iterator[str]:
     """Yield what a dataset says otherwise, a line each."""
     place = dataset.name.removeprefix("/")
-    if dataset.attrs.get("units") != unit:
+    if not _states(dataset, "units", unit):
         yield f"{place}: units {dataset.attrs.get('units')!r}, expected {unit!r}"
     yield from (
         f"{place}: {key} differs from the schema"
         for key, text in words.items()
-        if dataset.attrs.get(key) != text
+        if not _states(dataset, key, text)
     )
 
 
@@ -40,5 +40,11 @@ def unlike_conventions(file: h5py.File, table: Table) -> Iterator[str]:
     yield from (
         f"{key}: differs from the schema"
         for key, text in conventions(table).items()
-        if file.attrs.get(key) != text
+        if not _states(file, key, text)
     )
+
+
+def _states(item: h5py.HLObject, key: str, text: str) -> bool:
+    """Return whether an attribute is a text; arrays are none."""
+    value = item.attrs.get(key)
+    return isinstance(value, str) and value == text

@@ -1,7 +1,7 @@
 """Peaks between instants: where a quantity is largest over all times of a solution's span.
 
 A peak of sampled values falls short of the true one by a part that goes with the square of the
-step. :mod:`.summits` searches between them; here the time derivatives that automatic
+step. :mod:`.peak_search` searches between them; here the time derivatives that automatic
 differentiation gives then say at which time a smooth peak is.
 """
 

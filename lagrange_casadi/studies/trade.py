@@ -4,7 +4,8 @@ side by side on this machine.
 Errors are against the scene's own graphs in many digits (:mod:`.reference`), at instants of the
 scene's own grid, relative to the peak of each quantity over them; of what is zero by structure,
 relative to the largest peak of its unit. Times are of the instants alone, nothing derived or
-compiled, on one thread, taken in turns so that whatever else the machine does meets all.
+compiled, on one thread: the least processor time of many short samples, taken in turns, so that
+other work of the machine meets all methods alike and hardly counts.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -36,17 +37,20 @@ from ..verification.reference import reference
 from .designs.engine import DesignEngine
 from .peaks import Shortfall, shortfall
 
-INSTANTS = 10_000
-"""Instants that are timed, over the scene's own span of time; of the virtual machine a tenth."""
+INSTANTS = 1000
+"""Instants of a sample, over the scene's own span of time; of the virtual machine a tenth."""
 
 COMPARED = 101
 COUNTS = (25, 50, 100, 200, 400, 800)
 """Instants of a cycle, for what they miss of the peaks."""
 
-ROUNDS = 7
+QUIET, LONGEST = 40, 20.0
+"""Rounds of samples that no least time falls in any more, and seconds that all rounds take."""
+
 _Way = TypeVar("_Way")
-_NIL = 1e-9
-_LEAST = 2e-3
+_NIL, _TICK = 1e-9, 1e-9
+_ALIKE = 1.2
+"""Ratio of times that are held to be equal: other work of the machine changes them by so much."""
 
 COMPILED = (
     *(
@@ -76,6 +80,8 @@ class Measurement:
     """Cost and accuracy of a method: seconds an instant, and errors relative to each quantity's
     peak.
 
+    ``instructions`` are those of its graphs an instant, with as many steps of Newton's method as
+    the method takes, at least one; reading a table is not among them.
     ``largest`` is over all quantities and instants, ``median`` over the quantities' largest;
     ``worst`` names the quantity that errs most. ``note`` says what else there is to know, such as
     how many nodes a table has.
@@ -83,6 +89,7 @@ class Measurement:
 
     method: EvaluationMethod
     seconds: float
+    instructions: int
     largest: float
     median: float
     worst: str
@@ -123,11 +130,7 @@ class Trade:
     @property
     def front(self) -> tuple[Measurement, ...]:
         """The methods that no other one beats in both speed and accuracy, fastest first."""
-        found: list[Measurement] = []
-        for one in self.measurements:
-            if not found or one.largest < found[-1].largest:
-                found.append(one)
-        return tuple(found)
+        return tuple(one for one in self.measurements if one is self.fastest(one.largest))
 
     @property
     def exported(self) -> Trade:
@@ -146,18 +149,22 @@ class Trade:
     def fastest(self, accuracy: float) -> Measurement:
         """The fastest method whose largest error is at most ``accuracy``, relative to the peak.
 
+        Times within 20 % are held to be equal: of these, the method with the shortest options.
+
         Raises :class:`AccuracyError` where none is; it names the most accurate one.
         """
         if not accuracy > 0.0:
             raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
-        for one in self.measurements:
-            if one.largest <= accuracy:
-                return one
-        best = min(self.measurements, key=lambda one: one.largest)
-        raise AccuracyError(
-            f"no method evaluates '{self.case}' to {accuracy:g} of the peak; the best, "
-            f"{best.method.options}, has an error of {best.largest:.2g} (in {best.worst})"
-        )
+        enough = [one for one in self.measurements if one.largest <= accuracy]
+        if not enough:
+            best = min(self.measurements, key=lambda one: one.largest)
+            raise AccuracyError(
+                f"no method evaluates '{self.case}' to {accuracy:g} of the peak; the best, "
+                f"{best.method.options}, has an error of {best.largest:.2g} (in {best.worst})"
+            )
+        least = _ALIKE * min(one.seconds for one in enough)
+        alike = [one for one in enough if one.seconds <= least]
+        return min(alike, key=lambda one: (len(one.method.options), one.method.options))
 
     def as_dict(self) -> dict[str, Json]:
         """All of it as plain numbers and words, for JSON."""
@@ -207,8 +214,8 @@ def trade(
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
     truth = _Truth(program, times, compared, values)
     refused: dict[str, str] = {}
-    works: dict[EvaluationMethod, tuple[Callable[[], Any], int]] = {}
-    found: dict[EvaluationMethod, tuple[float, float, str, str]] = {}
+    works: dict[EvaluationMethod, _Work] = {}
+    found: dict[EvaluationMethod, tuple[int, float, float, str, str]] = {}
     for method in methods:
         progress(method)
         if method.newton is not None and program.newton is None:
@@ -217,7 +224,10 @@ def trade(
             evaluated, _ = columns(program, times, values, method, 1)
             if unfinished(program, evaluated).any():
                 raise AssemblyError("some instants have no result")
-            works[method] = _work(program, times, values, method)
+            works[method] = _Work(
+                partial(_evaluation, program, times, values, method),
+                INSTANTS // 10 if method.backend == "vm" else INSTANTS,
+            )
         except (AssemblyError, CompilerError, DeclarationError) as error:
             refused[method.options] = str(error)
             continue
@@ -226,7 +236,8 @@ def trade(
             if evaluated.cycle is None
             else f"{evaluated.cycle.nodes} nodes, {evaluated.cycle.nbytes / 1000:.3g} kB"
         )
-        found[method] = (*truth.errors(program, evaluated), nodes)
+        counts = evaluated.stages.instructions(method.newton or 1)
+        found[method] = (counts, *truth.errors(program, evaluated), nodes)
     seconds = _in_turns(works)
     measured = [Measurement(method, seconds[method], *found[method]) for method in works]
     ordered = tuple(sorted(measured, key=lambda one: one.seconds))
@@ -247,15 +258,14 @@ def trade(
 def _peak_costs(scene: Scene, timing: Timing, p: Array) -> tuple[PeakCost, ...]:
     """Measure both kinds of peaks of one design many times; nothing where it has no result."""
     engines = {peaks: DesignEngine.of(scene, timing=timing, peaks=peaks) for peaks in PEAK_SEARCHES}
-    designs = np.tile(p, (max(1, INSTANTS // timing.count), 1))
     works = {
-        peaks: (partial(engine.evaluate, designs, threads=1), len(designs) * timing.count)
+        peaks: _Work(partial(_designs, engine, p), 1 + math.ceil(INSTANTS / timing.count))
         for peaks, engine in engines.items()
     }
     found = {peaks: engine.evaluate(p[None]) for peaks, engine in engines.items()}
     if any(outcome.status[0] != Status.OK for outcome in found.values()):
         return ()
-    seconds = _in_turns(works)
+    seconds = {peaks: one / timing.count for peaks, one in _in_turns(works).items()}
     exact, sampled = (np.abs(found[peaks].value[0]) for peaks in PEAK_SEARCHES)
     units = np.array(engines["exact"].units)
     largest = np.array([np.nanmax(exact[units == unit], initial=0.0) for unit in units])
@@ -335,26 +345,46 @@ def _motions(program: Program, t: Array, p: Array) -> dict[str, float]:
     }
 
 
-def _work(
-    program: Program, t: Array, p: Array, method: EvaluationMethod
-) -> tuple[Callable[[], object], int]:
-    """Timed work, ready to run, and its instants."""
-    count = INSTANTS // 10 if method.backend == "vm" else INSTANTS
+@dataclass(frozen=True)
+class _Work:
+    """Timed work: ``of(count)`` prepares a call that does ``count`` pieces of work."""
+
+    of: Callable[[int], Callable[[], object]]
+    count: int
+
+
+def _evaluation(
+    program: Program, t: Array, p: Array, method: EvaluationMethod, count: int
+) -> Callable[[], object]:
+    """Prepare a call that evaluates ``count`` instants."""
     dense = np.linspace(t[0], t[-1], count)
     evaluated, _ = columns(program, dense, p, method, 1)
-    return lambda: columns(program, dense, p, method, 1, into=evaluated), count
+    return partial(columns, program, dense, p, method, 1, into=evaluated)
 
 
-def _in_turns(works: Mapping[_Way, tuple[Callable[[], object], int]]) -> dict[_Way, float]:
-    """Seconds an instant: the median over rounds in which each way has its turn, long enough to be
-    read off a clock.
+def _designs(engine: DesignEngine, p: Array, count: int) -> Callable[[], object]:
+    """Prepare a call that evaluates one design ``count`` times."""
+    return partial(engine.evaluate, np.tile(p, (count, 1)), threads=1)
+
+
+def _in_turns(works: Mapping[_Way, _Work]) -> dict[_Way, float]:
+    """Seconds of a processor for one piece of each work, without what a call of any size takes.
+
+    Each way has its turn in each round, with all pieces and with one; the least times count.
+    Rounds end when these fall no more, by a fiftieth.
     """
-    taken: dict[_Way, list[float]] = {method: [] for method in works}
-    for _ in range(ROUNDS):
-        for method, (work, count) in works.items():
-            calls, start = 0, time.perf_counter()
-            while (passed := time.perf_counter() - start) < _LEAST or not calls:
-                work()
-                calls += 1
-            taken[method].append(passed / (calls * count))
-    return {method: float(np.median(times)) for method, times in taken.items()}
+    counts = {way: (work.count, 1) for way, work in works.items()}
+    calls = {(way, count): works[way].of(count) for way in works for count in counts[way]}
+    least, quiet, begun = dict.fromkeys(calls, math.inf), 0, time.monotonic()
+    while quiet < QUIET and time.monotonic() - begun < LONGEST:
+        quiet += 1
+        for key, call in calls.items():
+            start = time.process_time()
+            call()
+            taken = time.process_time() - start
+            quiet = 0 if taken < 0.98 * least[key] else quiet
+            least[key] = min(least[key], taken)
+    return {
+        way: max(least[way, count] - least[way, 1], _TICK) / (count - 1)
+        for way, (count, _) in counts.items()
+    }

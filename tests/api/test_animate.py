@@ -91,9 +91,11 @@ def test_bodies_are_where_the_solution_has_them():
     )
 
 
-@pytest.mark.parametrize("name", ["rssr", "quick_return", "spatial_slider_crank"])
+@pytest.mark.parametrize(
+    "name", ["rssr", "quick_return", "spatial_slider_crank", "andrews_squeezer"]
+)
 def test_everything_is_on_the_sheet_at_all_times(name):
-    section = "bending" if name == "quick_return" else "bending_z"
+    section = {"quick_return": "bending", "andrews_squeezer": ""}.get(name, "bending_z")
     picture = picture_of(solved(name), Film(forces=True, section=section))
     for thing in picture.things:
         assert np.isfinite(thing.points).all()

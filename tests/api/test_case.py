@@ -82,6 +82,11 @@ def test_the_paper_says_what_it_wants_drawn(slider_crank):
             CaseError,
             r"line 2: ValueError: two lines$",
         ),
+        (
+            "class Odd(Exception):\n    __str__ = None\ndef scene():\n    raise Odd\n",
+            CaseError,
+            r"line 4: Odd$",
+        ),
         *(
             (
                 GOOD + DRAWN.format(value),

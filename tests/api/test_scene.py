@@ -62,6 +62,11 @@ def test_a_kind_of_which_there_is_none_is_refused():
     ):
         derive(slider_crank(), ["effort", "load"])
     with pytest.raises(
+        DeclarationError,
+        match="not an output of mechanism 'slider_crank', because no link has a beam=; valid: all",
+    ):
+        derive(slider_crank(), ["safety"])
+    with pytest.raises(
         UnknownNameError, match=r"unknown output 'sections' \(did you mean 'section'\?\)"
     ):
         derive(slider_crank(), ["sections"])

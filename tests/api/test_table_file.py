@@ -3,6 +3,7 @@
 import csv
 import importlib.util
 import math
+import resource
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from sweeps import ASKED, BENDING
 
 from lagrange_casadi import read_designs
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.errors import DeclarationError, StoreError
 
 pytestmark = pytest.mark.quick
 
@@ -113,6 +114,20 @@ def test_a_mistake_is_one_line_before_anything_is_done(swept, capfd, monkeypatch
         "error: a workbook needs openpyxl; install it with: pip install 'lagrange_casadi[xlsx]'\n"
     )
     assert sorted(Path().iterdir()) == before
+
+
+def test_a_workbook_for_which_there_is_no_room_is_one_line(here):
+    """The temporary folder takes a workbook's draft first; the system limits the size of files."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 16, hard))
+    try:
+        with pytest.raises(
+            StoreError, match=r"^cannot write x\.xlsx: the temporary folder .*: File too large$"
+        ):
+            TableFile(Path("x.xlsx")).write(HEADS, (ROWS[0] for _ in range(20_000)))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert not list(here.iterdir())
 
 
 @pytest.mark.parametrize("head", ["l [mm],phi [deg]", "l[mm],phi[deg]", "l [m],phi"])

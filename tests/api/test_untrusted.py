@@ -2,12 +2,15 @@
 hold.
 """
 
+import dataclasses
 import hashlib
 import itertools
 import json
 import os
 import random
 import re
+from contextlib import suppress
+from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -16,11 +19,11 @@ import sweeps
 from forging import forging
 from internals import (
     Folder,
+    Provenance,
     TimePlot,
     check_shape,
     check_sweep,
     dump_specs,
-    parse_specs,
     progress,
     reported_as,
     sweep,
@@ -50,6 +53,11 @@ VALUES = (
     h5py.Empty("f8"),
     np.uint8(1),
 )
+PYTHON = re.compile(
+    r"zip\(\)|\.index\(|JSON object|object is not|has no attribute|ambiguous|could not convert"
+)
+"""Words of Python's own errors, which say nothing of a file."""
+
 NODES = (None, True, 3, -1, 10**400, 0.5, float("nan"), "", "x", [], [None], {}, {"x": None})
 
 
@@ -127,6 +135,7 @@ def others(shape, fifo):
         h.create_virtual_dataset(place, layout)
 
     yield "gone", lambda h, place: h.__delitem__(place)
+    yield "elsewhere", lambda h, place: h.move(place, f"x/{place}")
     yield "a group", lambda h, place: (h.__delitem__(place), h.create_group(place))
     yield "a soft link", lambda h, place: elsewhere(h, place, h5py.SoftLink("/nowhere"))
     yield "a link to itself", lambda h, place: elsewhere(h, place, h5py.SoftLink(f"/{place}"))
@@ -212,6 +221,7 @@ def attempt(path, change, readers):
             else:
                 told = ""
             assert "\n" not in told
+            assert not PYTHON.search(told), told
     finally:
         path.write_bytes(original)
 
@@ -375,14 +385,44 @@ FIGURES = (
     '[{"kind": "time", "name": "a"}]',
     '[{"kind": "time", "name": "a", "quantities": [], "more": 1}]',
     '[{"kind": 3, "name": "a"}]',
+    '[{"kind": "pie", "name": "a"}]',
+    '[{"kind": "span", "name": "a", "quantity": "effort:O", "t": NaN}]',
+    '[{"kind": "time", "name": "\\ud800", "quantities": []}]',
     "[" * 100_000,
+    "\0",
+    "\ud800",
 )
 
 
 @pytest.mark.parametrize("text", FIGURES)
-def test_figures_that_are_none_are_one_line(text):
-    with pytest.raises(StoreError, match=r"^the file's attribute 'figures' is damaged: .*$"):
-        parse_specs(text)
+def test_figures_that_are_none_are_one_line(run, text):
+    solution, before = load(run), run.read_bytes()
+    with pytest.raises(StoreError, match=r"x\.h5: cannot be written: .*$"):
+        save(solution, run, text)
+    assert run.read_bytes() == before
+    if text.isprintable():
+        with forging(run) as h:
+            h.attrs["figures"] = text
+        [fault] = check(run)
+        with pytest.raises(StoreError, match=rf"x\.h5: damaged: {re.escape(fault)}$"):
+            store.figure_specs(run)
+
+
+def test_no_file_is_written_that_its_reader_refuses(run):
+    """Attributes of each kind take values of any kind, in a solution and in its provenance."""
+    solution, written = load(run), 0
+    others = ("figures", "\0", "\ud800", ["x"], {"effort:O": "x"}, {"y": 1}, None)
+    named = [field.name for field in dataclasses.fields(Provenance)]
+    for name, value in itertools.product(("case", "errors", *named), (*VALUES, *others)):
+        with suppress(StoreError, DeclarationError):
+            if name in named:
+                origin = replace(solution.provenance, **{name: value})
+                save(replace(solution, provenance=origin), run)
+            else:
+                save(replace(solution, **{name: value}), run)
+            written += 1
+            assert check(run) == [], (name, value)
+    assert written > 20
 
 
 def test_a_forged_plan_is_one_line(here, capsys):

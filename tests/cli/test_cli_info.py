@@ -73,6 +73,26 @@ def test_info_shows_the_whole_scene(here, capsys):
     )
 
 
+CURVED = """
+from lagrange_casadi import Mechanism, Scene, curve, motion
+
+
+def scene():
+    m = Mechanism("curved")
+    bar = m.link("bar", length=0.3, mass=1.0)
+    j = m.revolute("J", m.ground, bar)
+    law = curve([0.0, 1.0, 2.0, 3.0], [0.0, 5.0, 9.0, 3.0])
+    m.force("work", bar, x=law(m.coordinate(j)))
+    return Scene(m, {"J": motion.polynomial(0.0, 1.0)}, t=(0, 1, 5), wanted=["effort"])
+"""
+
+
+def test_a_curve_is_no_code(tmp_path, capsys):
+    (tmp_path / "case.py").write_text(CURVED)
+    assert main(["info", str(tmp_path)]) == 0
+    assert "load work: force on bar, x = a curve of J N, y = 0 N" in capsys.readouterr().out
+
+
 def test_long_expressions_are_cut(capsys):
     assert main(["info", "engine"]) == 0
     gas = next(

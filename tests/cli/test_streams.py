@@ -91,7 +91,7 @@ def test_csv_goes_through_a_pipe(file, pipe, listen, capfd, command):
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
 def test_a_picture_goes_through_a_pipe(pipe, listen, ending):
-    one = Measurement(EvaluationMethod("c"), 1e-9, 1e-3, 1e-3, "effort:O")
+    one = Measurement(EvaluationMethod("c"), 1e-9, 9, 1e-3, 1e-3, "effort:O")
     heard = listen(pipe)
     with writing(pipe) as (opened,):
         draw_trade(Trade("x", 1, 1, (one,), {}), opened, ending)

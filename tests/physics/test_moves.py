@@ -422,6 +422,14 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
             "two parts are called 'a'",
         ),
         (
+            lambda: arm(moves(CYCLE[:2])).timetable(["J"]),
+            r"timetable: name: expected a text, got \['J'\]",
+        ),
+        (
+            lambda: arm(moves(CYCLE[:2])).parameter_constraints([]),
+            r"parameter_constraints: precision: expected a text, got \[\]",
+        ),
+        (
             lambda: arm(polynomial(0.0, 1.0)).timetable("J"),
             "joint 'J' is not made of moves, so it has no timetable; expected a motion by moves()",
         ),
@@ -435,6 +443,8 @@ def test_misuse_is_named(make, says):
 def test_a_timetable_of_another_joint():
     with pytest.raises(UnknownNameError, match="unknown driven joint 'K'; valid: J"):
         arm(moves(CYCLE[:2])).timetable("K")
+    with pytest.raises(UnknownNameError, match="unknown precision 'x'; valid: double, single"):
+        arm(moves(CYCLE[:2])).parameter_constraints("x")
 
 
 def test_a_move_slower_than_its_limits_keeps_its_time():

@@ -53,6 +53,20 @@ def test_docstrings_begin_with_a_verb_or_a_noun():
 
 
 @pytest.mark.quick
+def test_modules_that_docstrings_name_are_there():
+    """Sphinx looks for none of them, for they are no part of the interface."""
+    paths = sorted(PACKAGE.rglob("*.py"))
+    names = {"." + ".".join(p.relative_to(PACKAGE).with_suffix("").parts) for p in paths}
+    gone = [
+        f"{path.relative_to(PACKAGE)}: {found}"
+        for path in paths
+        for found in re.findall(r":mod:`\.+([a-z_.]+)`", path.read_text())
+        if not any(f"{name}.".endswith((f".{found}.", f".{found}.__init__.")) for name in names)
+    ]
+    assert not gone, "\n".join(gone)
+
+
+@pytest.mark.quick
 @pytest.mark.parametrize(
     "name",
     [

@@ -451,7 +451,7 @@ class DesignEngine:
 
     def failures(self, p: Array, whole: Program) -> dict[str, float]:
         """Failures of one design that has a result, (parameters,), by a graph of all outputs: see
-        :mod:`.witness`.
+        :mod:`.spot_check`.
         """
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None

@@ -4,14 +4,13 @@ its statuses.
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import Any, TypedDict
 
 import h5py
 import numpy as np
 
-from ...store.untrusted import check_dataset, check_links, check_shape, parsed, shown
+from ...store.untrusted import check_dataset, check_links, check_shape, parsed, read_json, shown
 from .axes import DESIGN
 from .file import WORDS
 from .meanings import KINDS, STATUS
@@ -60,7 +59,7 @@ def contents(file: h5py.File) -> Contents:
     """
     check_links(file)
     attributes = file.attrs
-    identity: Any = {key: json.loads(attributes[key]) for key in WORDS} | {
+    identity: Any = {key: read_json(attributes[key], key) for key in WORDS} | {
         key: _plain(attributes[key]) for key in _NAMED
     }
     check_shape(identity, IDENTITY, "attributes")
@@ -84,6 +83,8 @@ def contents(file: h5py.File) -> Contents:
                 )
                 check_dataset(item, [*status.shape, *map(length, axes)])
                 name = place.replace("/", ":")
+                if name.partition(":")[0] not in KINDS:
+                    raise ValueError(f"{place} is no column of a sweep")
                 columns[name] = KeptColumn(
                     name, shown(item.attrs["units"]), shown(item.attrs["long_name"]), axes
                 )
@@ -93,10 +94,12 @@ def contents(file: h5py.File) -> Contents:
         raise ValueError(
             f"it is over {', '.join(dimensions)}, and has values of {', '.join(file['grid'])}"
         )
-    if len(columns) != attributes["columns"]:
+    if len(columns) != _plain(attributes["columns"]):
         raise ValueError(f"it has {len(columns)} columns of {attributes['columns']}")
     sentences = parsed(status.attrs["sentences"], {str: str}, "sentences")
-    words = zip(sentences.items(), shown(status.attrs["flag_meanings"]).split(), strict=True)
+    meanings = shown(status.attrs["flag_meanings"]).split()
+    if len(meanings) != len(sentences):
+        raise ValueError(f"it has {len(meanings)} words for {len(sentences)} statuses")
     return {
         "identity": identity,
         "dimensions": dimensions,
@@ -107,7 +110,10 @@ def contents(file: h5py.File) -> Contents:
                 columns, key=lambda name: (tuple(KINDS).index(name.partition(":")[0]), name)
             )
         },
-        "statuses": {int(number): (word, sentence) for (number, sentence), word in words},
+        "statuses": {
+            int(number): (word, sentence)
+            for (number, sentence), word in zip(sentences.items(), meanings, strict=True)
+        },
     }
 
 
