@@ -91,15 +91,25 @@ def test_cases_do_not_depend_on_units(name, units):
     assert_the_same(load_case(CASES / name).scene, units)
 
 
-@pytest.mark.sampled(40)
-@pytest.mark.parametrize("seed", range(1000))
-def test_random_mechanisms_do_not_depend_on_units(seed):
+def assert_drawn_the_same(seed):
     drawn, units = random_mechanisms.draw(seed), OTHER[seed % len(OTHER)]
     scene = drawn.scene()
     rescaling = Rescaling(units, scene)
     times = {"t", "over"} & {*drawn.keywords}
     again = drawn.keywords | rescaling.timing(**{name: drawn.keywords[name] for name in times})
     assert_the_same(scene, units, drawn.keywords, again)
+
+
+@pytest.mark.sampled(40)
+@pytest.mark.parametrize("seed", range(1000))
+def test_random_mechanisms_do_not_depend_on_units(seed):
+    assert_drawn_the_same(seed)
+
+
+@pytest.mark.parametrize("seed", [9, 12, 21, 27, 41])
+def test_nor_do_these_that_did(seed):
+    """By a misfit, a dead centre, a rank twice, and a bar between slots at a steady rate."""
+    assert_drawn_the_same(seed)
 
 
 @pytest.mark.sampled(40)

@@ -186,14 +186,15 @@ class _Unplaced:
         """The unknowns (count, t) at which gaps that are affine in them are zero; None where they
         are not decided.
 
-        Steps are as ``largest``, what no speed or acceleration exceeds: smaller ones would be lost
-        in the gaps' rounding. What is decided is seen by shares: unknowns in steps, and each gap by
-        its own slopes.
+        Steps are no less than ``largest``, what no speed or acceleration exceeds, nor than gaps:
+        they may be too large, but smaller ones would be lost in the rounding of gaps. What is
+        decided is seen by shares: unknowns in steps, and each gap by its own slopes.
         """
         t, lengths = self.reported.t, self._lengths
-        step = float(np.max(largest)) or 1.0
-        steps, count = (step / lengths)[:, None], lengths.size
+        count = lengths.size
         rest = residuals(np.zeros((count, t.size)))
+        gap = float(np.max(np.abs(rest), initial=0.0)) * max(1.0, self.placed.declared.size)
+        steps = ((max(float(np.max(largest)), gap) or 1.0) / lengths)[:, None]
         if len(rest) < count:
             return None
         ones = (np.broadcast_to(row[:, None], (count, t.size)) * steps for row in np.eye(count))
