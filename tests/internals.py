@@ -67,7 +67,7 @@ from lagrange_casadi.codegen.search import CURVES, interface
 from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
 from lagrange_casadi.declare import laws, motion
 from lagrange_casadi.declare.declared import Declared
-from lagrange_casadi.declare.density import NumericDensity
+from lagrange_casadi.declare.density import Density, NumericDensity
 from lagrange_casadi.declare.description import (
     coordinates_of,
     describe,
@@ -76,26 +76,33 @@ from lagrange_casadi.declare.description import (
     motions_of,
     shape_of,
 )
+from lagrange_casadi.declare.directions import Reference
 from lagrange_casadi.declare.end_conditions import ENDS, effective_lengths
 from lagrange_casadi.declare.ends import beyond_ends, share_beyond
 from lagrange_casadi.declare.even_points import points
-from lagrange_casadi.declare.joints import Joint
+from lagrange_casadi.declare.joints import Axis, Joint
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.laws import Laws
 from lagrange_casadi.declare.limits import END
+from lagrange_casadi.declare.measures import Measure, Measures
+from lagrange_casadi.declare.meshes import Mesh, Transmission, Wrench
 from lagrange_casadi.declare.motion import Scaled
 from lagrange_casadi.declare.motion_inverse import Missed, MotionInverse
 from lagrange_casadi.declare.parts import (
+    Constraint,
     Force,
     Friction,
     Ground,
     LineLoad,
     Link,
+    Path,
     Point,
+    PointMass,
     RigidMass,
     Spring,
     Torque,
 )
+from lagrange_casadi.declare.parts import Row as NonHolonomicRow
 from lagrange_casadi.declare.polynomials import lowest, powers
 from lagrange_casadi.declare.rest_laws import (
     LAWS,

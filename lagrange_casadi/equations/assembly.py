@@ -25,7 +25,7 @@ from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Link, PointMass, RigidMass, Row, Vector
 from ..errors import DeclarationError
 from ..geometry.frames import Carried, Frame, Velocities
-from ..geometry.vectors import AXES, ZERO, minus, nil, times
+from ..geometry.vectors import AXES, ZERO, dot, minus, nil, times
 from .applied import applied_by, held_by, push, work
 from .growing import Grown, coordinates_of
 from .joints import loop_residuals
@@ -115,7 +115,9 @@ def assemble(
     }
     slid = {b.far.body for b in tree.branches if b.reverse and b.joint.slides}
     energies = [
-        kinetic_energy(
+        _energy_on_line(body, tree.lines[body], accelerated.frames[body.name], velocities)
+        if isinstance(body, PointMass) and body in tree.lines
+        else kinetic_energy(
             body,
             accelerated.frames[body.name],
             velocities,
@@ -237,6 +239,23 @@ def kinetic_energy(
         if body.mass.slices is None
         else energy + _turning(body.mass.slices.whole(body.length), frame, velocities)
     )
+
+
+def _energy_on_line(
+    body: PointMass, joint: Joint, frame: Frame, velocities: Velocities
+) -> Expression:
+    """The kinetic energy of a point mass along the line on which it slides: what is across, the
+    line bears (:func:`.borne_by_line`).
+    """
+    line = joint.triad[0]
+    speed, acceleration = (dot(part, line) for part in frame.motion_of(ZERO))
+    return body.mass * velocities.number(speed, acceleration) ** 2 / 2
+
+
+def borne_by_line(body: PointMass, joint: Joint, frame: Frame) -> Vector:
+    """The inertia of a point mass, and its weight, across the line on which it slides [N]."""
+    across = joint.triad[1]
+    return times(body.mass * dot(frame.motion_of(ZERO)[1], across), across)
 
 
 def _rigid(

@@ -161,7 +161,8 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
     entries = drawn(column(slopes.nonzeros()), multibody.coordinates)
     sizes: list[dict[Coordinate, float]] = [{} for _ in range(slopes.size1())]
     for row, k, values in zip(*slopes.sparsity().get_triplet(), np.abs(entries), strict=True):
-        sizes[row][unknown[k]] = float(np.where(np.isnan(values), np.inf, values).max())
+        largest = float(np.where(np.isnan(values), np.inf, values).max())
+        sizes[row][unknown[k]] = largest * unknown[k].size
     found, mechanism = [], multibody.mechanism
     whole = mechanism.ownership.at_defaults(extent(mechanism)) if mechanism.space else 1.0
     for k, (loop, row) in enumerate(
@@ -174,11 +175,7 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         beside = (
             _ABSENT * units(loop, whole)[row] if mechanism.space and loop.joint is not None else 0.0
         )
-        there = {
-            c
-            for c, size in sizes[k].items()
-            if size > max(least, beside / (whole if c.kind == "slide" else 1.0))
-        }
+        there = {c for c, size in sizes[k].items() if size > max(least, beside)}
         # The three of a ball share their variables.
         sphericals = {c.spherical for c in there if c.spherical is not None}
         present = frozenset(c for c in unknown if c in there or c.spherical in sphericals)

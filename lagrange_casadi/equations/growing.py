@@ -20,6 +20,7 @@ from ..geometry.rotation import Rotation
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, plus, times
 from .joints import orientation, turning_axes
 from .multibody import Coordinate, Turned, motion_along, own_coordinate
+from .residuals import reach
 from .spherical import SphericalCoordinates
 from .tree import Branch, Tree
 from .two_force_links import TwoForceLink, two_force_frame
@@ -274,6 +275,7 @@ def coordinates_of(
         {} if mechanism.space else {mechanism.ground.name: (ca.SX(0), ca.SX(0))}
     )
     found: dict[str, tuple[Coordinate, ...]] = {}
+    size = mechanism.ownership.at_defaults(reach(mechanism))
     for branch in tree.branches:
         joint, near, far = branch.joint, branch.near.body.name, branch.far.body
         if joint.holds_direction and near in turned:
@@ -289,7 +291,9 @@ def coordinates_of(
                 ca.SX.sym(f"{name}{end}") for end in ("", "_rate", "_acceleration")
             )
             if axis.kind == "slide":
-                local.append(Coordinate(name, far.name, axis, drives, q, rate, rate, acceleration))
+                local.append(
+                    Coordinate(name, far.name, axis, drives, q, rate, rate, acceleration, size=size)
+                )
                 continue
             if spherical is not None:
                 continue

@@ -28,7 +28,7 @@ from .linear import LinearSystem
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody
 from .postures import Undecided, directions, is_angle, measured
-from .residuals import loop_residual, reach, redundancy_residual
+from .residuals import lengths, loop_residual, reach, redundancy_residual
 from .spherical import SphericalCoordinates
 from .substitution import Expressions, Numbers
 from .winding import wound_angles
@@ -423,7 +423,10 @@ class _Solver:
             rates = column(c.rate for c in block.unknown)
             accelerations = column(c.acceleration for c in block.unknown)
             still = ca.SX.zeros(len(block.unknown))
-            system = LinearSystem.of(found.put_into(block.jacobian))
+            # Of these it matters beside what equations are large, and what is left open.
+            judged = block in self.residuals or len(block.equations) > len(block.unknown)
+            units = found.put_into(lengths(body, block, self.length)) if judged else 1
+            system = LinearSystem.of(found.put_into(block.jacobian), units)
             for symbols, residual in (
                 (rates, block.residual_rate),
                 (accelerations, block.residual_acceleration),

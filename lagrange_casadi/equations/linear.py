@@ -21,7 +21,7 @@ class LinearSystem:
     With more rows than columns, what it solves are consistent systems; the transposed one then has
     m - n free unknowns. ``volume`` is the determinant over the product of the columns' lengths,
     between -1 and 1, or for more rows than columns the ratio of volumes: zero where the system is
-    singular.
+    singular. Rows that are multiplied by ``units`` are of one unit, as columns need not be.
     """
 
     matrix: Any
@@ -29,21 +29,23 @@ class LinearSystem:
     reflections: tuple[tuple[Any, Any], ...]
     triangle: Any
     volume: Any
+    units: Any = 1
 
     @classmethod
-    def of(cls, matrix: Expression) -> LinearSystem:
-        """Factorize a matrix."""
+    def of(cls, matrix: Expression, units: Expression = 1) -> LinearSystem:
+        """Factorize a matrix, whose rows have factors ``units`` [a column, or one for all]."""
         m, n = matrix.shape
+        matrix = matrix if isinstance(units, int) else ca.diag(units) @ matrix
         lengths = ca.SX(1)
         for j in range(n):
             lengths *= ca.sqrt(ca.sumsqr(matrix[:, j]))
         if m == n and 0 < n <= 2:
             if n == 1:
-                return cls(matrix, 1 / matrix, (), None, matrix / lengths)
+                return cls(matrix, 1 / matrix, (), None, matrix / lengths, units)
             a, b, c, d = matrix[0, 0], matrix[0, 1], matrix[1, 0], matrix[1, 1]
             det = a * d - b * c
             adjugate = ca.vertcat(ca.horzcat(d, -b), ca.horzcat(-c, a))
-            return cls(matrix, adjugate * (1 / det), (), None, det / lengths)
+            return cls(matrix, adjugate * (1 / det), (), None, det / lengths, units)
         reflections, volume = [], 1 / lengths
         rest = ca.densify(matrix)
         for j in range(min(n, m - 1)):
@@ -58,7 +60,7 @@ class LinearSystem:
             volume *= signed
         if m == n:
             volume *= rest[n - 1, n - 1]
-        return cls(matrix, None, tuple(reflections), rest[:n, :], volume)
+        return cls(matrix, None, tuple(reflections), rest[:n, :], volume, units)
 
     @property
     def free(self) -> int:
@@ -67,6 +69,7 @@ class LinearSystem:
 
     def solve(self, right: ca.SX) -> Expression:
         """Return x of ``matrix x = right``."""
+        right = self.units * right
         if self.inverse is not None:
             return self.inverse @ right
         turned = right
@@ -85,7 +88,7 @@ class LinearSystem:
         a column of ``self.free``.
         """
         if self.inverse is not None:
-            return self.inverse.T @ right
+            return self.units * (self.inverse.T @ right)
         x: list[Any] = []
         for i in range(self.matrix.shape[1]):
             x.append(
@@ -94,7 +97,7 @@ class LinearSystem:
         turned = column([*x, free])
         for j, reflection in reversed(list(enumerate(self.reflections))):
             turned = ca.vertcat(turned[:j], _reflect(reflection, turned[j:]))
-        return turned
+        return self.units * turned
 
 
 def _reflect(reflection: tuple[ca.SX, ca.SX], x: ca.SX) -> ca.SX:

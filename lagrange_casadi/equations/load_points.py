@@ -12,6 +12,7 @@ the parameters as they are.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 
 import casadi as ca
 import numpy as np
@@ -59,13 +60,15 @@ def gathered(
     """
     found = dict(columns)
 
-    def is_open(load: Expression) -> bool:
-        return not vanish(ca.jacobian(load, free), coordinates)
+    def is_open(units: Expression, load: Expression) -> bool:
+        return not vanish(ca.jacobian(load / units, free), coordinates)
 
     for link in links if free.numel() else ():
         load_points = load_points_of((key for key in columns if isinstance(key, Output)), link.name)
         space = Output("law", link.name, "mx0") in columns
         for tip, load_point, sign in (_IN_SPACE if space else _IN_PLANE) if load_points else ():
+            units = column(link.length if member[0] == "m" else 1 for member in load_point)
+            opens = partial(is_open, units)
             # The tip comes first: what joins it is in the law's own coefficients.
             named = [([Output("law", link.name, member) for member in tip], ca.SX(1))]
             for name in load_points:
@@ -77,10 +80,10 @@ def gathered(
                 (outputs, column(columns[output] for output in outputs), place)
                 for outputs, place in named
             ]
-            shares = [(outputs, load, place) for outputs, load, place in shares if is_open(load)]
+            shares = [(outputs, load, place) for outputs, load, place in shares if opens(load)]
             gathered_loads = [load for _, load, _ in shares]
             places = [place for *_, place in shares]
-            loads = _together(gathered_loads, places, sign * link.length, coordinates, is_open)
+            loads = _together(gathered_loads, places, sign * link.length, coordinates, opens)
             for (outputs, _, _), load in zip(shares, loads, strict=True):
                 found |= zip(outputs, ca.vertsplit(load), strict=True)
     return found

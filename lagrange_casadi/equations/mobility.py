@@ -34,11 +34,12 @@ from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Link, Point, Vector
+from ..declare.parts import Link, Point, PointMass, Vector
 from ..declare.scene import Scene, Wanted
 from ..geometry.frames import Frame, Velocities
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import ZERO, cross, dot, plus, times
+from .assembly import borne_by_line
 from .checks import Check, Column
 from .distributed_loads import distributed_loads, rotary
 from .drives import solve_efforts
@@ -412,7 +413,11 @@ def _in_ground_axes(
     parent, child = (multibody.frames[body.name] for body in joint.bodies)
     for loop in multibody.loop_equations:
         if loop.joint is joint:
-            return Action(*reaction(joint, parent, child, loop.multipliers))
+            found = Action(*reaction(joint, parent, child, loop.multipliers))
+            mass = joint.child.body
+            if isinstance(mass, PointMass) and multibody.tree.lines.get(mass) is joint:
+                found += Action(borne_by_line(mass, joint, multibody.accelerated[mass.name]))
+            return found
     two_force_link = multibody.tree.two_force_link_of.get(joint)
     if two_force_link is not None:
         x, y, z = ca.vertsplit(actions[joint.name])

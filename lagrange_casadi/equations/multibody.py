@@ -41,6 +41,8 @@ class Coordinate:
     value last; ``change`` their rates. Cosine and sine are those of ``turn``, an expression in
     coordinates: the direction of the body, or a turn about the axis alone (``relative``).
 
+    ``size`` is what a slide is large beside: all links end to end, at their defaults [m].
+
     Of a ``ball`` there are three coordinates, by the names of its joint's turns: each has one of
     the body's axes for its variables, and for its rate the angular velocity's component on it,
     which is the rate of nothing.
@@ -57,6 +59,7 @@ class Coordinate:
     turn: Any = None
     relative: bool = False
     spherical: SphericalCoordinates | None = None
+    size: float = 1.0
 
     @property
     def kind(self) -> Literal["angle", "slide", "ball"]:

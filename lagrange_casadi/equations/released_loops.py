@@ -15,6 +15,7 @@ from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from .iteration import place_roughly
 from .multibody import Coordinate, Multibody
+from .residuals import extent, units
 from .spherical import axes_of, turn
 from .substitution import Numbers
 
@@ -40,7 +41,8 @@ class Posture:
 
 @dataclass(frozen=True, eq=False)
 class ReleasedLoops:
-    """The loops' equations over coordinates u and quaternions q of balls.
+    """The loops' equations over coordinates u and quaternions q of balls: slides are beside the
+    mechanism's extent, and so are gaps; a constraint is beside its slopes in the rough posture.
 
     ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u, and then by each of
     ``by``; ``turned(u, q)`` the quaternions after the small rotations u of balls, which ``resting``
@@ -76,7 +78,9 @@ class ReleasedLoops:
         free = ca.SX.sym("u", len(coordinates))
         symbols = column(c.value for c in coordinates)
         counted = column(c.by_values for c in coordinates if c.spherical is None)
-        placed = [ca.substitute(counted, symbols, free)]
+        (size,) = numbers.of(extent(multibody.mechanism))
+        sizes = np.array([size if c.kind == "slide" else 1.0 for c in coordinates])
+        placed = [ca.substitute(counted, symbols, free * ca.DM(sizes))]
         # Of balls a step is a small rotation of where they are.
         local = {
             spherical: ca.vertcat(
@@ -93,18 +97,29 @@ class ReleasedLoops:
             column(c.residual for c in multibody.loop_equations), column(variables), column(placed)
         )
         quaternion = column(turned.values())
+        first = Posture(
+            np.array([0.0 if c.spherical else posture.get(c, 0.0) for c in coordinates]) / sizes,
+            np.array([*quaternions.values()]).ravel(),
+        )
+        given = [free, quaternion, *inputs]
+        slope = ca.Function("slope", given, [ca.jacobian(residuals, free)])
+        rows = np.linalg.norm(slope(first.u, first.q, *values).full(), axis=1)
+        start = 0
+        for loop in multibody.loop_equations:
+            stop = start + loop.residual.numel()
+            if not loop.declared:
+                rows[start:stop] = units(loop, size)
+            start = stop
+        residuals /= ca.DM(np.where(rows > 0.0, rows, 1.0))
         slopes = [ca.jacobian(residuals, symbols) for symbols in (free, *by)]
         return cls(
-            ca.Function("gaps", [free, quaternion, *inputs], [residuals, *slopes]),
+            ca.Function("gaps", given, [residuals, *slopes]),
             ca.Function(
                 "turned",
                 [free, quaternion],
                 [column(turn(turned[spherical], local[spherical]) for spherical in turned)],
             ),
-            Posture(
-                np.array([0.0 if c.spherical else posture.get(c, 0.0) for c in coordinates]),
-                np.array([*quaternions.values()]).ravel(),
-            ),
+            first,
             np.array([c.spherical is not None for c in coordinates], bool),
         )
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.scalars import column
 from ..base.arrays import Array, Expression
 from ..base.symbolic import symbolic
 from ..declare.mechanism import Mechanism
@@ -34,11 +35,27 @@ def loop_residual(multibody: Multibody, block: Block, length: ca.SX) -> ca.SX:
     return total
 
 
+def lengths(multibody: Multibody, block: Block, length: ca.SX) -> ca.SX:
+    """Factors that make lengths [m] of a block's equations, a column: directions are multiplied by
+    a ``length``, constraints by that over their slopes.
+    """
+    found = []
+    for equation in block.equations:
+        held = held_directions(equation.loop.joint) if equation.loop.joint is not None else 0
+        if equation.loop.declared:
+            found.append(length / _slope(multibody, equation, length))
+        else:
+            directs = equation.row >= equation.loop.residual.numel() - held
+            found.append(length if directs else ca.SX(1))
+    return column(found)
+
+
 def redundancy_residual(multibody: Multibody, block: Block) -> Expression:
     """The largest gap of a block, over the length of all links; and a direction is missed by a half
     turn, which has no sine.
     """
-    found = ca.mmax(ca.fabs(block.residual)) / reach(multibody.mechanism)
+    length = reach(multibody.mechanism)
+    found = ca.mmax(ca.fabs(lengths(multibody, block, length) * block.residual)) / length
     for equation in block.equations:
         if equation.aligns:
             found = ca.fmax(found, _turned(multibody, equation))

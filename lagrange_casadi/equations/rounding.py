@@ -38,7 +38,7 @@ from ..geometry.vectors import Vector, cross, dot, minus, nil, plus, times
 from .assembly import assemble
 from .multibody import Multibody
 from .released_loops import Posture, ReleasedLoops
-from .residuals import extent, units
+from .residuals import extent
 from .tree import span
 
 _POSTURES = 24
@@ -98,7 +98,7 @@ def _closed(scene: Scene, mechanism: Mechanism, size: float) -> Mechanism | None
     where there are none.
     """
     symbols = ca.SX.sym("correction", 12 * len(mechanism.joints))
-    found = _Search.of(scene, _shared(mechanism, symbols, size), symbols, size).corrections()
+    found = _Search.of(scene, _shared(mechanism, symbols, size), symbols).corrections()
     if found is None:
         return None
     found[np.abs(found) < _FAINT] = 0.0
@@ -333,12 +333,10 @@ class _Search:
     released: ReleasedLoops
     values: Sequence[Any]
     others: Sequence[Sequence[Any]]
-    rows: Array
-    columns: Array
     rounding: float
 
     @classmethod
-    def of(cls, scene: Scene, mechanism: Mechanism, symbols: Expression, size: float) -> _Search:
+    def of(cls, scene: Scene, mechanism: Mechanism, symbols: Expression) -> _Search:
         """Make it from a scene; ``mechanism`` is its own with symbols of corrections."""
         body = assemble(mechanism, span(mechanism, scene.laws), scene.laws, ())
         values, t = list(scene.mechanism.values(scene.assembly).values()), scene.span[0]
@@ -357,9 +355,7 @@ class _Search:
             other = np.array(values) * (1 + _OTHER * generator.uniform(-1, 1, len(values)))
             each = zip(mechanism.parameters.values(), other, strict=True)
             others.append([t, [min(max(float(x), p.low), p.high) for p, x in each]])
-        rows = np.concatenate([units(loop, size) for loop in body.loop_equations] or [np.zeros(0)])
-        columns = np.array([size if c.axis.move == "slide" else 1.0 for c in body.coordinates])
-        return cls(body, released, [t, values], others, rows, columns, scene.rounding)
+        return cls(body, released, [t, values], others, scene.rounding)
 
     def corrections(self) -> Array | None:
         """The least ones with which loops close, for other parameters too if these can; None where
@@ -397,10 +393,10 @@ class _Search:
             if posture is None:
                 return
             yield posture
-            _, slope, _ = self._scaled(posture, case, x)
+            _, slope, _ = self.released.at(posture, [*case, x])
             null_space = np.linalg.svd(slope)[2][self._rank(slope) :]
             step = generator.normal(size=len(null_space)) @ null_space
-            step *= _STRIDE * self.columns / max(float(np.max(np.abs(step), initial=0.0)), 1e-300)
+            step *= _STRIDE / max(float(np.max(np.abs(step), initial=0.0)), 1e-300)
             posture = self._closed(self.released.moved(posture, step), case, x) or self._closed(
                 self.released.first, case, x
             )
@@ -408,10 +404,10 @@ class _Search:
     def _closed(self, posture: Posture, case: Sequence[npt.ArrayLike], x: Array) -> Posture | None:
         """Posture in which loops close within rounding."""
         for _ in range(_CLOSING_STEPS):
-            residual, slope, _ = self._scaled(posture, case, x)
-            step = -self.columns * (np.linalg.pinv(slope, rcond=self._singular) @ residual)
+            residual, slope, _ = self.released.at(posture, [*case, x])
+            step = -np.linalg.pinv(slope, rcond=self._singular) @ residual
             posture = self.released.moved(posture, step)
-            if np.max(np.abs(step / self.columns), initial=0.0) < 1e-13:
+            if np.max(np.abs(step), initial=0.0) < 1e-13:
                 return (
                     posture
                     if np.max(np.abs(residual), initial=0.0) < _APART * self.rounding
@@ -428,7 +424,7 @@ class _Search:
         closed = self._closed(posture, case, x)
         if closed is None:
             return None
-        residual, slope, by = self._scaled(closed, case, x)
+        residual, slope, by = self.released.at(closed, [*case, x])
         left_null_space = np.linalg.svd(slope)[0][:, self._rank(slope) :].T
         return left_null_space @ residual, left_null_space @ by
 
@@ -438,14 +434,3 @@ class _Search:
 
     def _rank(self, slope: Array) -> int:
         return int(np.linalg.matrix_rank(slope, tol=self._singular * np.linalg.norm(slope, 2)))
-
-    def _scaled(
-        self, posture: Posture, case: Sequence[npt.ArrayLike], x: Array
-    ) -> tuple[Array, Array, Array]:
-        """Gaps and their derivatives, in radians and beside the mechanism's size."""
-        residual, slope, by = self.released.at(posture, [*case, x])
-        return (
-            residual / self.rows,
-            slope * self.columns / self.rows[:, None],
-            by / self.rows[:, None],
-        )

@@ -34,8 +34,8 @@ def drawn(expression: ca.SX, coordinates: Iterable[Coordinate]) -> Values:
 
     Cosine and sine of a coordinate are those of one angle, and axes of a body are at right angles;
     every other symbol is a number from a half to one and a half, as lengths, masses and factors
-    are. The root of a negative number is imaginary, so an identity also holds where links do not
-    reach.
+    are; a slide is so many of its ``size``. The root of a negative number is imaginary, so an
+    identity also holds where links do not reach.
     """
     symbols = ca.symvar(ca.SX(expression))
     generator = np.random.default_rng(0)
@@ -47,6 +47,8 @@ def drawn(expression: ca.SX, coordinates: Iterable[Coordinate]) -> Values:
             values |= dict(
                 zip(coordinate.keys, (np.cos(angle), np.sin(angle), angle), strict=False)
             )
+        elif coordinate.kind == "slide" and coordinate.keys[0] in values:
+            values[coordinate.keys[0]] *= coordinate.size
         elif coordinate.spherical is not None and not values.keys().isdisjoint(coordinate.keys):
             if coordinate.spherical not in turned:
                 turned[coordinate.spherical] = [

@@ -17,7 +17,7 @@ from typing import NoReturn
 
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Body, Point
+from ..declare.parts import Body, Ground, Point
 from ..declare.spatial import SpatialMechanism
 from ..errors import DeclarationError
 from ..geometry.vectors import AXES
@@ -68,6 +68,17 @@ class Tree:
     def two_force_link_of(self) -> dict[Joint, TwoForceLink]:
         """The two-force link of each joint that is at an end of one."""
         return {joint: link for link in self.two_force_links for joint in link.joints}
+
+    @cached_property
+    def lines(self) -> dict[Body, Joint]:
+        """The joint of each point mass of a plane that closes a loop by a line of the ground: what
+        the line bears of the mass is no difference of what other joints bear.
+        """
+        return {
+            joint.child.body: joint
+            for joint in self.closing
+            if joint.turned is None and joint.slides and isinstance(joint.parent.body, Ground)
+        }
 
     def measures(self, joint: Joint, axis: Axis) -> bool:
         """Return whether the motion of a joint along an axis is an output: not the angles of one

@@ -107,12 +107,18 @@ class _Unplaced:
 
     def motions(self) -> dict[str, Moving]:
         """The motions of the bodies; none where their joints do not decide them."""
-        count = sum(len(self._free(name)) for name in self.names)
-        rates = self._zero(lambda x: self._residuals(self._trial(x, None), 1), count)
+        _, fastest, changes = self.placed.rates
+        rates = self._zero(lambda x: self._residuals(self._trial(x, None), 1), fastest)
         if rates is None:
             return {}
-        changes = self._zero(lambda x: self._residuals(self._trial(rates, x), 2), count)
-        return {} if changes is None else self._trial(rates, changes)
+        found = self._zero(lambda x: self._residuals(self._trial(rates, x), 2), changes)
+        return {} if found is None else self._trial(rates, found)
+
+    @property
+    def _lengths(self) -> Array:
+        """The mechanism's size [m] for an unknown that turns, one for any other, (unknowns,)."""
+        size = self.placed.declared.size
+        return np.array([1.0 if k < 3 else size for name in self.names for k in self._free(name)])
 
     def _free(self, name: str) -> Sequence[int]:
         """The components of a body's velocity and angular velocity, by number, that are unknown."""
@@ -176,19 +182,28 @@ class _Unplaced:
             len(rows), self.reported.t.size
         )
 
-    def _zero(self, residuals: Callable[[Array], Array], count: int) -> Array | None:
+    def _zero(self, residuals: Callable[[Array], Array], largest: Scalar) -> Array | None:
         """The unknowns (count, t) at which gaps that are affine in them are zero; None where they
         are not decided.
+
+        Steps are no less than ``largest``, what no speed or acceleration exceeds, nor than gaps:
+        they may be too large, but smaller ones would be lost in the rounding of gaps. What is
+        decided is seen by shares: unknowns in steps, and each gap by its own slopes.
         """
-        rest = residuals(np.zeros((count, self.reported.t.size)))
+        t, lengths = self.reported.t, self._lengths
+        count = lengths.size
+        rest = residuals(np.zeros((count, t.size)))
+        gap = float(np.max(np.abs(rest), initial=0.0)) * max(1.0, self.placed.declared.size)
+        steps = ((max(float(np.max(largest)), gap) or 1.0) / lengths)[:, None]
         if len(rest) < count:
             return None
-        ones = (
-            np.broadcast_to(row[:, None], (count, self.reported.t.size)) for row in np.eye(count)
-        )
+        ones = (np.broadcast_to(row[:, None], (count, t.size)) * steps for row in np.eye(count))
         slopes = np.stack([residuals(one) - rest for one in ones], axis=1)
-        q, r = np.linalg.qr(np.moveaxis(slopes, -1, 0))
-        sizes = np.abs(np.diagonal(r, axis1=1, axis2=2))
-        if not (sizes.min(axis=1) > _LEAST * sizes.max(axis=1)).all():
+        sizes = np.linalg.norm(slopes, axis=1, keepdims=True)
+        sizes[sizes == 0.0] = 1.0
+        q, r = np.linalg.qr(np.moveaxis(slopes / sizes, -1, 0))
+        shares = np.abs(np.diagonal(r, axis1=1, axis2=2))
+        if not (shares.min(axis=1) > _LEAST * shares.max(axis=1)).all():
             return None
-        return np.asarray(np.linalg.solve(r, np.swapaxes(q, 1, 2) @ -rest.T[..., None])[..., 0].T)
+        right = np.swapaxes(q, 1, 2) @ (-rest / sizes[:, 0]).T[..., None]
+        return np.asarray(np.linalg.solve(r, right)[..., 0].T * steps)

@@ -268,3 +268,19 @@ def test_a_sweep_decides_for_each_design():
         assert any(
             np.isfinite(upright) and np.isnan(leaning) for upright, leaning in found.values()
         )
+
+
+@pytest.mark.xfail(reason="what is open is decided for all places along a link together")
+def test_what_a_hinge_leaves_no_moment_of_is_determined_at_it():
+    """Bricard's loop: a section at a hinge has no moment about the hinge's axis but the drive's
+    effort, at both ends of five links; between them both moments are open.
+    """
+    solution = evaluate(load_case("bricard").scene)
+    for name in solution.links_with_sections:
+        section, driven = solution.section(name), name == "link1"
+        effort = solution.effort("J0") if driven else np.zeros(solution.t.size)
+        size = 1e-12 * np.abs(solution.effort("J0")).max()
+        np.testing.assert_allclose(np.abs(section.bending_z[:, 0]), np.abs(effort), atol=size)
+        np.testing.assert_allclose(section.bending_y[:, -1], 0.0, atol=size)
+        assert np.isnan(section.bending_y[:, :-1]).all()
+        assert np.isnan(section.bending_z[:, 1:]).all()

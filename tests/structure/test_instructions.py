@@ -32,7 +32,7 @@ INSTANT = {
     "servo_press": 223,
     "punch_press": 190,
     "planetary_gear": 628,
-    "screw_lift": 237,
+    "screw_lift": 246,
     "rssr": 779,
     "spatial_slider_crank": 430,
     "stewart_gough": 5322,

@@ -115,7 +115,7 @@ typedef struct {
 typedef struct {
   unsigned seal;
   press_real parameters[5];
-  press_real constants[13];
+  press_real constants[11];
   press_real matter[3];
 } press_model;
 

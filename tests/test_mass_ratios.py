@@ -1,0 +1,94 @@
+"""Heavy masses beside light links: what a guide bears of a slider is in no force of the rod."""
+
+import kinds
+import numpy as np
+import pytest
+from exported import by_c99, exported, instants
+from internals import ROUNDING, points
+from precise import precise
+from truth import true_errors, truth
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
+from lagrange_casadi.errors import LagrangeCasadiError
+from lagrange_casadi.motion import polynomial
+
+MASSES = [1.0, 1e3, 1e5, 1e8, 1e10]
+PINS = ("effort:O", *(f"reaction:{pin}:{member}" for pin in "OAB" for member in ("fx", "fy")))
+ROUNDINGS = 16.0
+"""Of its own peak, that a force may be off."""
+
+
+def held(mass, kind=Mechanism):
+    """A slider-crank at rest, whose guide bears the weight of its slider."""
+    m = kind("held")
+    crank, rod = m.link("crank", length=0.1, mass=0.1), m.link("rod", length=0.25, mass=0.1)
+    slider, space = m.point_mass("slider", mass), kind is SpatialMechanism
+    turn = {"axis": (0, 1, 0)} if space else {}
+    m.revolute("O", m.ground, crank, **turn)
+    m.revolute("A", crank.tip, rod, **turn)
+    m.spherical("B", rod.tip, slider) if space else m.revolute("B", rod.tip, slider)
+    m.prismatic("guide", m.ground, slider, axis=(1, 0, 0) if space else (1, 0))
+    sign = -1.0 if space else 1.0
+    rough = {"A": 1.2, "guide": 0.3} if space else {"rod": -0.3}
+    return Scene(m, {"O": polynomial(0.9 * sign)}, t=(0.0, 0.0, 1), posture=rough)
+
+
+def assert_exact(found, mass, precision="double"):
+    exact = precise(held(mass), 0.0, digits=60)
+    for name in PINS:
+        off = abs(float(found(name) - exact[name]))
+        assert off <= ROUNDINGS * ROUNDING[precision] * abs(float(exact[name])), name
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize("mass", MASSES)
+def test_a_light_rod_before_a_heavy_slider_loses_no_digits(mass, precision):
+    solution = evaluate(held(mass), precision=precision, backend="c")
+    assert_exact(lambda name: solution.array(name)[0], mass, precision)
+    bars = solution.section("rod")
+    light = evaluate(held(0.0)).section("rod")
+    for force in ("axial", "shear", "bending"):
+        one, other = getattr(bars, force), getattr(light, force)
+        size = ROUNDINGS * ROUNDING[precision] * np.max(np.abs(other))
+        np.testing.assert_allclose(one, other, rtol=0, atol=size)
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_nor_does_the_exported_program(tmp_path, precision):
+    scene = held(1e8)
+    _, told = exported(scene, tmp_path, precision=precision)
+    (row,) = by_c99(tmp_path, told, instants(np.zeros(1), precision))
+    names = [output["path"].replace("/", ":") for output in told["outputs"]]
+    assert_exact(lambda name: row[names.index(name)], 1e8, precision)
+
+
+@pytest.mark.parametrize("mass", MASSES)
+def test_nor_does_one_in_space(mass):
+    light, heavy = (evaluate(held(one, SpatialMechanism), backend="vm") for one in (0.0, mass))
+    for name in light.names():
+        if name.startswith(("effort", "reaction:O", "reaction:A", "reaction:B")):
+            one, other = heavy.array(name), light.array(name)
+            np.testing.assert_allclose(one, other, rtol=0, atol=1e-15, err_msg=name)
+
+
+def test_what_the_guide_bears_is_what_the_rod_leaves_to_it():
+    solution = evaluate(held(1e8), backend="vm")
+    fy = solution.array("reaction:guide:fy") + solution.array("reaction:B:fy")
+    np.testing.assert_allclose(fy, 9.81e8, rtol=1e-15)
+
+
+@pytest.mark.sampled(6)
+@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("kind", [kinds.slider_crank, kinds.jumps, kinds.gears, kinds.watt_two])
+def test_errors_are_as_stated_at_any_ratio_of_masses(kind, seed, monkeypatch):
+    """Twelve decades of masses; no force is off by more than ten times what is stated."""
+    monkeypatch.setattr(kinds, "_mass", lambda rng, decades=(): float(10 ** rng.uniform(-4, 8)))
+    scene = kinds.closing(kind, [seed, 1])
+    times = {"t": (*scene.t[:2], 9)}
+    try:
+        solution = evaluate(scene, backend="vm", **times)
+    except LagrangeCasadiError:
+        pytest.skip("the draw does not go on")
+    for name, off in true_errors(solution, truth(scene, points(times["t"]))).items():
+        if name.startswith(("effort", "reaction")):
+            assert off <= 10.0 * solution.errors[name] + 1e-300, name
