@@ -14,6 +14,7 @@ typedef struct {
   const signed char* bent;
   double *tops, *error;
   casadi_real matter[DESIGNS_MATTER], terms[SCENE_SOME(DESIGNS_BOUNDS)];
+  casadi_int passed[SCENE_SOME(DESIGNS_BOUNDS)];
 } designs_now;
 
 static lanes_real designs_lane(const casadi_real* pack, int lane) {
@@ -30,11 +31,10 @@ static void designs_split(double t, lanes_real* moment) {
   if (SCENE_NT > 1) moment[SCENE_NT - 1] = (lanes_real) (t - moment[0]);
 }
 
-/* The columns at LANES times, each near an instant. */
-static void designs_at(const designs_now* now, const double* t, const casadi_int* near, casadi_real* y) {
+/* LANES times, each near an instant, and the iterated coordinates there: NaN where loops do not converge. */
+static void designs_place(const designs_now* now, const double* t, const casadi_int* near, casadi_real* at) {
   const lagrange_casadi_instants* instants = &now->instants;
   lanes_real lane[SCENE_NT][LANES], moment[SCENE_NT], place[SCENE_SOME(SCENE_NZ)][LANES], z[SCENE_SOME(SCENE_NZ)];
-  casadi_real at[SCENE_PLACE + SCENE_NZ];
   int j, k, status;
   for (j = 0; j < LANES; ++j) {
     designs_split(t[j], moment);
@@ -45,6 +45,12 @@ static void designs_at(const designs_now* now, const double* t, const casadi_int
   }
   memcpy(at, lane, sizeof lane);
   if (SCENE_NZ) memcpy(at + SCENE_PLACE, place, sizeof place);
+}
+
+/* The columns there. */
+static void designs_at(const designs_now* now, const double* t, const casadi_int* near, casadi_real* y) {
+  casadi_real at[SCENE_PLACE + SCENE_NZ];
+  designs_place(now, t, near, at);
   scene_columns(&now->scene, at, y);
 }
 
@@ -118,34 +124,87 @@ static void designs_sample(designs_now* now) {
   }
 }
 
-/* Whether a closure comes to zero between an instant and the next, looked for where it is lowest, ever closer. */
-static int designs_dead_between(const designs_now* now, int check, casadi_int i) {
-  double start = now->t[i], stop = now->t[i + 1], t[DESIGNS_INSIDE + LANES], width;
+#if DESIGNS_CLOSINGS
+/* The step that begins at instant i. */
+typedef struct {
+  const designs_now* now;
+  casadi_int i;
+} centre_step;
+
+typedef lanes_real centre_real;
+
+static void centre_path(const centre_step* step, int which, const centre_real* x, centre_real* square, centre_real* rate,
+                        centre_real* slope) {
+  const designs_now* now = step->now;
+  const double start = now->t[step->i], width = now->t[step->i + 1] - start;
+  casadi_real at[SCENE_PLACE + SCENE_NZ], squares[DESIGNS_CLOSINGS], rates[DESIGNS_CLOSINGS];
+  casadi_real slopes[DESIGNS_CLOSINGS*DESIGNS_SLOPES];
+  const casadi_real* arg[6];
+  casadi_real* res[3];
+  double t[LANES];
   casadi_int near[LANES];
-  casadi_real y[SCENE_COLUMNS];
-  lanes_real lowest = DESIGNS_LARGEST, low, x;
-  int round, j, k, best;
-  for (j = 0; j < LANES; ++j) near[j] = i;
-  for (round = 0; round < DESIGNS_ROUNDS; ++round) {
-    width = (stop - start)/(DESIGNS_INSIDE - 1);
-    for (j = 0; j < DESIGNS_INSIDE + LANES; ++j) t[j] = j < DESIGNS_INSIDE - 1 ? start + j*width : stop;
-    low = DESIGNS_LARGEST;
-    best = 0;
-    for (k = 0; k < DESIGNS_INSIDE; k += LANES) {
-      designs_at(now, t + k, near, y);
-      for (j = 0; j < LANES; ++j) {
-        x = designs_lane(y + designs_checked[check], j);
-        if (k + j < DESIGNS_INSIDE && x < low) {
-          low = x;
-          best = k + j;
-        }
+  int first, j, k;
+  res[0] = squares;
+  res[1] = rates;
+  res[2] = slopes;
+  for (first = 0; first < DESIGNS_POINTS; first += LANES) {
+    for (j = 0; j < LANES; ++j) {
+      k = first + j < DESIGNS_POINTS ? first + j : DESIGNS_POINTS - 1;
+      t[j] = start + x[k]*width;
+      near[j] = step->i + !(x[k] < (centre_real) 0.5);
+    }
+    designs_place(now, t, near, at);
+    scene_driven(&now->scene, at, arg);
+    arg[4] = now->scene.parameters;
+    closing(arg, res);
+    for (j = 0; j < LANES && first + j < DESIGNS_POINTS; ++j) {
+      square[first + j] = designs_lane(squares + which, j);
+      rate[first + j] = designs_lane(rates + which, j)*(centre_real) width;
+      for (k = 0; k < DESIGNS_SLOPES; ++k) {
+        slope[DESIGNS_SLOPES*(first + j) + k] = designs_lane(slopes + DESIGNS_SLOPES*which + k, j);
       }
     }
-    if (low < lowest) lowest = low;
-    start = t[best > 0 ? best - 1 : 0];
-    stop = t[best < DESIGNS_INSIDE - 1 ? best + 1 : best];
   }
-  return !(lowest > designs_lane(now->matter + DESIGNS_LIMITS + check, 0));
+}
+
+DESIGNS_CENTRE
+#endif
+
+#if DESIGNS_CLOSINGS
+/* Whether the square of a sine may come to zero in a step: see steps_near of equations/dead_centres.py. */
+static int designs_near_zero(const designs_now* now, const lanes_real* row, int sine, casadi_int i, lanes_real limit) {
+  const double* t = now->t + i;
+  const int* status = now->instants.status + i;
+  lanes_real square[4], least, before = DESIGNS_LARGEST, after = DESIGNS_LARGEST;
+  int first = i > 0 ? 0 : 1, last = i + 2 < now->n ? 3 : 2, k;
+  for (k = first; k <= last; ++k) square[k] = sine ? row[i + k - 1]*row[i + k - 1] : row[i + k - 1];
+  least = square[1] < square[2] ? square[1] : square[2];
+  if (status[0] == SCENE_NOT_CONVERGED || status[1] == SCENE_NOT_CONVERGED || !(least > limit)) return 0;
+  if (first == 0) before = square[1] + (square[1] - square[0])*(lanes_real) ((t[1] - t[0])/(t[0] - t[-1]));
+  if (last == 3) after = square[2] - (square[3] - square[2])*(lanes_real) ((t[1] - t[0])/(t[2] - t[1]));
+  if (first == 1 && last == 2) return 1;
+  return !(before >= least/2 && after >= least/2);
+}
+#endif
+
+/* The first instant after which a check passes a dead centre, or n: in steps that have no neighbour below their lower end. */
+static casadi_int designs_passed(const designs_now* now, int check) {
+#if DESIGNS_CLOSINGS
+  const lanes_real *row = designs_row(now, DESIGNS_CHECKED + check), limit = designs_lane(now->matter + DESIGNS_LIMITS + check, 0);
+  const int sine = designs_kind[check] == DESIGNS_IS_BRANCH;
+  const lanes_real zero = sine ? limit*limit : limit;
+  centre_step step;
+  lanes_real least;
+  step.now = now;
+  for (step.i = 0; step.i + 1 < now->n; ++step.i) {
+    least = row[step.i] < row[step.i + 1] ? row[step.i] : row[step.i + 1];
+    if ((step.i > 0 && row[step.i - 1] < least) || (step.i + 2 < now->n && row[step.i + 2] < least)) continue;
+    if (!(row[step.i] > limit && row[step.i + 1] > limit) || !designs_near_zero(now, row, sine, step.i, zero)) continue;
+    if (centre_passes(&step, designs_closed[check], zero)) return step.i;
+  }
+#endif
+  (void) check;
+  return now->n;
 }
 
 /* The largest of what is checked over all instants. */
@@ -157,52 +216,36 @@ static lanes_real designs_most(const designs_now* now, int check) {
   return most;
 }
 
-/* What the checks of a design are beyond its instants, and the largest terms of rows. Whether what is beside them can break a rule. */
-static int designs_bind(designs_now* now) {
-  int k, kind, near = 0;
-  casadi_int i;
+/* What is beside the checks of a design: the largest terms of rows, and after which instant a dead centre is passed. */
+static void designs_bind(designs_now* now) {
+  int k, kind;
   for (k = 0; k < DESIGNS_BOUNDS; ++k) {
     lanes_real* row = designs_row(now, DESIGNS_CHECKED + k);
     kind = designs_kind[k];
     now->terms[k] = kind == DESIGNS_IS_ROW ? designs_most(now, designs_sized[k]) : (lanes_real) 0;
-    row[-1] = row[now->n] = row[now->n + 1] = kind == DESIGNS_IS_TURNED ? row[now->n - 1] : DESIGNS_OUTSIDE;
-    near |= kind == DESIGNS_IS_TURNED;
-    if (kind != DESIGNS_IS_CLOSURE && kind != DESIGNS_IS_BRANCH) continue;
-    for (i = 0; i < now->n; ++i) near |= !(row[i] >= DESIGNS_NEAR*DESIGNS_NEAR);
+    if (kind == DESIGNS_IS_TURNED) row[now->n] = row[now->n - 1];
+    now->passed[k] = kind == DESIGNS_IS_CLOSURE || kind == DESIGNS_IS_BRANCH ? designs_passed(now, k) : now->n;
   }
-  return near;
 }
 
-/* The first rule that each of a pack of instants breaks, by number, or zero; the pack begins at i, near is what designs_bind sets. */
-LANES_INLINE casadi_real designs_broken(const designs_now* now, int near, casadi_int i) {
-  casadi_real seen[4][SCENE_SOME(DESIGNS_BOUNDS)], beside[SCENE_SOME(DESIGNS_BOUNDS)], iterated = (lanes_real) 0, rule;
+/* The first rule that each of a pack of instants breaks, by number, or zero; the pack begins at i. */
+LANES_INLINE casadi_real designs_broken(const designs_now* now, casadi_int i) {
+  casadi_real seen[SCENE_SOME(DESIGNS_BOUNDS)], beside[SCENE_SOME(DESIGNS_BOUNDS)], iterated = (lanes_real) 0, rule;
   lanes_real lane[LANES];
-  const casadi_real* arg[5];
+  const casadi_real* arg[4];
   casadi_real* res[1];
-  int j, k, side;
+  int j, k;
   for (k = 0; k < DESIGNS_BOUNDS; ++k) {
-    seen[1][k] = scene_load(designs_row(now, DESIGNS_CHECKED + k) + i);
-    beside[k] = now->terms[k];
-  }
-  if (near) {
-    for (side = 0; side < 4; ++side) {
-      for (k = 0; k < DESIGNS_BOUNDS; ++k) seen[side][k] = scene_load(designs_row(now, DESIGNS_CHECKED + k) + i + side - 1);
-      arg[side] = seen[side];
-    }
-    arg[4] = now->terms;
-    res[0] = beside;
-    beside_of(arg, res);
-  }
-  /* The closed forms can be asked. */
-  for (k = 0; near && SCENE_NZ == 0 && k < DESIGNS_BOUNDS; ++k) {
-    if (designs_kind[k] != DESIGNS_IS_CLOSURE) continue;
-    scene_store(lane, beside[k]);
-    for (j = 0; j < LANES && i + j < now->n; ++j) lane[j] = lane[j] > 0 && designs_dead_between(now, k, i + j);
+    const lanes_real* row = designs_row(now, DESIGNS_CHECKED + k) + i;
+    seen[k] = scene_load(row);
+    beside[k] = designs_kind[k] == DESIGNS_IS_TURNED ? scene_load(row + 1) - seen[k] : now->terms[k];
+    if (now->passed[k] < i || now->passed[k] >= i + LANES) continue;
+    for (j = 0; j < LANES; ++j) lane[j] = (lanes_real) (now->passed[k] == i + j);
     beside[k] = scene_load(lane);
   }
   for (j = 0; SCENE_NZ && j < LANES; ++j) lane[j] = i + j < now->n ? (lanes_real) now->instants.status[i + j] : 0;
   if (SCENE_NZ) iterated = scene_load(lane);
-  arg[0] = seen[1];
+  arg[0] = seen;
   arg[1] = now->matter + DESIGNS_LIMITS;
   arg[2] = beside;
   arg[3] = &iterated;
@@ -214,14 +257,14 @@ LANES_INLINE casadi_real designs_broken(const designs_now* now, int near, casadi
 /* Why a design has no result: that of its first instant without one. At rest it has one beside what friction reaches. */
 static int designs_refused(designs_now* now) {
   const casadi_real none = (lanes_real) 0;
-  const int near = designs_bind(now);
   casadi_real rule;
   casadi_int i;
   int j, why, finite = 1;
+  designs_bind(now);
   now->rests = 0;
   for (i = 0; i < now->n; ++i) finite &= now->instants.status[i] != SCENE_NOT_FINITE;
   for (i = 0; i < now->n; i += LANES) {
-    rule = designs_broken(now, near, i);
+    rule = designs_broken(now, i);
     if (finite && !lanes_where_less(none, rule)) continue;
     for (j = 0; j < LANES && i + j < now->n; ++j) {
       why = designs_status[(int) designs_lane(&rule, j)];

@@ -84,6 +84,8 @@ def emit(
     macros["BEGINS"] = int(reduction is not None and newton is not None)
     if reduction is not None:
         macros["REDUCED"] = ""
+        if stages.closing is not None and stages.closing.size1_out(0):
+            wide["closing"] = stages.closing
     text = (
         start(precision)
         + INSTANTS.text(real)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass
+from string import Template
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,8 @@ from ..arithmetic.compensated import DTYPES
 from ..base.status import Status
 from ..base.vocabulary import Precision
 from ..declare.limits import END
+from ..equations.dead_centres import CLOSURES, FAR, POINTS, ROUNDS, TOUCHES
 from ..equations.program import Program
-from ..equations.status import NEAR, outside
 from ..peak_search.intervals import TOPS
 from ..peak_search.sharpness import Watch
 from .calls import Call
@@ -56,9 +57,6 @@ CHECKS = ("CLOSURE", "BRANCH", "ROW", "TURNED")
 """Kinds of what is checked at every instant (:class:`.Bound`) that are seen beside other
 instants.
 """
-
-INSIDE, ROUNDS = 17, 7
-"""Instants at which a dead centre between two others is looked for, and how often, ever closer."""
 
 _PLACES = {"BASE": BASE, "TIP": TIP, "OFF": OFF}
 
@@ -126,7 +124,6 @@ def reduced(program: Program, reduction: Reduction, precision: Precision) -> str
     functions = {
         "matter_of": reduction.mass_properties,
         "status_of": program.status,
-        "beside_of": program.beside,
     }
     return (
         print_functions(functions, precision, prefix="matter", packs=True)
@@ -139,8 +136,17 @@ def reduced(program: Program, reduction: Reduction, precision: Precision) -> str
         + turning(reduction.links)
         + _curves(reduction)
         + "\n"
-        + written("designs.c")
+        + written("designs.c").replace("DESIGNS_CENTRE\n", centre(1 + len(program.driven)), 1)
     )
+
+
+def centre(slopes: int) -> str:
+    """C of the rule of dead centres (:func:`.passes`), for so many slopes of a loop; the types
+    ``centre_real`` and ``centre_step``, and ``centre_path``, stand before it.
+    """
+    values = {"points": POINTS, "rounds": ROUNDS, "far": int(FAR), "slopes": slopes}
+    values |= {"least_order": int(TOUCHES[0]), "most_order": int(TOUCHES[1])}
+    return Template(written("dead_centre.c")).substitute(values)
 
 
 def _macros(program: Program, reduction: Reduction, precision: Precision) -> dict[str, object]:
@@ -167,10 +173,9 @@ def _macros(program: Program, reduction: Reduction, precision: Precision) -> dic
         "BOUNDS": len(program.bounds),
         "DOUBTS": len(reduction.indeterminate_checks),
         "EFFORTS": len(reduction.efforts),
-        "NEAR": _real(NEAR),
-        "OUTSIDE": _real(outside(program)),
-        "INSIDE": INSIDE,
-        "ROUNDS": ROUNDS,
+        "CLOSINGS": sum(bound.kind in CLOSURES for bound in program.bounds),
+        "SLOPES": 1 + len(program.driven),
+        "POINTS": POINTS,
         "TOPS": TOPS,
         "END": _real(END[precision]),
         **{f"IS_{kind}": k for k, kind in enumerate(CHECKS)},
@@ -184,7 +189,9 @@ def _real(value: float) -> str:
 def _tables(program: Program, reduction: Reduction) -> str:
     columns, kinds = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("",))
     sizes = itertools.count(len(program.bounds))
-    beside = [next(sizes) if bound.kind == "ROW" else -1 for bound in program.bounds] or [-1]
+    sized = [next(sizes) if bound.kind == "ROW" else -1 for bound in program.bounds] or [-1]
+    closings = itertools.count()
+    closed = [next(closings) if bound.kind in CLOSURES else -1 for bound in program.bounds] or [-1]
     statuses = [Status.OK, *(rule.status for rule in program.rules)]
     others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
     breaks = [
@@ -194,7 +201,8 @@ def _tables(program: Program, reduction: Reduction) -> str:
     tables: dict[str, Iterable[float | str]] = {
         "checked": columns,
         "kind": (f"DESIGNS_IS_{kind}" if kind in CHECKS else -1 for kind in kinds),
-        "sized": beside,
+        "sized": sized,
+        "closed": closed,
         "status": map(int, statuses),
         "effort": reduction.efforts or (0,),
         "doubted": shown_by,

@@ -96,10 +96,10 @@ static void scene_follow(const lagrange_casadi_instants* call, casadi_int first,
   }
 }
 
-/* The columns y of a pack of instants: at begins with its times; its iterated coordinates come after what the drive gives. */
-static void scene_columns(const scene_design* now, casadi_real* at, casadi_real* y) {
-  casadi_real *counted = at + SCENE_NT, *rates = counted + SCENE_NC, *place = rates + 2*SCENE_ND;
-  const casadi_real* arg[5];
+/* What the drive gives for a pack of instants: at begins with its times, before its iterated coordinates; the arguments of what
+   follows from all of them, but for the last. */
+LANES_INLINE void scene_driven(const scene_design* now, casadi_real* at, const casadi_real** arg) {
+  casadi_real *counted = at + SCENE_NT, *rates = counted + SCENE_NC;
   casadi_real* res[3];
 #if SCENE_NC + SCENE_ND
   arg[0] = at;
@@ -112,7 +112,14 @@ static void scene_columns(const scene_design* now, casadi_real* at, casadi_real*
   arg[0] = counted;
   arg[1] = rates;
   arg[2] = rates + SCENE_ND;
-  arg[3] = place;
+  arg[3] = rates + 2*SCENE_ND;
+}
+
+/* The columns y of a pack of instants. */
+static void scene_columns(const scene_design* now, casadi_real* at, casadi_real* y) {
+  const casadi_real* arg[5];
+  casadi_real* res[1];
+  scene_driven(now, at, arg);
   arg[4] = now->constants;
   res[0] = y;
   instant(arg, res);

@@ -52,13 +52,15 @@ class Stages(Graphs):
     """The functions of an instant, in a precision.
 
     ``drive(t, p) -> (counted, d_rate, d_acceleration)``; ``loops(z, counted, p) -> (correction,
-    size)`` where loops are iterated; ``instant(counted, d_rate, d_acceleration, z, p) -> out``. The
-    drive of single precision takes t and p as pairs, all the rests after all the values.
+    size)`` where loops are iterated; ``instant(counted, d_rate, d_acceleration, z, p) -> out``, and
+    ``closing`` of the same, see :func:`.closing_of`, where it is asked for. The drive of single
+    precision takes t and p as pairs, all the rests after all the values.
     """
 
     drive: ca.Function
     loops: Any | None
     instant: ca.Function
+    closing: ca.Function | None = None
     precision: Precision = "double"
     compensated: bool = False
 
@@ -70,27 +72,25 @@ class Stages(Graphs):
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def plain(program: Program) -> Stages:
-    """The stages of a graph in doubles that count turns themselves."""
+def plain(program: Program, *, closing: bool = False) -> Stages:
+    """The stages of a graph in doubles that count turns themselves; with ``closing`` or without."""
     t, d, rate, acceleration, z, p = program.instant.sx_in()
-    counted = ca.vertcat(t, d)
-    instant = ca.Function(
-        "instant",
-        [counted, rate, acceleration, z, p],
-        program.instant.call([t, d, rate, acceleration, z, p]),
-    )
+    counted, given = ca.vertcat(t, d), [t, d, rate, acceleration, z, p]
+    taken = [counted, rate, acceleration, z, p]
+    instant = ca.Function("instant", taken, program.instant.call(given))
+    closed = ca.Function("closing", taken, program.closing.call(given)) if closing else None
     loops = None
     if program.newton is not None:
         loops = ca.Function("loops", [z, counted, p], program.newton.step.call([z, t, d, p]))
     driven = program.motion.call([t, p])
     drive = ca.Function("drive", [t, p], [ca.vertcat(t, driven[0]), *driven[1:]])
-    return Stages(drive, loops, instant)
+    return Stages(drive, loops, instant, closed)
 
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def compensated(program: Program, precision: Precision) -> Stages:
-    """The stages of a graph in pairs.
+def compensated(program: Program, precision: Precision, *, closing: bool = False) -> Stages:
+    """The stages of a graph in pairs; with ``closing`` or without.
 
     Raises :class:`DeclarationError` for a graph that cannot be followed.
     """
@@ -103,10 +103,12 @@ def compensated(program: Program, precision: Precision) -> Stages:
     driven, *changes = interpret(program.laws.motion, [[t_pair], p_pairs], pairs.arithmetic)
     # As a controller gives them: see controlled().
     driven = [Pair(x.high, _rest(x)) for x in driven] if single else driven
-    handed, loops, instant = _counted(program, pairs, t_pair, driven, p_pairs)
+    handed, loops, instant, closed = _counted(
+        program, pairs, t_pair, driven, p_pairs, closing=closing
+    )
     given = [handed, *(_column([pair.value for pair in row]) for row in changes)]
     drive = ca.Function("drive", [time, ca.vec(parameters)], given, {"cse": True})
-    return Stages(drive, loops, instant, precision, compensated=True)
+    return Stages(drive, loops, instant, closed, precision, compensated=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +117,7 @@ class Controlled(Graphs):
     controller calls.
 
     ``law(t, p) -> (d, d_rate, d_acceleration)`` is the law of the drives; ``count(moment, p) ->
-    counted`` stands for the drive of :class:`Stages`, of which ``loops`` and ``instant`` are. A
+    counted`` stands for the drive of :class:`Stages`, of which the other functions are. A
     moment is the time and the driven coordinates; in single precision all of them once more follow,
     what rounding them to single left. So do t and d; parameters do not.
     """
@@ -124,6 +126,7 @@ class Controlled(Graphs):
     count: ca.Function
     loops: Any | None
     instant: ca.Function
+    closing: ca.Function | None
     precision: Precision
 
 
@@ -139,24 +142,24 @@ def controlled(
     constants. Raises :class:`DeclarationError` for a graph that cannot be followed in pairs.
     """
     if precision == "double":
-        stages, p = plain(program), program.instant.sx_in("p")
+        stages, p = plain(program, closing=True), program.instant.sx_in("p")
         moment = ca.SX.sym("moment", stages.instant.size1_in(0))
         return Controlled(
             program.laws.motion,
             graph("count", {"moment": moment, "p": p}, counted=moment),
             stages.loops,
             stages.instant,
+            stages.closing,
             stages.precision,
         )
     pairs, rows = Pairs(precision), 1 + len(program.driven)
     moment, p = ca.SX.sym("moment", rows, 2), program.instant.sx_in("p")
     t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
     known = [Pair(x) for x in entries(p)] if fixed is None else [pairs.constant(x) for x in fixed]
-    handed, loops, instant = _counted(program, pairs, t, driven, known)
+    handed, loops, instant, closed = _counted(program, pairs, t, driven, known, closing=True)
     count = graph("count", {"moment": ca.vec(moment), "p": p}, counted=handed)
-    return Controlled(
-        _paired_law(program.laws.motion, pairs, p, known), count, loops, instant, precision
-    )
+    law = _paired_law(program.laws.motion, pairs, p, known)
+    return Controlled(law, count, loops, instant, closed, precision)
 
 
 def _rest(pair: Pair) -> ca.SX:
@@ -179,14 +182,16 @@ def _paired_law(smooth: ca.Function, pairs: Pairs, p: ca.SX, known: Sequence[Pai
     )
 
 
-def stages_for(program: Program, precision: Precision, t: Array, p: Array) -> Stages:
+def stages_for(
+    program: Program, precision: Precision, t: Array, p: Array, *, closing: bool = False
+) -> Stages:
     """Stages for instants and parameters: in pairs if numbers are single, and if angles count many
-    turns.
+    turns; with ``closing`` or without.
     """
     return (
-        compensated(program, precision)
+        compensated(program, precision, closing=closing)
         if precision == "single" or turns_many(program, t, p)
-        else plain(program)
+        else plain(program, closing=closing)
     )
 
 
@@ -335,10 +340,16 @@ _FOLLOWED = codes("add sub neg mul sq twice div inv sqrt fabs floor ceil")
 
 
 def _counted(
-    program: Program, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]
-) -> tuple[ca.SX, ca.Function | None, ca.Function]:
-    """Outputs of the drive stage for time and driven coordinates, and the loops and the instant
-    that take them.
+    program: Program,
+    pairs: Pairs,
+    t: Pair,
+    driven: Sequence[Pair],
+    p: Sequence[Pair],
+    *,
+    closing: bool,
+) -> tuple[ca.SX, ca.Function | None, ca.Function, ca.Function | None]:
+    """Outputs of the drive stage for time and driven coordinates, and the loops, the instant and,
+    if it is asked for, the ``closing`` that take them.
     """
     counting = _Counting(pairs)
     _, _, rate, acceleration, z, symbols = program.instant.sx_in()
@@ -349,35 +360,30 @@ def _counted(
     z_values, rates, accelerations = (
         [_Value(x) for x in entries(column)] for column in (z, rate, acceleration)
     )
-    found = (
-        [
-            interpret(
-                program.newton.step, [z_values, [t_value], d_values, p_values], counting.arithmetic
-            )
+    whole = [[t_value], d_values, rates, accelerations, z_values, p_values]
+
+    functions = [("instant", program.instant, whole)]
+    if program.newton is not None:
+        step = [z_values, [t_value], d_values, p_values]
+        functions.insert(0, ("loops", program.newton.step, step))
+    if closing:
+        functions.append(("closing", program.closing, whole))
+    results = {
+        name: [
+            _column([counting.settled(value) for value in output])
+            for output in interpret(function, given, counting.arithmetic)
         ]
-        if program.newton
-        else []
-    )
-    found.append(
-        interpret(
-            program.instant,
-            [[t_value], d_values, rates, accelerations, z_values, p_values],
-            counting.arithmetic,
-        )
-    )
-    results = [
-        [_column([counting.settled(value) for value in output]) for output in outputs]
-        for outputs in found
-    ]
+        for name, function, given in functions
+    }
     counted, handed = counting.handed()
-    given = {"counted": counted, "d_rate": rate, "d_acceleration": acceleration}
-    instant = graph("instant", given | {"z": z, "p": symbols}, out=results[-1][0])
-    loops = (
-        ca.Function("loops", [z, counted, symbols], results[0], {"cse": True})
-        if program.newton
-        else None
-    )
-    return handed, loops, instant
+    taken = {"loops": [z, counted, symbols]}
+    found = {
+        name: ca.Function(
+            name, taken.get(name, [counted, rate, acceleration, z, symbols]), out, {"cse": True}
+        )
+        for name, out in results.items()
+    }
+    return handed, found.get("loops"), found["instant"], found.get("closing")
 
 
 def _column(parts: list[ca.SX]) -> ca.SX:

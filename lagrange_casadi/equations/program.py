@@ -29,12 +29,13 @@ from ..declare.times import Timing
 from ..declare.validity import Margins
 from ..errors import PickleError
 from .checks import Check, Column, Kind
+from .dead_centres import closing_of
 from .fibre_stresses import LinkStress
 from .iteration import NewtonLoop
 from .least_energy import Completion
 from .model_data import ModelData
 from .section_function import SectionInputs, section
-from .status import Bound, Rule, beside_of, bounds_of, rules_of, status_of
+from .status import Bound, Rule, bounds_of, rules_of, status_of
 
 Turns: TypeAlias = tuple[tuple[int, int], ...]
 """Numbers of parts of an angle, and the sign of each."""
@@ -125,11 +126,11 @@ class Program(Graphs):
         return status_of(self)
 
     @symbolic_property
-    def beside(self) -> ca.Function:
-        """The function ``beside(before, checks, next, after, most)``: what :attr:`status` sees of
-        other instants.
+    def closing(self) -> ca.Function:
+        """The function ``closing(t, d, d_rate, d_acceleration, z, p) -> (squares, rates, slopes)``
+        of what is zero at dead centres: see :func:`.closing_of`.
         """
-        return beside_of(self)
+        return closing_of(self)
 
     def seen(self, constraint: str, out: Array) -> Array:
         """Symbols, (..., symbols, t), of a constraint that may have kinks, from columns ``out``

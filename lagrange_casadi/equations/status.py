@@ -16,17 +16,13 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import casadi as ca
 
-from ..arithmetic.scalars import column, graph
-from ..base.arrays import Expression
+from ..arithmetic.scalars import graph
 from ..base.quantities import Output
 from ..base.status import Status
 from ..base.tables import MOMENT
 from .checks import Check
 from .checks import Kind as CheckKind
 from .revolutions import LEAP
-
-NEAR = 0.3
-"""Sines of the transmission angle below which a loop may pass a dead centre."""
 
 if TYPE_CHECKING:
     from .program import Program
@@ -68,8 +64,8 @@ class Bound:
 
     A ``CLOSURE``, of a loop, of three turns, of a bar's roll or of what drives hold, must be above
     its limit, and above its opposite unless links do not reach; so must a ``BRANCH``, whose loop is
-    iterated. Of both ``beside`` says, as one or zero, whether it comes to zero before the next
-    instant, or may do so: see :func:`beside_of`. ``GAP`` and ``TURNED`` must be within the limit by
+    iterated. Of both ``beside`` is one if a dead centre lies between this instant and the next
+    (:mod:`.dead_centres`), else zero. ``GAP`` and ``TURNED`` must be within the limit by
     size; beside the latter stands its change to the next instant. A ``MISFIT``, a ``SLIP``, which
     is what is left of frictions' laws, and what is ``BEYOND`` the ends of a curve must not be above
     it, nor a ``ROW`` by size, times what is beside it: the ``size`` of its terms, a column. What
@@ -134,46 +130,6 @@ def status_of(program: Program) -> ca.Function:
         first = ca.if_else(broken, number, first)
     given = {"checks": checks, "limits": limits, "beside": beside, "iterated": iterated}
     return graph("status", given, rule=first)
-
-
-def beside_of(program: Program) -> ca.Function:
-    """The function ``beside(before, checks, next, after, most)``: what stands beside checks,
-    from those at the instants before and after, and the largest sizes of terms over all instants.
-
-    A loop may pass a dead centre before the next instant where, straight on from either side, the
-    sine of its transmission angle meets zero. The closed forms keep to their branch there, with a
-    kink; the mechanism itself may not.
-    """
-    bounds = program.bounds
-    names = ("before", "checks", "next", "after", "most")
-    inputs = {name: ca.SX.sym(name, len(bounds)) for name in names}
-    found = [ca.SX(0)] * len(bounds)
-    for k, bound in enumerate(bounds):
-        before, here, following, after, most = (column[k] for column in inputs.values())
-        if bound.kind in ("CLOSURE", "BRANCH"):
-            s, next_s = _sine(here), _sine(following)
-            left, right = 2 * s - _sine(before), 2 * next_s - _sine(after)
-            near = ca.logic_and(s < NEAR, next_s < NEAR)
-            found[k] = ca.logic_and(near, ca.logic_and(left < 0, right < 0))
-        elif bound.kind == "TURNED":
-            found[k] = following - here
-        elif bound.kind == "ROW":
-            # Where all stands still, what rounding leaves of rates violates nothing.
-            found[k] = most
-    return graph("beside", inputs, beside=column(found))
-
-
-def outside(program: Program) -> float:
-    """Return the closure that stands beyond the first instant and the last for :func:`beside_of`:
-    that of a loop wide open, so that each end is judged from its one side, or where loops are
-    iterated zero, which passes nothing.
-    """
-    return 1.0 if program.newton is None else 0.0
-
-
-def _sine(closure: Expression) -> Expression:
-    """The sine whose square a closure is; zero of what is not above zero, or not finite."""
-    return ca.sqrt(ca.if_else(closure / 2 < closure, closure, 0))
 
 
 _Fails: TypeAlias = Callable[[Any, Any, Any], Any]

@@ -41,6 +41,7 @@ def wrapper(description: Description) -> str:
         prepared="&model, &parameters" if c.settings else "&model",
         carried="".join(f"  if (state->begun) {line}\n" for line in carried),
         reached=_reached(description),
+        **_between(description),
         give=indented(_given(description)),
         take="\n".join(
             f"  found[{k}] = (double) outputs->{m.name};" for k, m in enumerate(c.outputs)
@@ -55,6 +56,21 @@ _CHECK = """\
       state->prepared = 0;
     }
 """
+
+
+def _between(description: Description) -> dict[str, str]:
+    """Members and statements that look for a dead centre between two instants."""
+    p, P = description.contract.prefix, description.contract.words["P"]
+    if not description.source.closing:
+        return dict.fromkeys(("last", "between", "kept"), "")
+    step = f"({p}_real) (state->time - state->last_time)"
+    return {
+        "last": f"  {p}_inputs last; /* those of the last instant that has outputs */\n"
+        "  double last_time;\n",
+        "between": f"  if (status == {P}_OK && state->begun) {{\n"
+        f"    status = {p}_between(&state->model, &state->last, &inputs, {step});\n  }}\n",
+        "kept": "  state->last = inputs;\n  state->last_time = state->time;\n",
+    }
 
 
 def _limits(description: Description) -> str:

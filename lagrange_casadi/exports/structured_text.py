@@ -15,6 +15,8 @@ import numpy as np
 from ..arithmetic.interpret import INFIX, codes, operation_name, steps
 from ..arithmetic.lookups import Lookup
 from ..base.status import Status
+from ..codegen.emit import NEWTON_STEPS, newton_rule
+from ..equations.dead_centres import FAR, POINTS, ROUNDS, TOUCHES
 from ..errors import DeclarationError
 from ..portable.calls import CALLS, INSTANT, PREPARE
 from ..portable.contract import Member
@@ -45,6 +47,9 @@ _WRITTEN = {
 
 _FINITE = ("IF NOT (y[n] - y[n] = 0.0) THEN", "valid := FALSE;", "END_IF;")
 
+_COUNTERS = ("which", "division", "j", "i", "m", "least", "first", "last")
+"""Whole numbers of the rule of dead centres."""
+
 _LEAST = 1e-37
 """Outputs below it are compared with zero: matiec reads numbers of LREAL in the range of REAL."""
 
@@ -62,6 +67,7 @@ def structured_text(source: Source) -> dict[str, str]:
     taken = _identifiers("out", (m.name for m in c.outputs))
     instant, motion = _Block.of(source, given), _Block.of(source, given)
     body, moved = list(instant.instant()), list(motion.call("law"))
+    between = list(instant.between())
     moved += [f"{given[c.moment[0]]} := t;"] if c.timed else []
     last = len(exported.columns) - 1
     outputs = np.where(np.abs(golden.outputs) > _LEAST, golden.outputs, 0.0)
@@ -76,6 +82,7 @@ def structured_text(source: Source) -> dict[str, str]:
         "registers": indented(instant.declared()),
         "motion_registers": indented(motion.declared()),
         "body": "\n".join(body),
+        "between": "\n".join(between),
         "motion": "\n".join(moved),
         "taken": indented(filled),
         "start": _number(golden.times[0]),
@@ -117,6 +124,12 @@ class _Block:
             yield f"{name} : ARRAY[0..{size - 1}] OF LREAL{start};"
         if "z" in self.arrays:
             yield from ("k : DINT;", "size : LREAL;", "before : LREAL;")
+        if "square" in self.arrays:
+            zeros = ", ".join(map(_number, self.source.exported.zeros))
+            yield f"zero : ARRAY[0..{len(self.source.exported.zeros) - 1}] OF LREAL := [{zeros}];"
+            yield from (f"{name} : LREAL;" for name in ("low", "high", "order", "same"))
+            yield from (f"{name} : BOOL;" for name in ("begun", "crossed", "touches", "open"))
+            yield from (f"{name} : DINT;" for name in _COUNTERS)
         for numbers, name in self.tables.items():
             yield from _table(name, numbers)
 
@@ -143,7 +156,7 @@ class _Block:
         exported, newton = self.source.exported, self.source.exported.program.newton
         assert newton is not None
         z, stood, c = (self.array(name, exported.sizes["loops"]) for name in ("w", "z", "c"))
-        self.vectors |= {"z": z, "loops": z, "correction": c}
+        self.vectors |= {"z": z, "loops": z, "correction": c, "kept": stood}
         turn, rule = _number(math.tau), {key: _number(x) for key, x in exported.rule.items()}
         whole = [
             f" - {turn} * LC_FLOOR({now} / {turn} + 0.5)" if turning else ""
@@ -159,6 +172,59 @@ class _Block:
             iterate="\n".join(_loop("n", 1, int(exported.rule["steps"]), body)),
             keep="\n".join(map("{} := {}{};".format, stood, z, whole)),
             slow=_number(Status.SLOW),
+        ).rstrip()
+
+    def between(self) -> Iterator[str]:
+        """Yield the statements that look for a dead centre on the straight way from the last
+        instant that was valid; none where no loop has one.
+        """
+        exported, moment = self.source.exported, self.vectors["moment"]
+        if not self.source.closing:
+            return
+        sizes, many, drives = exported.sizes, len(exported.zeros), len(self.vectors["rate"])
+        stood, place, gone = (self.array(name, len(moment)) for name in ("stood", "place", "gone"))
+        for name in ("squares", "rates", "slopes"):
+            self.array(name, sizes[name])
+        for name, size in (("part", 1), ("square", 1), ("rate", 1), ("slope", 1 + drives)):
+            self.arrays[name] = POINTS * size
+        own = self.vectors
+        self.vectors = own | {"moment": place, "rate": gone[1:]}
+        self.vectors |= {"acceleration": ["0.0"] * drives, "parameters": own["parameters"]}
+        end = _number(POINTS - 1)
+        point = [f"part[j] := low + (high - low) * DINT_TO_LREAL(j) / {end};"]
+        point += map("{0} := {1} - {2};".format, gone, moment, stood)
+        point += map("{0} := {1} + part[j] * {2};".format, place, stood, gone)
+        point += [*self.call("count")] if "count" in exported.functions else []
+        if "loops" in exported.functions:
+            done = _number(newton_rule("double", None)["done"])
+            point += [*map("{} := {};".format, own["z"], own["kept"]), "size := 1.0;"]
+            body = [f"IF NOT (size < {done}) THEN", *self.call("loops", within="k")]
+            body += [*map("{0} := {0} + {1};".format, own["z"], own["correction"]), "END_IF;"]
+            point += _loop("m", 1, NEWTON_STEPS, body)
+        point += self.call("closing")
+        width = 1 + drives
+        point += ["square[j] := squares[which];", "rate[j] := rates[which];"]
+        point += [f"rate[j] := rate[j] + (gone[0] - 1.0) * slopes[{width} * which];"]
+        point += _loop("i", 0, drives, [f"slope[{width} * j + i] := slopes[{width} * which + i];"])
+        point += ["IF square[j] < -zero[which] THEN", "crossed := TRUE;", "END_IF;"]
+        if "loops" in exported.functions:
+            point += [f"IF NOT (size < {done}) THEN", "square[j] := 0.0;", "END_IF;"]
+        point += ["IF square[j] < square[least] THEN", "least := j;", "END_IF;"]
+        self.vectors = own
+        each = template(
+            "structured_centre.st",
+            rounds=ROUNDS,
+            end=POINTS - 1,
+            far=_number(FAR),
+            low=_number(TOUCHES[0]),
+            high=_number(TOUCHES[1]),
+            slopes=width,
+            points="\n".join(_loop("j", 0, POINTS - 1, point)),
+        )
+        yield template(
+            "structured_between.st",
+            loops="\n".join(_loop("which", 0, many - 1, each.splitlines())),
+            keep="\n".join(map("{} := {};".format, stood, moment)),
         ).rstrip()
 
     def call(self, name: str, within: str = "n") -> Iterator[str]:

@@ -286,6 +286,18 @@ class Interpreter:
         found: Array = self.stages.instant(*self.stages.drive(t[None], p), z, p).full()
         return found
 
+    def close(self, t: Array, p: Array, z: Array) -> None:
+        """Close iterated loops at times (t,), each from its own column of ``z`` (k, t), which is
+        NaN where they do not converge.
+        """
+        if self.stages.loops is None:
+            return
+        rule, fixed = newton_rule("double", None), ca.DM(p)
+        counted = np.atleast_2d(self.stages.drive(t[None], p)[0].full())
+        for i, now in enumerate(counted.T):
+            status, found = self._close(z[:, i], ca.DM(now), fixed, rule)
+            z[:, i] = np.nan if status == Status.NOT_CONVERGED else found
+
     def follow(
         self, t: Array, p: Array, guess: Array, z: Array, status: npt.NDArray[np.int32]
     ) -> None:

@@ -21,10 +21,12 @@ from ..base.arrays import Array
 from ..base.symbolic import symbolic
 from ..base.tables import ANGLE, FORCE, LENGTH, MOMENT
 from ..equations.checks import FRACTIONS, Check, Column
+from ..equations.dead_centres import POINTS
 from ..equations.kinematics import describe_coordinate, where
 from ..equations.program import Program
 from ..errors import DeclarationError
-from .rules import beside, first_broken, limits
+from .dead_centres import Placed, dead_steps
+from .rules import first_broken, limits
 
 TURNS = 4
 """Number of the longest periods."""
@@ -234,19 +236,35 @@ class Drive:
             here = self.settle(angles[i : i + 1], here)
             places[:, i] = here[:, 0]
         values = self.terms_at(angles, places)
-        columns = (bound.column for bound in self.program.bounds)
-        found = dict(zip(columns, beside(self.program, values[0], 0.0), strict=True))
-        for closing, k in self.program.checks("closure").items():
-            if found[k].any():
-                near = describe_coordinate(self.joint, "angle", angles[int(np.argmax(found[k]))])
+        for bound, passed in zip(
+            self.program.bounds, self._dead_steps(angles, places, values[0]), strict=True
+        ):
+            if passed.any():
+                near = describe_coordinate(self.joint, "angle", angles[int(np.argmax(passed))])
                 raise DeclarationError(
-                    f"table: the loop closed by {self.program.data.closing(closing)} is at a dead"
-                    f" centre, or about a degree from one, near {near}"
+                    f"table: the loop closed by {self.program.data.closing(str(bound.part))} passes"
+                    f" a dead centre near {near}"
                 )
         wrapped = values[0, self.wrapped].copy()
         course = Course(angles, places, np.unwrap(wrapped))
         self.unwind(values[0], course.wrapped - wrapped)
         return course, values
+
+    def _dead_steps(self, angles: Array, places: Array, out: Array) -> Array:
+        """Steps of the cycle (bounds, t) that pass a dead centre, as :func:`.dead_steps` gives
+        them.
+        """
+        rate, still = ca.DM.ones(1, POINTS), np.zeros(POINTS)
+
+        def place(i: int, x: Array) -> Placed:
+            width = angles[i + 1] - angles[i]
+            d = angles[i] + x * width
+            z = places[:, np.where(x < 0.5, i, i + 1)]
+            z = self.settle(d, z) if self.program.newton else z
+            return width, still, (ca.DM(d[None]), rate, 0.0 * rate), z
+
+        most = limits(self.program, "double", None, self.program.extent(self.p))
+        return dead_steps(self.program, angles, out, np.isfinite(angles), most, self.p, place)
 
     def _refuse(self, angles: Array, values: Array) -> None:
         program, still = self.program, np.zeros(angles.size)

@@ -16,16 +16,17 @@ from ..arithmetic.compensated import DTYPES
 from ..base.arrays import Array
 from ..base.status import Status
 from ..base.vocabulary import Precision
-from ..codegen.reduction import INSIDE, ROUNDS
+from ..codegen.stages import plain
 from ..declare.ends import share_beyond
 from ..equations.iteration import LARGEST_STEP
 from ..equations.kinematics import where
 from ..equations.program import Program
-from ..equations.status import Bound, Rule, outside
+from ..equations.status import Bound, Rule
 from ..errors import AssemblyError
-from .backends import Evaluated, run
+from .backends import Evaluated, Interpreter
+from .dead_centres import Placed, dead_steps
 from .evaluation_method import EvaluationMethod
-from .rules import beside, first_broken, limits
+from .rules import first_broken, limits
 
 _JAM = (
     "friction has no unique solution there (jamming); reduce mu, lengthen the guide, or push"
@@ -62,7 +63,7 @@ def refusal(
         program.bounds, limits(program, precision, method.newton, program.extent(p)), strict=True
     )
     most = [math.inf if bound.kind.startswith("OPEN") else limit for bound, limit in shares]
-    near = _beside(program, evaluated.out, most, t, p, method)
+    near = _beside(program, evaluated, most, t, p)
     numbers = first_broken(program, evaluated.out, most, near, evaluated.status)
     if not numbers.any() and not (evaluated.status == Status.NOT_FINITE).any():
         return None
@@ -95,24 +96,25 @@ def refusal(
 
 
 def _beside(
-    program: Program,
-    out: Array,
-    most: Sequence[float],
-    t: Array,
-    p: Array,
-    method: EvaluationMethod,
+    program: Program, evaluated: Evaluated, most: Sequence[float], t: Array, p: Array
 ) -> Array:
-    """Values beside the checks of each instant (bounds, t), for :class:`.Bound`.
+    """Values beside the checks of each instant (bounds, t), for :class:`.Bound`."""
+    interpreter = Interpreter(program, plain(program))
 
-    If a closed form may come to zero before the next instant, the zero is looked for.
-    """
-    found = beside(program, out, outside(program))
-    for k, (bound, limit) in enumerate(zip(program.bounds, most, strict=True)):
-        after = np.flatnonzero(found[k])
-        if bound.kind == "CLOSURE" and program.newton is None and after.size:
-            found[k, after] = _dead_between(
-                program, bound, limit, t[after], t[after + 1], p, method
-            )
+    def place(i: int, x: Array) -> Placed:
+        times = t[i] + x * (t[i + 1] - t[i])
+        z = evaluated.iterated[:, np.where(x < 0.5, i, i + 1)].astype(float)
+        interpreter.close(times, p, z)
+        return t[i + 1] - t[i], times, program.motion(times[None], p), z
+
+    closed = evaluated.status != Status.NOT_CONVERGED
+    found = dead_steps(program, t, evaluated.out, closed, most, p, place)
+    for k, bound in enumerate(program.bounds):
+        if bound.kind == "ROW":
+            # Where all stands still, what rounding leaves of rates violates nothing.
+            found[k] = np.fmax.reduce(evaluated.out[bound.size], initial=0.0)
+        elif bound.kind == "TURNED":
+            found[k, :-1] = np.diff(evaluated.out[bound.column])
     return found
 
 
@@ -130,34 +132,6 @@ def unfinished(program: Program, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
     """Instants (t,) without a result; at rest there is one, except for what depends on friction."""
     rests = (evaluated.status == Status.NOT_FINITE) & resting(program, evaluated.out)
     return np.asarray((evaluated.status != Status.OK) & ~rests)
-
-
-def _dead_between(
-    program: Program,
-    bound: Bound,
-    limit: float,
-    start: Array,
-    stop: Array,
-    p: Array,
-    method: EvaluationMethod,
-) -> npt.NDArray[np.bool_]:
-    """Return whether a closure is zero between instants, sought where it is lowest, ever closer."""
-    lowest = np.full(start.size, np.inf)
-    for _ in range(ROUNDS):
-        inside = np.linspace(start, stop, INSIDE)
-        evaluated, _ = run(
-            program,
-            inside.ravel(),
-            p,
-            EvaluationMethod(method.backend, method.precision, flags=method.flags),
-        )
-        closure = evaluated.out[bound.column].reshape(inside.shape)
-        place = np.argmin(closure, axis=0)[None]
-        lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
-        start, stop = (
-            np.take_along_axis(inside, np.clip(place + k, 0, INSIDE - 1), 0)[0] for k in (-1, 1)
-        )
-    return ~(lowest > limit)
 
 
 def _beyond(program: Program, p: Array, precision: Precision, at: str) -> str | None:
@@ -307,16 +281,13 @@ class _Broken:
                 " rest; drive other joints"
             )
         if not passes:
+            limit = self.most[self.program.bounds.index(bound)]
+            band = limit if bound.kind == "BRANCH" else math.sqrt(limit)
             return (
-                f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces"
-                " are indeterminate"
+                f"the loop closed by {closed} is at a dead centre {at}, within rounding, which is a"
+                f" sine of {band:.2g} of its transmission angle: its forces are indeterminate"
             )
-        near = (
-            "; if it only comes close to one, take more instants"
-            if self.program.newton is not None
-            else ""
-        )
         return (
             f"the loop closed by {closed} passes a dead centre {after}, where it can"
-            f" continue on either branch{near}"
+            " continue on either branch"
         )

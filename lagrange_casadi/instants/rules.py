@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +20,7 @@ from ..equations.checks import Check
 from ..equations.friction import SLIP
 from ..equations.program import Program
 from ..equations.revolutions import REACH
-from ..equations.status import NEAR, Bound
+from ..equations.status import Bound
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """Largest residual of redundant equations, relative to the links' length, and of a row, relative to
@@ -97,27 +96,6 @@ def dead_centre(program: Program, precision: Precision, closure: str) -> float:
     return math.sqrt(square) if program.iterates(closure) else square
 
 
-def beside(program: Program, out: Array, outside: float) -> Array:
-    """Values beside the checks of each instant of columns ``out`` (columns, t), (bounds, t): see
-    :class:`.Bound`. Closures are ``outside`` before the first instant and after the last.
-    """
-    count = out.shape[-1]
-    rows = [np.asarray(out[bound.column], float) for bound in program.bounds]
-    found: list[Any] = [
-        np.fmax.reduce(out[bound.size], initial=0.0) if bound.kind == "ROW" else 0.0
-        for bound in program.bounds
-    ]
-    if any(map(_depends_on_others, program.bounds, rows)):
-        ends = [
-            row[-1] if bound.kind == "TURNED" else outside
-            for bound, row in zip(program.bounds, rows, strict=True)
-        ]
-        longer = [np.concatenate(([x], row, [x, x])) for x, row in zip(ends, rows, strict=True)]
-        shifted = [[row[k : k + count] for row in longer] for k in range(4)]
-        (found,) = interpret(program.beside, [*shifted, found], numpy_arithmetic())
-    return np.array([np.broadcast_to(row, count) for row in found], float).reshape(-1, count)
-
-
 def first_broken(
     program: Program,
     out: Array,
@@ -148,10 +126,3 @@ def first_broken(
         if not (np.isnan([*few, *near]).any() or numbers(few, near, np.zeros(2)).any()):
             return np.zeros(status.shape, np.intp)
     return numbers(checks, beside, status.astype(float))
-
-
-def _depends_on_others(bound: Bound, row: Array) -> bool:
-    """Return whether other instants can break a bound: loops must come near a dead centre."""
-    if bound.kind in ("CLOSURE", "BRANCH"):
-        return not bool(((row >= NEAR**2) & (row < math.inf)).all())
-    return bound.kind == "TURNED"

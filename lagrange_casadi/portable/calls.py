@@ -49,12 +49,19 @@ its size is small: it corrects ``z``, from which the next instant starts. ``rule
 the first rule that is broken.
 """
 
+BETWEEN = {
+    "closing": Call(
+        ("counted", "rate", "acceleration", "loops", "parameters"), ("squares", "rates", "slopes")
+    ),
+}
+"""Call for a place between two instants: see :func:`.closing_of`."""
+
 SLOPES = {
     "slopes_of": Call(("time", "d", "rate", "acceleration", "loops", "parameters"), ("s",)),
 }
 """Call for the derivatives of the outputs of an instant."""
 
-CALLS = PREPARE | MOTION | INSTANT | SLOPES
+CALLS = PREPARE | MOTION | INSTANT | BETWEEN | SLOPES
 
 MODEL = ("parameters", "constants", "matter", "loops")
 """Vectors that a model keeps between calls."""

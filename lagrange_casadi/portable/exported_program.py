@@ -22,6 +22,7 @@ from ..codegen.printer import Format, literal, print_functions
 from ..codegen.stages import controlled
 from ..declare.limits import END
 from ..equations.checks import Check, Column
+from ..equations.dead_centres import CLOSURES
 from ..equations.program import Program
 from ..equations.section_function import SectionInputs, section
 from ..instants.cycle_table import CycleTable
@@ -85,6 +86,17 @@ class ExportedProgram:
             yield "UNDETERMINED" if indeterminate else ANSWERS.get(rule.status, "OK")
 
     @property
+    def zeros(self) -> list[float]:
+        """Limits below which the squares of ``closing`` are zero within rounding."""
+        program = self.program
+        most = limits(program, self.precision, self.newton, 0.0)
+        return [
+            float(limit) ** 2 if bound.kind == "BRANCH" else float(limit)
+            for bound, limit in zip(program.bounds, most, strict=True)
+            if bound.kind in CLOSURES
+        ]
+
+    @property
     def text(self) -> str:
         """The C of its functions."""
         return print_functions(self.functions, self.precision, prefix="graph")
@@ -139,6 +151,8 @@ def exported(
         )
     if stages.loops is not None:
         functions["loops"] = stages.loops
+    if read is None and stages.closing is not None:
+        functions["closing"] = stages.closing
     of_sections, sections = _sections(program, symbols, precision)
     filled = {name: f for name, f in (functions | of_sections).items() if f.size1_out(0)}
     return ExportedProgram(

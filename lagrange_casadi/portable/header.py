@@ -75,7 +75,8 @@ def header(source: Source) -> str:
             else ""
         ),
         follows=_follows(source),
-        sections=(template("mechanism_sections.h", **words) if c.links else "")
+        sections=(template("between.h", **words) if source.closing else "")
+        + (template("mechanism_sections.h", **words) if c.links else "")
         + (template("sensitivity.h", **words) if source.slopes else ""),
     )
 

@@ -61,6 +61,7 @@ class Source:
             prepare=indented(written.prepare()),
             motion=indented(written.motion()),
             instant=indented(written.instant()),
+            between=written.between(),
             rows=len(self.exported.columns),
             sections=sections,
             messages="\n".join(
@@ -116,6 +117,11 @@ class Source:
     def iterated(self) -> bool:
         """True if it follows loops from one instant to the next."""
         return "loops" in self.exported.functions
+
+    @property
+    def closing(self) -> bool:
+        """True if it has loops that may pass a dead centre between instants."""
+        return "closing" in self.exported.functions
 
     @property
     def model(self) -> list[tuple[str, str, int]]:

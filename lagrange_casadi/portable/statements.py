@@ -13,8 +13,10 @@ from ..base.quantities import Output
 from ..base.status import Status
 from ..codegen.emit import newton_rule
 from ..codegen.printer import function_name
+from ..codegen.reduction import centre
 from ..declare.ends import BEYOND
-from .calls import INSTANT, PREPARE, CalledInC
+from ..equations.dead_centres import POINTS
+from .calls import INSTANT, MODEL, PREPARE, CalledInC
 from .contract import Contract
 from .data import table_call, table_text
 from .exported_program import ExportedProgram
@@ -80,6 +82,67 @@ class Statements:
                 f"\n/* What a broken rule says, by its number. */\n{kind} broken[] = {{{names}}};\n"
             )
         return found + table_text(self.exported)
+
+    def between(self) -> str:
+        """Return the function of what is between two instants, with what it calls; nothing where no
+        loop has a dead centre.
+        """
+        c, sizes, number = self.contract, self.exported.sizes, self.exported.number
+        if "closing" not in self.exported.functions:
+            return ""
+        given, loops, drives = indented(self._between()), sizes["loops"], len(c.drives)
+        return template(
+            "between.c",
+            **c.words,
+            many=sizes["squares"],
+            limits=", ".join(map(number, self.exported.zeros)),
+            moment=max(1, sizes["moment"]),
+            counted=max(1, sizes["counted"]),
+            drives=drives,
+            kept=f"  casadi_real kept[{loops}];\n" if loops else "",
+            given=given,
+            slopes=1 + drives,
+            all=sizes["slopes"],
+            points=POINTS,
+            rule=centre(1 + drives),
+            sum=" + ".join(f"{at}->{m.name}" for at in ("before", "after") for m in c.inputs),
+        )
+
+    def _between(self) -> Iterator[str]:
+        """Yield the statements that evaluate ``closing`` at a fraction x of a step."""
+        c = self.contract
+        model = {name: f"step->model->{name}" for name in MODEL}
+        calls = CalledInC(self.exported.functions, model)
+        half = len(c.moment) // 2 if c.rests else len(c.moment)
+        for k, member in enumerate(c.moment[:half]):
+            rest = c.moment[half + k] if c.rests else ""
+            if k == 0:
+                yield "gone = x*h;"
+            else:
+                coordinate, v, a = (names[k - 1] for names in c.motion)
+                change = " + ".join(f"(after->{m} - before->{m})" for m in (coordinate, rest) if m)
+                ends = f"h*before->{v}, h*after->{v}, h*h*before->{a}, h*h*after->{a}"
+                straight = f"{change}, {change}, 0, 0"
+                into = f"rate + {k - 1}, acceleration + {k - 1}"
+                yield f"gone = h != 0 ? come(x, {change}, {ends}, {into}) :"
+                yield f"                come(x, {change}, {straight}, {into});"
+            yield f"moment[{k}] = {f'before->{member} + gone' if member else '0'};"
+            if c.rests:
+                left = f"(before->{member} - moment[{k}]) + gone + before->{rest}"
+                yield f"moment[{half + k}] = {left if member else '0'};"
+        if "count" in self.exported.functions:
+            yield from calls.call("count")
+        if "loops" in self.exported.functions:
+            rule, number = newton_rule(c.precision, None), self.exported.number
+            nz, P = self.exported.sizes["loops"], self._upper
+            most = f"{int(rule['steps'])}, {number(rule['done'])}, {number(rule['lost'])}"
+            yield f"for (k = 0; k < {nz}; ++k) kept[k] = step->model->loops[k];"
+            yield f"if (close_loops(step->model, counted, {most}) == {P}_NOT_CONVERGED) {{"
+            yield f"  for (k = 0; k < {nz}; ++k) step->model->loops[k] = nothing;"
+            yield "}"
+        yield from calls.call("closing")
+        if "loops" in self.exported.functions:
+            yield f"for (k = 0; k < {nz}; ++k) step->model->loops[k] = kept[k];"
 
     def defaults(self) -> str:
         """Return the constant with the default parameters."""

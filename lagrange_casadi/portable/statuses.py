@@ -32,6 +32,7 @@ _MEANINGS: dict[str, str | tuple[Status, ...]] = {
     "BEYOND_ENDS": (Status.BEYOND_ENDS,),
     "JAMS": (Status.JAMS,),
     "AT_REST": (Status.AT_REST,),
+    "PASSES_DEAD_CENTRE": (Status.PASSES_DEAD_CENTRE,),
 }
 """Meanings of all answers, or the statuses in whose words they are, in the order of C."""
 
@@ -39,9 +40,7 @@ SHARED = {name: known for name, known in _MEANINGS.items() if isinstance(known, 
 """Answers in the words of :class:`.Status`."""
 
 ANSWERS = {status: name for name, statuses in SHARED.items() for status in statuses}
-"""Answer for a status of an instant; an exported function has no neighbours of an instant, so some
-never occur.
-"""
+"""Answer for a status of an instant."""
 
 STATUSES = {
     name: known if isinstance(known, str) else ", or ".join(status.meaning for status in known)

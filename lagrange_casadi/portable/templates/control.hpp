@@ -30,12 +30,14 @@ using Inertia = std::array<std::array<double, coordinates_count>, drives_count>;
 
 class Control {
  public:
-  /* Makes the model ready; to be called once before all else, and again after a failure of iterated loops. */
-  ${p}_status configure($parameters) { return ${p}_prepare($prepare); }
+  /* Makes the model ready; to be called once before all else, and again after a failure of iterated loops$or_between. */
+  ${p}_status configure($parameters) {$anew
+    return ${p}_prepare($prepare);
+  }
 
-  /* Efforts that make the motion, with all loads of the scene. */
+  /* Efforts that make the motion, with all loads of the scene.$from_before */
   ${p}_status efforts(const Motion& q, const Motion& dq, const Motion& ddq, Efforts& tau$time) {
-    return at(model_, q, dq, ddq, tau$time_given);
+$call
   }
 
   /* How efforts grow with accelerations, d tau/d ddq: the inertia that each drive sees. Exact, for efforts are linear in
@@ -45,10 +47,10 @@ class Control {
     Efforts still, moved;
     Motion ddq = {};
     ${p}_model model = model_;
-    ${p}_status status = at(model, q, dq, ddq, still$time_given);
+    ${p}_status status = at(model, given(q, dq, ddq$time_given), still);
     for (std::size_t j = 0; j < coordinates_count && status == ${P}_OK; ++j) {
       ddq[j] = 1.0;
-      status = at(model, q, dq, ddq, moved$time_given);
+      status = at(model, given(q, dq, ddq$time_given), moved);
       for (std::size_t i = 0; i < drives_count && status == ${P}_OK; ++i) found[i][j] = moved[i] - still[i];
       ddq[j] = 0.0;
     }
@@ -69,11 +71,15 @@ $from_inputs
 
  private:
   ${p}_model model_ = {};
-
-  static ${p}_status at(${p}_model& model, const Motion& q, const Motion& dq, const Motion& ddq, Efforts& tau$time) {
+$members
+  static ${p}_inputs given(const Motion& q, const Motion& dq, const Motion& ddq$time) {
     ${p}_inputs inputs = {};
-    ${p}_outputs outputs;
 $to_inputs
+    return inputs;
+  }
+
+  static ${p}_status at(${p}_model& model, const ${p}_inputs& inputs, Efforts& tau) {
+    ${p}_outputs outputs;
     const ${p}_status status = ${p}_evaluate(&model, &inputs, &outputs);
     if (status != ${P}_OK) return status;
 $to_efforts

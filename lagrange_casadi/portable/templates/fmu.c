@@ -1,7 +1,8 @@
 /* $name as a unit of FMI 2.0, for Model Exchange and for Co-Simulation. Written by lagrange_casadi $version, scene $scene.
 
    Nothing is integrated: outputs follow from inputs, parameters and the time. What goes on from one instant to the next are the
-   whole turns of angles that loops set, and where iterated loops stand. What fails leaves both as they were.
+   whole turns of angles that loops set, where iterated loops stand, and the inputs, for a dead centre between two instants to be
+   seen. What fails leaves them as they were.
 
    In a library that is linked statically all names have the prefix FMI2_FUNCTION_PREFIX, which is to be defined then. */
 #include "fmi2Functions.h"
@@ -33,7 +34,7 @@
 
 typedef struct {
   ${p}_model model;
-  double values[VALUES];
+$last  double values[VALUES];
   double outputs[OUTPUTS]; /* of the last instant that has some */
   double time, reached;
   unsigned mode;
@@ -139,12 +140,12 @@ static fmi2Status update(Unit* unit) {
   before = state->model;
   status = give(state, &inputs);
   if (status == ${P}_OK) status = ${p}_evaluate(&state->model, &inputs, &outputs);
-  state->status = judged(unit, status);
+$between  state->status = judged(unit, status);
   if (status != ${P}_OK) {
     state->model = before;
     return state->status;
   }
-  take(&outputs, found);
+$kept  take(&outputs, found);
   for (k = 0; k < OUTPUTS; ++k) {
     if (turning[k] && state->begun) found[k] += TURN*floor((state->outputs[k] - found[k])/TURN + 0.5);
     state->outputs[k] = found[k];

@@ -85,7 +85,7 @@ ${p}_status ${p}_batch(${p}_model* model, long many, const ${p}_inputs* inputs, 
   }
   return first;
 }
-$sections
+$between$sections
 const char* ${p}_message(${p}_status status) {
   switch (status) {
 $messages

@@ -41,11 +41,11 @@ def stages_of(
     if method.precision == "single" or (
         alike and not ca.depends_on(ca.vertcat(*program.laws.motion(time, p)), p)
     ):
-        return stages_for(program, method.precision, t, program.data.defaults)
+        return stages_for(program, method.precision, t, program.data.defaults, closing=True)
     try:
-        return compensated(program, "double")
+        return compensated(program, "double", closing=True)
     except DeclarationError:
-        return plain(program)
+        return plain(program, closing=True)
 
 
 @dataclass(frozen=True, eq=False)

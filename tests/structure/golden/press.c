@@ -231,6 +231,35 @@ static void status(const casadi_real** arg, casadi_real** res) {
   res[0][0] = a2;
 }
 
+static void closing(const casadi_real** arg, casadi_real** res) {
+  casadi_real a0, a1, a2, a3, a4, a5, a6;
+  a0 = arg[4][1];
+  a1 = arg[0][1];
+  a2 = sin(a1);
+  a3 = arg[4][0];
+  a2 = a2 * a3;
+  a4 = a0 - a2;
+  a2 = a0 + a2;
+  a5 = a4 * a2;
+  a0 = a0 * a0;
+  a6 = 1.0 / a0;
+  a6 = copysign(a6, a0);
+  a5 = a5 * a6;
+  res[0][0] = a5;
+  a1 = cos(a1);
+  a3 = a3 * a1;
+  a4 = a4 * a3;
+  a2 = a2 * a3;
+  a4 = a4 - a2;
+  a6 = a6 * a4;
+  a4 = arg[1][0];
+  a4 = a6 * a4;
+  res[1][0] = a4;
+  a4 = 0.0;
+  res[2][0] = a4;
+  res[2][1] = a6;
+}
+
 static void section_of_0(const casadi_real** arg, casadi_real** res) {
   casadi_real a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10;
   a0 = arg[0][0];
@@ -308,7 +337,7 @@ static int all_finite(const casadi_real* x, int many) {
 }
 
 /* What a broken rule says, by its number. */
-static const press_status broken[] = {PRESS_OK, PRESS_NOT_ASSEMBLED, PRESS_DEAD_CENTRE, PRESS_OK, PRESS_NOT_CLOSED};
+static const press_status broken[] = {PRESS_OK, PRESS_NOT_ASSEMBLED, PRESS_DEAD_CENTRE, PRESS_PASSES_DEAD_CENTRE, PRESS_NOT_CLOSED};
 
 /* Within another function its values are read ahead of all that is written, and kept on the stack. */
 #ifdef __GNUC__
@@ -451,6 +480,123 @@ press_status press_batch(press_model* model, long many, const press_inputs* inpu
   }
   return first;
 }
+
+/* A step between two instants, so many seconds apart. */
+typedef struct {
+  press_model* model;
+  const press_inputs* before;
+  const press_inputs* after;
+  casadi_real width;
+} centre_step;
+
+typedef casadi_real centre_real;
+
+static const casadi_real zero[1] = {7.1054273576010019e-15};
+
+/* How far a coordinate that changes by so much has come at a fraction x of a step, with its rates and accelerations at both ends:
+   v0, v1, a0 and a1 for a unit of x. Its rate and acceleration there are what is returned by way of rate and acceleration. */
+static casadi_real come(casadi_real x, casadi_real change, casadi_real v0, casadi_real v1, casadi_real a0, casadi_real a1,
+                        casadi_real* rate, casadi_real* acceleration) {
+  const casadi_real left = change - v0 - a0/2, gain = v1 - v0 - a0, bend = a1 - a0;
+  const casadi_real c3 = 10*left - 4*gain + bend/2, c4 = 7*gain - 15*left - bend, c5 = 6*left - 3*gain + bend/2;
+  *rate = v0 + x*(a0 + x*(3*c3 + x*(4*c4 + x*5*c5)));
+  *acceleration = a0 + x*(6*c3 + x*(12*c4 + x*20*c5));
+  return x*(v0 + x*(a0/2 + x*(c3 + x*(c4 + x*c5))));
+}
+
+/* Squares of sines of all loops at a fraction x of a step, their rates for a unit of x, and their slopes; NaN where loops do not
+   converge. */
+static void centre_at(const centre_step* step, casadi_real x, casadi_real* squares, casadi_real* rates, casadi_real* slopes) {
+  const press_inputs *before = step->before, *after = step->after;
+  const casadi_real h = step->width;
+  casadi_real moment[2], counted[2], rate[1], acceleration[1], gone;
+  const casadi_real* arg[5];
+  casadi_real* res[3];
+  int k;
+  gone = x*h;
+  moment[0] = 0;
+  gone = h != 0 ? come(x, (after->O - before->O), h*before->O_rate, h*after->O_rate, h*h*before->O_acceleration, h*h*after->O_acceleration, rate + 0, acceleration + 0) :
+                  come(x, (after->O - before->O), (after->O - before->O), (after->O - before->O), 0, 0, rate + 0, acceleration + 0);
+  moment[1] = before->O + gone;
+  arg[0] = moment;
+  arg[1] = step->model->parameters;
+  res[0] = counted;
+  count(arg, res);
+  arg[0] = counted;
+  arg[1] = rate;
+  arg[2] = acceleration;
+  arg[3] = 0;
+  arg[4] = step->model->parameters;
+  res[0] = squares;
+  res[1] = rates;
+  res[2] = slopes;
+  closing(arg, res);
+  for (k = 0; k < 1; ++k) rates[k] = rates[k] + (h - 1)*slopes[2*k];
+}
+
+static void centre_path(const centre_step* step, int which, const centre_real* x, centre_real* square, centre_real* rate,
+                        centre_real* slope) {
+  casadi_real squares[1], rates[1], slopes[2];
+  int j, k;
+  for (j = 0; j < 8; ++j) {
+    centre_at(step, x[j], squares, rates, slopes);
+    square[j] = squares[which];
+    rate[j] = rates[which];
+    for (k = 0; k < 2; ++k) slope[2*j + k] = slopes[2*which + k];
+  }
+}
+
+/* Whether the determinant of loop number which changes its sign in a step, or its links do not reach there: by the order of the zero
+   of its square. centre_path gives at 8 fractions x of the step the square, its rate for a unit of x, and 2 slopes for each
+   fraction; below limit squares are zero within rounding. */
+static int centre_passes(const centre_step* step, int which, centre_real limit) {
+  centre_real x[8], square[8], rate[8], slope[8*2], low = 0, high = 1, order = 0, same = 0;
+  int touches = 0, round, least, a, b, k;
+  for (round = 0; round < 20; ++round) {
+    for (k = 0; k < 8; ++k) x[k] = k < 8 - 1 ? low + (high - low)*(centre_real) k/(8 - 1) : high;
+    centre_path(step, which, x, square, rate, slope);
+    least = 0;
+    for (k = 0; k < 8; ++k) {
+      if (square[k] < -limit) return 1;
+      if (!(square[k] == square[k])) square[k] = 0;
+      if (square[k] < square[least]) least = k;
+    }
+    touches |= square[least] <= limit;
+    a = rate[least] < 0 ? least : least - 1;
+    b = a + 1;
+    while (a > 0 && square[a] <= 16*limit) --a;
+    while (b < 8 - 1 && square[b] <= 16*limit) ++b;
+    if (a < 0 || b == 8 || !(rate[a] < 0 && rate[b] > 0)) return 0;
+    order = (x[b] - x[a])/(square[b]/rate[b] - square[a]/rate[a]);
+    if (order < 1) return 0;
+    same = 0;
+    for (k = 0; k < 2; ++k) same = same + slope[2*a + k]*slope[2*b + k];
+    if (b - a == 8 - 1) break;
+    low = x[a];
+    high = x[b];
+  }
+  return touches && !(order >= 3 && order <= 10 && same >= 0);
+}
+
+press_status press_between(press_model* model, const press_inputs* before, const press_inputs* after, press_real step) {
+  casadi_real squares[2][1], rates[2][1], slopes[2];
+  centre_step whole;
+  int k;
+  if (model->seal != SEAL) return PRESS_NOT_PREPARED;
+  if (!is_finite(before->O + before->O_rate + before->O_acceleration + after->O + after->O_rate + after->O_acceleration + step)) return PRESS_BAD_INPUT;
+  whole.model = model;
+  whole.before = before;
+  whole.after = after;
+  whole.width = step;
+  centre_at(&whole, 0, squares[0], rates[0], slopes);
+  centre_at(&whole, 1, squares[1], rates[1], slopes);
+  for (k = 0; k < 1; ++k) {
+    if (rates[0][k] > 0 && !(rates[1][k] > 0 && squares[1][k] <= squares[0][k])) continue;
+    if (rates[1][k] < 0 && !(rates[0][k] < 0 && squares[0][k] <= squares[1][k])) continue;
+    if (centre_passes(&whole, k, zero[k])) return PRESS_PASSES_DEAD_CENTRE;
+  }
+  return PRESS_OK;
+}
 static void no_forces(press_forces* forces) {
   forces->axial = forces->shear = forces->bending = nothing;
 }
@@ -541,6 +687,8 @@ const char* press_message(press_status status) {
     return "the mechanism jams: its friction forces have no unique solution";
   case PRESS_AT_REST:
     return "a joint with friction is at rest, so its friction is indeterminate: take instants of motion, or give the friction smooth=";
+  case PRESS_PASSES_DEAD_CENTRE:
+    return "between two instants a loop passes through a dead centre, a joint through gimbal lock, a two-force link through its beside= direction, or the drives through a position in which they cannot produce the motion";
   }
   return "unknown status";
 }

@@ -38,7 +38,7 @@ extern "C" {
 
 /* Bytes of stack that any call of these functions takes at most, without what the C library takes for a sine, on machines whose
    pointers are of 8 bytes or less. */
-#define PRESS_STACK 1240
+#define PRESS_STACK 1656
 
 typedef double press_real;
 
@@ -62,7 +62,8 @@ typedef enum {
   PRESS_TURNED = 16 /* a load depends on the number of revolutions of an angle, which cannot be determined */,
   PRESS_BEYOND_ENDS = 17 /* the argument of a curve is outside the curve's range */,
   PRESS_JAMS = 18 /* the mechanism jams: its friction forces have no unique solution */,
-  PRESS_AT_REST = 19 /* a joint with friction is at rest, so its friction is indeterminate: take instants of motion, or give the friction smooth= */
+  PRESS_AT_REST = 19 /* a joint with friction is at rest, so its friction is indeterminate: take instants of motion, or give the friction smooth= */,
+  PRESS_PASSES_DEAD_CENTRE = 20 /* between two instants a loop passes through a dead centre, a joint through gimbal lock, a two-force link through its beside= direction, or the drives through a position in which they cannot produce the motion */
 } press_status;
 
 /* Numbers that may change without generating anything again.
@@ -133,6 +134,11 @@ press_status press_evaluate(press_model* model, const press_inputs* inputs,
    PRESS_OK, if any. */
 press_status press_batch(press_model* model, long many, const press_inputs* inputs,
                          press_outputs* outputs, press_status* statuses);
+
+/* The status between two instants, step seconds apart, by their inputs: whether a loop passes a dead centre there, where it can go
+   on in either assembly. Both instants must be PRESS_OK, after the last that was evaluated. Drives move as smoothly from one to the
+   other as their coordinates, rates and accelerations allow; if step is 0, straight. */
+press_status press_between(press_model* model, const press_inputs* before, const press_inputs* after, press_real step);
 
 /* The forces inside a link at the ratio xi = distance from the base / length, from 0 to 1, for outputs of this
    model; at a station, where they jump, those on its side towards the tip. */
