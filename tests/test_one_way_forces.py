@@ -7,8 +7,10 @@ The reference knows the side of each interval of time from the law, and compares
 import casadi as ca
 import numpy as np
 import pytest
+from internals import Output, ReportRow, ReportRows
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, optimise, prepare, refine, sweep
+from lagrange_casadi.errors import NoDesignError
 
 POLYNOMIAL = np.polynomial.polynomial
 RISES = {"345": (0, 0, 0, 10, -15, 6), "septic": (0, 0, 0, 0, 35, -84, 70, -20)}
@@ -254,3 +256,14 @@ def test_a_peak_that_cannot_be_located_spoils_no_other(backend):
     assert np.isnan(found["effort:way"])
     assert found["reaction:way:fy"] == pytest.approx(20.0 * 9.81, rel=1e-13)
     assert found["motion:way"] == pytest.approx(1.0, rel=1e-13)
+
+
+def test_messages_say_what_switches_too_often():
+    scene = one_way(lambda rate: ca.fmod(rate, 1e-5))
+    with pytest.raises(NoDesignError, match=r"peak cannot be located .* smooth the load"):
+        optimise(scene, minimise="peak:effort:way", over={"mass": (10.0, 30.0)}, starts=1, screen=2)
+    solution = evaluate(scene, certificate=False)
+    found = refine(scene, solution)
+    rows = tuple(ReportRow(Output.of(peak.name), peak.unit, peak=peak) for peak in found)
+    (note,) = ReportRows(solution, rows).notes()
+    assert "(effort:way): load 'work' switches too often" in note

@@ -98,8 +98,8 @@ class KeptOutputs:
             - {-1}
             for link in along
         ]
-        parts = [*map(set, chosen.values()), *(row for row in rows for _ in table.forces)]
-        sharpness = Sharpness.of(program, sorted(set().union(*parts)))
+        made_of = [*map(set, chosen.values()), *(row for row in rows for _ in table.forces)]
+        sharpness = Sharpness.of(program, sorted({k for columns in made_of for k in columns}))
         checks = [(bound.column, bound.kind) for bound in program.bounds]
         doubted = {k: number for number, (k, kind) in enumerate(checks) if kind.startswith("OPEN")}
         sizes = [(bound.size, "SIZE") for bound in program.bounds if bound.kind == "ROW"]
@@ -122,7 +122,7 @@ class KeptOutputs:
             margins=margins,
             watches=sharpness.watches,
             knots=sharpness.knots,
-            depends=sharpness.reaching(parts),
+            depends=sharpness.reaching(made_of),
         )
         return cls(tuple(names), units, efforts, tuple(links), reduction, sharpness)
 
