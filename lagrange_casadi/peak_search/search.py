@@ -242,7 +242,7 @@ class _Search:
         """Take in what all curves are at some times."""
         counts = self.counts(t, samples.watched)[self.quantity]
         for j, time in enumerate(t):
-            for curve in np.flatnonzero(counts[:, j]):
+            for curve in np.flatnonzero(counts[:, j]).tolist():
                 self.note(curve, samples.values[curve, j], time, samples.places[curve, j])
 
     def counts(self, t: Array, watched: Array) -> Flags:
