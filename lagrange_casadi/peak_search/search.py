@@ -25,22 +25,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from . import fits
-from .between import (
-    NOISE,
-    QUIET,
-    SWITCHING,
-    Flags,
-    gaps,
-    hiding_at,
-    highest,
-    lingers,
-    reach,
-    scatter,
-    shaken,
-    side,
-    undecided,
-    unresolved,
-)
+from .between import NOISE, QUIET, Flags, highest, reach, shaken, unresolved
 from .intervals import (
     INNER,
     SIDE,
@@ -56,7 +41,7 @@ from .intervals import (
     sides,
 )
 from .listing import Counted, Tops, base_of
-from .sharpness import Kind
+from .switches import Switches
 
 DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
@@ -180,11 +165,9 @@ class _Search:
         )
         self.resolved, self.going = np.ones(self.best.size, bool), np.zeros(self.best.size)
         self.samples, self.hidden = samples.values, 0
-        self.watched, self.inner = samples.watched, -1
-        self.noises, self.sides = np.zeros(len(curves.watches)), np.zeros((len(curves.watches), 2))
+        self.switches = Switches(source, curves, t, samples.watched)
         self.step = float(t[-1] - t[0]) / max(t.size - 1, 1)
         self.budget = self.quota = INTERVALS + 4 * t.size
-        self.ignored = np.zeros(len(curves.watches), bool)
         self.tops = Tops(self.quantity, self.best.size, self.step)
 
     @property
@@ -240,69 +223,18 @@ class _Search:
 
     def note_all(self, t: Array, samples: Samples) -> None:
         """Take in what all curves are at some times."""
-        counts = self.counts(t, samples.watched)[self.quantity]
+        counts = self.switches.counts(t, samples.watched)[self.quantity]
         for j, time in enumerate(t):
             for curve in np.flatnonzero(counts[:, j]).tolist():
                 self.note(curve, samples.values[curve, j], time, samples.places[curve, j])
-
-    def counts(self, t: Array, watched: Array) -> Flags:
-        """Return whether what is found at times counts for each quantity, (quantities, t): where a
-        watched function that a quantity depends on may be on a side by rounding, that must be one
-        that it has at an instant before or after.
-        """
-        found = np.ones((self.best.size, t.size), bool)
-        step = (t - self.begin) // self.step if self.inner < 0 else np.full(t.size, self.inner)
-        step = np.clip(step, 0, self.watched.shape[1] - 2).astype(int)
-        for k, watch in enumerate(self.curves.watches):
-            if watch.kind not in (Kind.SWITCH, Kind.STEP) or self.ignored[k]:
-                continue
-            here, all_ = side(watch, watched[k]), side(watch, self.watched[k])
-            seen = (here == all_[step]) | (here == all_[step + 1])
-            if self.inner >= 0:
-                seen |= (here == self.sides[k][:, None]).any(axis=0)
-                seen |= ~((self.noises[k] > 0.0) & (gaps(watch, watched[k]) <= self.noises[k]))
-            found &= seen | ~self.curves.depending[k][:, None]
-        return found
-
-    def measure(self, step: int) -> None:
-        """Begin to search a step between instants: how large is the rounding of what switches
-        there, as some times next to both instants show, and on which sides it is beyond that,
-        before and after.
-        """
-        self.inner, self.noises[:] = step, 0.0
-        watches = self.curves.watches
-        switching = [k for k in np.flatnonzero(~self.ignored) if watches[k].kind in SWITCHING]
-        start, stop = self.begin + self.step * np.array([step, step + 1])
-        beside = max(SIDE * self.step, SPACING * max(abs(start), abs(stop)))
-        if 2 * QUIET * beside < stop - start and any(
-            lingers(self.watched[k], watches[k], step) for k in switching
-        ):
-            shares = beside * np.arange(QUIET)
-            near = self.source.at(np.concatenate([start + shares, stop - shares])).watched
-            for k in switching:
-                noise = max(map(scatter, np.split(near[k], 2)))
-                apart = np.flatnonzero(gaps(watches[k], self.watched[k]) > noise)
-                before, after = apart[apart <= step], apart[apart > step]
-                ends = [*before[-1:], 0][0], [*after[:1], self.watched.shape[1] - 1][0]
-                self.noises[k] = noise
-                self.sides[k] = side(watches[k], self.watched[k][[*ends]])
-
-    def vague(self, watched: Array) -> Flags:
-        """Steps in which watched functions hide nothing: rounding decides on which side they are,
-        or they are ignored, (watches, n - 1).
-        """
-        return np.asarray(self.undecided(watched) | self.ignored[:, None])
-
-    def undecided(self, watched: Array) -> Flags:
-        """Steps in which rounding decides on which side watched functions are, (watches, n - 1)."""
-        given = zip(watched, self.curves.watches, self.noises, strict=True)
-        return np.array([undecided(*one) for one in given], bool).reshape(-1, watched.shape[1] - 1)
 
     def toward_ends(self, interval: Interval, vague: Flags, rounded: Flags) -> None:
         """Sample ever closer to both ends of steps in a row in which a watched function switches
         by rounding: what it switches is largest at one of them.
         """
-        for row, switches in zip(vague[~self.ignored], rounded[~self.ignored], strict=True):
+        for row, switches in zip(
+            vague[~self.switches.ignored], rounded[~self.switches.ignored], strict=True
+        ):
             ends = np.flatnonzero(np.diff(np.concatenate([[False], row, [False]]).astype(int)))
             for first, last in ends.reshape(-1, 2).tolist():
                 if switches[first:last].any():
@@ -349,7 +281,9 @@ class _Search:
         if interval.t.size < fits.SEVEN:
             return np.full(self.best.size, np.inf)
         watched, watches = interval.samples.watched, self.curves.watches
-        if (hiding | unresolved(watched, watches, interval.step, self.vague(watched))[0]).any():
+        if (
+            hiding | unresolved(watched, watches, interval.step, self.switches.vague(watched))[0]
+        ).any():
             return np.full(self.best.size, np.inf)
         furthest = self.best.copy()
         np.maximum.at(furthest, self.quantity, reach(values).max(axis=1))
@@ -363,7 +297,7 @@ class _Search:
         else:
             kinks = np.histogram(self.knots, interval.t)[0] if depth and self.knots.size else None
             watched, watches = interval.samples.watched, self.curves.watches
-            vague = self.vague(watched)
+            vague = self.switches.vague(watched)
             unseen, kinked, rounded = unresolved(
                 watched, watches, interval.step, vague, kinks, depth >= FINEST
             )
@@ -388,38 +322,26 @@ class _Search:
             if not (rise[step] > 0.0 or hiding[step]):
                 return
             risen = bound[:, step] > self.limit
-            if not risen.any() and self.is_ignored(interval, step):
+            if not risen.any() and self.switches.is_ignored(interval, step):
                 hiding[step] = False
             elif depth == DEEPEST or interval.step <= SPACING * np.abs(interval.t).max():
                 self.end(interval, step, risen, depth == DEEPEST)
             elif self.budget > 0:
                 self.budget -= 1
                 if depth == 0:
-                    self.measure(step)
+                    self.switches.measure(step)
                 self.inside(interval, step, depth)
-                self.inner = self.inner if depth else -1
+                self.switches.step = self.switches.step if depth else -1
             else:
                 self.give_up(interval, step, risen, bool(hiding[step]))
             hiding[step], bound[:, step] = False, -np.inf
-
-    def is_ignored(self, interval: Interval, step: int) -> bool:
-        """Return whether only ignored functions hide something in a step."""
-        if not self.ignored.any():
-            return False
-        hides = self.hiding_at(interval, step)
-        return bool(hides.any() and not (hides & ~self.ignored).any())
-
-    def hiding_at(self, interval: Interval, step: int) -> Flags:
-        """Which watched functions hide something in a step, ignored ones too, (watches,)."""
-        watched, watches = interval.samples.watched, self.curves.watches
-        return hiding_at(watched, watches, interval.step, self.undecided(watched), step)
 
     def give_up(self, interval: Interval, step: int, risen: Flags, hides: bool) -> None:
         """End the search of the quantities for which a step takes too many panels, and ignore the
         functions that hide something there; half as many panels are left for other quantities.
         """
-        found = self.hiding_at(interval, step) & hides
-        self.ignored |= found
+        found = self.switches.hiding_at(interval, step) & hides
+        self.switches.ignored |= found
         ended = self.curves.depending[found].any(axis=0) if found.any() else hides
         self.resolved[ended | np.isin(np.arange(self.resolved.size), self.quantity[risen])] = False
         self.quota //= 2
@@ -433,7 +355,7 @@ class _Search:
         first = interval.samples.some(slice(step, step + 1))
         last = interval.samples.some(slice(step + 1, step + 2))
         beside = SIDE * self.step
-        vague = self.vague(interval.samples.watched)[:, step]
+        vague = self.switches.vague(interval.samples.watched)[:, step]
         found = sides(self.source, interval, step, self.curves.watches, beside, vague)
         if found is None:
             self.part(start, stop, first, last, depth)
@@ -460,7 +382,7 @@ class _Search:
         values[lacks] = 0.0
         broken = np.asarray(~np.isfinite(values).all(axis=0))
         values = np.where(np.isfinite(values), values, 0.0)
-        counts = self.counts(t, watched)[self.quantity, 1:-1]
+        counts = self.switches.counts(t, watched)[self.quantity, 1:-1]
         for curve in range(values.shape[0]):
             known = (self.best if self.share is None else self.least)[self.quantity[curve]]
             for j in np.flatnonzero((np.abs(values[curve, 1:-1]) > known) & counts[curve]) + 1:
@@ -525,7 +447,7 @@ class _Search:
                 continue
             time = (t[step] + t[step + 1]) / 2
             values, places, watched = self.source.at(np.array([time]))
-            counts = self.counts(np.array([time]), watched)[self.quantity, 0]
+            counts = self.switches.counts(np.array([time]), watched)[self.quantity, 0]
             straight &= counts[curves]
             for curve in curves[straight].tolist():
                 self.note(curve, values[curve, 0], time, places[curve, 0])
@@ -653,7 +575,7 @@ class _Search:
             return
         times = np.array([t for _, t in places])
         values, ratios, watched = self.source.at(times)
-        counts = self.counts(times, watched)[self.quantity]
+        counts = self.switches.counts(times, watched)[self.quantity]
         for k, (candidate, t) in enumerate(places):
             curve = candidate.curve
             if not counts[curve, k]:
