@@ -48,6 +48,8 @@ from lagrange_casadi.base.units import number as units_number
 from lagrange_casadi.base.vocabulary import PRECISIONS
 from lagrange_casadi.beams.beam import beam_from_numbers, beam_to_numbers
 from lagrange_casadi.beams.profiles import Profile, read_profiles
+from lagrange_casadi.cli.report import Row as ReportRow
+from lagrange_casadi.cli.report import Rows as ReportRows
 from lagrange_casadi.cli.report import peak_line, shown
 from lagrange_casadi.cli.report import readable as report_readable
 from lagrange_casadi.cli.run import slope_lines

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -179,20 +179,26 @@ def expressed(step: Step, operands: Sequence[ca.SX]) -> ca.SX:
 def operations(function: ca.Function, inputs: Sequence[ca.SX]) -> list[tuple[int, list[ca.SX]]]:
     """Every operation of an SX function of scalars, with the expressions of ``inputs`` that it is
     applied to.
-
-    Of a table's cell (``OP_CALL``) the second is the numbers between its cells.
     """
     found: list[tuple[int, list[Any]]] = []
 
     def made(_k: int, step: Step, operands: list[ca.SX]) -> ca.SX:
-        if step.looked_up is None and step.operation != ca.OP_CONST:
-            found.append((step.operation, operands))
-        elif step.looked_up is not None and step.looked_up.kind == "cell":
-            found.append((ca.OP_CALL, [*operands, ca.SX(step.looked_up.numbers[1:-1])]))
+        found.extend(operation_of(step, operands))
         return expressed(step, operands)
 
     replay(function, [given.nonzeros() for given in inputs], made)
     return found
+
+
+def operation_of(step: Step, operands: list[ca.SX]) -> Iterator[tuple[int, list[ca.SX]]]:
+    """The operation of a step and its operands; nothing for a constant.
+
+    Of a table's cell (``OP_CALL``) the second is the numbers between its cells.
+    """
+    if step.looked_up is None and step.operation != ca.OP_CONST:
+        yield step.operation, operands
+    elif step.looked_up is not None and step.looked_up.kind == "cell":
+        yield ca.OP_CALL, [*operands, ca.SX(step.looked_up.numbers[1:-1])]
 
 
 def written_out(expression: ca.SX) -> Expression:

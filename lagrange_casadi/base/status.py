@@ -69,8 +69,9 @@ _MEANINGS = {
         "a load depends on the number of revolutions of an angle, which cannot be determined"
     ),
     Status.PEAK_NOT_TOLD: (
-        "a peak cannot be located: the quantity may be larger between the instants; take more"
-        " instants"
+        "a peak cannot be located between the instants: what a comparison or a remainder switches"
+        " there switches too often, or a quantity grows too slowly; refine one design to see which"
+        " quantity and load, and smooth the load, or want other outputs"
     ),
     Status.BEYOND_ENDS: "the argument of a curve is outside the curve's range",
     Status.JAMS: "the mechanism jams: its friction forces have no unique solution",

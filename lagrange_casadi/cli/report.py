@@ -19,7 +19,7 @@ from ..instants.statistics import Statistics
 _ROUNDING = 5e-7
 """Errors below this share of the largest value of their unit are rounding."""
 _DIGITS = 6
-NOT_FOUND = "; the peak between the instants was not found, use more instants"
+NOT_FOUND = "; the peak between the instants was not found"
 """End of the line of a peak of which only the ``least`` size is known."""
 
 _INDETERMINATE = "indeterminate"
@@ -128,10 +128,14 @@ class Rows:
                 "note: equilibrium does not determine what is indeterminate: the mechanism is"
                 " over-constrained; beams of its links and --elastic may determine it"
             )
-        if any(row.peak and row.peak.least is not None for row in self.rows):
+        missing = [row.output for row in self.rows if row.peak and row.peak.least is not None]
+        if missing:
+            loads = dict.fromkeys(f"'{one.part}'" for one in missing if one.group == "load")
+            what = f"load {', '.join(loads)}" if loads else "a comparison or a remainder"
             yield (
-                "note: >= marks a peak that was not found between the instants, because too many"
-                " local peaks may be there: use more instants"
+                f"note: >= marks a peak that was not found between the instants ({missing[0]}):"
+                f" {what} switches too often there, or has no bound; smooth what switches, as by"
+                " tanh in place of sign"
             )
 
     @cached_property

@@ -110,6 +110,200 @@ static int search_kinks(const search_real* row, long long i, long long n, int ki
   return high > most + SEARCH_RISE && high > nearest - SEARCH_NEGLIGIBLE ? SEARCH_MANY : 0;
 }
 
+/* What a row's values beside step i of n - 1 are off by rounding: where third differences are no smaller than second ones, and change
+   their sign to and fro, as those of a steep flank do not. Where all are so near that they differ by nothing else, these need not. */
+#define SEARCH_QUIET 10
+static search_real search_shaken(const search_real* row, long long step, long long n, int near) {
+  search_real sorted[2][SEARCH_QUIET], x, median[2], before = 0;
+  long long first = step - SEARCH_QUIET/2 + 1;
+  int j, k, order, count, turns = 0;
+  if (n < SEARCH_QUIET) return 0;
+  first = first < 0 ? 0 : first > n - SEARCH_QUIET ? n - SEARCH_QUIET : first;
+  row += first;
+  for (order = 0; order < 2; ++order) {
+    count = SEARCH_QUIET - 2 - order;
+    for (j = 0; j < count; ++j) {
+      x = order ? row[j + 3] - 3*row[j + 2] + 3*row[j + 1] - row[j] : row[j + 2] - 2*row[j + 1] + row[j];
+      turns += order && j && ((x < 0 && before > 0) || (x > 0 && before < 0));
+      before = x;
+      x = x < 0 ? -x : x;
+      for (k = j; k > 0 && sorted[order][k - 1] > x; --k) sorted[order][k] = sorted[order][k - 1];
+      sorted[order][k] = x;
+    }
+    median[order] = count % 2 ? sorted[order][count/2] : (sorted[order][count/2 - 1] + sorted[order][count/2])/2;
+  }
+  return near || (turns >= 2 && median[1] >= median[0]) ? 3*median[1] : 0;
+}
+
+/* How far one of the watched is from the nearest number at which it switches. */
+static search_real search_gap(const search_now* now, int watch, search_real x) {
+  const lagrange_casadi_curves* curves = now->curves;
+  search_real gap = SEARCH_LARGEST;
+  int k;
+  if (curves->watch[watch] == SEARCH_IS_STEP) return search_magnitude(x - search_floor(x + SEARCH_HALF));
+  if (curves->watch[watch] == SEARCH_IS_ROOT) return search_magnitude(x);
+  for (k = curves->watch_first[watch]; k < curves->watch_first[watch + 1]; ++k) {
+    gap = search_lower(search_magnitude(x - curves->watch_at[k]), gap);
+  }
+  return gap;
+}
+
+/* On which side of the numbers at which it switches one of the watched is: twice as many as are below it, and one more at one. */
+static search_real search_side(const search_now* now, int watch, search_real x) {
+  const lagrange_casadi_curves* curves = now->curves;
+  search_real side = 0;
+  int k;
+  if (curves->watch[watch] == SEARCH_IS_STEP) return 2*search_floor(x) + (search_floor(x) == x);
+  for (k = curves->watch_first[watch]; k < curves->watch_first[watch + 1]; ++k) {
+    side += 2*(curves->watch_at[k] < x) + (curves->watch_at[k] == x);
+  }
+  return side;
+}
+
+static int search_is_switching(const search_now* now, int watch) {
+  const int kind = now->curves->watch[watch];
+  return SEARCH_NUMBERED(kind) || kind == SEARCH_IS_ROOT || kind == SEARCH_IS_STEP;
+}
+
+static int search_depends(const search_now* now, int watch, int quantity) {
+  return now->curves->depends[watch*now->curves->quantities + quantity];
+}
+
+/* Whether what is found at a time counts for a quantity: where one of the watched that it depends on may be on a side by rounding, that
+   must be one that it has at an instant before or after. */
+static int search_counts(const search_now* now, int quantity, double t, const search_real* watched, long long apart) {
+  const double x = (t - now->t[0])/(2*now->half);
+  long long i = now->step >= 0 ? now->step : x > 0 ? (long long) x : 0;
+  search_real side;
+  int j, k, seen;
+  i = i < now->n - 2 ? i : now->n - 2;
+  for (k = 0; k < now->curves->watches; ++k) {
+    const int kind = now->curves->watch[k];
+    if ((kind != SEARCH_IS_SWITCH && kind != SEARCH_IS_STEP) || now->ignored[k] || !search_depends(now, k, quantity)) continue;
+    if (now->step >= 0 && !(now->noise[k] > 0 && search_gap(now, k, watched[k*apart]) <= now->noise[k])) continue;
+    side = search_side(now, k, watched[k*apart]);
+    for (seen = j = 0; j < 2; ++j) {
+      seen |= side == search_side(now, k, search_watched(&now->all, k)[i + j]);
+      seen |= now->step >= 0 && side == now->sides[2*k + j];
+    }
+    if (!seen) return 0;
+  }
+  return 1;
+}
+
+/* How near to a kink, a jump or rest its sides are. */
+static double search_beside(const search_now* now, const search_panel* panel) {
+  const double beside = SEARCH_SIDE*2*now->half, least = search_spacing(panel);
+  return beside < least ? least : beside;
+}
+
+/* Whether one of the watched may be at a number at which it switches in more than a point of a step between instants: it comes near
+   to one, but does not go on from one side to another. */
+static int search_lingers(const search_now* now, int watch, long long step) {
+  const search_real *row = search_watched(&now->all, watch) + step, change = search_magnitude(row[1] - row[0]);
+  const search_real gap = search_lower(search_gap(now, watch, row[0]), search_gap(now, watch, row[1]));
+  search_real low = search_lower(row[0], row[1]), high = search_upper(row[0], row[1]);
+  const long long before = step > 0 ? -1 : 0, after = step + 2 < now->n ? 2 : 1;
+  const search_real apart = search_side(now, watch, row[before]) - search_side(now, watch, row[after]);
+  low = search_lower(low, search_lower(row[before], row[after]));
+  high = search_upper(high, search_upper(row[before], row[after]));
+  if (search_magnitude(apart) >= 2 && change >= SEARCH_EVEN*(high - low)) return 0;
+  return gap <= SEARCH_HALF*change + search_magnitude(high - low - (search_real) (after - before)*change);
+}
+
+/* Begin to search a step between instants: how large is the rounding of what switches there, as some times next to both instants show,
+   and on which sides it is beyond that, before and after. */
+static void search_measure(search_now* now, long long step) {
+  const search_panel* all = &now->all;
+  const int own = (int) (now->curves->curves + now->curves->places), watches = (int) now->curves->watches;
+  const int together = now->call->together;
+  const double beside = search_beside(now, all);
+  double t[2*SEARCH_QUIET];
+  long long at;
+  int i, j, k, any = 0;
+  for (k = 0; k < watches; ++k) {
+    now->noise[k] = 0;
+    if (!search_is_switching(now, k) || now->ignored[k] || any) continue;
+    any = search_lingers(now, k, step);
+  }
+  now->step = step;
+  if (!any || !(2*SEARCH_QUIET*beside < all->t[step + 1] - all->t[step])) return;
+  for (j = 0; j < SEARCH_QUIET; ++j) {
+    t[j] = all->t[step] + j*beside;
+    t[SEARCH_QUIET + j] = all->t[step + 1] - j*beside;
+  }
+  for (i = 0; i < 2*SEARCH_QUIET; i += together) {
+    search_evaluate(now, t + i, 2*SEARCH_QUIET - i < together ? 2*SEARCH_QUIET - i : together, 0, now->found, together);
+    for (j = i; j < 2*SEARCH_QUIET && j < i + together; ++j) {
+      for (k = 0; k < watches; ++k) now->near[2*SEARCH_QUIET*k + j] = search_found(now, own + k, j - i);
+    }
+  }
+  for (k = 0; k < watches; ++k) {
+    const search_real *near = now->near + 2*SEARCH_QUIET*k, *row = search_watched(all, k);
+    if (!search_is_switching(now, k)) continue;
+    now->noise[k] = search_upper(search_shaken(near, 0, SEARCH_QUIET, 1), search_shaken(near + SEARCH_QUIET, 0, SEARCH_QUIET, 1));
+    for (at = step; at > 0 && search_gap(now, k, row[at]) <= now->noise[k]; --at) {}
+    now->sides[2*k] = search_side(now, k, row[at]);
+    for (at = step + 1; at < now->n - 1 && search_gap(now, k, row[at]) <= now->noise[k]; ++at) {}
+    now->sides[2*k + 1] = search_side(now, k, row[at]);
+  }
+}
+
+/* Whether rounding decides, at both ends of a step, on which side of a number one of the watched is. */
+static int search_rounds(const search_now* now, const search_panel* panel, int watch, long long step) {
+  const search_real *row = search_watched(panel, watch) + step, noise = now->noise[watch];
+  if (now->step < 0 || !(noise > 0) || step < 0 || step > panel->n - 2) return 0;
+  return search_gap(now, watch, row[0]) <= noise && search_gap(now, watch, row[1]) <= noise;
+}
+
+/* Whether one of the watched hides nothing in a step, where rounding decides on which side it is there or in a step beside. */
+static int search_undecided(const search_now* now, const search_panel* panel, int watch, long long step) {
+  return step >= 0 && step < panel->n - 1 &&
+         (search_rounds(now, panel, watch, step) || search_rounds(now, panel, watch, step - 1) ||
+          search_rounds(now, panel, watch, step + 1));
+}
+
+/* Whether rounding switches a curve in a step, which is no kink of it. */
+static int search_switches(const search_now* now, const search_panel* panel, int curve, long long step) {
+  int k;
+  for (k = 0; k < now->curves->watches; ++k) {
+    if (search_depends(now, k, now->quantity[curve]) && search_undecided(now, panel, k, step)) return 1;
+  }
+  return 0;
+}
+
+/* Take in what all curves are at a time, of a column with what is so far apart. */
+static void search_note_column(search_now* now, double t, const search_real* column, long long apart) {
+  const search_real *places = column + now->curves->curves*apart, *watched = places + now->curves->places*apart;
+  int k;
+  for (k = 0; k < now->curves->curves; ++k) {
+    if (!search_counts(now, now->quantity[k], t, watched, apart)) continue;
+    search_note(now, k, column[k*apart], t, search_ratio(now, k, places, apart));
+  }
+}
+
+/* Sample ever closer to both ends of steps in a row in which rounding switches one of the watched: what that switches is largest at one
+   of them. Becomes the last of these steps. */
+static long long search_toward_ends(search_now* now, const search_panel* panel, int watch, long long step) {
+  const int together = now->call->together;
+  long long first = step, last = step;
+  double t[2*SEARCH_INNER], width;
+  int i, j;
+  while (search_undecided(now, panel, watch, first - 1)) --first;
+  while (search_undecided(now, panel, watch, last + 1)) ++last;
+  width = panel->t[last + 1] - panel->t[first];
+  for (i = 0; i < SEARCH_INNER; ++i) {
+    width /= SEARCH_INNER + 1;
+    t[i] = panel->t[first] + width;
+    t[SEARCH_INNER + i] = panel->t[last + 1] - width;
+  }
+  for (i = 0; i < 2*SEARCH_INNER; i += together) {
+    search_evaluate(now, t + i, 2*SEARCH_INNER - i < together ? 2*SEARCH_INNER - i : together, ~0ull, now->found, together);
+    for (j = i; j < 2*SEARCH_INNER && j < i + together; ++j) search_note_column(now, t[j], now->found + j - i, together);
+  }
+  return last;
+}
+
 /* Whether any step may have a kink in one of the watched or more; to be asked of ordinary rows, so it looks at packs. */
 static int search_is_sharp(search_real* row, long long n, int kind, double step) {
   const search_real rate = (search_real) (SEARCH_RATE/step);
@@ -134,11 +328,11 @@ static int search_is_sharp(search_real* row, long long n, int kind, double step)
 
 /* Find in which steps of a panel something may hide; inside a step between instants, kinks of the motion are counted too. In the
    finest steps rounding makes kinks, where what is watched is nearly zero, and poles alone hide more. */
-static void search_hide(const search_now* now, const search_panel* panel, int depth) {
+static void search_hide(search_now* now, const search_panel* panel, int depth) {
   const lagrange_casadi_curves* curves = now->curves;
   const long long steps = panel->n - 1;
   const double step = search_width(panel);
-  long long i;
+  long long i, sampled;
   int any = 0, k;
   memset(panel->kinks, 0, (size_t) steps);
   for (k = 0; depth > 0 && k < curves->knots; ++k) {
@@ -150,10 +344,14 @@ static void search_hide(const search_now* now, const search_panel* panel, int de
   for (k = 0; k < curves->watches; ++k) {
     search_real* row = search_watched(panel, k);
     const int kind = curves->watch[k], first = curves->watch_first[k];
-    if (!search_is_sharp(row, panel->n, kind, step)) continue;
-    for (i = 0; i < steps; ++i) {
+    if (now->ignored[k] || !search_is_sharp(row, panel->n, kind, step)) continue;
+    for (sampled = -1, i = 0; i < steps; ++i) {
       const int found = search_kinks(row, i, panel->n, kind, curves->watch_at + first, curves->watch_first[k + 1] - first, step,
                                      panel->kinks[i] || panel->hiding[i] & SEARCH_HIDES);
+      if (found && search_undecided(now, panel, k, i)) {
+        if (i > sampled && depth < SEARCH_FINEST && !now->call->error) sampled = search_toward_ends(now, panel, k, i);
+        continue;
+      }
       if (found == SEARCH_MANY) {
         if (depth < SEARCH_FINEST || kind == SEARCH_IS_POLE) panel->hiding[i] |= SEARCH_HIDES;
         continue;
@@ -175,4 +373,46 @@ static int search_kinked(const search_now* now, const search_panel* panel, long 
   int k, kinked = panel->kinks[step] || panel->hiding[step] & SEARCH_HIDES;
   for (k = 0; k < now->curves->knots; ++k) kinked |= knot[k] > panel->t[step] && knot[k] < panel->t[step + 1];
   return kinked;
+}
+
+/* Whether one of the watched may hide something in a step, alone or with another kink there or beside it. */
+static int search_hides_at(const search_now* now, const search_panel* panel, int watch, long long step) {
+  const int first = now->curves->watch_first[watch];
+  long long i;
+  int found;
+  for (i = step > 0 ? step - 1 : 0; i <= step + 1 && i < panel->n - 1; ++i) {
+    found = search_kinks(search_watched(panel, watch), i, panel->n, now->curves->watch[watch], now->curves->watch_at + first,
+                         now->curves->watch_first[watch + 1] - first, search_width(panel), 0);
+    if (found && (i == step || found != SEARCH_MANY) && !search_undecided(now, panel, watch, i)) return 1;
+  }
+  return 0;
+}
+
+/* Whether only what is ignored hides something in a step. */
+static int search_is_ignored(const search_now* now, const search_panel* panel, long long step) {
+  int k, any = 0;
+  for (k = 0; now->ignoring && k < now->curves->watches; ++k) {
+    if (!search_hides_at(now, panel, k, step)) continue;
+    if (!now->ignored[k]) return 0;
+    any = 1;
+  }
+  return any;
+}
+
+/* End the search of the quantities for which a step takes too many panels: that of a curve, or of what depends on what hides there, which
+   is ignored. Half as many panels are left for others. */
+static void search_give_up(search_now* now, const search_panel* panel, int curve, long long step) {
+  const int quantities = (int) now->curves->quantities;
+  int k, q, any = 0;
+  for (k = 0; curve < 0 && k < now->curves->watches; ++k) {
+    if (!search_hides_at(now, panel, k, step)) continue;
+    any = now->ignoring = now->ignored[k] = 1;
+    for (q = 0; q < quantities; ++q) now->peaks[q].unlocated |= search_depends(now, k, q);
+  }
+  for (q = 0; q < quantities; ++q) {
+    now->peaks[q].unlocated |= curve < 0 ? !any : q == now->quantity[curve];
+    search_grow(now, q, now->peaks[q].best);
+  }
+  now->quota /= 2;
+  now->left = now->quota;
 }

@@ -9,7 +9,7 @@ enum { SEARCH_AT_BASE = -1, SEARCH_AT_TIP = -2 };
 /* The largest size of a quantity that is known, and at the instants; and the first that is as large but for rounding: its size, with
    its sign, its time and its ratio xi/l. least is what a summit must reach that matters. going is its size where it grows on and no
    end of that is found. base is what values are counted from. Open: not searched. unlocated: the search would take too many
-   panels. */
+   panels, and has ended. */
 typedef struct {
   double t;
   search_real best, rounding, least, limit, sampled, size, place, sign, going, base;
@@ -27,21 +27,23 @@ typedef struct {
 
 enum { SEARCH_HIDES = 1, SEARCH_DONE = 2 };
 
-/* A search. left are panels that it may still take, hidden steps in which something may hide; none says which
-   curves are no number at any instant. inner are rows of panels within each other, columns what such panels
+/* A search. left are panels that it may still take of a quota, hidden steps in which something may hide; none says which
+   curves are no number at any instant, ignored which of the watched hide too much. In a step
+   between instants that is searched, noise is the rounding of what is watched, and sides are those on which it is before and after;
+   step is below zero elsewhere, near what is watched there. inner are rows of panels within each other, columns what such panels
    have at their ends, found what was evaluated last. */
 typedef struct {
   const lagrange_casadi_search_call* call;
   const lagrange_casadi_curves* curves;
   const int *quantity, *link, *placed;
-  long long n, left, hidden;
+  long long n, left, quota, hidden, step;
   const double* t;
   double half;
   search_panel all;
   search_peak* peaks;
-  search_real *scale, *inner, *columns, *found;
-  signed char *zigzags, *none;
-  int stopped;
+  search_real *scale, *inner, *columns, *found, *noise, *sides, *near;
+  signed char *zigzags, *none, *ignored;
+  int ignoring, stopped;
 } search_now;
 
 static search_real search_magnitude(search_real x) { return x < 0 ? -x : x; }
@@ -103,7 +105,7 @@ static void search_grow(const search_now* now, int q, search_real best) {
   peak->best = best;
   peak->rounding = SEARCH_ROUNDING*(best + SEARCH_BESIDE*scale);
   peak->least = now->call->tops ? (search_real) now->call->share*best : best - peak->rounding;
-  peak->limit = !(best > SEARCH_NOTHING*scale) || peak->open ? (search_real) INFINITY
+  peak->limit = !(best > SEARCH_NOTHING*scale) || peak->open || peak->unlocated ? (search_real) INFINITY
                 : now->call->tops ? peak->least : best + peak->rounding;
 }
 

@@ -16,6 +16,7 @@ from ..base.vocabulary import Precision
 from ..declare.limits import END
 from ..equations.dead_centres import CLOSURES, FAR, POINTS, ROUNDS, TOUCHES
 from ..equations.program import Program
+from ..peak_search.between import Flags
 from ..peak_search.intervals import TOPS
 from ..peak_search.sharpness import Watch
 from .calls import Call
@@ -72,7 +73,8 @@ class Reduction:
     ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them
     not zero either: the first is the mechanism's extent [m]. Then comes what ``sections.c`` takes
     for each link, and the limits of bounds. ``watches`` are what the last columns are watched for,
-    ``knots`` times of kinks: see :class:`.Sharpness`.
+    ``knots`` times of kinks, and ``depends`` (watches, quantities) which quantity depends on which
+    watched function: see :class:`.Sharpness`.
     """
 
     quantities: tuple[tuple[int, ...], ...]
@@ -86,6 +88,7 @@ class Reduction:
     margins: int
     watches: tuple[Watch, ...]
     knots: tuple[float, ...]
+    depends: Flags
 
     @property
     def curves(self) -> list[tuple[int, int, int]]:
@@ -116,7 +119,7 @@ class Reduction:
 
     def tables(self, precision: Precision) -> Tables:
         """The curves as the search takes them."""
-        return Tables.of(self.curves, self.units, self.watches, self.knots, precision)
+        return Tables.of(self.curves, self.units, self.watches, self.knots, self.depends, precision)
 
 
 def reduced(program: Program, reduction: Reduction, precision: Precision) -> str:

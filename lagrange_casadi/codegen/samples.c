@@ -2,7 +2,6 @@
 #define SEARCH_SUMMITS 64
 #define SEARCH_ENTRIES (4*SEARCH_SUMMITS)
 #define SEARCH_LOOKS (5*SEARCH_SUMMITS)
-#define SEARCH_QUIET 10
 /* Of a step: times that are one. */
 #define SEARCH_SAME_TIME 1e-11
 
@@ -32,7 +31,7 @@ typedef struct {
    rounding, and takes no further lane of a pack. */
 static void search_look(search_now* now, double step, const double* times, const int* curves, search_real* found, int many) {
   const double same = SEARCH_SAME_TIME*step;
-  const int together = now->call->together;
+  const int together = now->call->together, own = (int) (now->curves->curves + now->curves->places);
   double t[SEARCH_LOOKS];
   unsigned long long need;
   int lane[SEARCH_LOOKS], apart = 0, known, first, j, k;
@@ -54,37 +53,20 @@ static void search_look(search_now* now, double step, const double* times, const
       j = lane[k] - first;
       if (j < 0 || j >= together) continue;
       found[k] = search_found(now, curves[k], j);
-      search_note(now, curves[k], found[k], t[lane[k]], search_found_ratio(now, curves[k], j));
+      if (search_counts(now, now->quantity[curves[k]], t[lane[k]], now->found + own*together + j, together)) {
+        search_note(now, curves[k], found[k], t[lane[k]], search_found_ratio(now, curves[k], j));
+      } else {
+        found[k] = (search_real) NAN;  /* which closes nothing */
+      }
     }
   }
 }
 
-/* What a curve's values beside a step are off by rounding: where third differences are no smaller than second ones, and change
-   their sign to and fro, as those of a steep flank do not. */
+/* What a curve's values beside a step are off by rounding. */
 static search_real search_noise(const search_now* now, const search_panel* panel, int curve, long long step) {
-  const search_real* row = search_row(panel, curve);
   const search_peak* peak = now->peaks + now->quantity[curve];
-  search_real sorted[2][SEARCH_QUIET], x, median[2], before = 0;
-  long long first = step - SEARCH_QUIET/2 + 1;
-  int j, k, order, count, turns = 0;
-  if (panel->n < SEARCH_QUIET) return 0;
-  first = first < 0 ? 0 : first > panel->n - SEARCH_QUIET ? panel->n - SEARCH_QUIET : first;
-  row += first;
-  for (order = 0; order < 2; ++order) {
-    count = SEARCH_QUIET - 2 - order;
-    for (j = 0; j < count; ++j) {
-      x = order ? row[j + 3] - 3*row[j + 2] + 3*row[j + 1] - row[j] : row[j + 2] - 2*row[j + 1] + row[j];
-      turns += order && j && ((x < 0 && before > 0) || (x > 0 && before < 0));
-      before = x;
-      x = x < 0 ? -x : x;
-      for (k = j; k > 0 && sorted[order][k - 1] > x; --k) sorted[order][k] = sorted[order][k - 1];
-      sorted[order][k] = x;
-    }
-    median[order] = count % 2 ? sorted[order][count/2] : (sorted[order][count/2 - 1] + sorted[order][count/2])/2;
-  }
-  if (turns < 2 || !(median[1] >= median[0])) return 0;
-  if (!(median[1] <= SEARCH_NOISE*(peak->best + SEARCH_BESIDE*now->scale[now->curves->unit[now->quantity[curve]]]))) return 0;
-  return 3*median[1];
+  const search_real off = search_shaken(search_row(panel, curve), step, panel->n, 0);
+  return off <= 3*SEARCH_NOISE*(peak->best + SEARCH_BESIDE*now->scale[now->curves->unit[now->quantity[curve]]]) ? off : 0;
 }
 
 /* Whether what was found closes both steps beside a summit; else, if it is worth another look, the summit says where. */
@@ -103,6 +85,7 @@ static int search_closed(const search_now* now, const search_panel* panel, searc
   if ((summit->at == 0 && slope < 0) || (summit->at == panel->n - 1 && slope > 0)) {
     return found < summit->sign*search_row(panel, summit->curve)[summit->at];
   }
+  if (search_magnitude(slope) > -summit->curve_there) return 0;
   summit->again = 1;
   summit->t -= search_width(panel)*(double) (slope/summit->curve_there);
   summit->size = found + gain;
@@ -131,6 +114,7 @@ static int search_rounded(const search_now* now, int curve) {
 static void search_open(search_now* now, const search_panel* panel, search_list* list, int curve, long long step, int anywhere) {
   search_entry* entry = list->entries + list->open;
   const search_real limit = search_level(now, panel, curve, step), noise = search_noise(now, panel, curve, step);
+  if (search_switches(now, panel, curve, step)) return;
   entry->curve = curve;
   entry->step = step;
   entry->bound = search_furthest(search_row(panel, curve), step, panel->n);

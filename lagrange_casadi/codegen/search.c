@@ -44,7 +44,7 @@ static void search_end(search_now* now, const search_panel* panel, int curve, lo
 /* Search one step of a curve, or of all curves if its number is negative. If no panels are left, its peak is not located. */
 static void search_enter(search_now* now, const search_panel* panel, int curve, long long step, int depth) {
   int k;
-  if (panel->hiding[step] & SEARCH_DONE || now->stopped) return;
+  if (panel->hiding[step] & SEARCH_DONE || now->stopped || (curve < 0 && search_is_ignored(now, panel, step))) return;
   if (depth == SEARCH_DEEPEST || search_width(panel) <= search_spacing(panel)) {
     panel->hiding[step] |= SEARCH_DONE;
     for (k = 0; panel->n >= SEARCH_FIT && k < now->curves->curves; ++k) {
@@ -54,11 +54,11 @@ static void search_enter(search_now* now, const search_panel* panel, int curve, 
   } else if (now->left > 0) {
     panel->hiding[step] |= SEARCH_DONE;
     --now->left;
+    if (depth == 0) search_measure(now, step);
     search_inside(now, panel, step, depth);
-  } else if (curve >= 0) {
-    now->peaks[now->quantity[curve]].unlocated = 1;
+    if (depth == 0) now->step = -1;
   } else {
-    for (k = 0; k < now->curves->quantities; ++k) now->peaks[k].unlocated = 1;
+    search_give_up(now, panel, curve, step);
   }
 }
 
@@ -125,7 +125,7 @@ static void search_list_step(search_now* now, const search_panel* panel, int cur
   search_real size[4];
   long long i;
   int k, topped = 0;
-  if (search_located_before(now, panel, curve, step) || search_list_stretch(now, panel, curve, step, list)) return;
+  if (search_switches(now, panel, curve, step) || search_located_before(now, panel, curve, step) || search_list_stretch(now, panel, curve, step, list)) return;
   for (k = 0; k < 4; ++k) {
     i = step - 1 + k;
     size[k] = i < 0 || i >= panel->n ? -1 : row[i] < 0 ? -row[i] : row[i];
@@ -291,6 +291,7 @@ static void search_largest(search_now* now) {
   const lagrange_casadi_curves* curves = now->curves;
   int j, k, q;
   memset(now->none, 0, (size_t) curves->curves);
+  memset(now->ignored, 0, (size_t) curves->watches);
   for (q = 0; q < curves->quantities; ++q) now->peaks[q].base = 0;
   if (now->call->way) search_one_way(now);
   if (now->call->rests) search_leave_out(now);
@@ -468,6 +469,10 @@ static long long search_lay(search_now* now, const lagrange_casadi_search_call* 
   now->found = (search_real*) search_take(&room, call->together*rows, sizeof *now->found);
   now->zigzags = (signed char*) search_take(&room, curves->curves, 1);
   now->none = (signed char*) search_take(&room, curves->curves, 1);
+  now->ignored = (signed char*) search_take(&room, curves->watches, 1);
+  now->noise = (search_real*) search_take(&room, curves->watches, sizeof *now->noise);
+  now->sides = (search_real*) search_take(&room, 2*curves->watches, sizeof *now->sides);
+  now->near = (search_real*) search_take(&room, 2*SEARCH_QUIET*curves->watches, sizeof *now->near);
   return room - call->room;
 }
 
@@ -499,8 +504,9 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   now.n = call->n;
   now.t = call->t;
   now.half = call->n > 1 ? (call->t[call->n - 1] - call->t[0])/(double) (2*(call->n - 1)) : 1;
-  now.left = SEARCH_PANELS + 4*call->n;
-  now.hidden = now.stopped = 0;
+  now.left = now.quota = SEARCH_PANELS + 4*call->n;
+  now.hidden = now.ignoring = now.stopped = 0;
+  now.step = -1;
   now.all.n = call->n;
   now.all.stride = call->stride;
   now.all.t = call->t;

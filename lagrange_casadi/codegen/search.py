@@ -49,12 +49,14 @@ CURVES = Call(
         "watch_first": "const int*",
         "watch_at": "const real*",
         "knot": "const double*",
+        "depends": "const signed char*",
     },
 )
 """Curves of a search. For each curve its ``quantity``, its ``link`` or -1, and where along that it
 is ``placed``: a row of places, or :data:`BASE`, :data:`TIP`, :data:`OFF`; for each quantity its
 ``first`` curve, and the number of its ``unit``; for each watched function its kind and the
-``watch_first`` of the numbers ``watch_at``.
+``watch_first`` of the numbers ``watch_at``. ``depends`` says for each watched function, one after
+another, which quantities depend on it.
 """
 
 BASE, TIP, OFF = -1, -2, -3
@@ -102,7 +104,7 @@ CALL = Call(
 _ROUNDING: dict[Precision, float] = {"double": reference.ROUNDING, "single": 1e-6}
 """Relative error of a peak that is worth no further refinement."""
 
-_NOISE: dict[Precision, float] = {"double": reference.NOISE, "single": 1e-2}
+_NOISE: dict[Precision, float] = {"double": between.NOISE, "single": 1e-2}
 """Largest relative error of a quantity by rounding."""
 
 _DEEPEST: dict[Precision, int] = {"double": reference.DEEPEST, "single": 8}
@@ -171,6 +173,7 @@ def _macros(precision: Precision) -> dict[str, object]:
         "CHANGE": between.CHANGE,
         "RISE": between.RISE,
         "STRAIGHT": between.STRAIGHT,
+        "EVEN": between.EVEN,
         "NEGLIGIBLE": between.NEGLIGIBLE,
     }
     return {
@@ -202,6 +205,7 @@ class Tables:
         units: Sequence[int],
         watches: Sequence[Watch],
         knots: Sequence[float],
+        depends: Flags,
         precision: Precision = "double",
     ) -> Tables:
         """Make it from curves, each with its quantity, in order, its link and its place."""
@@ -222,6 +226,7 @@ class Tables:
         }
         arrays["watch_at"] = np.array([x for watch in watches for x in watch.at], DTYPES[precision])
         arrays["knot"] = np.array(knots, float)
+        arrays["depends"] = np.ascontiguousarray(depends, np.int8)
         struct = CURVES.made(
             quantities=len(units),
             curves=len(quantity),
@@ -293,6 +298,7 @@ class Search:
             curves.units,
             curves.watches,
             curves.knots,
+            curves.depending,
         )
         # What is before the first value and beyond the last is the search's to write; packs go on
         # beyond the last.

@@ -56,7 +56,9 @@ static void search_part(search_now* now, double start, double stop, const search
       for (j = i; j < i + many; ++j) beyond |= !(search_magnitude(row[j]) <= known);
       if (!beyond || search_lacks(now, k, (start + stop)/2)) continue;
       for (j = i; j < i + many; ++j) {
-        if (search_magnitude(row[j]) > known) search_note(now, k, row[j], t[j], search_ratio_in(now, &within, k, j));
+        if (search_magnitude(row[j]) > known && search_counts(now, now->quantity[k], t[j], within.watched + j, SEARCH_STRIDE)) {
+          search_note(now, k, row[j], t[j], search_ratio_in(now, &within, k, j));
+        }
         /* What has no value is nothing, and hides what is beside it. */
         if (row[j] - row[j] == 0) continue;
         hiding[j - 1] = hiding[j] = SEARCH_HIDES;
@@ -94,12 +96,6 @@ static double search_where(const search_real* row, long long i, long long n, sea
 
 static int search_beyond(int kind, search_real value, search_real level) {
   return kind == SEARCH_IS_STEP ? value >= level : value > level;
-}
-
-/* How near to a kink, a jump or rest its sides are. */
-static double search_beside(const search_now* now, const search_panel* panel) {
-  const double beside = SEARCH_SIDE*2*now->half, least = search_spacing(panel);
-  return beside < least ? least : beside;
 }
 
 /* Evaluate both sides of where one of the watched passes a number in a step, and there; whether they are on both sides. */
@@ -147,7 +143,7 @@ static int search_find_sides(search_now* now, const search_panel* panel, long lo
   for (k = 0; k < curves->watches; ++k) {
     kind = curves->watch[k];
     j = curves->watch_first[k];
-    if (kind == SEARCH_IS_STEP || SEARCH_NUMBERED(kind)) continue;
+    if (kind == SEARCH_IS_STEP || SEARCH_NUMBERED(kind) || now->ignored[k]) continue;
     if (search_kinks(search_watched(panel, k), step, panel->n, kind, curves->watch_at + j, curves->watch_first[k + 1] - j,
                      search_width(panel), 0) == SEARCH_MANY) return 0;
   }
@@ -155,25 +151,20 @@ static int search_find_sides(search_now* now, const search_panel* panel, long lo
     for (k = 0; k < curves->watches; ++k) {
       const search_real* row = search_watched(panel, k);
       kind = curves->watch[k];
-      if (numbered ? !SEARCH_NUMBERED(kind) : kind != SEARCH_IS_STEP) continue;
+      if ((numbered ? !SEARCH_NUMBERED(kind) : kind != SEARCH_IS_STEP) || now->ignored[k]) continue;
       low = search_lower(row[step], row[step + 1]);
       high = search_upper(row[step], row[step + 1]);
       if (!(high - low <= SEARCH_LARGEST) || (!numbered && search_floor(high) != search_floor(low) + 1)) continue;
       for (j = curves->watch_first[k]; j < (numbered ? curves->watch_first[k + 1] : curves->watch_first[k] + 1); ++j) {
         level = numbered ? curves->watch_at[j] : search_floor(high);
         if (search_beyond(kind, low, level) || !search_beyond(kind, high, level)) continue;
+        if (search_undecided(now, panel, k, step)) continue;
         if (tried++ == SEARCH_WATCHED) return 0;
         if (search_apart(now, panel, step, k, level, t, columns)) return 1;
       }
     }
   }
   return 0;
-}
-
-/* Take in what all curves are at a time. */
-static void search_note_all(search_now* now, double t, const search_real* column) {
-  int k;
-  for (k = 0; k < now->curves->curves; ++k) search_note(now, k, column[k], t, search_ratio(now, k, column + now->curves->curves, 1));
 }
 
 /* Search a step as a panel of its own, or as two if it is known where in it a kink or a jump is. */
@@ -189,7 +180,7 @@ static void search_inside(search_now* now, const search_panel* panel, long long 
     search_part(now, start, stop, first, last, depth);
     return;
   }
-  for (j = 0; j < 3; ++j) search_note_all(now, t[j], sides + j*rows);
+  for (j = 0; j < 3; ++j) search_note_column(now, t[j], sides + j*rows, 1);
   --now->left;
   if (t[0] - start > 2*beside) search_part(now, start, t[0], first, sides, depth);
   if (stop - t[1] > 2*beside) search_part(now, t[1], stop, sides + rows, last, depth);

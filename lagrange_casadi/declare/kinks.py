@@ -54,6 +54,11 @@ _STRETCHES = 0.25 ** np.arange(20, -1, -1)
 
 _ROUNDING = 16 * np.finfo(float).eps
 
+_LEAST, _MOST = 2.0**-40, 1 << 20
+"""Part of a step in which nothing is left but a kink, and the number of such parts that are looked
+at together.
+"""
+
 _AT_ONCE = 1 << 17
 """Numbers of each operation that are looked at together."""
 
@@ -89,26 +94,26 @@ class Smooth:
             return None
         x, direction = ca.vertcat(*symbols), ca.SX.sym("way", len(symbols))
         function = ca.Function("sought", [x, fixed], [ca.densify(expression)], {"cse": True})
-        if not followable(function):
-            return None
         found: dict[tuple[int, bool, bool], Any] = {}
-        for operation, operands in operations(function, [x, fixed]):
+        followed = followable(function)
+        for operation, operands in operations(function, [x, fixed]) if followed else ():
             for mark, whole, crossing in marks_of(operation, operands):
                 if not mark.is_constant() and ca.depends_on(mark, x):
                     found[mark.element_hash(), whole, crossing] = mark
-        if not found:
+        if not found and followed:
             return None
-        rows, (_, whole, crossing) = ca.vertcat(*found.values()), zip(*found, strict=True)
+        rows = ca.vertcat(*found.values()) if followed else ca.SX(0, 1)
+        kinds = np.array([key[1:] for key in found], bool).reshape(-1, 2)
         slopes = ca.vertcat(expression, ca.gradient(expression, x))
         turns = ca.densify(ca.jtimes(rows, x, direction))
         uses = [ca.depends_on(expression, symbol) for symbol in entries(fixed)]
-        return cls(
+        return (cls if followed else Opaque)(
             tuple(symbols),
             ca.Function("marks", [x, fixed], [ca.densify(rows)], {"cse": True}),
             ca.Function("turns", [x, fixed, direction], [turns], {"cse": True}),
             ca.Function("slopes", [x, fixed], [ca.densify(slopes)], {"cse": True}),
-            np.array(whole),
-            np.array(crossing),
+            kinds[:, 0],
+            kinds[:, 1],
             np.array(uses, bool),
         )
 
@@ -381,6 +386,65 @@ class Smooth:
             [vanishing(side.steps, side.sizes, 0.0 * faint)[0] for side in sides]
         ).all(axis=0)
         yield from _worst(steps, np.where(limits, part, np.inf), ~(same & limits))
+
+
+class Opaque(Smooth):
+    """An expression that calls what cannot be followed, as a function of another program: nobody
+    knows where it may have kinks, and its values, slopes and curvatures are compared instead.
+    """
+
+    @property
+    def clearance(self) -> Clearance:
+        """Nothing is known to be clear."""
+        return Unclear(self.marks, self.whole, self.open)
+
+    def _kinks(self, paths: Array, p: Array) -> Iterator[tuple[int, str, float, Array]]:
+        """Steps in which value, slope and curvature at the ends do not agree, however often they
+        are halved: cubic polynomials miss the value by h^5, and the slope by h^3.
+        """
+        steps, bends = Steps.of(paths, p), self._bends
+
+        def at(steps: Steps, share: Array) -> Array:
+            rows = called(bends, steps.at(share), steps.p, steps.change)
+            return np.array([rows[0], (rows[1:-1] * steps.change).sum(axis=0), rows[-1]])
+
+        with np.errstate(all="ignore"):
+            before, after = at(steps, steps.low), at(steps, steps.high)
+            usual = np.fmax.reduce(_finite(before[:2]), axis=1, initial=0.0)[:, None]
+            while steps.low.size:
+                h = steps.high - steps.low
+                value, slope, _ = after - before
+                value = value - h * (before[1] + after[1]) / 2 + h**2 * (after[2] - before[2]) / 12
+                slope = slope - h * (before[2] + after[2]) / 2
+                parts = np.abs([value, slope]) / np.fmax(usual, np.finfo(float).tiny)
+                parts = np.where(np.isnan(parts), np.inf, parts)
+                left = (parts > _SAME).any(axis=0)
+                steps, before, after, parts = (
+                    steps.some(np.flatnonzero(left)),
+                    before[:, left],
+                    after[:, left],
+                    parts[:, left],
+                )
+                middle = (steps.low + steps.high) / 2
+                if steps.low.size > _MOST or (h < _LEAST).all():
+                    parts = parts if (h < _LEAST).all() else np.full_like(parts, np.inf)
+                    yield from _worst(steps, parts, parts > _SAME)
+                    return
+                there = at(steps, middle)
+                steps = Steps.joined([steps.to(steps.low, middle), steps.to(middle, steps.high)])
+                before, after = np.hstack([before, there]), np.hstack([there, after])
+
+    def _isolated(self, paths: Array, p: Array, between: bool) -> Iterator[tuple[int, str, Array]]:
+        """Nothing is known of single instants."""
+        yield from ()
+
+
+class Unclear(Clearance):
+    """Clearance of what cannot be followed: all paths are looked at."""
+
+    def near(self, low: Array, high: Array, p: Array, paths: Callable[..., Array]) -> Flags:
+        """Every path, (d,)."""
+        return np.ones(len(p), bool)
 
 
 def _usual(slopes: Array, paths: Array) -> Array:

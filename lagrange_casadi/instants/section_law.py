@@ -229,11 +229,12 @@ class SectionLaw(Brief):
                 [self.along(part, u, side) for part in parts],
             )
         terms = self.table.sections[force]
-        nudge = 1e-12 if side == "tip" else -1e-12
+        # No part of the link is beyond its ends.
+        part = np.clip(u + (1e-12 if side == "tip" else -1e-12), 1e-12, 1.0 - 1e-12)
         if terms.arm:
-            bent = terms.arm * self.at(terms.shear, u, side) + self._turned(force, u, u + nudge)
+            bent = terms.arm * self.at(terms.shear, u, side) + self._turned(force, u, part)
             return np.asarray(-self.length * bent)
-        return self._falling(force, u, u + nudge)
+        return self._falling(force, u, part)
 
     def _falling(self, force: str, u: Array, middle: Array) -> Array:
         """The derivative of a force that has no arm, where loads along the link act that act at the

@@ -120,9 +120,12 @@ class Signals:
         with np.errstate(all="ignore"):
             counts = [len(values) for _, values in self.curves(first, np.zeros(1, int))]
         quantities = tuple(q for q, count in enumerate(counts) for _ in range(count))
-        curves = Curves(
-            quantities, tuple(units), tuple(scales), self.sharpness.watches, self.sharpness.knots
-        )
+        columns = [
+            one if isinstance(one, tuple) else one.columns.values() for one in self.quantities
+        ]
+        sharpness = self.sharpness
+        watches, knots, depends = sharpness.watches, sharpness.knots, sharpness.reaching(columns)
+        curves = Curves(quantities, tuple(units), tuple(scales), watches, knots, depends)
         with np.errstate(all="ignore"):
             find = peaks if search is None else search.peaks
             return find(

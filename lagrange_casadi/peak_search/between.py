@@ -37,7 +37,17 @@ NEGLIGIBLE = 40.0
 """Distance of an exponent below the largest from which the power is negligible."""
 
 
+QUIET = 10
+"""Number of values from whose differences rounding is estimated."""
+
+NOISE = 1e-6
+"""Largest relative error of a quantity by rounding, as near a dead centre."""
+
 _NUMBERED = (Kind.SWITCH, Kind.KNOT)
+EVEN = 0.3
+"""Least change in a step, of that in it and the steps beside, of what passes a number once."""
+
+SWITCHING = (*_NUMBERED, Kind.ROOT, Kind.STEP)
 
 
 def highest(y: Array) -> Array:
@@ -86,58 +96,132 @@ def reach(y: Array) -> Array:
     return np.asarray(np.abs(4 * y - (before + after)) / 2)
 
 
+def scatter(row: Array) -> float:
+    """Return the rounding error of values so near to each other that they differ by nothing else
+    but their slope.
+    """
+    return 3 * float(np.median(np.abs(np.diff(row, 3))))
+
+
+def shaken(row: Array, step: int) -> float:
+    """Return the rounding error of a row's values beside a step; zero where none shows.
+
+    Third differences show rounding where they are no smaller than second ones, and change their
+    sign to and fro: those of a steep flank do not.
+    """
+    if row.size < QUIET:
+        return 0.0
+    first = min(max(step - QUIET // 2 + 1, 0), row.size - QUIET)
+    row = row[first : first + QUIET]
+    thirds, second = np.diff(row, 3), float(np.median(np.abs(np.diff(row, 2))))
+    reversals = np.count_nonzero(np.sign(thirds[1:]) * np.sign(thirds[:-1]) < 0.0)
+    return scatter(row) if reversals >= 2 and 3 * second <= scatter(row) else 0.0
+
+
+def gaps(watch: Watch, x: Array) -> Array:
+    """Distance of a watched function from the nearest number at which it switches."""
+    at = np.round(x) if watch.kind is Kind.STEP else np.array(watch.at or (0.0,))[:, None]
+    return np.asarray(np.abs(x - at).reshape(-1, x.size).min(axis=0))
+
+
+def side(watch: Watch, x: Array) -> Array:
+    """On which side of the numbers at which it switches a watched function is: twice as many as are
+    below it, and one more at one.
+    """
+    if watch.kind is Kind.STEP:
+        return np.asarray(2 * np.floor(x) + (np.floor(x) == x))
+    at = np.array(watch.at)[:, None]
+    return np.asarray((2 * (at < x) + (at == x)).sum(axis=0))
+
+
+def undecided(row: Array, watch: Watch, noise: float) -> Flags:
+    """Steps, (n - 1,), in which rounding, ``noise``, decides on which side of a number a watched
+    function is: both ends are no further from that, or those of the step beside are.
+    """
+    found = np.zeros(row.size - 1, bool)
+    if noise > 0.0:
+        near = gaps(watch, row) <= noise
+        found = near[:-1] & near[1:]
+    return found | _beside(found)
+
+
 def unresolved(
     rows: Array,
     watches: Sequence[Watch],
     step: float,
+    vague: Flags,
     kinks: npt.NDArray[np.intp] | None = None,
     finest: bool = False,
-) -> tuple[Flags, Flags]:
+) -> tuple[Flags, Flags, Flags]:
     """Steps of time in which something may rise and fall unseen, (n - 1,), from the watched
-    functions (watches, n), and those with kinks.
+    functions (watches, n); those with kinks; and where a watched function switches by rounding,
+    (watches, n - 1), which is none: ``vague`` are the steps that are :func:`undecided`.
 
     ``kinks`` are how many more kinks are known to be in each step. One in a step shows, two or one
     in each of two steps may not. In the ``finest`` steps they do: there rounding makes as many,
     where what is watched is nearly zero, and poles alone hide more.
     """
-    found = np.zeros(rows.shape[1] - 1, bool)
+    found, rounded = np.zeros(rows.shape[1] - 1, bool), np.zeros_like(vague)
     count = np.zeros(found.size, np.intp) if kinks is None else kinks.copy()
     with np.errstate(all="ignore"):
-        for row, watch in zip(rows, watches, strict=True):
+        for k, (row, watch) in enumerate(zip(rows, watches, strict=True)):
             bounded, kinked = _unresolved(row, watch, step, found | (count > 0))
+            rounded[k] = vague[k] & (bounded | (kinked > 0))
             if not finest or watch.kind is Kind.POLE:
-                found |= bounded
-            count += kinked
+                found |= bounded & ~vague[k]
+            count += np.where(vague[k], 0, kinked)
     if finest:
-        return found, count > 0
-    beside = np.zeros(found.size, bool)
-    beside[1:] |= count[:-1] > 0
-    beside[:-1] |= count[1:] > 0
-    return found | (count > 1) | ((count > 0) & beside), count > 0
+        return found, count > 0, rounded
+    return found | (count > 1) | ((count > 0) & _beside(count > 0)), count > 0, rounded
+
+
+def lingers(row: Array, watch: Watch, step: int) -> bool:
+    """Return whether a watched function may be at a number at which it switches in more than a
+    point of a step: it comes near to one, but does not go on from one side to another.
+    """
+    ends, around = row[step : step + 2], row[max(step - 1, 0) : step + 3]
+    change, whole = abs(ends[1] - ends[0]), np.ptp(around)
+    passes = np.ptp(side(watch, around[[0, -1]])) >= 2 and change >= EVEN * whole
+    near = change / 2 + abs(whole - (around.size - 1) * change)
+    return bool(gaps(watch, ends).min() <= near and not passes)
+
+
+def hiding_at(
+    rows: Array, watches: Sequence[Watch], length: float, vague: Flags, step: int
+) -> Flags:
+    """Return which watched functions may hide something in a step, alone or with another kink there
+    or beside it, (watches,).
+    """
+    found, none = np.zeros(len(watches), bool), np.zeros(rows.shape[1] - 1, bool)
+    for k, (row, watch) in enumerate(zip(rows, watches, strict=True)):
+        bounded, kinked = _unresolved(row, watch, length, none)
+        kinked[vague[k]] = 0
+        found[k] = (bounded & ~vague[k])[step] or kinked[max(step - 1, 0) : step + 2].any()
+    return found
 
 
 def passed(
-    rows: Array, watches: Sequence[Watch], step: int, length: float
+    rows: Array, watches: Sequence[Watch], step: int, length: float, vague: Flags
 ) -> Iterator[tuple[int, float]]:
     """Watched functions, by number, that have a kink or a jump in a step as they pass a number, and
     that number.
 
     Nothing where something else may hide there. Whole numbers come first, for where they are passed
-    others jump.
+    others jump. ``vague`` says which functions pass theirs by rounding.
     """
-    none = np.zeros(rows.shape[1] - 1, bool)
+    bent = np.zeros(rows.shape[1] - 1, bool)
     others = [
         (row, watch)
-        for row, watch in zip(rows, watches, strict=True)
-        if watch.kind not in (Kind.STEP, *_NUMBERED)
+        for row, watch, none in zip(rows, watches, vague, strict=True)
+        if watch.kind not in (Kind.STEP, *_NUMBERED) and not none
     ]
-    if any(_unresolved(row, watch, length, none)[0][step] for row, watch in others):
+    if any(_unresolved(row, watch, length, bent)[0][step] for row, watch in others):
         return
     for kinds in ((Kind.STEP,), _NUMBERED):
         for k, watch in enumerate(watches):
             low, high = sorted(rows[k, step : step + 2].tolist())
             kind = watch.kind
-            if kind not in kinds or not math.isfinite(high - low):
+            if kind not in kinds or vague[k] or not math.isfinite(high - low):
                 continue
             whole = (math.floor(high),) if math.floor(high) == math.floor(low) + 1 else ()
             yield from (

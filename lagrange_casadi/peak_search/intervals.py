@@ -36,7 +36,8 @@ class Curves:
 
     The peak of a quantity is that of the curve of its own that goes furthest: those of a section
     force are the force at the link's ends and stations, and where it turns along the link.
-    ``scales`` are of each unit how large others are, ``knots`` times of kinks.
+    ``scales`` are of each unit how large others are, ``knots`` times of kinks. ``depends``
+    (watches, quantities) says which quantity depends on which watched function; None: all do.
     """
 
     quantities: tuple[int, ...]
@@ -44,6 +45,13 @@ class Curves:
     scales: tuple[float, ...] = ()
     watches: tuple[Watch, ...] = ()
     knots: tuple[float, ...] = ()
+    depends: Flags | None = None
+
+    @property
+    def depending(self) -> Flags:
+        """Which quantities depend on which watched function, (watches, quantities)."""
+        shape = len(self.watches), len(self.units)
+        return np.ones(shape, bool) if self.depends is None else self.depends
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +148,12 @@ class Candidate:
 
 
 def sides(
-    source: CurveSource, interval: Interval, step: int, watches: Sequence[Watch], beside: float
+    source: CurveSource,
+    interval: Interval,
+    step: int,
+    watches: Sequence[Watch],
+    beside: float,
+    vague: Flags,
 ) -> tuple[Array, Samples] | None:
     """The times just before and just after a kink or a jump in a step, and of itself, and what
     there is; None where none is found.
@@ -154,7 +167,7 @@ def sides(
         return None
     for _, (k, level) in zip(
         range(_WATCHED),
-        passed(interval.samples.watched, watches, step, interval.step),
+        passed(interval.samples.watched, watches, step, interval.step, vague),
         strict=False,
     ):
         row, kind = interval.samples.watched[k], watches[k].kind

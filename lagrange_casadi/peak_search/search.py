@@ -25,7 +25,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from . import fits
-from .between import Flags, highest, reach, unresolved
+from .between import NOISE, QUIET, Flags, highest, reach, shaken, unresolved
 from .intervals import (
     INNER,
     SIDE,
@@ -41,6 +41,7 @@ from .intervals import (
     sides,
 )
 from .listing import Counted, Tops, base_of
+from .switches import Switches
 
 DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
@@ -65,9 +66,6 @@ BESIDE = 1e-2
 NOTHING = 1e-12
 """Relative size, of the largest of a unit, that is zero within rounding."""
 
-NOISE = 1e-6
-"""Largest relative error of a quantity by rounding, as near a dead centre."""
-
 TRUST, TRUST_ASIDE = 1e-5, 1e-6
 """Largest relative error of a polynomial, in its middle and near its ends: if it is larger, the
 slope may have other errors as well.
@@ -85,9 +83,6 @@ ENDLESS, LAST = 0.1, 1e-11
 """Relative growth of a quantity over the last step towards a pole, and the growth at which it has
 come to its end.
 """
-
-QUIET = 10
-"""Number of values from whose differences rounding is estimated."""
 
 RAGGED = 0.3
 """Relative second differences of values that are nothing but rounding."""
@@ -170,8 +165,9 @@ class _Search:
         )
         self.resolved, self.going = np.ones(self.best.size, bool), np.zeros(self.best.size)
         self.samples, self.hidden = samples.values, 0
+        self.switches = Switches(source, curves, t, samples.watched)
         self.step = float(t[-1] - t[0]) / max(t.size - 1, 1)
-        self.budget = INTERVALS + 4 * t.size
+        self.budget = self.quota = INTERVALS + 4 * t.size
         self.tops = Tops(self.quantity, self.best.size, self.step)
 
     @property
@@ -189,10 +185,10 @@ class _Search:
     @property
     def limit(self) -> Array:
         """Limit above which each curve matters; none for a curve that is nothing beside others of
-        its unit.
+        its unit, or of which the search has ended.
         """
         limit = np.where(
-            self.best > NOTHING * self.scale,
+            (self.best > NOTHING * self.scale) & self.resolved,
             self.best + self.rounding if self.share is None else self.least,
             np.inf,
         )
@@ -224,6 +220,28 @@ class _Search:
             self.t[q] = t
             self.xi[q] = xi
             self.sign[q] = math.copysign(1.0, value)
+
+    def note_all(self, t: Array, samples: Samples) -> None:
+        """Take in what all curves are at some times."""
+        counts = self.switches.counts(t, samples.watched)[self.quantity]
+        for j, time in enumerate(t):
+            for curve in np.flatnonzero(counts[:, j]).tolist():
+                self.note(curve, samples.values[curve, j], time, samples.places[curve, j])
+
+    def toward_ends(self, interval: Interval, vague: Flags, rounded: Flags) -> None:
+        """Sample ever closer to both ends of steps in a row in which a watched function switches
+        by rounding: what it switches is largest at one of them.
+        """
+        for row, switches in zip(
+            vague[~self.switches.ignored], rounded[~self.switches.ignored], strict=True
+        ):
+            ends = np.flatnonzero(np.diff(np.concatenate([[False], row, [False]]).astype(int)))
+            for first, last in ends.reshape(-1, 2).tolist():
+                if switches[first:last].any():
+                    a, b = interval.t[[first, last]]
+                    steps = (b - a) / (INNER + 1.0) ** np.arange(1, INNER + 1)
+                    t = np.concatenate([a + steps, b - steps])
+                    self.note_all(t, self.source.at(t))
 
     def lacks(self, t: float) -> Flags:
         """Curves that are not sought at a time: in steps beside rest those that are indeterminate
@@ -263,7 +281,9 @@ class _Search:
         if interval.t.size < fits.SEVEN:
             return np.full(self.best.size, np.inf)
         watched, watches = interval.samples.watched, self.curves.watches
-        if (hiding | unresolved(watched, watches, interval.step)[0]).any():
+        if (
+            hiding | unresolved(watched, watches, interval.step, self.switches.vague(watched))[0]
+        ).any():
             return np.full(self.best.size, np.inf)
         furthest = self.best.copy()
         np.maximum.at(furthest, self.quantity, reach(values).max(axis=1))
@@ -276,34 +296,56 @@ class _Search:
             hiding, bound = np.ones(n - 1, bool), np.full((values.shape[0], n - 1), -np.inf)
         else:
             kinks = np.histogram(self.knots, interval.t)[0] if depth and self.knots.size else None
-            unseen, kinked = unresolved(
-                interval.samples.watched, self.curves.watches, interval.step, kinks, depth >= FINEST
+            watched, watches = interval.samples.watched, self.curves.watches
+            vague = self.switches.vague(watched)
+            unseen, kinked, rounded = unresolved(
+                watched, watches, interval.step, vague, kinks, depth >= FINEST
             )
             hiding = hiding | unseen
+            if depth < FINEST:
+                self.toward_ends(interval, vague, rounded)
             bound = np.fmax(highest(values), highest(-values))
-            bound[bound <= self.ends(values)] = -np.inf
+            closed = (vague.T @ self.curves.depending).T[self.quantity]
+            bound[closed | (bound <= self.ends(values))] = -np.inf
             self.hidden += np.count_nonzero(hiding) if depth == 0 else 0
             self.stretches(interval, bound, hiding | kinked)
             self.settle(interval, bound)
+            bound[closed] = -np.inf
             unsettled = (bound > self.limit[:, None]).any(axis=1)
             bound[
                 [curve for curve in np.flatnonzero(unsettled).tolist() if self.rounded(curve)]
             ] = -np.inf
         size = np.fmax(self.best, np.finfo(float).tiny)[self.quantity]
         while True:
-            rise = np.max((bound - self.limit[:, None]) / size[:, None], axis=0)
+            rise = np.fmax.reduce((bound - self.limit[:, None]) / size[:, None], axis=0)
             step = int(np.argmax(rise if rise.max() > 0.0 else hiding))
             if not (rise[step] > 0.0 or hiding[step]):
                 return
             risen = bound[:, step] > self.limit
-            if depth == DEEPEST or interval.step <= SPACING * np.abs(interval.t).max():
+            if not risen.any() and self.switches.is_ignored(interval, step):
+                hiding[step] = False
+            elif depth == DEEPEST or interval.step <= SPACING * np.abs(interval.t).max():
                 self.end(interval, step, risen, depth == DEEPEST)
             elif self.budget > 0:
                 self.budget -= 1
+                if depth == 0:
+                    self.switches.measure(step)
                 self.inside(interval, step, depth)
+                self.switches.step = self.switches.step if depth else -1
             else:
-                self.resolved[self.quantity[risen | hiding[step]]] = False
+                self.give_up(interval, step, risen, bool(hiding[step]))
             hiding[step], bound[:, step] = False, -np.inf
+
+    def give_up(self, interval: Interval, step: int, risen: Flags, hides: bool) -> None:
+        """End the search of the quantities for which a step takes too many panels, and ignore the
+        functions that hide something there; half as many panels are left for other quantities.
+        """
+        found = self.switches.hiding_at(interval, step) & hides
+        self.switches.ignored |= found
+        ended = self.curves.depending[found].any(axis=0) if found.any() else hides
+        self.resolved[ended | np.isin(np.arange(self.resolved.size), self.quantity[risen])] = False
+        self.quota //= 2
+        self.budget = self.quota
 
     def inside(self, interval: Interval, step: int, depth: int) -> None:
         """Search a step as a panel of its own, or as two if it is known where in it a kink or a
@@ -313,14 +355,13 @@ class _Search:
         first = interval.samples.some(slice(step, step + 1))
         last = interval.samples.some(slice(step + 1, step + 2))
         beside = SIDE * self.step
-        found = sides(self.source, interval, step, self.curves.watches, beside)
+        vague = self.switches.vague(interval.samples.watched)[:, step]
+        found = sides(self.source, interval, step, self.curves.watches, beside, vague)
         if found is None:
             self.part(start, stop, first, last, depth)
             return
         t, samples = found
-        for j, time in enumerate(t):
-            for curve in range(samples.values.shape[0]):
-                self.note(curve, samples.values[curve, j], time, samples.places[curve, j])
+        self.note_all(t, samples)
         self.budget -= 1
         if t[0] - start > 2 * beside:
             self.part(start, t[0], first, samples.some(slice(0, 1)), depth)
@@ -341,9 +382,10 @@ class _Search:
         values[lacks] = 0.0
         broken = np.asarray(~np.isfinite(values).all(axis=0))
         values = np.where(np.isfinite(values), values, 0.0)
+        counts = self.switches.counts(t, watched)[self.quantity, 1:-1]
         for curve in range(values.shape[0]):
             known = (self.best if self.share is None else self.least)[self.quantity[curve]]
-            for j in np.flatnonzero(np.abs(values[curve, 1:-1]) > known) + 1:
+            for j in np.flatnonzero((np.abs(values[curve, 1:-1]) > known) & counts[curve]) + 1:
                 self.note(curve, values[curve, j], t[j], places[curve, j])
         self.interval(
             Interval(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:]
@@ -404,7 +446,9 @@ class _Search:
             if not straight.any():
                 continue
             time = (t[step] + t[step + 1]) / 2
-            values, places, _ = self.source.at(np.array([time]))
+            values, places, watched = self.source.at(np.array([time]))
+            counts = self.switches.counts(np.array([time]), watched)[self.quantity, 0]
+            straight &= counts[curves]
             for curve in curves[straight].tolist():
                 self.note(curve, values[curve, 0], time, places[curve, 0])
             passed = straight & (
@@ -427,7 +471,7 @@ class _Search:
         )
         for candidate in opened:
             first, kink = next(found), [abs(next(found) - size) for _, size in candidate.kink]
-            tipped = bool(kink) and max(kink) <= self.rounding[self.quantity[candidate.curve]]
+            tipped = bool(kink) and np.max(kink) <= self.rounding[self.quantity[candidate.curve]]
             candidate.closed = self.closed(interval, candidate, first) or tipped
         again = [candidate for candidate in opened if candidate.again and not candidate.closed]
         for candidate, size in zip(
@@ -509,24 +553,9 @@ class _Search:
         return np.asarray(same[:-3] & same[1:-2] & same[2:-1] & same[3:])
 
     def noise(self, curve: int, row: Array, step: int) -> float:
-        """Rounding error of a curve's values beside a step.
-
-        That is where third differences are no smaller than second ones, and change their sign to
-        and fro: those of a steep flank do not.
-        """
-        if row.size < QUIET:
-            return 0.0
-        first = min(max(step - QUIET // 2 + 1, 0), row.size - QUIET)
-        thirds = np.diff(row[first : first + QUIET], 3)
-        second, third = (
-            float(np.median(np.abs(of))) for of in (np.diff(row[first : first + QUIET], 2), thirds)
-        )
-        reversals = np.count_nonzero(np.sign(thirds[1:]) * np.sign(thirds[:-1]) < 0.0)
-        q = self.quantity[curve]
-        noisy = reversals >= 2 and second <= third <= NOISE * (
-            self.best[q] + BESIDE * self.scale[q]
-        )
-        return 3 * third if noisy else 0.0
+        """Rounding error of a curve's values beside a step."""
+        off, q = shaken(row, step), self.quantity[curve]
+        return off if off <= 3 * NOISE * (self.best[q] + BESIDE * self.scale[q]) else 0.0
 
     def rounded(self, curve: int) -> bool:
         """Return whether a curve is nothing but rounding: it zigzags at the instants, though
@@ -541,13 +570,19 @@ class _Search:
         return bool(2 * np.count_nonzero(reversals) >= row.size)
 
     def sample(self, places: Sequence[tuple[Candidate, float]]) -> Iterator[float]:
-        """The sizes of curves where they are looked at."""
+        """The sizes of curves where they are looked at; NaN for what does not count."""
         if not places:
             return
-        values, ratios, _ = self.source.at(np.array([t for _, t in places]))
+        times = np.array([t for _, t in places])
+        values, ratios, watched = self.source.at(times)
+        counts = self.switches.counts(times, watched)[self.quantity]
         for k, (candidate, t) in enumerate(places):
-            self.note(candidate.curve, values[candidate.curve, k], t, ratios[candidate.curve, k])
-            yield candidate.sign * values[candidate.curve, k]
+            curve = candidate.curve
+            if not counts[curve, k]:
+                yield math.nan  # which closes nothing
+                continue
+            self.note(curve, values[curve, k], t, ratios[curve, k])
+            yield candidate.sign * values[curve, k]
 
     def closed(self, interval: Interval, candidate: Candidate, found: float) -> bool:
         """Return whether a result closes both steps beside a maximum; else, if it is worth another
@@ -575,6 +610,8 @@ class _Search:
             return bool(
                 found < candidate.sign * interval.samples.values[candidate.curve, candidate.at]
             )
+        if abs(slope) > -candidate.bend:
+            return False
         candidate.again = True
         candidate.t -= interval.step * slope / candidate.bend
         candidate.size = found + gain

@@ -11,7 +11,7 @@ fall unseen. :mod:`.between` reads them.
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +19,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..arithmetic.interpret import codes, followable, operations
+from ..arithmetic.interpret import Step, codes, expressed, followable, operation_of, replay
 from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
 from ..arithmetic.scalars import column, graph, inputs_of
@@ -69,11 +69,13 @@ class Sharpness:
 
     ``watched(t, d, d_rate, d_acceleration, z, p) -> out`` has a row for each of ``watches``.
     ``knots`` are the times at which the second derivative of a motion by samples has a kink.
+    ``depends`` (watches, columns) says which columns of the graph depend on which watched function.
     """
 
     watched: ca.Function
     watches: tuple[Watch, ...]
     knots: tuple[float, ...]
+    depends: npt.NDArray[np.bool_]
 
     @classmethod
     @symbolic
@@ -93,14 +95,37 @@ class Sharpness:
         given = inputs_of(program.instant)
         inputs = [*given.values()]
         knots = {t for knots in program.laws.knots for t in knots}
-        found = _Found(inputs, knots)
-        if followable(program.instant):
-            out = program.instant(*inputs)[list(columns)]
-            found.visit(ca.Function("wanted", inputs, [out], {"cse": True}), inputs)
+        found, depends = _Found(inputs, knots), dict[int, frozenset[int]]()
+        sets = [[_NONE] * given.numel() for given in inputs]
         if followable(program.laws.motion):
-            found.visit(program.laws.motion, [inputs[0], inputs[-1]])
+            sets[1:4] = found.visit(
+                program.laws.motion, [inputs[0], inputs[-1]], [sets[0], sets[5]]
+            )
+            sets[4] = [_NONE.union(*(one for some in sets[1:4] for one in some))] * len(sets[4])
+        if followable(program.instant):
+            out = ca.densify(program.instant(*inputs)[list(columns)])
+            wanted = ca.Function("wanted", inputs, [out], {"cse": True})
+            depends = dict(zip(columns, found.visit(wanted, inputs, sets)[0], strict=True))
         watched = graph("watched", given, out=column(row for row, _ in found.kept.values()))
-        return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(sorted(knots)))
+        every = frozenset(number for _, number in found.kept)
+        return cls(
+            watched,
+            tuple(watch for _, watch in found.kept.values()),
+            tuple(sorted(knots)),
+            np.array(
+                [
+                    [number in depends.get(k, every) for k in range(program.instant.size1_out(0))]
+                    for _, number in found.kept
+                ],
+                bool,
+            ).reshape(-1, program.instant.size1_out(0)),
+        )
+
+    def reaching(self, quantities: Iterable[Iterable[int]]) -> npt.NDArray[np.bool_]:
+        """Return which watched functions each quantity depends on, (watches, quantities), from the
+        columns that each quantity is made of.
+        """
+        return np.stack([self.depends[:, [*columns]].any(axis=1) for columns in quantities], axis=1)
 
     def rounding(self, *inputs: Operand) -> Array:
         """Distance from zero by rounding of each watched function that is nothing else at any of n
@@ -175,39 +200,58 @@ class _Found:
         self.kept: dict[tuple[Kind, int], tuple[Any, Watch]] = {}
         self.held: list[Any] = []
 
-    def visit(self, function: ca.Function, inputs: Sequence[ca.SX]) -> None:
-        """Go through the operations of a function of ``inputs``."""
-        for operation, operands in operations(function, inputs):
-            self.held += (
-                operands  # so that no other node takes the place of one that is known by its number
-            )
-            for kind, argument, at in _watched(operation, operands):
-                self.add(kind, argument, at)
+    def visit(
+        self,
+        function: ca.Function,
+        inputs: Sequence[ca.SX],
+        sets: Sequence[Sequence[frozenset[int]]],
+    ) -> list[list[frozenset[int]]]:
+        """Go through the operations of a function of ``inputs``, and return on which watched
+        functions each nonzero of its outputs depends, from those of its inputs, ``sets``.
+        """
 
-    def add(self, kind: Kind, argument: ca.SX, at: tuple[float, ...]) -> None:
-        """Watch an argument, unless parameters alone set it."""
+        def made(
+            _k: int, step: Step, given: list[tuple[ca.SX, frozenset[int]]]
+        ) -> tuple[ca.SX, frozenset[int]]:
+            operands = [expression for expression, _ in given]
+            keys = _NONE.union(*(keys for _, keys in given))
+            # So that no other node takes the place of one that is known by its number.
+            self.held += operands
+            for operation in operation_of(step, operands):
+                keys = keys.union(*(self.add(*watched) for watched in _watched(*operation)))
+            return expressed(step, operands), keys
+
+        nodes = [
+            [*zip(given.nonzeros(), keys, strict=True)]
+            for given, keys in zip(inputs, sets, strict=True)
+        ]
+        return [[keys for _, keys in output] for output in replay(function, nodes, made)]
+
+    def add(self, kind: Kind, argument: ca.SX, at: tuple[float, ...]) -> frozenset[int]:
+        """Watch an argument, unless parameters alone set it, and return its number as a set."""
         argument = self.bare(argument) if kind in (Kind.POLE, Kind.ROOT) else argument
         if not self.moves(argument):
-            return
+            return _NONE
         if (
             kind is Kind.KNOT
             and argument.element_hash() == self.moving[0].element_hash()
             and self.knots >= {*at}
         ):
-            return
+            return _NONE
         self.held.append(argument)
         row = argument
         if kind is Kind.TURN and not ca.depends_on(argument, self.others):
             kind, row = Kind.RATE, ca.jtimes(argument, self.place, self.place_rate)
         elif kind is Kind.TURN and argument.is_symbolic():
-            return  # an iterated angle, which is followed from instant to instant
+            return _NONE  # an iterated angle, which is followed from instant to instant
         key = kind, argument.element_hash()
         if kind is Kind.ROOT and (Kind.POLE, key[1]) in self.kept:
-            return
+            return frozenset(key[1:])
         if kind is Kind.POLE:
             self.kept.pop((Kind.ROOT, key[1]), None)
         known = self.kept[key][1].at if key in self.kept else ()
         self.kept[key] = row, Watch(kind, tuple(sorted({*known, *at})))
+        return frozenset(key[1:])
 
     def moves(self, expression: ca.SX) -> bool:
         return not expression.is_constant() and bool(ca.depends_on(expression, self.moving))
@@ -230,6 +274,7 @@ class _Found:
         return divisor
 
 
+_NONE: frozenset[int] = frozenset()
 _ALIKE = codes("neg inv sq sqrt twice fabs copysign constpow")
 
 

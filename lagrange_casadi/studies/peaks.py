@@ -77,8 +77,9 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
     list of Peak
         The peaks, as of :meth:`.Solution.peak`. The value is infinite for a quantity that grows
         without bound. It is NaN, with the largest magnitude found as ``least``, if the search would
-        take too long: take more instants. It is NaN without a ``least`` for what equilibrium does
-        not determine; where least strain energy does, the peak is that of the instants.
+        take too long: smooth what switches so often. It is NaN without a ``least`` for what
+        equilibrium does not determine; where least strain energy does, the peak is that of the
+        instants.
 
     Raises
     ------

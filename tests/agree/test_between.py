@@ -71,7 +71,8 @@ def test_many_numbers_are_passed_and_touched_as_each_alone(at, a, b, low, high):
 
 
 def told(row, watch, step=0.1):
-    return np.flatnonzero(unresolved(np.array([row], float), [watch], step)[0]).tolist()
+    none = np.zeros((1, len(row) - 1), bool)
+    return np.flatnonzero(unresolved(np.array([row], float), [watch], step, none)[0]).tolist()
 
 
 @pytest.mark.parametrize(
@@ -124,11 +125,22 @@ def test_windows_stay_among_the_values(count):
 def test_what_passes_just_one_number_is_told_first_by_whole_numbers():
     rows = np.array([np.arange(9.0), np.arange(9) * 0.3 + 0.05])
     watches = [Watch(Kind.SWITCH, (4.5, 7.5)), Watch(Kind.STEP)]
-    assert list(passed(rows, watches, 4, 1.0)) == [(0, 4.5)]
-    assert list(passed(rows, watches, 3, 1.0)) == [(1, 1.0)]
-    assert list(passed(rows, watches, 5, 1.0)) == []
+    assert list(passed(rows, watches, 4, 1.0, np.zeros(len(rows), bool))) == [(0, 4.5)]
+    assert list(passed(rows, watches, 3, 1.0, np.zeros(len(rows), bool))) == [(1, 1.0)]
+    assert list(passed(rows, watches, 5, 1.0, np.zeros(len(rows), bool))) == []
     pole = np.arange(9) - 4.4
-    assert list(passed(np.vstack([rows, pole]), [*watches, Watch(Kind.POLE)], 4, 1.0)) == []
+    assert (
+        list(
+            passed(
+                np.vstack([rows, pole]),
+                [*watches, Watch(Kind.POLE)],
+                4,
+                1.0,
+                np.zeros(len(rows) + 1, bool),
+            )
+        )
+        == []
+    )
 
 
 @settings(max_examples=100, deadline=None)

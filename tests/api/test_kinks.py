@@ -103,6 +103,25 @@ def test_broken(name):
     assert kinked.jump > 0.0
 
 
+def hidden(program):
+    """The same expression by a function that nobody follows."""
+    symbols = ca.symvar(program)
+    return ca.Function("hidden", symbols, [program], {"never_inline": True})(*symbols)
+
+
+NOISY = {"a quotient of what is small", "a quotient of cubes", "a power of a size"}
+"""Smooth expressions whose rounding, or whose curvature, has no bound at a place: without their
+operations they cannot be told from those that have a kink.
+"""
+
+
+@pytest.mark.sampled(6)
+@pytest.mark.parametrize("name", [*SMOOTH, *BROKEN])
+def test_what_cannot_be_followed_is_looked_at(name):
+    program, _ = BROKEN.get(name, (SMOOTH.get(name), None))
+    assert (found(hidden(program)) is None) == (name in SMOOTH and name not in NOISY)
+
+
 def test_it_says_by_how_much_and_where():
     kinked = found(ca.if_else(X < 0.7, 3 * X, 2.1 + 2 * (X - 0.7)))
     assert str(kinked) == "its slope jumps by 33.3 % where x = 0.7"

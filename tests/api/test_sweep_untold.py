@@ -24,6 +24,6 @@ def test_a_design_without_its_peak_is_marked(tmp_path):
     assert found["status"][1] == Status.PEAK_NOT_TOLD
     assert np.isnan(found["peak:load:push:fx"][1])
     assert not check_sweep(path)
-    assert "take more instants" in found.statuses[Status.PEAK_NOT_TOLD][1]
+    assert "smooth the load" in found.statuses[Status.PEAK_NOT_TOLD][1]
     assert found["status"][0] == Status.OK
     assert abs(found["peak:load:push:fx"][0] - 2.0) < 1e-6

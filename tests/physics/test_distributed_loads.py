@@ -331,3 +331,24 @@ def test_a_body_that_has_no_sections_feels_it_too():
         "load:wind:mz",
     ):
         np.testing.assert_allclose(other.array(name), one.array(name), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("side", ["tip", "base"])
+@pytest.mark.parametrize("at", [0.0, 1.0])
+def test_slopes_at_the_ends_of_a_link_are_those_within_it(at, side):
+    """Nothing is beyond the tip or the base, where a load may begin and end."""
+    m = Mechanism("blade")
+    blade = m.link("blade", length=0.6, mass=1.2)
+    m.revolute("pin", m.ground, blade)
+    m.line_load("wind", blade, x=(-3.0, 5.0), y=lambda xi: 4.0 + 2.0 * xi**2, turning=True)
+    solution = evaluate(
+        Scene(m, {"pin": motion.polynomial(0.3, 2.0, 1.5)}, t=(0, 1, 4)), certificate=False
+    )
+    law, step = solution.section("blade").law, -1e-5 if at else 1e-5
+    for force in ("axial", "shear", "bending"):
+        values = [law.at(force, np.full((4, 1), at + k * step)) for k in range(5)]
+        difference = (
+            -25 * values[0] + 48 * values[1] - 36 * values[2] + 16 * values[3] - 3 * values[4]
+        ) / (12 * step)
+        slope = law.along(force, np.full((4, 1), at), side)
+        np.testing.assert_allclose(slope, difference, rtol=1e-7, atol=1e-7 * np.abs(slope).max())

@@ -93,12 +93,13 @@ class KeptOutputs:
         efforts = tuple(name for name in names if name.group in AVERAGED)
         along = tuple(_along(data, link, at, table) for link in links)
         mass_properties, positive, margins = _mass_properties(program, links, along, method)
-        columns = {column for columns in chosen.values() for column in columns}
         rows = [
-            row for link in along for row in (link.law, *link.load_points, *link.distributed_loads)
+            {k for row in (link.law, *link.load_points, *link.distributed_loads) for k in row}
+            - {-1}
+            for link in along
         ]
-        columns |= {k for row in rows for k in row if k >= 0}
-        sharpness = Sharpness.of(program, sorted(columns))
+        made_of = [*map(set, chosen.values()), *(row for row in rows for _ in table.forces)]
+        sharpness = Sharpness.of(program, sorted({k for columns in made_of for k in columns}))
         checks = [(bound.column, bound.kind) for bound in program.bounds]
         doubted = {k: number for number, (k, kind) in enumerate(checks) if kind.startswith("OPEN")}
         sizes = [(bound.size, "SIZE") for bound in program.bounds if bound.kind == "ROW"]
@@ -121,6 +122,7 @@ class KeptOutputs:
             margins=margins,
             watches=sharpness.watches,
             knots=sharpness.knots,
+            depends=sharpness.reaching(made_of),
         )
         return cls(tuple(names), units, efforts, tuple(links), reduction, sharpness)
 

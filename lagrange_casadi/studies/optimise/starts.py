@@ -85,10 +85,11 @@ def _with_results(
             for name, is_open in zip(solver.engine.quantities, indeterminate, strict=True)
             if is_open
         )
-        why = (
-            f": {names} is indeterminate for all of them"
-            if names
-            else ("; evaluate one to see why")
-        )
+        failed = outcome.status[outcome.status != Status.OK]
+        why = "; evaluate one to see why"
+        if names:
+            why = f": {names} is indeterminate for all of them"
+        elif failed.size:
+            why = f": {Status(int(np.bincount(failed).argmax())).meaning}"
         raise NoDesignError(f"optimise: no design within the bounds has a result{why}")
     return found
