@@ -20,7 +20,7 @@ import tempfile
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from multiprocessing import get_context
@@ -29,7 +29,7 @@ from typing import Any
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-sys.path.append(str(HERE.parent))  # as pytest does
+sys.path += map(str, [HERE.parent, *sorted(HERE.parent.glob("*/"))])  # as pytest does
 
 import exported  # noqa: E402
 import numpy as np  # noqa: E402
@@ -341,7 +341,7 @@ def main(arguments: list[str] | None = None) -> int:
                 for k, (name, text) in enumerate(declarations())
                 if fnmatch.fnmatchcase(name, asked.only)
             ]
-            for one in made:
+            for one in as_completed(made):
                 print(one.result(), flush=True)
             return 0
         paths = sorted(asked.folder.glob(f"{asked.only}.npz"))
