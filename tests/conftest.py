@@ -173,7 +173,7 @@ def solution(slider_crank):
 
 
 def pytest_addoption(parser):
-    generated = "parts of the documentation, and the golden text of an export"
+    generated = "parts of the documentation, and golden texts"
     parser.addoption(
         "--update", action="store_true", help=f"write anew what is generated: {generated}"
     )
@@ -230,7 +230,7 @@ def import_share():
     """
     process = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
     count = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
-    for path in sorted(Path(__file__).parent.glob("test_*.py"))[int(process) :: count]:
+    for path in sorted(Path(__file__).parent.rglob("test_*.py"))[int(process) :: count]:
         with suppress(Exception, pytest.skip.Exception):
             importlib.import_module(path.stem)
 

@@ -104,6 +104,7 @@ def _file(path: Path) -> Iterator[str]:
             axes = ""
             if isinstance(thing, h5py.Dataset):
                 axes = f" {thing.dtype} ({', '.join(_axes(thing))})"
+                axes += " checked" if thing.fletcher32 else ""
             yield f"{path.stem}/{name}{axes}: {_attributes(thing.attrs)}"
 
 
@@ -114,9 +115,9 @@ def _axes(dataset: h5py.Dataset) -> Iterator[str]:
 
 def _attributes(attributes: Mapping[str, Any]) -> str:
     """Return names of attributes, and the values of those that say what a number means."""
-    texts = ("units", "long_name", "sign", "kind", "schema")
-    shown = (f"{k}={attributes[k]!r}" if k in texts else k for k in sorted(attributes))
-    return ", ".join(name for name in shown if not name.split("=")[0].isupper())
+    texts = ("units", "long_name", "sign", "schema", "schema_version", "conventions", "Conventions")
+    names = [name for name in attributes if not name.isupper()]  # HDF5's own
+    return ", ".join(f"{name}={attributes[name]!s}" if name in texts else name for name in names)
 
 
 def headers() -> Iterator[str]:
