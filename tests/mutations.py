@@ -40,18 +40,6 @@ NUMBERS = (
 )
 """Folders and modules that compute numbers, C that is compiled among them."""
 
-COMPILED = {
-    "turning": "link_curves",
-    "sections_in_space": "link_curves",
-    "scene": "emit",
-    "lanes": "emit",
-    "sections": "reduction",
-    "designs": "reduction",
-}
-"""The module of ``codegen`` that compiles a file of C, ``search`` for others: tests that reach the
-module run the C.
-"""
-
 RANDOM, FIRST, NEXT = 12, 6, 40
 """Tests of random mechanisms, and others before and after them, in one run of pytest."""
 
@@ -68,9 +56,13 @@ _NO_NUMBERS = (ast.JoinedStr, ast.List, ast.Tuple, ast.Dict, ast.ListComp, ast.S
 
 @dataclass(frozen=True)
 class Mutation:
-    """A change of one expression in a file, from ``start`` to ``end`` in bytes."""
+    """A change of one expression in a file, from ``start`` to ``end`` in bytes.
+
+    ``line`` is the line of the expression, ``first`` that of its statement.
+    """
 
     file: str
+    first: int
     line: int
     start: int
     end: int
@@ -105,35 +97,40 @@ def _of_python(file: Path) -> Iterator[Mutation]:
     starts = [0]
     for line in text.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
-    for node, new in _changes(ast.parse(text)):
+    for node, new, first in _changes(ast.parse(text), 0):
         start = starts[node.lineno - 1] + node.col_offset
         end = starts[node.end_lineno - 1] + node.end_col_offset
-        yield Mutation(name, node.lineno, start, end, ast.unparse(node), f"({ast.unparse(new)})")
+        old, changed = ast.unparse(node), f"({ast.unparse(new)})"
+        yield Mutation(name, first, node.lineno, start, end, old, changed)
 
 
-def _changes(tree: ast.AST) -> Iterator[tuple[ast.expr, ast.expr]]:
-    """Yield expressions of numbers, each with another in its place."""
+def _changes(tree: ast.AST, first: int) -> Iterator[tuple[ast.expr, ast.expr, int]]:
+    """Yield expressions of numbers, each with another in its place, and their statement's line."""
     for node in ast.iter_child_nodes(tree):
-        if isinstance(node, ast.Raise | ast.Assert | ast.JoinedStr | ast.arguments | ast.AnnAssign):
-            if isinstance(node, ast.AnnAssign) and node.value is not None:
-                yield from _changes(node.value)
+        if isinstance(node, ast.Raise | ast.Assert | ast.JoinedStr | ast.arguments):
             continue
-        match node:
-            case ast.BinOp(left=a, right=b, op=ast.Add() | ast.Sub() as sign):
-                if not any(isinstance(x, _NO_NUMBERS) or _is_text(x) for x in (a, b)):
-                    yield node, ast.BinOp(a, _SWAPS[type(sign)](), b)
-                    yield node, a
-            case ast.UnaryOp(op=ast.USub(), operand=x) if not isinstance(x, ast.Constant):
-                yield node, x
-            case ast.Compare(ops=[sign], left=a, comparators=[b]) if type(sign) in _SWAPS:
-                if not (_is_text(a) or _is_text(b)):
-                    yield node, ast.Compare(a, [_SWAPS[type(sign)]()], [b])
-            case ast.Subscript(value=x, slice=ast.Constant(value=int(k)), ctx=ast.Load()):
-                yield node, ast.Subscript(x, ast.Constant(k + 1 if k == 0 else k - 1))
-        returns = getattr(node, "returns", None)
-        for child in ast.iter_child_nodes(node):
-            if child is not returns:
-                yield from _changes(ast.Module([child], []))
+        line = node.lineno if isinstance(node, ast.stmt) else first
+        for new in _changed(node):
+            yield node, new, line
+        types = [getattr(node, "returns", None), getattr(node, "annotation", None)]
+        left = [child for child in ast.iter_child_nodes(node) if child not in types]
+        yield from _changes(ast.Module(left, []), line)
+
+
+def _changed(node: ast.AST) -> Iterator[ast.expr]:
+    """Yield what may stand in place of an expression."""
+    match node:
+        case ast.BinOp(left=a, right=b, op=ast.Add() | ast.Sub() as sign):
+            if not any(isinstance(x, _NO_NUMBERS) or _is_text(x) for x in (a, b)):
+                yield ast.BinOp(a, _SWAPS[type(sign)](), b)
+                yield a
+        case ast.UnaryOp(op=ast.USub(), operand=x) if not isinstance(x, ast.Constant):
+            yield x
+        case ast.Compare(ops=[sign], left=a, comparators=[b]) if type(sign) in _SWAPS:
+            if not (_is_text(a) or _is_text(b)):
+                yield ast.Compare(a, [_SWAPS[type(sign)]()], [b])
+        case ast.Subscript(value=x, slice=ast.Constant(value=int(k)), ctx=ast.Load()):
+            yield ast.Subscript(x, ast.Constant(k + 1 if k == 0 else k - 1))
 
 
 def _is_text(node: ast.expr) -> bool:
@@ -147,7 +144,9 @@ def _of_c(file: Path) -> Iterator[Mutation]:
         start, end = (len(text[:k].encode()) for k in found.span())
         number = text.count("\n", 0, start) + 1
         shown = text.splitlines()[number - 1].strip()
-        yield Mutation(name, number, start, end, f"{found[0]} in {shown!r}", _C_SWAPS[found[0]])
+        yield Mutation(
+            name, number, number, start, end, f"{found[0]} in {shown!r}", _C_SWAPS[found[0]]
+        )
 
 
 class Map:
@@ -178,20 +177,28 @@ class Map:
         )
         return Counter(found)
 
-    def tests(self, mutation: Mutation) -> list[str]:
-        """Return tests that reach a line: random mechanisms after a few that reach few lines.
+    def reaching(self, mutation: Mutation) -> Counter[str]:
+        """Return how many lines of a mutation's statement each test reaches.
 
-        A line that an import runs, or C, is reached by tests that reach any line of its module.
+        Lines of the whole module count for C, and for a statement that an import runs.
         """
-        file, _, end = mutation.file.partition(".")
-        name = file.rpartition("/")[2]
-        module = file if end == "py" else f"codegen/{COMPILED.get(name, 'search')}"
-        lines = self.lines.get(f"{module}.py", {})
-        reaching = lines.get(mutation.line, set()) if end == "py" else set()
-        if not reaching and (end != "py" or mutation.line in lines):
-            reaching = {test for tests in lines.values() for test in tests}
-        there = [test for test in reaching if (ROOT / test.partition("::")[0]).exists()]
-        ordered = sorted(there, key=lambda test: (self.counts[test], test))
+        module = mutation.file
+        if module not in self.lines:
+            name = f'"{Path(module).name}"'
+            module = next(one for one in self.lines if name in (PACKAGE / one).read_text())
+        lines = self.lines[module]
+        own = [lines[k] for k in range(mutation.first, mutation.line + 1) if k in lines]
+        if module != mutation.file or (own and not any(own)):
+            own = [*lines.values()]
+        return Counter(test for tests in own for test in tests)
+
+    def tests(self, mutation: Mutation) -> list[str]:
+        """Return tests that reach a statement, those that reach few other lines first; random
+        mechanisms after the first few.
+        """
+        found = self.reaching(mutation)
+        there = [test for test in found if (ROOT / test.partition("::")[0]).exists()]
+        ordered = sorted(there, key=lambda test: (-found[test], self.counts[test], test))
         drawn = [test for test in ordered if "test_random" in test][:RANDOM]
         others = [test for test in ordered if test not in drawn]
         return [*others[:FIRST], *drawn, *others[FIRST:]]
