@@ -163,7 +163,7 @@ class Mechanism:
         return Record("ok", {n: series[n][some].copy() for n in names}, _within(self.solution))
 
     def swept(self) -> Record:
-        """Two designs by the first parameter that is no angle of nothing."""
+        """Two designs by the first parameter that is not zero."""
         values = self.scene.mechanism.values(self.keywords.get("parameters"))
         name = next((name for name, value in values.items() if value), None)
         if name is None:
@@ -254,12 +254,13 @@ def differences(was: dict[str, Record], now: dict[str, Record]) -> Iterator[tupl
                 yield f"{way}/{name}", "is gone" if name in old.values else "is new"
                 continue
             a, b = (np.asarray(values[name], float) for values in (old.values, new.values))
-            if a.shape != b.shape or not np.array_equal(np.isfinite(a), np.isfinite(b)):
+            numbers, most = np.isfinite(a), old.within.get(name, 0.0)
+            if a.shape != b.shape or not np.array_equal(a[~numbers], b[~numbers], equal_nan=True):
                 yield f"{way}/{name}", "has another shape, or no numbers elsewhere"
                 continue
-            gap = float(np.max(np.abs(b - a), initial=0.0, where=np.isfinite(a)))
-            if gap > old.within.get(name, 0.0):
-                yield f"{way}/{name}", f"off by {gap:.2g}, more than {old.within.get(name, 0):.2g}"
+            gap = float(np.max(np.abs(b - a), initial=0.0, where=numbers))
+            if not gap <= most:
+                yield f"{way}/{name}", f"off by {gap:.2g}, more than {most:.2g}"
 
 
 def make(name: str, text: str, folder: Path, every: bool, commit: str) -> str:

@@ -75,3 +75,19 @@ def test_a_pasted_declaration_makes_the_same_scene():
     )
     assert [*once] == [*again]
     assert all((once[name] == again[name]).all() for name in once)
+
+
+def test_what_is_no_number_stays_none():
+    def record(*values, within=1.0):
+        return {"way": corpus.Record("ok", {"x": corpus.np.array(values)}, {"x": within})}
+
+    nan, inf = float("nan"), float("inf")
+    for was, now, is_same in (
+        (record(1.0, nan), record(1.5, nan), True),
+        (record(1.0, nan), record(2.5, nan), False),
+        (record(1.0, nan), record(1.0, inf), False),
+        (record(1.0, nan), record(nan, nan), False),
+        (record(1.0), record(1.0, 1.0), False),
+        (record(1.0, within=nan), record(1.0), False),
+    ):
+        assert bool([*corpus.differences(was, now)]) != is_same
