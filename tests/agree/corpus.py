@@ -45,7 +45,7 @@ EVERY = 5
 SUBSET = 5
 """One file in so many is checked unless all are asked for."""
 
-TIMES, ROUNDING, SEARCHED = 4.0, 1e-13, 1e-10
+TIMES, ROUNDING, SEARCHED = 4.0, 1e-13, 1e-12
 """A number may be off by so many stated errors, and by such a part of the largest number of its
 unit: rounding, or the error of a search for a peak.
 """
