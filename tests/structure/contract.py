@@ -11,10 +11,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import click
 import every_way
 import h5py
 import mechanisms
+from click.testing import CliRunner
 
 from lagrange_casadi import errors, evaluate, export, save, sweep
 from lagrange_casadi.cli import program
@@ -70,16 +70,11 @@ def _members(kind: type) -> Iterator[str]:
 
 def helps() -> Iterator[str]:
     """What ``--help`` of the program and of every command shows."""
-
-    def shown(command: click.Command, parent: click.Context | None, name: str) -> Iterator[str]:
-        context = click.Context(command, parent, name, terminal_width=100, max_content_width=100)
-        yield f"$ {context.command_path} --help"
-        yield command.get_help(context)
-        yield ""
-        for one in sorted(getattr(command, "commands", {})):
-            yield from shown(command.commands[one], context, one)
-
-    return shown(program, None, "lagrange-casadi")
+    for words in ([], *([name] for name in sorted(program.commands))):
+        asked = [*words, "--help"]
+        yield " ".join(["$ lagrange-casadi", *asked])
+        shown = CliRunner().invoke(program, asked, prog_name="lagrange-casadi", terminal_width=100)
+        yield shown.output
 
 
 def files() -> Iterator[str]:
