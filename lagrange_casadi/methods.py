@@ -2,7 +2,7 @@
 
 `Solution`, `Scene` and `Sweep` are data, and so know no report, no animation and no factor of
 safety. Their methods look these up here when they are called. No other module may name a module in
-a string: ``tests/test_layering.py`` reads this table.
+a string: ``tests/structure/test_layering.py`` reads this table.
 """
 
 from __future__ import annotations

@@ -42,7 +42,9 @@ SMALL = ["cardan_shaft", "rssr", "spatial_slider_crank"]
 
 # Vector Newton-Euler on free bodies in 60-digit arithmetic, the paper's mechanism and motion; its
 # "about" says what each entry is.
-SIXTY_DIGITS = json.loads((ROOT / "tests" / "data" / "slider_crank_60_digits.json").read_text())
+SIXTY_DIGITS = json.loads(
+    (ROOT / "tests" / "oracles" / "data" / "slider_crank_60_digits.json").read_text()
+)
 
 # Expressions are many small objects that live long: to look for circles among them often takes a
 # twentieth of the time.

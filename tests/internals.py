@@ -199,7 +199,6 @@ from lagrange_casadi.peak_search.sharpness import Kind, Sharpness, Watch
 from lagrange_casadi.portable import naming, stack, text
 from lagrange_casadi.portable.golden import ALLOWED
 from lagrange_casadi.portable.statuses import ANSWERS, SHARED, STATUSES
-from lagrange_casadi.renamed import RENAMED, renamed
 from lagrange_casadi.report import instants, maps, write_report
 from lagrange_casadi.report import page as report_page
 from lagrange_casadi.report.comparison import write_comparison

@@ -1,4 +1,4 @@
-"""``python -m tests.pages FOLDER``: pictures of the pages of four cases, of two designs and of a
+"""``python tests pages FOLDER``: pictures of the pages of four cases, of two designs and of a
 sweep, to be looked at.
 
 Each page is there at three sizes of window, light and dark, and on A4 and letter as a PDF.
@@ -9,9 +9,9 @@ import sys
 import time
 from pathlib import Path
 
-from lagrange_casadi.cli import main
+import browser
 
-from . import browser
+from lagrange_casadi.cli import main
 
 CASES = ("slider_crank", "connecting_rod", "excavator", "delta")
 SIZES = ((1400, 900), (900, 700), (400, 800))

@@ -2,9 +2,6 @@
 them.
 """
 
-import functools
-
-from ..renamed import former
 from .catalogue import read_motors
 from .choice import Choice, assess, select
 from .duty import Duty, InertiaRatio, duty_of
@@ -24,5 +21,3 @@ __all__ = [
     "read_motors",
     "select",
 ]
-
-__getattr__ = functools.partial(former, __name__, globals())

@@ -16,7 +16,6 @@ from ..base.brief import Brief
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.beyond_equilibrium import Holding
 from ..instants.solution import Solution
-from ..renamed import renamed
 
 _COARSE = 0.01
 """Largest relative change, if only every second instant is used, for which instants are enough."""
@@ -142,7 +141,6 @@ class Duty(Brief):
         return any(abs(whole - part) > _COARSE * whole for whole, part in pairs)
 
 
-@renamed
 @public
 def duty_of(
     solution: Solution,

@@ -10,10 +10,8 @@ import numpy as np
 from ..arguments import NotNegative, Numeric, Positive, public
 from ..base.arrays import Array
 from ..base.brief import Brief
-from ..renamed import renamed
 
 
-@renamed
 @public
 @dataclass(frozen=True, repr=False)
 class Motor(Brief):

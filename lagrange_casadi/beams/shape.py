@@ -17,7 +17,6 @@ from ..base.arrays import Expression, Operand
 from ..base.brief import Brief
 from ..base.units import number
 from ..errors import DeclarationError, NumberError
-from ..renamed import renamed
 from . import solid, walls
 from .properties import Fibre, Properties
 
@@ -25,7 +24,6 @@ Demand = tuple[Any, str]
 """Expression that must be positive, and its description."""
 
 
-@renamed
 @public
 @dataclass(frozen=True, eq=False)
 class Shape:

@@ -22,7 +22,6 @@ from ..base.symbolic import Graphs, symbolic
 from ..base.units import Number
 from ..beams.beam import Beam
 from ..errors import DeclarationError
-from ..renamed import renamed
 from .density import Density
 from .expressions import bound, check_line, check_name, unit_vector, value_of
 from .fitted import Fitted
@@ -56,7 +55,6 @@ from .validity import demands
 
 
 @public
-@renamed
 @symbolic
 @dataclass(eq=False)
 class Mechanism(Graphs):

@@ -17,7 +17,6 @@ import numpy as np
 from ..arguments import fitting, public
 from ..base.brief import Brief
 from ..errors import DeclarationError, shown
-from ..renamed import renamed
 from .curves import curve, rows
 from .expressions import coordinates, scalar, symbols_of
 from .parts import Expression
@@ -28,7 +27,6 @@ _POINTS, _SAME = 8, 1e-11
 """Number of values of the parameters for which rows are compared, and their relative rounding."""
 
 
-@renamed
 @dataclass(frozen=True, eq=False, repr=False)
 class Motion(Brief):
     """A law of motion as a function from the symbol t [s] to the coordinate [rad or m].

@@ -16,7 +16,6 @@ from ..base.units import within
 from ..base.vocabulary import Precision
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
 from ..methods import method
-from ..renamed import renamed
 from .density import Density
 from .even_points import EvenPoints, checked_ratios
 from .guiding import guided, laws_of
@@ -190,7 +189,6 @@ def _refuse_output(mechanism: Mechanism, name: str) -> None:
         raise DeclarationError(f"output '{name}': {why}")
 
 
-@renamed
 @symbolic
 @fitting
 @dataclass(frozen=True, eq=False)

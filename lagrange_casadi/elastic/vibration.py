@@ -23,7 +23,6 @@ from ..declare.description import Description, density_of
 from ..declare.end_conditions import ENDS, Ends, ends_of
 from ..errors import DeclarationError
 from ..instants.solution import Solution
-from ..renamed import renamed
 from ..strength.member import Member
 from .bending_modes import Mode, first_mode
 from .compliance import Compliance
@@ -37,7 +36,6 @@ _SLIGHT = 1e-12
 _FEWEST = 4
 
 
-@renamed
 @dataclass(frozen=True, repr=False)
 class Vibration(Brief):
     """The first bending frequency of a link [Hz], and what it means for forces that were computed

@@ -20,7 +20,6 @@ from ..base.brief import Brief
 from ..base.publish import writing
 from ..base.table_file import TableFile
 from ..errors import DeclarationError, LagrangeCasadiError, shown
-from ..renamed import renamed
 
 if TYPE_CHECKING:
     import casadi as ca
@@ -32,7 +31,6 @@ _SAME = 1e-9
 _MILLIMETRES = 1e3
 
 
-@renamed
 @public
 @dataclass(frozen=True, eq=False, repr=False)
 class CamProfile(Brief):

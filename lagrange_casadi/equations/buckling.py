@@ -21,7 +21,6 @@ from ..arguments import Numeric, Positive, public
 from ..base.arrays import Array, Expression, Operand
 from ..beams.beam import SLIGHT
 from ..beams.properties import chosen, larger, smaller, symbolic
-from ..renamed import renamed
 from .stress import CrossSections
 
 _ROUNDS, _TINY = 8, 1e-12
@@ -51,7 +50,6 @@ def critical_stress(slenderness: Numeric, elasticity: Positive, strength: Positi
         return _critical(np.pi**2 * elasticity / np.asarray(slenderness, float) ** 2, strength)
 
 
-@renamed
 @dataclass(frozen=True)
 class Column:
     """A link as a column, where it bends along y and where it bends along z: effective lengths over

@@ -11,10 +11,8 @@ import numpy as np
 
 from ..base.arrays import Array, Instants
 from ..base.quantities import Output
-from ..renamed import renamed
 
 
-@renamed
 @dataclass(frozen=True)
 class Elasticity:
     """The indeterminate outputs that least strain energy determined, ``completed``, and the
@@ -46,7 +44,6 @@ class Elasticity:
 ENDS = ("least", "largest")
 
 
-@renamed
 @dataclass(frozen=True, eq=False)
 class Holding:
     """The ``least`` and the ``largest`` effort, in ``unit``, that a drive may need at each instant,

@@ -23,7 +23,6 @@ from ..declare.notes import notes
 from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError, shown
 from ..methods import method
-from ..renamed import renamed
 from .beyond_equilibrium import Elasticity, Holding, held_notes
 from .derivatives import Derivatives
 from .frames import dataset, frame
@@ -43,7 +42,6 @@ if TYPE_CHECKING:
     from ..strength import Life, Safety, Stress
 
 
-@renamed
 @dataclass(frozen=True, repr=False)
 class Provenance(Brief):
     """Origin of the numbers.
@@ -79,7 +77,6 @@ class Peak:
     over: float | None = None
 
 
-@renamed
 @public
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution:

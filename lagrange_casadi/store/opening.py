@@ -31,13 +31,13 @@ _KNOWN = {
 def opened_file(
     path: str | os.PathLike[str],
     schema: str,
-    versions: range,
+    version: int,
     kind: str,
     of: str = "",
     verified: VerifiedFile | None = None,
 ) -> Iterator[h5py.File]:
-    """A whole file of one of the ``versions`` of a schema, which messages call ``kind``, its
-    versions those ``of`` it.
+    """Open a whole file of a ``version`` of a schema, which messages call ``kind``, its version
+    that ``of`` it.
 
     All of it is held to its seal, unless it is still the one that was ``verified``. Raises
     :class:`PathError` for none, :class:`StoreError` for another file, another version, and one that
@@ -57,12 +57,11 @@ def opened_file(
                 raise StoreError(f"{path}: was changed while it was read")
             _refuse_other(path, file.attrs.get("schema"), schema, kind)
             written = file.attrs.get("schema_version")
-            if not isinstance(written, np.integer) or written not in versions:
+            if not isinstance(written, np.integer) or written != version:
                 stored = written if isinstance(written, np.integer) else repr(written)
-                valid = f"{versions[0]} to {versions[-1]}"
                 raise StoreError(
-                    f"{path}: schema version {stored}{of}, this program reads versions {valid}: run"
-                    " it again"
+                    f"{path}: schema version {stored}{of}, this program reads version"
+                    f" {version}: run it again"
                 )
             if not file.attrs.get("complete", False):
                 raise StoreError(f"{path}: was not written to its end")
@@ -113,8 +112,8 @@ def check_identification(path: str | os.PathLike[str]) -> list[str]:
 
     Raises :class:`StoreError` for what is not a whole file of one, :class:`PathError` for none.
     """
-    versions = range(1, IDENTIFICATION_VERSION + 1)
-    with opened_file(path, IDENTIFICATION, versions, "the file of an identification") as file:
+    kind = "the file of an identification"
+    with opened_file(path, IDENTIFICATION, IDENTIFICATION_VERSION, kind) as file:
         read_all(file)
     return []
 

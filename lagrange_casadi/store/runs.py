@@ -24,7 +24,7 @@ from ..base.arrays import Array
 from ..base.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
 from ..base.quantities import Output
 from ..base.seal import kind_of, seal
-from ..base.tables import ANGLE, LENGTH, SPACE
+from ..base.tables import ANGLE, LENGTH
 from ..declare.description import (
     Description,
     check_places,
@@ -53,15 +53,7 @@ from .slopes import add_slopes, check_slopes, slopes_of
 from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
 from .words import conventions, say, unlike, unlike_conventions
 
-SCHEMA_VERSION = 7
-"""Files of version 1 had no seal. Those of version 2 are not over a drive's coordinate, those of 3
-of planar mechanisms alone, those of 4 have no loads along links, those of 5 no rotary inertia of
-slices, those of 6 no friction, stresses, derivatives by parameters or ranges of holding efforts,
-and no results of elasticity; all from 2 on are still written."""
-
-_WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED, _THICK = 2, 3, 4, 5, 6
-_READ = range(_WITHOUT_OVER, SCHEMA_VERSION + 1)
-_LATEST = ("friction", "stress", "utilisation", "deflection")
+SCHEMA_VERSION = 1
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
@@ -225,7 +217,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
     StoreError
         If the file is damaged, incomplete, or of another schema.
     """
-    with opened_file(path, SCHEMA, _READ, _KIND) as file:
+    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         return _read(file)
 
 
@@ -234,7 +226,7 @@ def figure_specs(path: str | os.PathLike[str]) -> str:
 
     Raises what :func:`load` does.
     """
-    with opened_file(path, SCHEMA, _READ, _KIND) as file:
+    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         return shown(file.attrs.get("figures", ""))
 
 
@@ -261,7 +253,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     PathError, StoreError
         As :func:`load`.
     """
-    with opened_file(path, SCHEMA, _READ, _KIND) as file:
+    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         solution = _read(file)
         certificate = (Output("certificate", "", name) for name in solution.certificate)
         grids = parsed(file.attrs["grids"], [str], "grids") if "grids" in file.attrs else None
@@ -418,7 +410,7 @@ def _write(
     scales.finish()
     provenance = solution.provenance
     file.attrs["schema"] = SCHEMA
-    file.attrs["schema_version"] = _version(solution)
+    file.attrs["schema_version"] = SCHEMA_VERSION
     file.attrs["case"] = solution.case
     file.attrs.update(conventions(solution.table))
     file.attrs["mechanism"] = json.dumps(solution.description)
@@ -450,17 +442,6 @@ def _write(
     for key, name in _PROVENANCE.items():
         file.attrs[key] = getattr(provenance, name)
     file.attrs["figures"] = figures
-
-
-def _version(solution: Solution) -> int:
-    """The first version of the schema that has all of a solution."""
-    latest = solution.sensitivities.by or solution.elasticity != Elasticity() or solution.holding
-    if latest or any(output.group in _LATEST for output in solution.outputs):
-        return SCHEMA_VERSION
-    along = {output.member for output in solution.outputs if output.group == "spread"}
-    if along:
-        return _THICK if along & {*solution.table.couples} else _LOADED
-    return _AT_POINTS if solution.table is SPACE else _PLANAR if solution.over else _WITHOUT_OVER
 
 
 def _add(

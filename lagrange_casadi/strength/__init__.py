@@ -2,11 +2,8 @@
 and fatigue, and lives.
 """
 
-import functools
-
 from ..declare.end_conditions import effective_lengths
 from ..equations.buckling import Column, critical_stress
-from ..renamed import former
 from .bearings import joint_safety
 from .critical_plane import Plane, critical_plane, plane_factor
 from .fatigue import CRITERIA, cycles, factor, reversed_amplitude
@@ -39,5 +36,3 @@ __all__ = [
     "safety",
     "stress",
 ]
-
-__getattr__ = functools.partial(former, __name__, globals())

@@ -17,7 +17,6 @@ from ..equations import buckling as columns
 from ..equations.buckling import Column
 from ..errors import UnknownNameError
 from ..instants.solution import Solution
-from ..renamed import renamed
 from .critical_plane import FINDLEY, critical_plane, plane_factor, plane_score
 from .fatigue import CRITERIA, damage_score, lacking, loaded, use_score, used
 from .member import Member
@@ -36,7 +35,6 @@ class Verdict:
     where: str
 
 
-@renamed
 @public
 @dataclass(frozen=True, repr=False)
 class Safety(Brief):
@@ -122,7 +120,6 @@ def stress(solution: Solution, link: str) -> Stress:
     return Stress(Member.of(solution, link))
 
 
-@renamed
 @public
 def safety(
     solution: Solution, link: str, *, criterion: str = "goodman", yield_criterion: str = "von_mises"

@@ -27,7 +27,6 @@ from ..equations.model_data import beam_at, template
 from ..equations.two_force_links import unaimed
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..instants.solution import Solution
-from ..renamed import renamed
 from ..strength.member import Member
 from ..strength.safety import Safety, Verdict, as_column, rated
 from .request import Request
@@ -97,7 +96,6 @@ class Sizing(Brief):
         return sum(sized.mass for sized in self.links)
 
 
-@renamed
 @public
 def size(
     scene: Scene,

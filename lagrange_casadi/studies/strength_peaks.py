@@ -22,7 +22,6 @@ from ..declare.scene import Scene
 from ..equations.buckling import Column
 from ..instants.backends import searching
 from ..instants.solution import Solution
-from ..renamed import renamed
 from ..strength.member import Member
 from ..strength.safety import Safety, Verdict, as_column, buckling, safety, yielded
 from ..strength.stress import Stress, StressPeak
@@ -68,7 +67,6 @@ def refine_stress(
     return peak if found is None else found.stress(kind, peak)
 
 
-@renamed
 @public
 def refine_safety(
     scene: Scene,

@@ -32,7 +32,6 @@ from ..instants.backends import Evaluated, run
 from ..instants.evaluation_method import EvaluationMethod
 from ..instants.from_table import columns
 from ..instants.refusal import resting, unfinished
-from ..renamed import renamed
 from ..verification.reference import reference
 from .designs.engine import DesignEngine
 from .peaks import Shortfall, shortfall
@@ -72,7 +71,6 @@ COMPILED = (
 METHODS = (*COMPILED, EvaluationMethod("vm"))
 
 
-@renamed
 @dataclass(frozen=True)
 class Measurement:
     """Cost and accuracy of a method: seconds an instant, and errors relative to each quantity's

@@ -48,7 +48,7 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
     none.
     """
     found: list[str] = []
-    with opened_file(path, SCHEMA, range(VERSION, VERSION + 1), "the file of a search") as file:
+    with opened_file(path, SCHEMA, VERSION, "the file of a search") as file:
         read_all(file)
         for group in file["points"].values() if "points" in file else [file]:
             found += _contradictions(group)

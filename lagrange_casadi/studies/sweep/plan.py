@@ -29,13 +29,7 @@ from .blocks import Slab, chunk_of, slabs
 from .columns import Column, Harvest, Task, check_keep
 
 SCHEMA = "lagrange-casadi-sweep"
-SCHEMA_VERSION = 7
-"""Files of version 1 had no seal. Those of version 2 have one axis of time for all designs, those
-of 3 are of planar mechanisms alone, those of 4 have no sensitivities, those of 5 no sampled peaks,
-and those of 6 no fluctuations of energy; all five are still written."""
-
-_WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES, _WITH_EXACT_PEAKS, _WITHOUT_ENERGY = 2, 3, 4, 5, 6
-READ = range(_WITH_COMMON_TIMES, SCHEMA_VERSION + 1)
+SCHEMA_VERSION = 1
 
 _BOUND = (float, str)
 """Start and end of instants: a number, or an expression of parameters in words."""
@@ -232,27 +226,13 @@ class Plan:
         p[:, [names.index(name) for name in self.designs.names]] = self.designs.block(start, stop)
         return p
 
-    @property
-    def _version(self) -> int:
-        """The first version of the schema that has all of it."""
-        task = self.harvest.task
-        if task.fluctuation:
-            return SCHEMA_VERSION
-        if task.peaks == "sampled":
-            return _WITHOUT_ENERGY
-        if task.by:
-            return _WITH_EXACT_PEAKS
-        if self.harvest.data.space:
-            return _WITHOUT_SLOPES
-        return _WITH_COMMON_TIMES if task.timing.shared else _PLANAR
-
     @cached_property
     def identity(self) -> Identity:
         """Inputs of all numbers of the sweep, in plain words: no clock, no path, nothing of how it
         is run.
         """
         words = {
-            "schema_version": self._version,
+            "schema_version": SCHEMA_VERSION,
             "case": self.harvest.data.name,
             **self.harvest.signature,
             "mechanism": self.description,

@@ -32,14 +32,13 @@ from ...errors import (
     shown,
 )
 from ...methods import method
-from ...renamed import renamed
 from ...store.opening import opened_file
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
 from .contents import KeptColumn, contents
 from .meanings import CYCLE, OVER, STATUS, Meanings
 from .parts import Folder
-from .plan import READ, SCHEMA, Identity
+from .plan import SCHEMA, SCHEMA_VERSION, Identity
 from .selection import Selected, matches
 
 if TYPE_CHECKING:
@@ -51,7 +50,6 @@ _BLOCK = 1 << 15
 Values = npt.NDArray[Any]
 
 
-@renamed
 @public
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep:
@@ -716,7 +714,7 @@ def _along(
 
 
 def _opened(path: str | Path, verified: VerifiedFile | None) -> AbstractContextManager[h5py.File]:
-    return opened_file(path, SCHEMA, READ, "the file of a sweep", " of sweeps", verified)
+    return opened_file(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps", verified)
 
 
 def _refuse_unfinished(path: str | Path) -> None:

@@ -1,0 +1,154 @@
+"""An engine of plain formulas, for tests of what stands around an engine; and what sweeps leave
+behind.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import subprocess
+import threading
+import time
+from pathlib import Path
+
+import mechanisms
+import numpy as np
+from internals import DesignEngine, Outcome, Provenance, sweep
+
+from lagrange_casadi.version import __version__
+
+CASE = Path(__file__).parents[2] / "cases" / "slider_crank"
+ASKED = "sweep CASE --t 0:0.08:21 --want effort --want section:rod"
+BENDING = "peak:section:rod:bending"
+GRID = {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 7)}
+SIZE = 420
+
+
+class Formula:
+    """Numbers that tell the design and the column apart; some have no result.
+
+    ``pause`` [s] a design.
+    """
+
+    quantities = (
+        "effort:O",
+        "reaction:A:resultant",
+        "reaction:A:fx",
+        "section:rod:axial",
+        "section:rod:shear",
+        "section:rod:bending",
+    )
+    efforts = ("effort:O",)
+    indeterminate, sampled = (), False
+    cost, capacity = 1 / 15, 0
+    provenance = Provenance(
+        "formula", "double", "", "", "(default)", {"lagrange_casadi": __version__}
+    )
+
+    def __init__(self, count=7, pause=0.0):
+        laws = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
+        self.columns = ("effort:O", *(f"section:rod:law:{name}" for name in laws))
+        self.count, self.pause, self.threads, self.calls = count, pause, [], []
+
+    def of(self, program, *_):
+        """The engine of a program."""
+        self.program = program
+        return self
+
+    def failures(self, p, whole):
+        return {}
+
+    def evaluate(self, p, *, threads=None, histories=False):
+        self.threads.append(threads)
+        self.calls.append((len(p), threading.get_ident()))
+        time.sleep(self.pause * len(p))
+        # Not by a product of matrices, whose rounding depends on how many rows there are.
+        seed = sum(
+            factor * column for factor, column in zip((1.0, 2.0, 5.0, 7.0, 11.0), p.T, strict=True)
+        )
+        status = (np.sin(1e3 * seed) > 0.8).astype(np.int8)
+
+        def numbers(width, shift):
+            values = np.sin(seed[:, None] * (1.0 + np.arange(width)) + shift)
+            return np.where(status[:, None] == 0, values, np.nan)
+
+        value, t, xi = (numbers(len(self.quantities), k) for k in range(3))
+        series = (
+            np.stack([numbers(self.count, 10 + k) for k in range(len(self.columns))], axis=1)
+            if histories
+            else None
+        )
+        return Outcome(status, value, t, np.abs(xi), numbers(1, 5), numbers(1, 6), series)
+
+
+def use(monkeypatch, **keywords):
+    """Let sweeps use one :class:`Formula`, which is given back."""
+    engine = Formula(**keywords)
+    monkeypatch.setattr(DesignEngine, "compiled", engine.of)
+    return engine
+
+
+def scene(**keywords):
+    """The paper's mechanism, whose parameters are r, l, m1, m2 and m3."""
+    return mechanisms.slider_crank(**{"t": (0, 0.08, 7), **keywords})
+
+
+def identity(case="x"):
+    """What a sweep is of, as parts keep it."""
+    words = dict.fromkeys(
+        ("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), ""
+    )
+    tables = {name: {} for name in ("parameters", "bodies", "joints", "loads", "rows")}
+    mechanism = {"name": case, "gravity": [0.0, -9.81], "constraints": [], **tables}
+    grid = {"l": "0.1:0.2:11"}
+    return {
+        "schema_version": 1,
+        "case": case,
+        "versions": {},
+        **words,
+        "wanted": {},
+        "t": [0.0, 1.0, 11],
+        "xi": None,
+        "mechanism": mechanism,
+        "grid": grid,
+    }
+
+
+@contextlib.contextmanager
+def process(*command, **keywords):
+    """A process of its own that does not outlive its test."""
+    started = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **keywords
+    )
+    try:
+        yield started
+    finally:
+        started.kill()
+        started.communicate()
+
+
+def wait_for(condition, seconds=60.0):
+    """Wait until something is so."""
+    until = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < until, "it never came"
+        time.sleep(0.002)
+
+
+def run(path, grid=None, **keywords):
+    """The bytes of a sweep's file."""
+    return sweep(scene(), GRID if grid is None else grid, out=path, **keywords).path.read_bytes()
+
+
+class StopError(Exception):
+    """What stops a sweep from its progress."""
+
+
+def stop_after(count):
+    """A progress that stops a sweep after so many reports of designs."""
+    seen = iter(range(count))
+
+    def progress(what, _done, _total):
+        if what == "designs" and next(seen, None) is None:
+            raise StopError
+
+    return progress

@@ -1,0 +1,292 @@
+"""Sizing: against trying every profile, and what cannot be sized."""
+
+import math
+
+import pytest
+from commands import command
+from internals import Profile, read_profiles, size
+from internals import equations_derive as derive
+from places import FOLDERS
+from strong import BARS, arms
+
+from lagrange_casadi import Mechanism, Scene, beams, evaluate
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
+from lagrange_casadi.motion import polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return arms()
+
+
+@pytest.fixture(scope="module")
+def sized(scene):
+    return size(scene, BARS, safety=2.0)
+
+
+def safe(scene, d1, d2):
+    solution = evaluate(scene, parameters={"d1": d1, "d2": d2}, certificate=False)
+    return min(solution.safety(link).factor for link in ("upper", "fore")) >= 2.0
+
+
+def test_every_link_is_safe_and_none_alone_can_be_lighter(scene, sized):
+    chosen = {one.link: one.profile.dimensions["diameter"] for one in sized.links}
+    assert sized.parameters == {"d1": chosen["upper"], "d2": chosen["fore"]}
+    assert sized.solution.certified
+    assert safe(scene, *chosen.values())
+    diameters = [profile.dimensions["diameter"] for profile in BARS]
+    upper, fore = (max(d for d in diameters if d < chosen[link]) for link in ("upper", "fore"))
+    assert not safe(scene, upper, chosen["fore"])
+    assert not safe(scene, chosen["upper"], fore)
+    for one in sized.links:
+        assert one.safety == sized.solution.safety(one.link)
+        assert one.mass == pytest.approx(
+            7850
+            * math.pi
+            / 4
+            * one.profile.dimensions["diameter"] ** 2
+            * (0.5 if one.link == "upper" else 0.4)
+        )
+        profile, found = one.lighter
+        assert profile.dimensions["diameter"] < one.profile.dimensions["diameter"]
+        assert found.factor < 2.0 <= one.safety.factor
+    assert sized.mass == pytest.approx(sum(one.mass for one in sized.links))
+    assert sized.left == {"plate": "diameter is not a dimension of its rectangle"}
+
+
+def test_all_profiles_have_one_graph(monkeypatch):
+    """Profiles are parameters: one graph is derived for all loads, and one for what is told."""
+    derived, real = [], derive._derive
+
+    def counted(scene, want):
+        derived.append(want)
+        return real(scene, want)
+
+    monkeypatch.setattr(derive, "_derive", counted)
+    monkeypatch.setenv("LAGRANGE_CASADI_CACHE_SIZE", "0")
+    derive._kept.cache_clear()
+    assert size(arms(), BARS, safety=2.0).evaluations > len(BARS)
+    assert len(derived) == 2
+
+
+@pytest.mark.long
+def test_all_pairs_tried(scene, sized):
+    """No pair of profiles that is safe has less mass in each link."""
+    chosen = {one.link: one.profile.dimensions["diameter"] for one in sized.links}
+    diameters = sorted(profile.dimensions["diameter"] for profile in BARS)
+    for d1 in diameters:
+        for d2 in diameters:
+            if (
+                d1 <= chosen["upper"]
+                and d2 <= chosen["fore"]
+                and (d1, d2) != tuple(chosen.values())
+            ):
+                assert not safe(scene, d1, d2), (d1, d2)
+
+
+def test_a_link_may_be_left_as_it_is(scene):
+    found = size(scene, BARS, links=["fore"], parameters={"d1": 0.025})
+    assert [one.link for one in found.links] == ["fore"]
+    assert set(found.parameters) == {"d2"}
+    assert found.solution.description["parameters"]["d1"]["value"] == 0.025
+
+
+def test_where_no_profile_is_safe(scene):
+    with pytest.raises(
+        NoDesignError,
+        match=(
+            r"link 'upper': no profile has a factor of 50; the most, 'bar 22', has .* against"
+            r" fatigue"
+        ),
+    ):
+        size(scene, BARS, safety=50.0)
+
+
+def test_a_link_is_stiff(scene):
+    found = size(
+        scene, BARS, links=["fore"], parameters={"d1": 0.02}, t=(0, 1 / 1.5, 5), deflection=1 / 350
+    )
+    (fore,) = found.links
+    bent = abs(found.solution.deflection("fore").peak().value)
+    assert bent <= 0.4 / 350
+    assert fore.safety.governs.against == "deflection"
+    assert fore.safety.factor == pytest.approx(0.4 / 350 / bent, rel=1e-12)
+    assert fore.lighter[1].factor < 1.0
+
+
+@pytest.mark.long
+def test_every_link_is_stiff_and_none_alone_can_be_lighter(scene, sized):
+    """Where the deflection governs it is what the next lighter profile fails by; 1 is enough of it,
+    of other factors 2.
+    """
+    found = size(scene, BARS, safety=2.0, deflection=1 / 300)
+    upper, fore = found.links
+    assert all(one.mass > before.mass for one, before in zip(found.links, sized.links, strict=True))
+    for one in found.links:
+        allowed = (0.5 if one.link == "upper" else 0.4) / 300
+        bent = abs(found.solution.deflection(one.link).peak().value)
+        assert bent <= allowed
+        assert one.safety.against("deflection") == pytest.approx(allowed / bent, rel=1e-12)
+        _, lighter = one.lighter
+        assert lighter.governs.against == "deflection"
+        assert lighter.factor < 1.0
+    assert upper.safety.governs.against == "deflection"
+    assert upper.safety.against("fatigue") > 2.0 > upper.safety.factor
+    assert fore.safety.governs.against == "fatigue"
+    with pytest.raises(
+        NoDesignError,
+        match=(
+            r"factor of 2, and a deflection of 0\.001 of its length at most; the most, 'bar"
+            r" 22', has"
+        ),
+    ):
+        size(scene, BARS, deflection=1 / 1000)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "says"),
+    [
+        ({"profiles": []}, DeclarationError, "expected at least one profile"),
+        ({"safety": 0.0}, DeclarationError, r"size: safety: expected a positive number, got 0\.0"),
+        ({"deflection": -0.1}, DeclarationError,
+            r"size: deflection: expected a positive number, got -0\.1"),
+        ({"links": ["leg"]}, UnknownNameError, "unknown link with a beam 'leg'"),
+        ({"links": ["plate"]}, DeclarationError,
+            "link 'plate': diameter is not a dimension of its rectangle"),
+        ({"profiles": [Profile("x", {"wall": 1.0})]}, DeclarationError,
+            "no link; upper: wall is not a dimension of its round_bar"),
+        ({"profiles": [Profile("x", {"diameter": 0.5})]}, DeclarationError,
+            r"'x': parameter 'd1' = 0\.5 m is out of its range"),
+        ({"profiles": [Profile("x", {"height": 0.5})], "links": ["plate"]}, DeclarationError,
+            "its height must be a parameter"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_sized(scene, arguments, error, says):
+    with pytest.raises(error, match=says):
+        size(scene, **{"profiles": BARS, **arguments})
+
+
+@pytest.fixture
+def two_beams():
+    m = Mechanism("two_beams")
+    height, width = m.parameter("h", 0.08, "m", low=0.0), m.parameter("b", 0.04, "m", low=0.0)
+    web = m.parameter("web", 0.005, "m", low=0.0)
+    material = beams.material("S355")
+    section = beams.i_section(height, width, web, m.parameter("flange", 0.007, "m", low=0.0))
+    first = m.link("first", length=0.5, beam=beams.Beam(section, material))
+    flat = beams.rectangle(m.parameter("h2", 0.05, "m"), m.parameter("b2", 0.02, "m"))
+    second = m.link("second", length=0.5, beam=beams.Beam(flat, material))
+    m.revolute("O", m.ground, first)
+    m.revolute("A", first.tip, second)
+    still = polynomial(0.3)
+    return Scene(m, {"O": still, "A": still}, t=(0, 1, 3))
+
+
+def test_a_standard_table_fits_a_whole_cross_section(two_beams):
+    found = size(two_beams, read_profiles("flat"))
+    assert [one.link for one in found.links] == ["second"]
+    assert found.left == {"first": "table 'flat' has no web, flange of its i_section"}
+
+
+def test_a_profile_that_is_impossible_in_a_link_is_named(two_beams):
+    bars = [Profile(f"{h} mm", {"height": h / 1e3, "width": 0.04}) for h in (10, 60)]
+    found = size(two_beams, bars)
+    assert [one.link for one in found.links] == ["second"]
+    words = "height between the flanges of its i_section must be positive, got -0.004"
+    assert found.left == {"first": f"profile '10 mm': {words}"}
+
+
+def test_two_links_that_share_a_parameter():
+    with pytest.raises(
+        DeclarationError, match="links 'upper' and 'fore' share parameter 'd1'; give each its own"
+    ):
+        size(arms(shared=True), BARS)
+
+
+def table(here, text):
+    (here / "bars.csv").write_text(text)
+    return read_profiles(here / "bars.csv")
+
+
+def test_tables_have_units_and_blank_lines(here):
+    found = table(here, "name, height [mm],width[cm],web,flange [m]\n\nA 1,35, 2.8,0.007,0.007\n")
+    assert found == (
+        Profile("A 1", {"height": 0.035, "width": 0.028, "web": 0.007, "flange": 0.007}),
+    )
+    assert found[0].shape("i_section").area == pytest.approx(11 * 0.007**2)
+    with pytest.raises(
+        DeclarationError, match="a round_bar has the dimensions diameter, got height, width"
+    ):
+        found[0].shape("round_bar")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", r"bars\.csv: it has no rows; expected a head and a line for every profile"),
+        ("name,d\n", r"bars\.csv, line 1: expected a line for every profile below this head"),
+        ("d,e\n1,2\n", "expected a column 'name' and one for each dimension, got d, e"),
+        ("name,d,d\nx,1,2\n", "expected a column 'name'"),
+        ("name,d [ft]\nx,1\n", r"column 'd \[ft\]': expected a name, and m, cm or mm as its unit"),
+        ("name,d\nx,1,2\n", "line 2: 3 cells, expected 2"),
+        ("name,d\nx,1\nx,2\n", "line 3: profile 'x' is listed twice"),
+        ("name,d\n ,1\n", "line 2: it has no name"),
+        ("name,d\nx,-1\n", "line 2: d: expected a positive number, got '-1'"),
+        ("name,d\nx,thick\n", "line 2: d: expected a positive number, got 'thick'"),
+    ],
+)
+def test_a_bad_line_is_named(here, text, says):
+    with pytest.raises(DeclarationError, match=says):
+        table(here, text)
+
+
+def test_a_table_that_is_not_there(here):
+    with pytest.raises(PathError, match=r"bars\.csv: no such file"):
+        read_profiles("bars.csv")
+    (here / "bars.csv").write_bytes(b"\xff\xfe\x00name")
+    with pytest.raises(PathError, match="cannot be read as text"):
+        read_profiles("bars.csv")
+
+
+@pytest.mark.long
+def test_one_command_sizes(here, capsys, sized):
+    lines = (
+        "import sys",
+        f"sys.path[:0] = {FOLDERS!r}",
+        "from strong import arms as scene",
+    )
+    (here / "case.py").write_text("\n".join(lines))
+    (here / "profiles.csv").write_text(
+        "name,diameter [mm]\n"
+        + "".join(f"{p.name},{p.dimensions['diameter'] * 1000:g}\n" for p in BARS)
+    )
+    assert main(["size", "case.py", "--safety", "2"]) == 0
+    out = capsys.readouterr().out
+    for one in sized.links:
+        assert f"\n{one.link}: '{one.profile.name}', {one.mass:.6g} kg\n" in out
+        assert (
+            f"    lighter: '{one.lighter[0].name}' has a factor of {one.lighter[1].factor:.4g}"
+            " against " in out
+        )
+    assert "plate: not sized: diameter is not a dimension of its rectangle\n  plate  " in out
+    settings = [f"{name}={value!r}" for name, value in sized.parameters.items()]
+    options = " ".join(f"--set {word}" for word in settings)
+    assert options in out
+    assert command(f"run case.py --no-figures --want safety {options}") == 0
+    run = capsys.readouterr().out
+    for one in sized.links:
+        assert f"  {one.link:<20} {one.safety.utilisation:>8.4g} |" in run
+    assert main(["size", "case.py", "--deflection", "1/300"]) == 0
+    out = capsys.readouterr().out
+    assert (
+        "a factor of safety of 2, or more, and a deflection of 0.00333333 of its length, or less:\n"
+        in out
+    )
+    assert "| deflection governs\n" in out
+    assert main(["size", "case.py", "--deflection", "1/0"]) == 2
+    assert "expected a share of the length, as 1/500, got '1/0'" in capsys.readouterr().err
+    assert main(["size", "case.py", "--profiles", "none.csv"]) == 2
+    assert main(["size", "case.py", "--safety", "50"]) == 1

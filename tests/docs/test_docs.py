@@ -1,0 +1,323 @@
+"""The documentation is run, and its tables are the code's."""
+
+import inspect
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+from internals import (
+    ANSWERS,
+    QUANTITIES,
+    SCHEMA_VERSION,
+    SHARED,
+    SPATIAL_QUANTITIES,
+    STATUSES,
+    Status,
+    find_compiler,
+)
+
+import lagrange_casadi
+from lagrange_casadi import errors, export, load_case
+from lagrange_casadi.cli import program
+
+pytestmark = pytest.mark.quick
+
+ROOT = Path(__file__).parents[2]
+sys.path.append(str(ROOT / "docs"))
+
+import notebooks  # noqa: E402 - it lies beside the pages
+
+PAGES = [
+    "README.md",
+    "docs/method.md",
+    "docs/declaring.md",
+    "docs/loads.md",
+    "docs/machines.md",
+    "docs/models.md",
+    "docs/space.md",
+    "docs/strength.md",
+    "docs/sweeps.md",
+    "docs/report.md",
+    "docs/animations.md",
+    "docs/optimise.md",
+    "docs/reference/python.md",
+]
+WRITTEN = sorted(page for page in (ROOT / "docs").rglob("*.md") if "generated" not in page.parts)
+PROSE = ["README.md", "CONTRIBUTING.md", *(page.relative_to(ROOT).as_posix() for page in WRITTEN)]
+LINKING = [*PROSE, "cases/slider_crank/README.md"]
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("page", PAGES)
+def test_examples_run(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        exec(compile(block, page, "exec"), {})
+
+
+@pytest.mark.parametrize("name", notebooks.PAGES)
+def test_a_notebook_has_the_code_and_the_pictures_of_its_page(name, tmp_path):
+    page = ROOT / "docs" / f"{name}.md"
+    text = page.read_text()
+    notebooks.write(tmp_path / "made.ipynb", text, page.parent)
+    made = nbformat.read(tmp_path / "made.ipynb", as_version=4)
+    nbformat.validate(made)
+    code = [cell.source for cell in made.cells if cell.cell_type == "code"]
+    assert [f"{source}\n" for source in code] == re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    assert sum(len(cell.get("attachments", ())) for cell in made.cells) == text.count("![") > 0
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/export.md"])
+def test_the_exported_c_is_called_as_shown(page, tmp_path):
+    compiler = find_compiler("c")
+    (block,) = re.findall(r"```c\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    export(load_case(ROOT / "cases" / "slider_crank").scene, tmp_path)
+    body = block.replace("slider_crank_prepare(", "slider_crank_status s = slider_crank_prepare(")
+    checked = re.sub(
+        r"^slider_crank_(evaluate|section)\(",
+        r"s = s ? s : slider_crank_\1(",
+        body,
+        flags=re.MULTILINE,
+    )
+    program = (
+        f'#include "slider_crank.h"\nint main(void) {{\n{checked}\nreturn s || forces.bending =='
+        " 0;\n}\n"
+    )
+    (tmp_path / "shown.c").write_text(program)
+    command = [
+        *compiler.command,
+        "-std=c99",
+        tmp_path / "shown.c",
+        tmp_path / "slider_crank.c",
+        "-o",
+        tmp_path / "shown",
+        "-lm",
+    ]
+    subprocess.run(command, check=True)
+    subprocess.run([tmp_path / "shown"], check=True)
+
+
+@pytest.mark.parametrize("page", LINKING)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#:]+)\)", (ROOT / page).read_text()):
+        assert ((ROOT / page).parent / target).exists(), f"{page}: {target}"
+
+
+def synopses(page, heading):
+    """The options that a page's synopses give every command."""
+    found = {}
+    for line in (
+        (ROOT / page).read_text().partition(f"## {heading}")[2].split("\n\n")[1].splitlines()
+    ):
+        if line.startswith("    lagrange-casadi "):
+            name = line.split()[1]
+        found.setdefault(name, set()).update(re.findall(r"--[a-z-]+", line))
+    return found
+
+
+def options(name):
+    return {
+        option
+        for parameter in program.commands[name].params
+        for option in (*parameter.opts, *parameter.secondary_opts)
+        if option.startswith("--")
+    }
+
+
+def test_the_synopses_of_sweeps_are_whole():
+    found = synopses("docs/sweeps.md", "From the command line")
+    assert set(found) == {"sweep", "best", "table", "plot", "info", "check"}
+    for name, named in found.items():
+        assert named == options(name) - ({"--want"} if name == "info" else set()), name
+
+
+def test_synopses_name_options_that_there_are():
+    found = synopses("docs/reference/command_line.md", "Synopsis")
+    assert set(found) == set(program.commands)
+    for name, named in found.items():
+        assert named <= options(name), name
+    for name in ("run", "best", "table", "plot", "report", "animate", "info", "check"):
+        assert found[name] == options(name), name
+
+
+def rows(quantities, *axes):
+    yield "| dataset | axes | unit | is | sign |"
+    yield "| --- | --- | --- | --- | --- |"
+    yield from axes
+    places = {
+        "motion": "/motion/JOINT",
+        "pose": "/pose/BODY/",
+        "effort": "/effort/JOINT",
+        "holding": "/holding/JOINT/",
+        "reaction": "/reaction/JOINT/",
+    }
+    places |= {
+        "multiplier": "/multiplier/NAME",
+        "load": "/load/NAME/",
+        "friction": "/friction/NAME/",
+        "output": "/output/NAME",
+    }
+    places |= {
+        "certificate": "/certificate/",
+        "stress": "/stress/LINK/",
+        "utilisation": "/utilisation/LINK/",
+    }
+    places |= {
+        "deflection": "/deflection/LINK/",
+        "section": "/section/LINK/",
+        "law": "/section/LINK/law/",
+        "station": "/section/LINK/NAME/",
+        "spread": "/section/LINK/NAME/",
+    }
+    for q in quantities:
+        place = places[q.group] + (f"_{q.member}" if q.group == "motion" and q.member else q.member)
+        place += "J" if q.group == "spread" and q.member[0] in "qc" else ""  # the power
+        units = dict.fromkeys(q.unit_for(kind) for kind in ("angle", "slide"))
+        yield f"| {place} | {', '.join(q.axes)} | {' or '.join(units)} | {q.long_name} | {q.sign} |"
+
+
+def test_the_schema_lists_every_quantity(request):
+    """Run pytest with --update to write the table anew."""
+    page = ROOT / "docs" / "schema.md"
+    text = page.read_text()
+    axes = ("| /t | t | s | time | |", "| /xi | xi | 1 | position along a link, ratio xi/l | |")
+    others = [quantity for quantity in SPATIAL_QUANTITIES if quantity not in QUANTITIES]
+    new = text
+    for name, lines in (
+        ("quantities", rows(QUANTITIES, *axes)),
+        ("quantities in space", rows(others)),
+    ):
+        table = f"<!-- {name} -->\n" + "\n".join(lines) + f"\n<!-- /{name} -->"
+        new = re.sub(
+            f"<!-- {name} -->.*<!-- /{name} -->", lambda _, table=table: table, new, flags=re.DOTALL
+        )
+    if request.config.getoption("--update"):
+        page.write_text(new)
+    assert page.read_text() == new
+    assert f"schema version {SCHEMA_VERSION}" in text
+
+
+def test_readme_is_short():
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 150
+
+
+def test_the_reference_has_every_public_name():
+    parts = re.findall(
+        r"currentmodule:: (\S+)\n(.*?)\n```",
+        (ROOT / "docs" / "reference" / "python.md").read_text(),
+        re.DOTALL,
+    )
+    listed = {f"{module}.{name}" for module, part in parts for name in part.split()}
+    doors = {
+        name: thing
+        for name in lagrange_casadi.__all__
+        if inspect.ismodule(thing := getattr(lagrange_casadi, name))
+    }
+    named = {
+        f"lagrange_casadi.{name}"
+        for name in lagrange_casadi.__all__
+        if name not in (*doors, "LagrangeCasadiError", "__version__")
+    }
+    for door, module in doors.items():
+        named |= {f"lagrange_casadi.{door}.{name}" for name in getattr(module, "__all__", [])}
+    assert named <= listed
+
+
+def rows_of(page):
+    """Cells of the rows of a page's tables, code without its marks."""
+    lines = (ROOT / page).read_text().splitlines()
+    return [
+        [cell.strip(" `") for cell in line.strip("|").split("|")]
+        for line in lines
+        if line.startswith("|")
+    ]
+
+
+def test_every_error_and_every_status_has_a_cure():
+    cells = {row[0]: row[1:] for row in rows_of("docs/reference/errors.md")}
+    for name, error in vars(errors).items():
+        if (
+            inspect.isclass(error)
+            and issubclass(error, errors.LagrangeCasadiError)
+            and error is not errors.LagrangeCasadiError
+        ):
+            assert cells[name][0] == str(error.exit_status)
+            assert all(cells[name])
+    for status in Status:
+        number, meaning, cure, exported = cells[status.name]
+        assert number == str(status.value)
+        assert meaning
+        assert cure or status == Status.OK
+        assert exported == ("OK" if status == Status.OK else ANSWERS.get(status, "-"))
+    for number, name in enumerate(STATUSES):
+        if name not in {"OK", *SHARED}:
+            assert cells[name][0] == str(number)
+            assert all(cells[name])
+
+
+def test_every_case_has_a_picture():
+    cases = {page.parent.name for page in (ROOT / "cases").glob("*/case.py")}
+    assert {picture.stem for picture in (ROOT / "docs" / "gallery").glob("*.svg")} == cases
+
+
+def test_the_changelog_names_the_version():
+    assert f"## {lagrange_casadi.__version__}" in (ROOT / "CHANGELOG.md").read_text()
+
+
+@pytest.mark.parametrize("page", PROSE)
+def test_pages_keep_to_their_width(page):
+    """Prose and code to 120 columns; a row of a table cannot break, and keeps to 160."""
+    for number, line in enumerate((ROOT / page).read_text().splitlines(), 1):
+        assert len(line) <= (160 if line.startswith("|") else 120), (
+            f"{page}:{number}: {len(line)} columns"
+        )
+
+
+def anchor(heading):
+    """What a heading is called in a link, as GitHub has it."""
+    return re.sub(r"[^a-z0-9 _-]", "", heading.lower()).replace(" ", "-")
+
+
+def headings(page):
+    """The headings of a page; what begins with # in its code is none."""
+    prose = re.sub(r"^```.*?^```$", "", (ROOT / page).read_text(), flags=re.DOTALL | re.MULTILINE)
+    return re.findall(r"^#+ (.*)", prose, re.MULTILINE)
+
+
+@pytest.mark.parametrize("page", PROSE)
+def test_links_into_pages_meet_a_heading(page):
+    for target, name in re.findall(r"\]\(([^)#:]*)#([^)]+)\)", (ROOT / page).read_text()):
+        other = ((ROOT / page).parent / target).resolve().relative_to(ROOT) if target else page
+        assert name in map(anchor, headings(other)), f"{page}: {target}#{name}"
+
+
+def test_the_glossary_is_in_order_and_found():
+    words = headings("docs/glossary.md")[1:]
+    assert words == sorted(words, key=str.lower)
+    assert len({anchor(word) for word in words}) == len(words) > 50
+    for page in ("README.md", "docs/architecture.md", "CONTRIBUTING.md"):
+        assert "glossary.md)" in (ROOT / page).read_text()
+
+
+TRUSTED = {
+    "What runs code": [
+        "loading it runs it",
+        "Dask scheduler as pickles",
+        "`--flags` (`flags=`) go to it",
+        "The cache folder",
+    ],
+    "The seal": ["detects damage", "no signature"],
+    "Files of unknown origin": ["`--time-limit`", "What it does not promise"],
+}
+
+
+@pytest.mark.parametrize("heading", TRUSTED)
+def test_what_is_trusted_is_said_on_one_page(heading):
+    page = " ".join((ROOT / "docs/trust.md").read_text().split())
+    part = re.split(rf"#+ {heading} ", page)[1].split(" ## ")[0]
+    assert [words for words in TRUSTED[heading] if words not in part] == []

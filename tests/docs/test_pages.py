@@ -1,0 +1,101 @@
+"""Tutorials, how-to guides and answers: every block is run, and prints what its page says."""
+
+import contextlib
+import io
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from lagrange_casadi.cli import main
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = sorted(
+    page.relative_to(DOCS).with_suffix("").as_posix()
+    for folder in ("tutorials", "howto", "gallery/questions")
+    for page in (DOCS / folder).glob("*.md")
+    if page.stem != "index"
+)
+
+
+PAGES.sort(key="howto/cluster".__eq__)  # last: what it builds is built otherwise from there on
+
+
+def blocks(page):
+    """Yield the language, the text and the stated result of each fenced block, but for results."""
+    text = (DOCS / f"{page}.md").read_text()
+    fences = re.findall(r"^```(\w+)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    for (language, text), following in zip(fences, [*fences[1:], ("", "")], strict=True):
+        if language != "text":
+            yield language, text, following[1] if following[0] == "text" else ""
+
+
+def run_python(text, names):
+    """Execute a block with the names of the blocks before it, and return what it prints."""
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(text, "block", "exec"), names)
+    return printed.getvalue()
+
+
+def own(text):
+    """Return lines that are commands of this package alone, and need no shell; else None."""
+    lines = text.replace("\\\n", " ").splitlines()
+    bare = (re.sub("'[^']*'", "", line) for line in lines)
+    plain = all(re.fullmatch(r"lagrange-casadi [^|<>;&$*`]+", line) for line in bare)
+    return lines if plain else None
+
+
+def run_commands(text):
+    """Run commands as a shell does; the last one may fail if the page shows an error.
+
+    Our own need no process that imports the package anew.
+    """
+    if lines := own(text):
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
+            status = [main(shlex.split(line)[1:]) for line in lines][-1]
+        assert status == 0 or "error:" in printed.getvalue(), printed.getvalue()
+        return printed.getvalue()
+    folders = [str(Path(sys.executable).parent), os.environ["PATH"]]
+    environment = os.environ | {"PATH": os.pathsep.join(folders)}
+    done = subprocess.run(["bash", "-c", text], capture_output=True, text=True, env=environment)
+    assert done.returncode == 0 or "error:" in done.stderr, done.stderr
+    return done.stdout + done.stderr
+
+
+def missing(stated, printed):
+    """Return the first stated piece that is not printed; an ellipsis stands for anything."""
+    rest = " ".join(printed.split())
+    for piece in filter(None, (" ".join(part.split()) for part in stated.split("..."))):
+        _, found, rest = rest.partition(piece)
+        if not found:
+            return f"{piece!r} is not in:\n{printed}"
+    return None
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_pages_run_and_print_what_they_say(page, tmp_path, monkeypatch, request):
+    if page == "howto/cluster":  # whose workers want the same flags everywhere
+        request.getfixturevalue("released")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "120")
+    names = {}
+    found = list(blocks(page))
+    assert found
+    for language, text, stated in found:
+        if language == "python":
+            printed = run_python(text, names)
+        elif language != "sh":  # a source that a command compiles; its first line is its name
+            Path(text.partition("\n")[0].removeprefix("// ")).write_text(text)
+            continue
+        elif (tool := re.match(r"# needs (\S+)", text)) and not shutil.which(tool[1]):
+            continue
+        else:
+            printed = run_commands(text)
+        assert missing(stated, printed) is None, missing(stated, printed)

@@ -1,0 +1,148 @@
+"""How estimates of errors compare with the errors, which fifty digits tell.
+
+``python tests estimates`` prints the table of the cases, ``python tests estimates SCENES``
+that of so many random scenes of every kind, in docs/accuracy.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+import kinds
+import numpy as np
+from conftest import CASES, PLANAR
+from internals import DTYPES, ROUNDING, Output, points
+from truth import true_errors, truth
+
+from lagrange_casadi import derive, evaluate, load_case
+from lagrange_casadi.errors import AssemblyError
+
+FACTOR = 10.0
+MOST = 0.8
+METHODS = {
+    "lanes": {"backend": "lanes"},
+    "c": {"backend": "c"},
+    "single": {"backend": "c", "precision": "single"},
+    "newton 1": {"backend": "c", "newton": 1},
+    "newton 2": {"backend": "c", "newton": 2},
+    "newton 3": {"backend": "c", "newton": 3},
+}
+OPTIONS = {
+    "lanes": "--backend lanes",
+    "c": "--backend c",
+    "single": "--backend c --precision single",
+}
+
+COUNT = 101
+"""Instants of a grid: half of them estimates do not look at."""
+
+
+def exactly(scene, parameters=None):
+    """What a scene has at the instants of its grid."""
+    return truth(scene, points(scene.t), parameters)
+
+
+def kind(name):
+    """What is measured by one peak: motions alone, else all of a group that
+    have a unit in common.
+    """
+    group, *_ = name.split(":")
+    return name if group.startswith(("motion", "_")) else (group, Output.of(name).quantity.unit)
+
+
+def ratios(solution, exact):
+    """Estimate over true error by quantity, where there is an error; what has none is estimated to
+    have none to speak of.
+    """
+    true = true_errors(solution, exact)
+    assert set(true) == set(solution.errors)
+    precision = "single" if solution.provenance.precision == "single" else "double"
+    unit, least = ROUNDING[precision], float(np.finfo(DTYPES[precision]).tiny)
+    size = {}
+    for name in solution.series:
+        size[kind(name)] = max(
+            size.get(kind(name), 0.0), float(np.max(np.abs(solution.series[name])))
+        )
+    found = {}
+    for name, error in true.items():
+        scale = max(
+            size.get(kind(name), 0.0),
+            0.0 if name in solution.series else abs(solution.peak(name).value),
+        )
+        if error > unit**2 * scale:
+            found[name] = solution.errors[name] / error
+        else:
+            assert solution.errors[name] <= 100 * unit * scale + least, name
+    return found
+
+
+def assert_near(found):
+    """Most estimates within a factor of ten, none below a tenth."""
+    worst = min(found, key=lambda name: found[name])
+    assert found[worst] > 1 / FACTOR, (worst, found[worst])
+    assert np.mean([value < FACTOR for value in found.values()]) >= MOST
+
+
+def methods(scene):
+    """The evaluation methods of a scene, steps of Newton's method where its loops are iterated."""
+    closed = derive(scene).newton is None
+    return {
+        method: words for method, words in METHODS.items() if not (closed and "newton" in words)
+    }
+
+
+def looked_at(scene, method):
+    """Estimates over true errors of a scene by one method; none where it is refused: steps may be
+    too few for any solution.
+    """
+    if method not in methods(scene):
+        return []
+    try:
+        solution = evaluate(scene, **METHODS[method])
+    except AssemblyError:
+        return []
+    return list(ratios(solution, truth(scene, points(scene.t))).values())
+
+
+def row(name, found):
+    """A row of a table."""
+    parts = [np.min(found), *np.quantile(found, (0.05, 0.5, 0.95))]
+    near = np.mean([1 / FACTOR < value < FACTOR for value in found])
+    return (
+        f"| {name} | {len(found)} | {' | '.join(f'{part:.2g}' for part in parts)} |"
+        f" {100 * near:.3g} % |"
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument(
+        "scenes", nargs="?", type=int, help="random scenes of every kind, in place of the cases"
+    )
+    parser.add_argument(
+        "--method", choices=METHODS, action="append", help="only these; default: all"
+    )
+    parser.add_argument("--kind", action="append", help="only these; default: all")
+    told = parser.parse_args()
+    print(
+        f"| {'kind, method' if told.scenes else 'method'} | quantities | least | 5 % | median | 95"
+        " % | within a factor of ten |"
+    )
+    print("| --- | --- | --- | --- | --- | --- | --- |")
+    for method in told.method or METHODS:
+        option, every = f"`{OPTIONS.get(method, f'--{method}')}`", []
+        if told.scenes:
+            for one in kinds.KINDS:
+                if told.kind is None or one.__name__ in told.kind:
+                    drawn = [kinds.closing(one, [seed]) for seed in range(told.scenes)]
+                    found = [value for scene in drawn for value in looked_at(scene, method)]
+                    print(row(f"{one.__name__.replace('_', ' ')}, {option}", found), flush=True)
+                    every += found
+        else:
+            for name in PLANAR:
+                every += looked_at(load_case(CASES / name).scene, method)
+        print(row(option if not told.scenes else f"all, {option}", every), flush=True)
+
+
+if __name__ == "__main__":
+    main()

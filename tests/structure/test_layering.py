@@ -1,0 +1,383 @@
+"""What layers promise beside the contracts of imports in pyproject.toml: each leaf can be taken
+away, and what is compiled is not declared again.
+"""
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+from internals import METHODS_METHODS as METHODS
+from places import TESTS
+
+import lagrange_casadi
+
+PACKAGE = Path(lagrange_casadi.__file__).parent
+CASE = Path(__file__).parents[2] / "cases" / "four_bar"
+DECLARED = (
+    *("version", "errors", "methods", "base", "arguments", "arithmetic", "geometry", "beams"),
+    *("declare", "elements", "equations"),
+)
+"""The rooms up to where a scene is compiled. All others read what it is compiled to."""
+
+MOST_ANY = 94
+"""Parameters and results whose type is ``Any``, as what users give that is yet to be checked."""
+
+PUBLIC = (
+    *("actuators", "beams", "bearings", "case", "cli", "density", "elements", "errors"),
+    *("forward", "motion", "peaks", "version"),
+)
+"""What users import from, and tests as well."""
+
+
+@cache
+def modules() -> dict[str, Path]:
+    """The modules by their names within the package: all but the façade,
+    which leads to every room.
+    """
+    named = {
+        ".".join(path.relative_to(PACKAGE).with_suffix("").parts): path
+        for path in sorted(PACKAGE.rglob("*.py"))
+    }
+    return {
+        name.removesuffix(".__init__"): path
+        for name, path in named.items()
+        if name not in ("__init__", "__main__")
+    }
+
+
+@cache
+def tree_of(path: Path) -> ast.Module:
+    return ast.parse(path.read_text())
+
+
+@cache
+def nodes_of(path: Path) -> tuple[ast.AST, ...]:
+    """All nodes of a file, which many tests look at; to find them takes the time."""
+    return tuple(ast.walk(tree_of(path)))
+
+
+def room(module: str) -> str:
+    return module.partition(".")[0]
+
+
+@pytest.mark.quick
+def test_the_map_shows_the_rooms_and_files_that_are_there():
+    root = Path(__file__).parents[2]
+    page = (root / "docs" / "architecture.md").read_text()
+    rooms = {room(name) for name in modules() if (PACKAGE / room(name)).is_dir()}
+    assert {*re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)} == rooms
+    here = {
+        *(path.name for path in modules().values()),
+        *(path.relative_to(PACKAGE).as_posix() for path in modules().values()),
+    }
+    for named in re.findall(r"[\w/]+\.py\b", page):
+        assert named in here or (root / named).exists(), named
+
+
+@pytest.mark.quick
+def test_what_is_compiled_is_not_declared_again():
+    """No module goes back from what it has to a scene or its mechanism: a case that was loaded, and
+    an error, hand over theirs.
+    """
+    for name, path in modules().items():
+        loads = [
+            node
+            for node in nodes_of(path)
+            if isinstance(node, ast.Assign) and "load_case(" in ast.unparse(node.value)
+        ]
+        handed = {ast.unparse(target) for node in loads for target in node.targets} | {"error"}
+        for node in nodes_of(path) if room(name) not in (*DECLARED, "case") else ():
+            if isinstance(node, ast.Attribute) and node.attr in ("scene", "mechanism"):
+                owner = ast.unparse(node.value)
+                assert owner in handed or owner.startswith("load_case("), f"{name}:{node.lineno}"
+                assert node.attr == "scene", f"{name}:{node.lineno}"
+
+
+@pytest.mark.quick
+def test_only_the_table_of_methods_names_what_is_above():
+    """A method of the table answers from a module that is there, and each is asked for by the
+    module that has it.
+    """
+    asked: dict[str, str] = {}
+    for name, path in modules().items():
+        for node in nodes_of(path):
+            called = node.func if isinstance(node, ast.Call) else None
+            if isinstance(called, ast.Name) and called.id == "method":
+                (word,) = (argument.value for argument in node.args)
+                asked[word] = name
+            last = getattr(called, "attr", getattr(called, "id", ""))
+            if last.endswith(("import_module", "__import__")) and name != "methods":
+                assert ast.unparse(node.args[0]).startswith("'distributed"), f"{name}:{node.lineno}"
+    assert asked.keys() == METHODS.keys()
+    for answer in METHODS.values():
+        module, _, function = answer.partition(":")
+        tree = tree_of(modules()[module])
+        defined = {
+            node.name for node in tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))
+        }
+        brought = {
+            alias.asname or alias.name
+            for node in tree.body
+            if isinstance(node, ast.ImportFrom)
+            for alias in node.names
+        }
+        assert function in defined | brought, answer
+
+
+WITHOUT = """
+import importlib, json, os, pkgutil, sys, traceback
+
+class Gone:
+    def find_spec(name, path, target=None):
+        if name.startswith("lagrange_casadi.") and name.split(".")[1] in gone:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+case, leaves = sys.argv[1], json.loads(sys.argv[2])
+sys.meta_path.insert(0, Gone)
+gone = set(leaves)
+import lagrange_casadi
+for found in pkgutil.walk_packages(lagrange_casadi.__path__, "lagrange_casadi."):
+    if not found.name.endswith("__main__") and found.name.split(".")[1] not in gone:
+        importlib.import_module(found.name)
+
+def without(leaf, commands):
+    global gone
+    gone, name_of_leaf, out = {leaf}, f"lagrange_casadi.{leaf}", "x.h5"
+    from lagrange_casadi.errors import MissingPackageError
+    from lagrange_casadi.methods import METHODS, method
+    lost, refused = [], []
+    for found in pkgutil.walk_packages(lagrange_casadi.__path__, "lagrange_casadi."):
+        if not found.name.endswith("__main__") and found.name != name_of_leaf:
+            try:
+                importlib.import_module(found.name)
+            except ModuleNotFoundError as error:
+                assert error.name.startswith(name_of_leaf), error
+                lost.append(found.name)
+    for look, names in ((method, METHODS), (lagrange_casadi.__getattr__, dir(lagrange_casadi))):
+        for name in names:
+            try:
+                look(name)
+            except MissingPackageError as error:
+                assert name_of_leaf in str(error), error
+                refused.append(name)
+    if leaf == "cli":
+        solution = lagrange_casadi.evaluate(lagrange_casadi.load_case(case).scene, t=(0, 0.1, 5), backend="vm")
+        lagrange_casadi.save(solution, out)
+    else:
+        from lagrange_casadi.cli import main
+        assert main(["run", case, "--no-figures", "--backend", "vm", "--t", "0:0.1:5", "--out", out]) == 0
+        asked = {"animate": [out], "drive": [case], "export": [case, "--out", "c"], "plot": [out, "--out", "p"]}
+        asked |= {"report": [out], "new": ["new", "--from", "model.json"]}
+        asked |= {"free": [case]}
+        asked |= {"loads": [case, "--link", "crank", "--out", "l"]}
+        asked |= {"identify": [case, "data.csv"]}
+        for word in commands:
+            assert main([word, *asked[word]]) == 1
+    print(json.dumps([lost, refused]))
+
+for leaf, commands in leaves.items():
+    if not os.fork():
+        os.mkdir(leaf)
+        os.chdir(leaf)
+        for stream, name in ((1, "out"), (2, "err")):
+            os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT), stream)
+        try:
+            without(leaf, commands)
+        except BaseException:
+            traceback.print_exc()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
+    os.wait()
+"""  # noqa: E501
+"""Read all but the leaves without any of them; then take away each in a process of its own."""
+
+GOES = {
+    "exports": (["cli.export"], ["export"], ["export"]),
+    "figures": (
+        ["cli.optimise", "cli.trade"],
+        ["PostureError.drawn", "Spec.draw", "figures", "figures.default_figures", "figures.draw"],
+        ["plot"],
+    ),
+    "report": (
+        ["cli.report_page"],
+        [name for name, answer in METHODS.items() if re.match("report[.:]", answer)],
+        ["report"],
+    ),
+    "animation": (["cli.animate"], ["Solution.animate", "animation"], ["animate"]),
+    "actuators": (["cli.drive"], ["actuators"], ["drive"]),
+    "cluster": ([], ["optimise.dask", "sweep.dask"], []),
+    "formats": ([], ["read", "save_model"], ["new"]),
+    "load_cases": (
+        ["cli.loads"],
+        ["LoadCase", "link_load_cases", "write_load_cases", "write_spectrum"],
+        ["loads"],
+    ),
+    "identification": (
+        ["cli.identify"],
+        ["Identification", "Measurements", "excite", "identify", "read_measurements"],
+        ["identify"],
+    ),
+    "forward": (["cli.free"], ["flywheel", "forward", "free"], ["free"]),
+    "cli": ([], [], []),
+}
+"""What goes with each leaf: commands' modules, methods and public names, and commands that then say
+what they need.
+"""
+
+
+def test_every_leaf_can_be_taken_away(tmp_path):
+    """All else imports and a case runs; what the leaf did is refused by an error of ours.
+
+    What is no leaf imports without all of them.
+    """
+    leaves = json.dumps({leaf: GOES[leaf][2] for leaf in GOES})
+    command = [sys.executable, "-c", WITHOUT, str(CASE), leaves]
+    subprocess.run(command, check=True, cwd=tmp_path)
+    for leaf, (modules_lost, refusing, commands) in GOES.items():
+        out, err = ((tmp_path / leaf / name).read_text() for name in ("out", "err"))
+        assert "Traceback" not in err, f"{leaf}: {err}"
+        lost, refused = json.loads(out.splitlines()[-1])
+        assert lost == [f"lagrange_casadi.{name}" for name in modules_lost], leaf
+        assert sorted(refused) == sorted(refusing), leaf
+        needs = f"needs lagrange_casadi.{leaf}, which this installation lacks"
+        assert err.count(needs) == len(commands), leaf
+
+
+def for_users() -> set[str]:
+    """Functions and classes that the façade or a command imports."""
+    facade = nodes_of(PACKAGE / "__init__.pyi")
+    files = [modules()[f"cli.{name}"] for name in ("commands", "design_commands")]
+    commands = (node for path in files for node in nodes_of(path))
+    imports = [*((node, "") for node in facade), *((node, "cli.") for node in commands)]
+    return {
+        f"{package}{node.module}.{alias.name}"
+        for node, package in imports
+        if isinstance(node, ast.ImportFrom) and node.level == 1
+        for alias in node.names
+    }
+
+
+@pytest.mark.quick
+def test_no_function_takes_more_than_eight_arguments():
+    """Public functions and commands have as many keywords as users need. Inside, what belongs
+    together is one object.
+    """
+    users = for_users()
+    for name, path in modules().items():
+        classes = [node for node in nodes_of(path) if isinstance(node, ast.ClassDef)]
+        owners = {member: owner.name for owner in classes for member in owner.body}
+        for node in nodes_of(path):
+            if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+                continue
+            taken = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+            count = sum(one.arg not in ("self", "cls") for one in taken)
+            called = getattr(node, "name", "lambda")
+            marks = {ast.unparse(mark) for mark in getattr(node, "decorator_list", ())}
+            own = f"{name}.{owners.get(node, called)}" in users and not called.startswith("_")
+            assert count <= 8 or own or marks & {"public", "overload"}, (
+                f"{name}:{node.lineno} {called} takes {count}"
+            )
+
+
+@pytest.mark.quick
+def test_types_say_something():
+    """Few parameters and results are of the type ``Any``; the number may only fall."""
+    untold = []
+    for name, path in modules().items():
+        for node in nodes_of(path):
+            if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                continue
+            taken = node.args
+            each = [*taken.posonlyargs, *taken.args, *taken.kwonlyargs, taken.vararg, taken.kwarg]
+            said = [one.annotation for one in each if one is not None] + [node.returns]
+            untold += [
+                f"{name}:{node.lineno}"
+                for one in said
+                if one is not None and re.search(r"\bAny\b", ast.unparse(one))
+            ]
+    assert len(untold) <= MOST_ANY, "\n".join(untold)
+
+
+@pytest.mark.quick
+def test_the_engine_knows_no_mechanism():
+    """Nothing under the cases may know the words of one."""
+    words = re.compile(r"\b(crank|rod|slider|rocker|coupler)\b", re.IGNORECASE)
+    for name, path in modules().items():
+        engine = room(name) in (
+            "geometry",
+            "equations",
+            "peak_search",
+            "codegen",
+            "instants",
+            "verification",
+        )
+        if engine or name in ("studies.evaluate", "studies.solving"):
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                assert not words.search(line), f"{path.name}:{number}: {line}"
+
+
+@pytest.mark.quick
+def test_only_the_command_line_speaks_of_its_options():
+    """Words that are an option and nothing else are no message: a rung's, a compiler's."""
+    for name, path in modules().items():
+        for node in nodes_of(path) if room(name) != "cli" else ():
+            if (
+                isinstance(node, ast.Constant)
+                and isinstance(node.value, str)
+                and not re.fullmatch(r"--\w+", node.value)
+            ):
+                assert not re.search(r"(^|[\s'(])--[a-z]", node.value), (
+                    f"{path.name}:{node.lineno}: {node.value}"
+                )
+
+
+DOUBTFUL = re.compile(
+    rf"^ *(from|import) +(test_|lagrange_casadi\.(?!({'|'.join(PUBLIC)}) import))", re.MULTILINE
+)
+"""A line that may be an import of a test, or of an inner module."""
+
+
+@pytest.mark.quick
+def test_tests_take_inner_modules_from_one_file_and_nothing_from_other_tests():
+    """A module that moves is then a change of one line of the tests; what several tests need has a
+    place of its own, as mechanisms have.
+    """
+    for path in sorted(TESTS.rglob("*.py")):
+        # Few files have such a line, and to parse them all takes seconds.
+        for node in nodes_of(path) if DOUBTFUL.search(path.read_text()) else ():
+            parts = (node.module or "").split(".") if isinstance(node, ast.ImportFrom) else []
+            inner = parts[:1] == ["lagrange_casadi"] and len(parts) > 1
+            assert (
+                path.name == "internals.py" or not inner or (len(parts) == 2 and parts[1] in PUBLIC)
+            ), f"{path.name}:{node.lineno}: from {node.module}: take it from internals"
+            taken = [parts[0]] if parts else []
+            taken += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            assert not [name for name in taken if name.startswith("test_")], (
+                f"{path.name}:{node.lineno}"
+            )
+
+
+def length_of_code(path: Path) -> int:
+    """Lines beside docstrings."""
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    length = len(path.read_text().splitlines())
+    for node in nodes_of(path):
+        if isinstance(node, documented) and ast.get_docstring(node) is not None:
+            text = node.body[0]
+            length -= text.end_lineno - text.lineno + 1
+    return length
+
+
+@pytest.mark.quick
+def test_no_file_is_two_things():
+    # A docstring with sections is as long as its arguments need; the limit is for code.
+    for path in modules().values():
+        assert length_of_code(path) <= 550, path
+    for path in (*PACKAGE.rglob("*.js"), *TESTS.rglob("*.py")):
+        assert len(path.read_text().splitlines()) <= 750, path
