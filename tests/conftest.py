@@ -175,7 +175,7 @@ def solution(slider_crank):
 
 
 def pytest_addoption(parser):
-    generated = "parts of the documentation, and the golden text of an export"
+    generated = "parts of the documentation, and golden texts"
     parser.addoption(
         "--update", action="store_true", help=f"write anew what is generated: {generated}"
     )

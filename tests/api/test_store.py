@@ -14,7 +14,6 @@ import pytest
 import sweeps
 import xarray
 from forging import edit
-from internals import CONVENTIONS
 from internals import base_seal as seal
 from internals import runs as store
 
@@ -43,42 +42,14 @@ def test_round_trip(solution, file):
     assert back.peak("section:rod:bending") == solution.peak("section:rod:bending")
 
 
-def test_layout(solution, file):
+def test_a_file_says_how_it_was_made(file):
+    """Its datasets and their attributes are part of the contract, see tests/structure."""
     with h5py.File(file) as h:
         assert h["section/rod/bending"].shape == (801, 101)
-        assert h["section/rod/law/n0"].shape == (801,)
-        assert set(h) == {
-            "t",
-            "xi",
-            "motion",
-            "pose",
-            "effort",
-            "reaction",
-            "section",
-            "certificate",
-        }
-        assert dict(h["t"].attrs)["units"] == "s"
-        assert list(h.attrs)[-1] == "complete"
-        assert h.attrs["schema"] == "lagrange-casadi"
-        assert h.attrs["schema_version"] == 1
         assert h.attrs["case"] == "slider_crank"
-        assert h.attrs["conventions"] == CONVENTIONS
-        assert h.attrs["Conventions"] == "CF-1.8"
         assert h.attrs["backend"] in ("lanes", "c")
-        assert h.attrs["precision"] == "double"
         assert "-ffp-contract=off" in h.attrs["flags"]
         assert json.loads(h.attrs["parameters"])["l"] == 0.2
-
-        def visit(name, item):
-            if isinstance(item, h5py.Dataset) and name not in ("t", "xi"):
-                assert item.attrs["units"], name
-                assert item.attrs["long_name"], name
-                assert item.fletcher32, name
-                assert item.dims[0]["t"] == h["t"], name
-
-        h.visititems(visit)
-        assert "tension is positive" in h["section/rod/axial"].attrs["sign"]
-        assert "parent side on the child side" in h["reaction/guide/fy"].attrs["sign"]
 
 
 def test_the_same_run_gives_the_same_bytes(slider_crank, tmp_path):

@@ -1,5 +1,7 @@
-"""The text of a small export, word for word; ``pytest tests/test_golden.py --update`` takes over a
-change that you have read.
+"""Texts that others read, as they were: a small export word for word, and the contract with users.
+
+``pytest tests/structure --update`` takes over a change that you have read: it writes the text, and
+prints the difference.
 """
 
 import difflib
@@ -7,6 +9,7 @@ import re
 from pathlib import Path
 
 import casadi as ca
+import contract
 import pytest
 from mechanisms import slider_crank
 
@@ -36,35 +39,45 @@ def plainly(text):
     )
 
 
-@pytest.mark.parametrize("file", FILES)
-def test_the_text_is_as_it_was(file, tmp_path, request):
-    export(slider_crank(wanted=["effort", "section:rod"]), tmp_path, name="press")
-    found, golden = plainly((tmp_path / file).read_text()), GOLDEN / file
-    if request.config.getoption("--update"):
-        GOLDEN.mkdir(exist_ok=True)
-        golden.write_text(found)
-        (GOLDEN / "casadi.txt").write_text(_series())
-        pytest.skip(f"took over {file}")
-    wanted = golden.read_text()
+def changed(file, found):
+    """The difference of a text from the golden one."""
+    wanted = (GOLDEN / file).read_text() if (GOLDEN / file).exists() else ""
     if (GOLDEN / "casadi.txt").read_text() != _series():
         # Another CasADi may write the same expressions otherwise; what is around them is ours.
         found, wanted = (_CASADI.sub(r"\1\2", text) for text in (found, wanted))
-    lines = difflib.unified_diff(
-        wanted.splitlines(), found.splitlines(), f"golden/{file}", file, lineterm=""
-    )
-    changed = "\n".join(lines)
-    assert not changed, (
-        f"the exported text has changed; if it should, run with --update:\n{changed}"
-    )
+    golden, found = wanted.splitlines(), found.splitlines()
+    return "\n".join(difflib.unified_diff(golden, found, f"golden/{file}", file, lineterm=""))
 
 
-def test_the_diff_can_be_read(tmp_path, monkeypatch, request):
+@pytest.fixture(scope="module")
+def press(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("press")
+    export(slider_crank(wanted=["effort", "section:rod"]), folder, name="press")
+    return folder
+
+
+@pytest.mark.parametrize("file", [*FILES, *contract.TEXTS])
+def test_the_text_is_as_it_was(file, press, request):
+    lines = contract.TEXTS.get(file)
+    found = plainly("\n".join(lines()) + "\n" if lines else (press / file).read_text())
+    change = changed(file, found)
     if request.config.getoption("--update"):
-        pytest.skip("the golden text is being written")
-    golden = (GOLDEN / "press.h").read_text()
-    monkeypatch.setattr(f"{__name__}.GOLDEN", tmp_path)
-    (tmp_path / "casadi.txt").write_text(_series())
-    (tmp_path / "press.h").write_text(golden.replace("[N m]", "[N]"))
-    (tmp_path / "out").mkdir()
-    with pytest.raises(AssertionError, match=r"\n *-.*\[N\].*\n *\+.*\[N m\]"):
-        test_the_text_is_as_it_was("press.h", tmp_path / "out", request)
+        (GOLDEN / file).write_text(found)
+        (GOLDEN / "casadi.txt").write_text(_series())
+        with request.config.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
+            print(change)
+        return
+    assert not change, f"the text has changed; if it should, run with --update:\n{change}"
+
+
+def test_the_difference_can_be_read():
+    for file, old, new in (
+        ("press.h", "[N m]", "[N]"),
+        ("api.txt", "precision: Precision", "digits: int"),
+        ("files.txt", "plane/effort/O float64", "plane/effort/O float32"),
+    ):
+        found = (GOLDEN / file).read_text()
+        assert old in found
+        lines = changed(file, found.replace(old, new)).splitlines()
+        assert any(line.startswith("-") and old in line for line in lines)
+        assert any(line.startswith("+") and new in line for line in lines)
