@@ -49,7 +49,7 @@ def size(
         "" if deflection is None else f", and a deflection of at most {deflection:g} of its length"
     )
     echo(
-        f"{loaded.scene.mechanism.name}: the lightest of {len(table)} profiles with a factor of"
+        f"{found.solution.case}: the lightest of {len(table)} profiles with a factor of"
         f" safety of at least {safety:g}{stiff}:"
     )
     for sized in found.links:

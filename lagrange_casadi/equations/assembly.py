@@ -245,14 +245,14 @@ def _energy_on_line(
     body: PointMass, joint: Joint, frame: Frame, velocities: Velocities
 ) -> Expression:
     """The kinetic energy of a point mass along the line on which it slides: what is across, the
-    line bears (:func:`.borne_by_line`).
+    line bears (:func:`.line_reaction`).
     """
     line = joint.triad[0]
     speed, acceleration = (dot(part, line) for part in frame.motion_of(ZERO))
     return body.mass * velocities.number(speed, acceleration) ** 2 / 2
 
 
-def borne_by_line(body: PointMass, joint: Joint, frame: Frame) -> Vector:
+def line_reaction(body: PointMass, joint: Joint, frame: Frame) -> Vector:
     """The inertia of a point mass, and its weight, across the line on which it slides [N]."""
     across = joint.triad[1]
     return times(body.mass * dot(frame.motion_of(ZERO)[1], across), across)

@@ -39,7 +39,7 @@ from ..declare.scene import Scene, Wanted
 from ..geometry.frames import Frame, Velocities
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import ZERO, cross, dot, plus, times
-from .assembly import borne_by_line
+from .assembly import line_reaction
 from .checks import Check, Column
 from .distributed_loads import distributed_loads, rotary
 from .drives import solve_efforts
@@ -416,7 +416,7 @@ def _in_ground_axes(
             found = Action(*reaction(joint, parent, child, loop.multipliers))
             mass = joint.child.body
             if isinstance(mass, PointMass) and multibody.tree.lines.get(mass) is joint:
-                found += Action(borne_by_line(mass, joint, multibody.accelerated[mass.name]))
+                found += Action(line_reaction(mass, joint, multibody.accelerated[mass.name]))
             return found
     two_force_link = multibody.tree.two_force_link_of.get(joint)
     if two_force_link is not None:
