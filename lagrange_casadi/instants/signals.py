@@ -124,7 +124,7 @@ class Signals:
             one if isinstance(one, tuple) else one.columns.values() for one in self.quantities
         ]
         sharpness = self.sharpness
-        watches, knots, depends = sharpness.watches, sharpness.knots, sharpness.reaching(columns)
+        watches, knots, depends = sharpness.watches, sharpness.knots, sharpness.dependence(columns)
         curves = Curves(quantities, tuple(units), tuple(scales), watches, knots, depends)
         with np.errstate(all="ignore"):
             find = peaks if search is None else search.peaks

@@ -49,7 +49,7 @@ class Curves:
 
     @property
     def depending(self) -> Flags:
-        """Which quantities depend on which watched function, (watches, quantities)."""
+        """Table of the quantities that depend on each watched function, (watches, quantities)."""
         shape = len(self.watches), len(self.units)
         return np.ones(shape, bool) if self.depends is None else self.depends
 

@@ -121,7 +121,7 @@ class Sharpness:
             ).reshape(-1, program.instant.size1_out(0)),
         )
 
-    def reaching(self, quantities: Iterable[Iterable[int]]) -> npt.NDArray[np.bool_]:
+    def dependence(self, quantities: Iterable[Iterable[int]]) -> npt.NDArray[np.bool_]:
         """Return which watched functions each quantity depends on, (watches, quantities), from the
         columns that each quantity is made of.
         """

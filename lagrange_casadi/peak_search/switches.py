@@ -86,6 +86,6 @@ class Switches:
         return bool(hides.any() and not (hides & ~self.ignored).any())
 
     def hiding_at(self, interval: Interval, step: int) -> Flags:
-        """Which watched functions hide something in a step, ignored ones too, (watches,)."""
+        """Return which watched functions hide something in a step, ignored ones too, (watches,)."""
         watched, watches = interval.samples.watched, self.curves.watches
         return hiding_at(watched, watches, interval.step, self.undecided(watched), step)

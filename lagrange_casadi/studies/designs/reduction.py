@@ -122,7 +122,7 @@ class KeptOutputs:
             margins=margins,
             watches=sharpness.watches,
             knots=sharpness.knots,
-            depends=sharpness.reaching(made_of),
+            depends=sharpness.dependence(made_of),
         )
         return cls(tuple(names), units, efforts, tuple(links), reduction, sharpness)
 
