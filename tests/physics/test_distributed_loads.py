@@ -351,4 +351,7 @@ def test_slopes_at_the_ends_of_a_link_are_those_within_it(at, side):
             -25 * values[0] + 48 * values[1] - 36 * values[2] + 16 * values[3] - 3 * values[4]
         ) / (12 * step)
         slope = law.along(force, np.full((4, 1), at), side)
-        np.testing.assert_allclose(slope, difference, rtol=1e-7, atol=1e-7 * np.abs(slope).max())
+        # A moment at the tip is level: there a difference is the rounding of what it is made of.
+        largest = np.abs(law.at(force, np.tile(np.linspace(0.0, 1.0, 9), (4, 1)))).max()
+        rounding = 64 * np.finfo(float).eps * largest / abs(step)
+        np.testing.assert_allclose(slope, difference, rtol=1e-7, atol=rounding)
