@@ -101,6 +101,7 @@ from lagrange_casadi.declare.parts import (
     Point,
     PointMass,
     RigidMass,
+    Roller,
     Spring,
     Torque,
 )

@@ -130,7 +130,9 @@ def block(centre: Array, axes: Array, sides: Sequence[float]) -> Mesh:
 
 
 def prism(corners: Array, thickness: float) -> Mesh:
-    """A convex polygon (n, 3) that lies in a plane, made as thick as that."""
+    """A polygon (n, 3) that lies in a plane, all of its edge seen from its middle, made as thick as
+    that.
+    """
     corners = np.asarray(corners, float)
     normal = sum(
         np.cross(a - corners[0], b - corners[0]) for a, b in itertools.pairwise(corners[1:])
@@ -150,12 +152,11 @@ def prism(corners: Array, thickness: float) -> Mesh:
 
 
 def plate(corners: Array, normal: Array) -> Mesh:
-    """A flat convex polygon, seen from where its normal points to."""
-    count = len(corners)
-    fan = np.stack([np.zeros(count - 2, np.int64), np.arange(1, count - 1), np.arange(2, count)], 1)
-    return _outward(
-        Mesh(np.asarray(corners, float), np.tile(np.asarray(normal, float), (count, 1)), fan)
-    )
+    """A flat polygon, all of its edge seen from its middle, and from where its normal points to."""
+    places = np.vstack([np.mean(corners, axis=0), corners])
+    k = np.arange(1, len(places))
+    fan = np.stack([np.zeros_like(k), k, np.roll(k, -1)], 1)
+    return _outward(Mesh(places, np.tile(np.asarray(normal, float), (len(places), 1)), fan))
 
 
 def _outward(mesh: Mesh) -> Mesh:

@@ -98,7 +98,8 @@ def shape_of(value: Any) -> dict[str, Any]:
     gravity = value.get("gravity") if isinstance(value, dict) else None
     shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
     optional = {
-        "outlines": {str: [[float, float]]},
+        "outlines": {str: [[[float, float]]]},
+        "rollers": {str: _PLACE | {"radius": float}},
         "losses": [str],
         "beside": {str: _VECTOR},
         "rounded": {str: [float]},
@@ -479,9 +480,12 @@ def _numbered(
         if link.beside is not None
     }
     outlines = {
-        name: [vector(corner) for corner in link.outline]
-        for name, link in mechanism.links.items()
-        if link.outline
+        body: [[vector(corner) for corner in outline] for outline in found]
+        for body, found in mechanism.outlines.items()
+    }
+    rollers = {
+        name: place(roller.centre) | {"radius": number(roller.radius)}
+        for name, roller in mechanism.rollers.items()
     }
     lossy = [
         c.name
@@ -492,6 +496,7 @@ def _numbered(
     optional = (
         ("paths", paths),
         ("outlines", outlines),
+        ("rollers", rollers),
         ("losses", lossy),
         ("beside", beside),
         ("unturned", unturned),

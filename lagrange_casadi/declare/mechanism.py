@@ -41,10 +41,12 @@ from .parts import (
     LineLoad,
     Link,
     Load,
+    Outline,
     Parameter,
     Path,
     Point,
     PointMass,
+    Roller,
     Row,
     Spring,
     Torque,
@@ -85,6 +87,8 @@ class Mechanism(Graphs):
     rough: dict[str, float] = field(default_factory=dict, init=False)
     snapped: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
     rounded: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
+    outlines: dict[str, list[Outline]] = field(default_factory=dict, init=False)
+    rollers: dict[str, Roller] = field(default_factory=dict, init=False)
     gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 End = Literal["base", "tip"]
 
+Outline: TypeAlias = list[tuple[Expression, Expression]]
+"""Corners of what a body is drawn as, in its own axes [m]."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Parameter(Brief):
@@ -98,6 +101,14 @@ class Point(Brief):
         return self.x, self.y, self.z
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Roller(Brief):
+    """A roller that pictures show: its centre, and its radius [m]."""
+
+    centre: Point
+    radius: Expression
+
+
 @public
 @dataclass(frozen=True, eq=False, repr=False)
 class Ground(Body):
@@ -130,15 +141,13 @@ class Link(Body):
 
     Its mass lies along the axis with a :class:`.Density`, which gives it a section law, or is known
     as a whole only (:class:`RigidMass`), and then it has none. ``beam`` says what it is made of,
-    where that is known. ``outline`` are the corners of what it is drawn as, in its own axes [m].
-    ``beside`` is the direction that was declared for its y axis in space, of length 1 and in ground
-    axes.
+    where that is known. ``beside`` is the direction that was declared for its y axis in space, of
+    length 1 and in ground axes.
     """
 
     length: Expression
     mass: Density | RigidMass
     beam: Beam | None = None
-    outline: tuple[tuple[Expression, Expression], ...] = ()
     beside: Vector | None = None
 
     @property

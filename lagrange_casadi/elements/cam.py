@@ -11,6 +11,7 @@ true line of action.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, cast
@@ -22,12 +23,15 @@ from ..base.brief import Brief
 from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Constraint, Expression, Link, Point
+from ..declare.parts import Constraint, Expression, Link, Outline, Point, Roller
 from ..errors import DeclarationError
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import Vector, cross, dot, minus, plus, times
 from .cam_profile import CamProfile, profile_of
 from .follower import STEEL, held_by, largest_pressure, rise_of, stiffness_of
+
+_CORNERS = 240
+"""Corners by which pictures show a profile."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -186,6 +190,9 @@ def disc_cam(
     constraint = _contact(mechanism, name, cam, touched, design, rise)
     made = Cam(name, mechanism, constraint, design)
     _outputs(made, cam, width, stiffness)
+    mechanism.outlines.setdefault(cam.child.body.name, []).append(_outline(made, cam.child))
+    if roller is not None:
+        mechanism.rollers[name] = Roller(layout.held, layout.roller)
     profile = made.profile()
     if not profile.closes:
         raise DeclarationError(
@@ -353,6 +360,14 @@ def _contact(
     return mechanism.constraints.setdefault(
         name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
     )
+
+
+def _outline(made: Cam, shaft: Point) -> Outline:
+    """Corners of the profile in the axes of the cam's link, whose point is on the ``shaft`` [m]."""
+    design, symbols = made.design, made.mechanism.symbols
+    x, y, _ = plus(shaft.place, Rotation.by(-design.angle).apply(design.contact))
+    corner = ca.Function("corner", [design.angle, symbols], [ca.SX(x), ca.SX(y)])
+    return [corner(ca.SX(math.tau * k / _CORNERS), symbols) for k in range(_CORNERS)]
 
 
 def _at(design: Design, angle: Expression) -> Design:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import casadi as ca
 
@@ -133,8 +133,7 @@ def plate(
         centre=(x, y),
         inertia=plain(whole * second),
     )
-    link = replace(link, outline=tuple(places))
-    mechanism.bodies[name] = link
+    mechanism.outlines[name] = [places]
     return Plate(link, tuple(link.at(*corner) for corner in places))
 
 

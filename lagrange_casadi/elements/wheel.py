@@ -5,7 +5,6 @@ from what they are made of.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from ..arguments import public
 from ..base.units import count, number
@@ -89,8 +88,7 @@ def wheel(
     )
     # Along a line inward, round the hole, and back.
     round_hole = [outside[0], hole[0], *reversed(hole)] if hole else []
-    link = replace(link, outline=(*outside, *round_hole))
-    mechanism.bodies[name] = link
+    mechanism.outlines[name] = [[*outside, *round_hole]]
     return link
 
 

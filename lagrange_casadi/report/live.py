@@ -233,6 +233,10 @@ def _picture(described: Description, first: int, masses: Mapping[str, int]) -> d
                 "length": at(body["length"]),
                 "mass": masses[name],
                 "centre": place(body["centre"]) if "centre" in body else None,
+                "outlines": [
+                    [vector(corner) for corner in outline]
+                    for outline in described.get("outlines", {}).get(name, ())
+                ],
             }
             for name, body in described["bodies"].items()
         },
@@ -241,4 +245,8 @@ def _picture(described: Description, first: int, masses: Mapping[str, int]) -> d
             [place(point) for point in load["points"]] for load in described["loads"].values()
         ],
         "paths": [place(point) for point in described.get("paths", {}).values()],
+        "rollers": [
+            {"body": roller["body"], "at": place(roller), "radius": at(roller["radius"])}
+            for roller in described.get("rollers", {}).values()
+        ],
     }

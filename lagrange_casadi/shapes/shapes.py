@@ -17,6 +17,8 @@ from ..declare.description import Description, bends_of, drives_of, in_space
 
 Place = tuple[float, float, float]
 
+_ROUND = np.exp(2j * np.pi * np.arange(48) / 48)
+
 _FLAT = 1e-6
 """Over a body's size: points that are no farther from a plane, or from a line, lie in it."""
 
@@ -88,18 +90,14 @@ class LoadShape:
 def shapes(description: Description) -> Iterator[Shape]:
     """The bodies, in the order in which they are declared."""
     for name, body in description["bodies"].items():
+        outlines, rollers = _outlines(description, name), _rollers(description, name)
         spots = list(dict.fromkeys(spot.at for spot in _spots(description) if spot.body == name))
         length, mass = body["length"], body["mass"]
         if length is None:
             yield Shape(name, "point", None, mass, (), (), (), (0.0, 0.0, 0.0), 0.0)
         elif "centre" in body:
             centre = _place(body["centre"])
-            outline = description.get("outlines", {}).get(name, ())
-            plates = (
-                (tuple((float(x), float(y), 0.0) for x, y in outline),)
-                if outline
-                else _plates(spots)
-            )
+            plates = outlines or _plates(spots)
             # Two joints hold a bar between them; arms from the centre hold any others that lie in
             # no plane.
             ends = (
@@ -115,7 +113,7 @@ def shapes(description: Description) -> Iterator[Shape]:
                 mass,
                 (),
                 arms,
-                plates,
+                plates + rollers,
                 centre,
                 0.0 if arms or plates else max(length, 0.0),
             )
@@ -133,7 +131,8 @@ def shapes(description: Description) -> Iterator[Shape]:
                 if plates
                 else tuple(((min(max(at[0], 0.0), length), 0.0, 0.0), at) for at in beside)
             )
-            yield Shape(name, "link", length, mass, axis, arms, plates, None, 0.0)
+            drawn = outlines + plates + rollers
+            yield Shape(name, "link", length, mass, axis, arms, drawn, None, 0.0)
 
 
 def joint_shapes(description: Description) -> Iterator[JointShape]:
@@ -187,6 +186,29 @@ def _spots(description: Description) -> Iterator[Spot]:
         if load["kind"] == "spring":
             yield from map(_spot, load["points"])
     yield from path_spots(description).values()
+    yield from map(_spot, description.get("rollers", {}).values())
+
+
+def _outlines(description: Description, body: str) -> tuple[tuple[Place, ...], ...]:
+    """Outlines that are declared for a body, without corners of a cam that its follower cannot
+    touch.
+    """
+    return tuple(
+        tuple((float(x), float(y), 0.0) for x, y in outline if np.isfinite(x + y))
+        for outline in description.get("outlines", {}).get(body, ())
+    )
+
+
+def _rollers(description: Description, body: str) -> tuple[tuple[Place, ...], ...]:
+    """The rollers on a body, each as a polygon."""
+    return tuple(
+        tuple(
+            (roller["x"] + roller["radius"] * x, roller["y"] + roller["radius"] * y, 0.0)
+            for x, y in zip(_ROUND.real.tolist(), _ROUND.imag.tolist(), strict=True)
+        )
+        for roller in description.get("rollers", {}).values()
+        if roller["body"] == body
+    )
 
 
 def _spot(point: Description) -> Spot:

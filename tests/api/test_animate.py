@@ -8,16 +8,18 @@ import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
+import casadi as ca
 import numpy as np
 import pytest
 from commands import command, words
 from drawn_scenes import every_kind
 from internals import Film, Line, gif, picture_of, svg, write_animation
 from PIL import Image
-from reports import HOSTILE, hostile, press, solved
+from reports import HOSTILE, hostile, press, solved, to_polygon
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
 from lagrange_casadi.cli import main
+from lagrange_casadi.elements import disc_cam
 from lagrange_casadi.errors import DeclarationError, PathError
 from lagrange_casadi.motion import polynomial
 
@@ -183,6 +185,41 @@ def test_gears_turn_and_have_room():
     )
     turned = np.unwrap(np.arctan2(-radius[:, 1], radius[:, 0]))
     np.testing.assert_allclose(turned - turned[0], solution.motion("O").value[:-1], atol=1e-9)
+
+
+@pytest.mark.parametrize("values", [{}, {"base": 0.06, "wheel": 0.02, "aside": -0.01}])
+def test_rollers_touch_the_cams_that_are_drawn(values):
+    """Two cams on one body, which turns about a point beside its base, and their followers: rods of
+    no sections, and with sections.
+    """
+    m = Mechanism("two_cams")
+    base, wheel = m.parameter("base", 0.04, "m"), m.parameter("wheel", 0.012, "m")
+    aside = m.parameter("aside", 0.005, "m")
+    disc = m.link("disc", length=0.03, mass=1.0, centre=(0, 0), inertia=1e-3)
+    shaft = m.revolute("shaft", m.ground.at(0.1, 0.0), disc.at(0.004, -0.003))
+    rods = m.link("up", length=0.1, mass=0.2), m.link("down", length=0.1, mass=0.2)
+    for rod, up, waves in zip(rods, (1, -1), (1, 2), strict=True):
+        ground = m.ground.at(0.1 + aside, 0.0)
+        guide = m.prismatic(f"{rod.name}_guide", ground, rod, axis=(0, up), angle=up * np.pi / 2)
+        point = rod.at(0.01)
+        lift = lambda x, waves=waves: 0.006 * (1 - ca.cos(waves * x))  # noqa: E731
+        disc_cam(
+            m, f"{rod.name}_cam", shaft, guide, lift, base_radius=base, point=point, roller=wheel
+        )
+    scene = Scene(
+        m, {"shaft": polynomial(0.2, 10.0)}, t=TURN, posture={"up_guide": 0.05, "down_guide": 0.05}
+    )
+    picture = picture_of(evaluate(scene, parameters=values, wanted=["all"], backend="vm"), Film())
+    drawn = [one.points for one in picture.things if isinstance(one, Line) and one.width == 2.0]
+    assert [points.shape for points in drawn] == [(40, n, 2) for n in (240, 240, 48, 48)]
+    for profile, roller in zip(drawn[:2], drawn[2:], strict=True):
+        assert (profile >= 0).all()
+        assert (profile <= [picture.width, picture.height]).all()
+        centre = roller.mean(axis=1)
+        radius = np.hypot(*(roller - centre[:, None]).transpose(2, 0, 1))
+        for place, corners, size in zip(centre, profile, radius, strict=True):
+            np.testing.assert_allclose(size, size[0], rtol=1e-9)
+            assert to_polygon(place, corners) == pytest.approx(size[0], rel=1e-3)
 
 
 def test_joints_of_every_kind_are_drawn():

@@ -15,7 +15,7 @@ from internals import (
 )
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
-from reports import solved
+from reports import solved, to_polygon
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
@@ -177,8 +177,10 @@ def test_bodies_with_three_joints_are_plates_and_rotors_are_discs():
     )
     assert len(bucket.get_xy()) - 1 == 4  # the teeth are a corner too
     cam = draw_mechanism(solved("roller_cam"), 1).axes[0]
-    rim = strong(cam, "cam").get_xydata()
-    np.testing.assert_allclose(np.hypot(*rim.T), np.hypot(*rim[0]), rtol=1e-9)
+    profile, roller = (patch.get_xy()[:-1] for patch in cam.patches)
+    centre = roller.mean(axis=0)
+    assert np.hypot(*(roller - centre).T) == pytest.approx(0.012)
+    assert to_polygon(centre, profile) == pytest.approx(0.012, rel=1e-3)
 
 
 def test_only_declared_points_leave_their_ways():

@@ -218,6 +218,10 @@ def test_arrows_are_forces_at_their_places_to_the_scale_that_is_told(tmp_path, n
             1.0,
         ),
         (prism(np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 1.0], [2.0, 0.0, 1.0]]), 0.5), 0.5),
+        (  # a hollow edge, which its first corner does not see
+            prism(np.array([[0, 0, 1], [1, 0.4, 1], [2, 0, 1], [2, 2, 1], [0, 2, 1]], float), 0.5),
+            1.8,
+        ),
     ],
 )
 def test_solids_are_closed_and_seen_from_outside(mesh, volume):

@@ -30,6 +30,7 @@ from internals import (
     PointMass,
     Reference,
     RigidMass,
+    Roller,
     Spring,
     Torque,
     Transmission,
@@ -51,7 +52,8 @@ _DIMENSIONS = {
 _NUMBER: Mapping[str, str] = {}
 _FIELDS: Mapping[type, Mapping[str, str]] = {
     Point: dict.fromkeys("xyz", "m"),
-    Link: {"length": "m", "outline": "m"},
+    Link: {"length": "m"},
+    Roller: {"radius": "m"},
     RigidMass: {"mass": "kg", "centre": "m", "inertia": "kg m^2"},
     PointMass: {"mass": "kg"},
     Path: _NUMBER,
@@ -135,7 +137,7 @@ class Rescaling:
         new = type(m)(m.name)
         for one in fields(m):
             if one.name not in ("name", "time", "frozen", "outputs", "asked"):
-                unit = "m/s^2" if one.name == "gravity" else "1"
+                unit = {"gravity": "m/s^2", "outlines": "m"}.get(one.name, "1")
                 setattr(new, one.name, self.of(getattr(m, one.name), unit))
         new.time = m.time
         drives = old.drives and {

@@ -241,11 +241,13 @@ class Alive {
       ...contents.joints.flatMap((joint) => [joint.parent, joint.child]),
       ...contents.loads.filter((load) => load.kind === "spring").flatMap((load) => load.spots),
       ...contents.paths,
+      ...picture.rollers.map((roller) => ({ body: roller.body, at: at(roller.at), radius: numbers[roller.radius] })),
     ];
     for (const body of contents.bodies) {
       const own = picture.bodies[body.name];
       const length = own.length < 0 ? null : numbers[own.length];
-      const shape = shapeOf(body.kind, length, own.centre && at(own.centre), spots.filter((spot) => spot.body === body.name).map((spot) => spot.at));
+      const outlines = own.outlines.map((outline) => outline.map(at).filter((corner) => corner.every(Number.isFinite)));
+      const shape = shapeOf(body.kind, length, own.centre && at(own.centre), spots.filter((spot) => spot.body === body.name), outlines);
       for (const one of [body, bodies.get(body.name)]) Object.assign(one, shape, { mass: numbers[own.mass] });
       this.lengths[body.name] = length;
       if (sectionByLink.has(body.name)) sectionByLink.get(body.name).length = length;

@@ -2,21 +2,32 @@
 
 const FLAT = 1e-6; // Over a body's size: points that are no farther from a plane, or from a line, lie in it.
 
-/** Axis, arms, plates and disc of a body; `own` are the places on it at which something holds or pulls it, or that are declared. */
-function shapeOf(kind, length, centre, own) {
+/**
+ * Axis, arms, plates and disc of a body; `spots` are the places on it at which something holds or pulls it, or that are declared, those
+ * of rollers with a radius; `outlines` are what it is drawn as, where that is declared.
+ */
+function shapeOf(kind, length, centre, spots, outlines) {
+  const own = spots.map((spot) => spot.at);
+  const rollers = spots.filter((spot) => spot.radius).map(roundOf);
   const places = own.filter((at, k) => own.findIndex((other) => other.every((value, i) => value === at[i])) === k);
   if (kind === "point") return { length: null, axis: [], arms: [], plates: [], centre: [0, 0, 0], disc: 0 };
   if (kind === "rigid") {
-    const plates = platesOf(places);
+    const plates = outlines.length ? outlines : platesOf(places);
     const ends = places.length === 2 ? [places] : places.filter((at) => sizeOf(less(at, centre))).map((at) => [centre, at]);
     const arms = plates.length ? [] : ends;
-    return { length, axis: [], arms, plates, centre, disc: arms.length || plates.length ? 0 : Math.max(length, 0) };
+    return { length, axis: [], arms, plates: [...plates, ...rollers], centre, disc: arms.length || plates.length ? 0 : Math.max(length, 0) };
   }
   const axis = [[0, 0, 0], [length, 0, 0]];
   const beside = places.filter((at) => Math.hypot(at[1], at[2]) > FLAT * (Math.abs(length) || 1) || !(at[0] >= 0 && at[0] <= length));
   const plates = beside.length ? platesOf([...axis, ...beside]) : [];
   const arms = plates.length ? [] : beside.map((at) => [[Math.min(Math.max(at[0], 0), length), 0, 0], at]);
-  return { length, axis, arms, plates, centre: null, disc: 0 };
+  return { length, axis, arms, plates: [...outlines, ...plates, ...rollers], centre: null, disc: 0 };
+}
+
+/** The edge of a roller, as a polygon. */
+function roundOf({ at, radius }) {
+  const angles = Array.from({ length: 48 }, (_, k) => (2 * Math.PI * k) / 48);
+  return angles.map((angle) => [at[0] + radius * Math.cos(angle), at[1] + radius * Math.sin(angle), 0]);
 }
 
 /** The convex polygon of three places or more that lie in one plane and not in a line; else nothing. */
