@@ -99,12 +99,12 @@ def table(
     if beyond not in (None, *BEYONDS):
         raise DeclarationError(f"table: beyond must be 'hold' or 'line', got {shown(beyond)}")
     try:
-        x = ca.SX(x)
-        within = ca.fmin(ca.fmax(x, at[0]), at[-1]) if beyond == "hold" else x
-        found = ca.pw_lin(within, ca.DM(at), ca.DM(to))
+        given: ca.SX = ca.SX(x)
+        within: ca.SX = ca.fmin(ca.fmax(given, at[0]), at[-1]) if beyond == "hold" else given
+        found: ca.SX = ca.pw_lin(within, ca.DM(at), ca.DM(to))
         # A constant goes on alike in every way.
         ended = beyond is None and min(to) < max(to)
-        return found + lookups.ends(at[0], at[-1], x) if ended else found
+        return found + lookups.ends(at[0], at[-1], given) if ended else found
     except (NotImplementedError, RuntimeError):  # CasADi's of a kind or a shape
         raise DeclarationError(f"table: expected a number or an expression, got {x!r}") from None
 
