@@ -97,11 +97,8 @@ def scene() -> Scene:
     bearings.fit(m, piston_pin, bearings.Plain(bore=0.029, width=0.058, pressure=15e6))
     m.prismatic("bore", m.ground, piston, axis=(0, 1))
     turned = ca.fmod(m.coordinate(main) - pi / 2, 4 * pi) * 180 / pi
-    m.force(
-        "gas",
-        piston,
-        y=-pressure / max(PRESSURES) * table(turned, ANGLES, PRESSURES) * pi / 4 * bore**2,
-    )
+    share = table(turned, ANGLES, PRESSURES, beyond="hold") / max(PRESSURES)
+    m.force("gas", piston, y=-pressure * share * pi / 4 * bore**2)
     motion = {"main": polynomial(pi / 2, 2 * pi / 60 * rpm)}
     return Scene(
         m,

@@ -76,7 +76,7 @@ def scene() -> Scene:
     m.revolute("small_end", rod.tip, piston)
     m.prismatic("bore_wall", m.ground.at(offset, 0), piston, axis=(0, 1))
     turned = ca.fmod(m.coordinate(main) - pi / 2, 4 * pi) * 180 / pi
-    pressure = 1e5 * table(turned, ANGLES, PRESSURES)
+    pressure = 1e5 * table(turned, ANGLES, PRESSURES, beyond="hold")
     m.force("gas", piston, y=-pressure * pi / 4 * bore**2)
     speed = 3000 * 2 * pi / 60
     return Scene(

@@ -6,8 +6,8 @@ from lagrange_casadi import Mechanism, Scene, table
 from lagrange_casadi.motion import polynomial
 
 # The force of the sheet over the largest one, over the punch's height above its lowest place [mm].
-HEIGHTS = (0.0, 7.0, 9.5, 10.0, 100.0)
-SHARES = (0.0, 0.0, 1.0, 0.0, 0.0)
+HEIGHTS = (7.0, 9.5, 10.0)
+SHARES = (0.0, 1.0, 0.0)
 
 
 def scene() -> Scene:
@@ -25,7 +25,8 @@ def scene() -> Scene:
     m.revolute("wrist", rod.tip, ram)
     guide = m.prismatic("guide", m.ground, ram, axis=(0, -1))
     height = 1000 * (r + l - m.coordinate(guide))
-    m.force("sheet", ram, y=punching * table(height, HEIGHTS, SHARES) * (m.rate(guide) > 0))
+    share = table(height, HEIGHTS, SHARES, beyond="hold")
+    m.force("sheet", ram, y=punching * share * (m.rate(guide) > 0))
     m.output("height", height / 1000, unit="m")
     # From the top, evenly, as a flywheel without end would turn it.
     return Scene(

@@ -35,7 +35,7 @@ def scene() -> Scene:
     m.force(
         "part",
         ram,
-        y=drawing * table(height, HEIGHTS, SHARES) * (height < HEIGHTS[-1]) * (m.rate(guide) > 0),
+        y=drawing * table(height, HEIGHTS, SHARES, beyond="hold") * (m.rate(guide) > 0),
     )
     m.force("counterbalance", ram, y=mass * 9.81)
     m.output("height", height / 1000, unit="m")

@@ -91,9 +91,10 @@ def steps(function: ca.Function) -> tuple[Step, ...]:
         called = written[k].which_function() if operation == ca.OP_CALL else None
         number = function.instruction_constant(k) if operation == ca.OP_CONST else 0.0
         places = (tuple(function.instruction_input(k)), tuple(function.instruction_output(k)))
-        found.append(
-            Step(operation, *places, number, called, lookup(called) if called is not None else None)
-        )
+        looked_up = lookup(called) if called is not None else None
+        if looked_up is not None and looked_up.alone:
+            operation, looked_up = ca.OP_CONST, None
+        found.append(Step(operation, *places, number, called, looked_up))
     return tuple(found)
 
 

@@ -47,6 +47,11 @@ class Lookup:
     function: ca.Function
     ends: bool = False
 
+    @property
+    def alone(self) -> bool:
+        """True for the only cell between two ends, whose number is zero for all numbers."""
+        return self.kind == "cell" and len(self.numbers) == 2
+
     def at(self, x: Array) -> Operand:
         """Look real numbers ``x`` of any shape up; of complex ones the real part counts."""
         x = np.real(x)
@@ -65,11 +70,15 @@ class Lookup:
 
 
 def cell(breaks: Sequence[float], x: ca.SX, *, ends: bool) -> ca.SX:
-    """The number of the cell in which an expression lies, as a scalar expression; of three breaks
-    or more.
-    """
+    """The number of the cell in which an expression lies, as a scalar expression."""
     found: ca.SX = _function("cell", tuple(map(float, breaks)), ends)(x)
     return found
+
+
+def ends(low: float, high: float, x: ca.SX) -> ca.SX:
+    """Zero, as an expression in which others find the ends that ``x`` must be between."""
+    # Rounding has no derivative, as in `entries`.
+    return ca.ceil(cell([low, high], x, ends=True))
 
 
 def entries(numbers: Sequence[float], number: ca.SX) -> ca.SX:

@@ -18,6 +18,10 @@ PeakSearch = Literal["exact", "sampled"]
 PEAK_SEARCHES: tuple[PeakSearch, ...] = ("exact", "sampled")
 """Peaks of designs: sought between the instants, or those at them, with an error."""
 
+Beyond = Literal["hold", "line"]
+BEYONDS: tuple[Beyond, ...] = ("hold", "line")
+"""Ways of a table to go on beyond its ends: with the value there, or in a straight line."""
+
 CRITERIA = ("goodman", "gerber", "soderberg", "morrow", "findley")
 """Treatments of a mean stress in fatigue."""
 

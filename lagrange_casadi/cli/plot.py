@@ -11,8 +11,8 @@ import click
 from ..base.publish import check_writable
 from ..base.units import typed
 from ..errors import NoDesignError
-from ..shapes import specs
 from ..shapes.index import MANIFEST, NAME, write_index
+from ..shapes.specs import Spec as FigureSpec
 from ..store.runs import figure_specs, load
 from ..store.untrusted import reported_as
 from ..studies.sweep import Sweep, is_sweep
@@ -47,7 +47,7 @@ def plot(
     elif over or at or against:
         raise click.UsageError("--over, --at and --against go with a sweep's file")
     else:
-        solution, drawn = load(file), cast("Sequence[specs.Spec]", figure_specs(file))
+        solution, drawn = load(file), cast("Sequence[FigureSpec]", figure_specs(file))
         with reported_as(_UNDRAWN, file), MANIFEST.filling(out) as draft:
             draw_with_progress(solution, drawn, draft, si, svg)
         if not drawn:

@@ -18,6 +18,7 @@ from ..arguments import fitting, public
 from ..arithmetic import lookups
 from ..base.arrays import Array, Expression
 from ..base.units import number
+from ..base.vocabulary import BEYONDS, Beyond
 from ..errors import DeclarationError, NumberError, shown
 
 _SAME = 1e-12
@@ -60,8 +61,14 @@ def rows(
 
 
 @public
-def table(x: Expression, places: Sequence[float], values: Sequence[float]) -> ca.SX:
-    """Return a piecewise linear curve of an expression, for loads; beyond its ends it is straight.
+def table(
+    x: Expression,
+    places: Sequence[float],
+    values: Sequence[float],
+    *,
+    beyond: Beyond | None = None,
+) -> ca.SX:
+    """Return a piecewise linear curve of an expression, for loads.
 
     Constraints and motions refuse it, because slopes must not jump there: use :func:`curve`.
 
@@ -73,6 +80,10 @@ def table(x: Expression, places: Sequence[float], values: Sequence[float]) -> ca
         Increasing abscissas (n,), in the unit of ``x``.
     values
         Ordinates (n,), in the unit of the load.
+    beyond
+        How the curve goes on beyond its ends: ``"hold"`` keeps the value at the end, and
+        ``"line"`` goes on in a straight line. Default: instants at which ``x`` is beyond the ends
+        are refused.
 
     Returns
     -------
@@ -82,11 +93,18 @@ def table(x: Expression, places: Sequence[float], values: Sequence[float]) -> ca
     Raises
     ------
     DeclarationError
-        For abscissas that do not increase.
+        For abscissas that do not increase, and another word for ``beyond``.
     """
     at, to = rows("table", places, values, 2)
+    if beyond not in (None, *BEYONDS):
+        raise DeclarationError(f"table: beyond must be 'hold' or 'line', got {shown(beyond)}")
     try:
-        return ca.pw_lin(ca.SX(x), ca.DM(at), ca.DM(to))
+        given: ca.SX = ca.SX(x)
+        within: ca.SX = ca.fmin(ca.fmax(given, at[0]), at[-1]) if beyond == "hold" else given
+        found: ca.SX = ca.pw_lin(within, ca.DM(at), ca.DM(to))
+        # A constant goes on alike in every way.
+        ended = beyond is None and min(to) < max(to)
+        return found + lookups.ends(at[0], at[-1], given) if ended else found
     except (NotImplementedError, RuntimeError):  # CasADi's of a kind or a shape
         raise DeclarationError(f"table: expected a number or an expression, got {x!r}") from None
 

@@ -1,4 +1,6 @@
-"""Distance of curves' arguments beyond the curves' ends, where curves are not defined."""
+"""Distance of arguments of curves and tables beyond their ends, where they are not
+defined.
+"""
 
 from __future__ import annotations
 
@@ -19,9 +21,9 @@ BEYOND: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 
 
 @symbolic
-def beyond_ends(expression: ca.SX) -> list[Expression]:
-    """Distance of each argument of an expression's curves beyond the curve's ends, for curves that
-    have ends.
+def beyond_ends(expression: ca.SX) -> list[tuple[str, Expression]]:
+    """Distance of each argument of an expression's curves and tables beyond their ends, where they
+    have ends; before it their kind and their range in words, as "table, from 0 to 40,".
 
     The square of how far it is from the middle between the ends, over the square of how far these
     are, less one: it is above zero beyond the ends, and smooth, so that splines may follow it.
@@ -32,15 +34,27 @@ def beyond_ends(expression: ca.SX) -> list[Expression]:
         k for k in range(function.n_instructions()) if function.instruction_id(k) == ca.OP_CALL
     ]
     written: Any = function.instructions_sx() if calls else None
-    found: list[Any] = []
+    found: list[tuple[str, Expression]] = []
     for k in calls:
         table = lookup(written[k].which_function())
         if table is not None and table.ends:
             low, high = float(table.numbers[0]), float(table.numbers[-1])
-            found.append(
-                ((2.0 / (high - low)) * written[k].dep(0) - (high + low) / (high - low)) ** 2 - 1.0
-            )
+            far = (2.0 / (high - low)) * written[k].dep(0) - (high + low) / (high - low)
+            kind = "table" if table.alone else "curve"
+            found.append((f"{kind}, from {low:g} to {high:g},", far**2 - 1.0))
     return found
+
+
+def words_beyond(what: str, argument: str, where: str) -> str:
+    """Message for ``what`` has an ``argument``, in the words of :func:`beyond_ends`, beyond its
+    ends; ``where`` says where.
+    """
+    kind = argument.partition(",")[0]
+    cure = "; expected points that reach further, or beyond='hold' or beyond='line'"
+    return (
+        f"{what}: the argument of its {argument} is outside the {kind}'s range{where}"
+        f"{cure if kind == 'table' else ''}"
+    )
 
 
 def share_beyond(beyond: float) -> float:

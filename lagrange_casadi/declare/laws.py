@@ -109,7 +109,7 @@ def ends_function(laws: Mapping[str, Motion], parameters: ca.SX) -> ca.Function 
     ]
     if not any(found):
         return None
-    rows = [functools.reduce(ca.fmax, far, ca.SX(-1.0)) for far in found]
+    rows = [functools.reduce(ca.fmax, [far for _, far in one], ca.SX(-1.0)) for one in found]
     beyond = ca.densify(ca.vertcat(*rows))
     return ca.Function("beyond", [t, parameters], [beyond], ["t", "p"], ["beyond"], {"cse": True})
 

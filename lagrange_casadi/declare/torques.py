@@ -123,7 +123,7 @@ def torque_curve(speeds: Sequence[float], torques: Sequence[float]) -> Law:
         If the speeds do not increase.
     """
     curves.rows("torque_curve", speeds, torques, 2)
-    return Law(lambda t, angle, speed: curves.table(speed, speeds, torques))
+    return Law(lambda t, angle, speed: curves.table(speed, speeds, torques, beyond="line"))
 
 
 @public

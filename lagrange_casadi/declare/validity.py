@@ -22,7 +22,7 @@ from ..errors import ParameterError
 from ..geometry.vectors import dot, nil
 from .density import Density, Slices
 from .directions import RIGHT, not_right
-from .ends import BEYOND, beyond_ends
+from .ends import BEYOND, beyond_ends, words_beyond
 from .joints import Joint
 from .limits import END
 from .mass_properties import inertias, second_moments
@@ -201,8 +201,10 @@ def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
     """Conditions that arguments of curves are between the curves' ends."""
     symbolic = [expression for expression in expressions if isinstance(expression, ca.SX)]
     found = beyond_ends(ca.vertcat(*symbolic)) if symbolic else []
-    words = f"{what}: the argument of its curve is outside the curve's range"
-    return [Demand.saying(BEYOND["double"] - far, False, words) for far in found]
+    return [
+        Demand.saying(BEYOND["double"] - far, False, words_beyond(what, argument, ""))
+        for argument, far in found
+    ]
 
 
 def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:

@@ -230,10 +230,9 @@ def _beyond(body: Multibody, seeing: Mapping[str, Expression]) -> dict[Column, E
     }
     columns: dict[Column, Any] = {}
     for name, expression in (found | dict(seeing)).items():
-        far = enumerate(beyond_ends(expression), 1)
-        columns |= {
-            Check("beyond", name if k == 1 else f"{name}, curve {k}"): value for k, value in far
-        }
+        for k, (argument, far) in enumerate(beyond_ends(expression), 1):
+            part = name if k == 1 else f"{name}, curve {k}"
+            columns[Check("beyond", f"{part}: {argument}")] = far
     return columns
 
 

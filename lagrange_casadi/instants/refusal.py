@@ -17,7 +17,7 @@ from ..base.arrays import Array
 from ..base.status import Status
 from ..base.vocabulary import Precision
 from ..codegen.stages import plain
-from ..declare.ends import share_beyond
+from ..declare.ends import share_beyond, words_beyond
 from ..equations.iteration import LARGEST_STEP
 from ..equations.kinematics import where
 from ..equations.program import Program
@@ -206,7 +206,8 @@ class _Broken:
             return self._loop(bound)
         if bound.kind == "BEYOND":
             far = f"by {share_beyond(value):.3g} of that range"
-            return f"the {part}: the argument of its curve is outside the curve's range {at}, {far}"
+            what, argument = part.rsplit(": ", 1)
+            return words_beyond(f"the {what}", argument, f" {at}, {far}")
         if bound.kind == "GAP":
             what = (
                 f"the solution of the loop closed by {self.program.data.closing(part)} does not"

@@ -15,7 +15,7 @@ from mechanisms import sampled_cam, slider_crank, spline_arm, truss_platform
 from places import TESTS
 from stepped import iterated
 
-from lagrange_casadi import Mechanism, Scene, export, load_case, motion
+from lagrange_casadi import Mechanism, Scene, export, load_case, motion, table
 
 ARITHMETIC = [
     {},
@@ -252,6 +252,26 @@ def test_times_outside_the_samples(tmp_path):
     tried = [f"@_prepare(&model); status = @_motion(&model, {time}, &inputs);" for time in times]
     found = told(tmp_path, export(spline_arm(), tmp_path), *tried)
     assert ["outside the samples" in sentence for *_, sentence in found] == [*times.values()]
+
+
+@pytest.mark.parametrize(("beyond", "there"), [(None, None), ("hold", 3.0), ("line", 3.8)])
+def test_a_table_beyond_its_ends_is_told(beyond, there, tmp_path):
+    """A brake by a table of the angle up to 0.5 rad, at 0.5 and at 0.7 rad, and no other load."""
+    m = Mechanism("braked")
+    arm = m.link("arm", length=m.parameter("l", 0.3, "m"), mass=0.0)
+    turn = m.revolute("O", m.ground, arm)
+    m.torque("brake", arm, -table(m.coordinate(turn), [0.0, 0.5], [1.0, 3.0], beyond=beyond))
+    scene = Scene(m, {"O": motion.polynomial(0.0, 0.1)}, t=(0, 5, 11), wanted=["effort"])
+    made = export(scene, tmp_path)
+    tried = (PREPARED + f"inputs.O = {angle}; " + EVALUATED for angle in ("0.5", "0.7"))
+    (within, effort, _), (status, other, sentence) = told(tmp_path, made, *tried)
+    assert (within, effort) == (0, pytest.approx(3.0, rel=1e-6))
+    if there is None:
+        assert status != 0
+        assert np.isnan(other)
+        assert "outside the curve's range" in sentence
+    else:
+        assert (status, other) == (0, pytest.approx(there, rel=1e-6))
 
 
 def test_iterated_loops_report_failure_and_stay_where_they_were(tmp_path):

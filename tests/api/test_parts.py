@@ -96,6 +96,9 @@ def test_scotch_yoke_and_trammel():
         "must reach from 0 to 1, got 0 to 0.5": lambda m, a: density.tabulated([0, 0.5], [1, 1]),
         "at least one coefficient": lambda m, a: density.polynomial(),
         "table: places must increase": lambda m, a: table(m.time, [0, 1, 1], [1, 2, 3]),
+        "table: beyond must be 'hold' or 'line', got 'cubic'": lambda m, a: table(
+            m.time, [0, 1], [1, 2], beyond="cubic"
+        ),
         "load 'F': expected a link": lambda m, a: m.force("F", "nothing", x=1),
         "another mechanism": lambda m, a: m.force(
             "F", Mechanism("n").link("z", length=1, mass=1), x=1

@@ -123,8 +123,8 @@ def _quick_return(arithmetic, values):
 
 
 def _pressed(heights, shares, force, held=""):
-    """A force on the ram on its way down, by a table of the height; and a counterbalance of a mass
-    that is ``held``.
+    """A force on the ram on its way down, by a table of the height that holds its values beyond its
+    ends; and a counterbalance of a mass that is ``held``.
     """
 
     def beside(arithmetic, values):
@@ -134,9 +134,10 @@ def _pressed(heights, shares, force, held=""):
         def part(place):
             _, y, _ = place(("ram", 0, 0))
             height = 1000 * (number(values["r"]) + number(values["l"]) + y.v)
+            height = min(max(height, at[0]), at[-1])
             i = min(max(bisect.bisect_right(at, height), 1), len(at) - 1)
             share = of[i - 1] + (of[i] - of[i - 1]) / (at[i] - at[i - 1]) * (height - at[i - 1])
-            acts = share if y.d < 0 and height < at[-1] else number(0)
+            acts = share if y.d < 0 else number(0)
             weight = number(values[held]) * number(9.81) if held else number(0)
             return [(("ram", 0, 0), 0, number(values[force]) * acts + weight, 0)]
 
@@ -359,5 +360,5 @@ _CASES = {
     "servo_press": _pressed(
         (0, 5, 15, 30, 39, 40), (0.55, 0.7, 0.95, 1.0, 0.6, 0.0), "drawing", "mass"
     ),
-    "punch_press": _pressed((0, 7, 9.5, 10, 100), (0, 0, 1, 0, 0), "punching"),
+    "punch_press": _pressed((7, 9.5, 10), (0, 1, 0), "punching"),
 }

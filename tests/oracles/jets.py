@@ -91,7 +91,9 @@ def functions(arithmetic):
         root = arithmetic.sqrt(x.v)
         return x.through(root, 1 / (2 * root), -1 / (4 * root**3))
 
-    def table(x, places, values):
+    def table(x, places, values, beyond):
+        if beyond == "hold" and not places[0] <= x.v <= places[-1]:
+            return x * 0.0 + values[0 if x.v < places[0] else -1]
         k = min(max(bisect.bisect_right(places, x.v), 1), len(places) - 1)
         slope = (values[k] - values[k - 1]) / (places[k] - places[k - 1])
         return (x - places[k - 1]) * slope + values[k - 1]

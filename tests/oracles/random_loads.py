@@ -170,7 +170,10 @@ def _amount(d: Draft, size: float) -> Formula:
             return d.formula(
                 f"{value} * curve({places}, {values}, periodic=True)({d.choose(*names)})", names
             )
-        return d.formula(f"{value} * table({d.choose(*names)}, {places}, {values})", names)
+        beyond = "hold" if values[1] > 0.0 else "line"
+        return d.formula(
+            f"{value} * table({d.choose(*names)}, {places}, {values}, beyond={beyond!r})", names
+        )
     if kind == "parameter" and d.parametric:
         number = d.number(float(value), 0.5)
         return d.formula(number.text, {})

@@ -289,25 +289,30 @@ def test_a_curve_needs_no_count_of_whole_turns():
     )
 
 
-def beyond(motion_law=None):
+STOP = [-0.6, -0.2, 0.2, 0.6], [9.0, 1.0, -1.0, -9.0]
+
+
+def beyond(motion_law=None, law=None):
     """A load by a curve that ends at 0.6 rad of a swinging arm."""
     m = Mechanism("ended")
     arm = m.link("arm", length=m.parameter("l", 0.5, "m", low=0.0), mass=1.0)
     swing = m.parameter("swing", 0.5, "rad")
     joint = m.revolute("J", m.ground, arm)
-    m.torque(
-        "stop", arm, curve([-0.6, -0.2, 0.2, 0.6], [9.0, 1.0, -1.0, -9.0])(m.coordinate(joint))
-    )
+    m.torque("stop", arm, (law or curve(*STOP))(m.coordinate(joint)))
     return Scene(m, {"J": motion_law or motion.harmonic(0.0, swing, 1.0)}, t=(0, 1, 101))
 
 
-def test_an_argument_beyond_the_ends_is_refused_by_name():
-    scene = beyond()
+@pytest.mark.parametrize("kind", ["curve", "table"])
+def test_an_argument_beyond_the_ends_is_refused_by_name(kind):
+    scene = beyond(law=None if kind == "curve" else lambda x: table(x, *STOP))
+    cure = "; expected points that reach further, or beyond='hold' or beyond='line'"
     assert evaluate(scene, parameters={"swing": 0.6}).certified  # just at the ends
     for backend in ("vm", "c", "lanes"):
         with pytest.raises(
             AssemblyError,
-            match=r"load 'stop': .* outside the curve's range at t = 0\.15 s, where J =",
+            match=rf"load 'stop': the argument of its {kind}, from -0\.6 to 0\.6, is outside the"
+            rf" {kind}'s range at t = 0\.15 s, where J = .* of that range"
+            rf"{cure if kind == 'table' else ''}$",
         ):
             evaluate(scene, parameters={"swing": 0.75}, backend=backend)
         designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
@@ -315,6 +320,15 @@ def test_an_argument_beyond_the_ends_is_refused_by_name():
         assert designs.evaluate(p).status.tolist() == [Status.OK, Status.BEYOND_ENDS, Status.OK]
     # What does not need the load does not ask for it.
     assert evaluate(scene, wanted=["motion"], parameters={"swing": 0.75}).certified
+
+
+@pytest.mark.parametrize(("way", "most"), [("hold", 9.0), ("line", 9.0 + 20.0 * 0.15)])
+def test_a_table_goes_on_beyond_its_ends_as_it_is_told(way, most):
+    scene = beyond(law=lambda x: table(x, *STOP, beyond=way))
+    for backend in ("vm", "c", "lanes"):
+        solution = evaluate(scene, parameters={"swing": 0.75}, backend=backend)
+        assert solution.certified
+        assert abs(solution.array("load:stop:mz")).max() == pytest.approx(most, rel=1e-12)
 
 
 def test_a_part_beyond_the_ends_is_refused_by_name():
@@ -328,7 +342,7 @@ def test_a_part_beyond_the_ends_is_refused_by_name():
         "length"
     ] == pytest.approx(0.9, rel=1e-14)
     with pytest.raises(
-        ParameterError, match="link 'arm': the argument of its curve is outside the curve's range"
+        ParameterError, match=r"link 'arm': .* curve, from 1 to 4, is outside the curve's range"
     ):
         evaluate(scene, parameters={"size": 4.1})
     for backend in ("vm", "lanes"):

@@ -30,7 +30,7 @@ INSTANT = {
     "roller_cam": 304,
     "v_twin": 1524,
     "servo_press": 223,
-    "punch_press": 190,
+    "punch_press": 187,
     "planetary_gear": 628,
     "screw_lift": 246,
     "rssr": 779,
