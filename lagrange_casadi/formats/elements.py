@@ -32,7 +32,7 @@ class Element:
     name: str
     line: int
     given: dict[str, Any] = field(default_factory=dict)
-    text: str = ""
+    pieces: list[str] = field(default_factory=list)
     inside: list[Self] = field(default_factory=list)
 
     @property
@@ -82,6 +82,11 @@ class Element:
             raise self.refuse(f"lacks {name}=")
         return self.given.get(name, usual)
 
+    @property
+    def text(self) -> str:
+        """The text in it, without blanks at its ends."""
+        return "".join(self.pieces).strip()
+
     def amount(self, name: str, usual: float | None = None, what: str = "") -> float:
         """Return the number in an attribute; ``usual`` if there is no such attribute."""
         return self.model.number(self.at(name), self.stated(name, usual), what or name)
@@ -103,7 +108,7 @@ class Element:
         found = self.first(name) if name else self
         if found is None:
             return usual
-        return self.model.number(found.where, found.text.strip(), name or self.name)
+        return self.model.number(found.where, found.text, name or self.name)
 
     def numbers(self, what: str, count: int) -> Array:
         """Return so many numbers of its text."""
@@ -133,7 +138,8 @@ def parsed(model: Model, text: str, root: str) -> Element:
 
     Raises :class:`.ModelFileError`.
     """
-    parser, stack, count = expat.ParserCreate(), [Element(model, "", 0)], 0
+    # The text is decoded, whatever encoding it states.
+    parser, stack, count = expat.ParserCreate("utf-8"), [Element(model, "", 0)], 0
 
     def start(name: str, given: dict[str, str]) -> None:
         nonlocal count
@@ -148,7 +154,7 @@ def parsed(model: Model, text: str, root: str) -> Element:
         stack.pop()
 
     def characters(data: str) -> None:
-        stack[-1].text += data
+        stack[-1].pieces.append(data)
 
     def refuse(*_: object) -> None:
         where = f"line {parser.CurrentLineNumber}"

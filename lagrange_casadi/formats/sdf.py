@@ -52,6 +52,7 @@ class _Reader:
     def __init__(self, model: Model, line: Element) -> None:
         self.model, self.line = model, line
         self.named = line.by_name("link", "frame", "joint")
+        self.placed: dict[str, Frame] = {}
         self.own = self.pose(line.first("pose"))
 
     def read(self) -> None:
@@ -62,8 +63,9 @@ class _Reader:
         for joint in joints:
             if kind := joint.choice("type", KINDS):
                 self.joint(joint, kind)
+        on = model.joints_on()
         for joint in joints:
-            self.couplings(joint)
+            self.couplings(joint, on)
         hung = {name for one in model.joints.values() for name in (one.parent, one.child)}
         if GROUND not in hung and model.bodies:
             first = next(iter(model.bodies.values()))
@@ -104,8 +106,10 @@ class _Reader:
         near, far = model.frame_of(parent).relative(near), model.frame_of(child).relative(far)
         model.add(Joint, data, line.where, kind, parent, child, near, far, lead)
 
-    def couplings(self, line: Element) -> None:
-        """Declare what ties a joint to another one: a mimic, a gearbox."""
+    def couplings(self, line: Element, on: dict[str, list[str]]) -> None:
+        """Declare what ties a joint to another one, a mimic or a gearbox, by the joints on each
+        body.
+        """
         model, data, axis = self.model, line.attribute("name"), line.first("axis")
         if axis is not None and (mimic := axis.first("mimic")) is not None:
             keys = ("multiplier", "offset", "reference")
@@ -115,13 +119,13 @@ class _Reader:
         if line.given["type"] != "gearbox":
             return
         ratio = line.inner("gearbox_ratio", 1.0)
-        carrier = line.needed("gearbox_reference_body").text.strip()
+        carrier = line.needed("gearbox_reference_body").text
         ends = []
         for side in ("parent", "child"):
-            bodies = {self.end(line, side), model.named.get(("body", carrier), GROUND)}
-            found = [
-                name for name, one in model.joints.items() if {one.parent, one.child} == bodies
-            ]
+            body = self.end(line, side)
+            bodies = {body, model.named.get(("body", carrier), GROUND)}
+            mine = (model.joints[name] for name in on[body])
+            found = [one.name for one in mine if {one.parent, one.child} == bodies]
             if len(found) != 1:
                 words = f"its {side} has no joint on the reference body {shown(carrier)}"
                 raise line.refuse(words)
@@ -137,7 +141,7 @@ class _Reader:
             if expressed := xyz.given.get("expressed_in"):
                 on = self.known(xyz, expressed, ())
         legacy = data.first("use_parent_model_frame")
-        if legacy is not None and legacy.text.strip() in ("1", "true"):
+        if legacy is not None and legacy.text in ("1", "true"):
             on = self.own
         given = self.model.direction(data.where, given)
         return np.asarray(on.axes @ given / np.linalg.norm(given))
@@ -145,7 +149,7 @@ class _Reader:
     def end(self, line: Element, key: str) -> str:
         """Return the body of a joint's parent or child, which may be given by a frame on it."""
         data = line.needed(key)
-        name = data.text.strip()
+        name = data.text
         for _ in range(len(self.named) + 1):
             if name == "world":
                 return GROUND
@@ -156,10 +160,12 @@ class _Reader:
                 break
             name = frame.given.get("attached_to", "")
         valid = ", ".join(["world", *(one.given["name"] for one in self.line.all("link"))])
-        raise data.refuse(f"unknown link {shown(data.text.strip())}; valid: {valid}")
+        raise data.refuse(f"unknown link {shown(data.text)}; valid: {valid}")
 
     def frame(self, name: str, above: tuple[str, ...]) -> Frame:
         """Return where a link, frame or joint is; poses may be given relative to each other."""
+        if name in self.placed:
+            return self.placed[name]
         line = self.named[name]
         if name in above or len(above) > _DEEPEST:
             what = "itself" if name in above else "too many others"
@@ -168,10 +174,11 @@ class _Reader:
         if pose is not None:
             on = pose.given.get("relative_to", "") or pose.given.get("frame", "")
         if not on and line.name == "joint":
-            on = line.needed("child").text.strip()
+            on = line.needed("child").text
         elif not on and line.name == "frame":
             on = line.given.get("attached_to", "")
-        return self.known(line, on, (*above, name)).then(self.pose(pose))
+        self.placed[name] = self.known(line, on, (*above, name)).then(self.pose(pose))
+        return self.placed[name]
 
     def known(self, line: Element, name: str, above: tuple[str, ...]) -> Frame:
         """Return the frame of a name."""
@@ -183,7 +190,7 @@ class _Reader:
 
     def pose(self, line: Element | None) -> Frame:
         """Return the frame of a pose: a place, and roll, pitch and yaw."""
-        if line is None or not line.text.strip():
+        if line is None or not line.text:
             return Frame()
         if line.given.get("rotation_format", "euler_rpy") != "euler_rpy":
             raise line.refuse("rotation_format: expected euler_rpy")

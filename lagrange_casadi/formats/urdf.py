@@ -8,6 +8,8 @@ Loops are given by a second joint of a link, and by ``<constraint>`` (proposed f
 
 from __future__ import annotations
 
+from heapq import heappop, heappush
+
 import numpy as np
 
 from ..errors import shown
@@ -64,13 +66,16 @@ class _Robot:
             found = ", ".join(map(repr, roots)) or "none"
             raise self.root.refuse(f"expected one root link, found {found}")
         self.on[roots[0]] = (GROUND, Frame())
-        waiting = list(self.joints)
-        while waiting:
-            ready = [one for one in waiting if self.side(one, _ONE)[0] in self.on]
-            if not ready:
-                raise waiting[0].refuse("its links are not connected to the root")
-            self.grow(ready[0])
-            waiting.remove(ready[0])
+        hung: dict[str, list[int]] = {}
+        for k, joint in enumerate(self.joints):
+            hung.setdefault(self.side(joint, _ONE)[0], []).append(k)
+        ready = hung.pop(roots[0], [])
+        while ready:
+            self.grow(joint := self.joints[heappop(ready)])
+            for k in hung.pop(self.side(joint, _OTHER)[0], ()):
+                heappush(ready, k)
+        for k in sorted(k for group in hung.values() for k in group):
+            raise self.joints[k].refuse("its links are not connected to the root")
         for loop in self.root.all(*_LOOPS):
             self.loop(loop)
         for line in self.root.all("drake:ball_constraint"):
@@ -80,8 +85,9 @@ class _Robot:
                 name, first = joint.attribute("name"), mimic.attribute("joint")
                 law = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
                 self.model.couple(f"{name}_mimic", mimic.where, (first, name), *law)
+        above = {self.side(one, _OTHER)[0]: one for one in reversed(self.joints)}
         for coupling in self.root.all("coupling"):
-            self.coupling(coupling)
+            self.coupling(coupling, above)
         self.actuators()
         self.left_out()
 
@@ -137,9 +143,8 @@ class _Robot:
         line.given.setdefault("name", f"ball_{len(self.model.joints)}")
         self.add(line, "spherical", sides[0], sides[1])
 
-    def coupling(self, line: Element) -> None:
-        """Read a coupling of two links' joints."""
-        above = {self.side(one, _OTHER)[0]: one for one in reversed(self.joints)}
+    def coupling(self, line: Element, above: dict[str, Element]) -> None:
+        """Read a coupling of two links' joints, of those by the links above which they are."""
         links = [self.side(line, side)[0] for side in (_ONE, _OTHER)]
         for link in links:
             if link not in above:
