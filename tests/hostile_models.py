@@ -23,17 +23,31 @@ from internals import case_of
 from lagrange_casadi import evaluate, read
 from lagrange_casadi.errors import LagrangeCasadiError
 from tests.damaging import damaged
-from tests.model_files import SMALL
+from tests.model_files import LARGE, SMALL
 
-SECONDS = 20
-"""What one file may take before the program ends itself."""
+SECONDS, WAITING = 20, 200
+"""What one file may take before the program ends itself: processor time, and time on a clock."""
 
-MANY = 300
-"""Links of a case that is evaluated, at most."""
+MANY, FEW = 300, 30
+"""Links of a case that is declared, and of one that is evaluated, at most."""
 
 NUMBERS = ["inf", "-inf", "nan", "1e400", "-1e308", "1e300", "1e-300", "5e-324", "1e13", "-1e12"]
 NUMBERS += ["1e12", "1e6", "1e-6", "0", "-0.0", "-1", "9" * 400, "9" * 5000, "", " ", "1_0", "0x10"]
-NUMBERS += ["1,5", "--1", "true", "null", "1e", "\u0661", "1e-160", "3.2e-9", "1e9", "1 2"]
+NUMBERS += [
+    "1,5",
+    "--1",
+    "true",
+    "null",
+    "1e",
+    "\u0661",
+    "1e-160",
+    "3.2e-9",
+    "1e9",
+    "1 2",
+    "NaN",
+    "Infinity",
+    "-Infinity",
+]
 
 _WORDS = sorted({word for text in SMALL.values() for word in re.findall(r"[A-Za-z_]\w*", text)})
 NAMES = [*keyword.kwlist, *keyword.softkwlist, *dir(__builtins__), "ground", "world", "__model__"]
@@ -103,23 +117,23 @@ def names_of_cases(folder):
 
 def law(chance, depth=0):
     """An expression of time, mostly one that Python must not evaluate."""
-    kind = chance.randrange(12 if depth < 4 else 3)
-    one, other = (law(chance, depth + 1) if kind > 2 else "" for _ in range(2))
+    kind = chance.randrange(3, 12) if depth < chance.randrange(1, 5) else chance.randrange(4)
+    one, other = (law(chance, depth + 1) if kind > 3 else "t" for _ in range(2))
     many = int(10 ** chance.uniform(0, 4.2))
     return [
-        chance.choice(["t", "time", "pi", "t", "2", "0.5", "9"]),
-        chance.choice(NUMBERS),
+        chance.choice(["t", "time", "pi", "t", "2", "0.5", "9", "t", "(-8)", "1/3", "0"]),
+        chance.choice(["t", "t", "1e12", "1e-300", "7", *NUMBERS]),
         chance.choice(
-            ["x", "__import__('os')", "t.real", "lambda: t", "[t]", "t if t else 1", "()"]
+            ["t", "x", "__import__('os')", "t.real", "lambda: t", "[t]", "t if t else 1"]
         ),
-        f"({one}{chance.choice('+-*/')}{other})",
+        "^".join(chance.choices(["9", "9", "t", "2"], k=chance.randrange(2, 12))),
+        f"({one}{chance.choice('+-*/^')}{other})",
         f"{one}^{other}",
-        "^".join(["9"] * chance.randrange(2, 9)) + f"*{one}",
         f"{chance.choice(['sin', 'exp', 'log', 'sqrt', 'acos', 'tan', 'f', 'abs'])}({one})",
-        chance.choice("+-*/").join([one] * min(many, 12_000 // (len(one) + 1))),
+        chance.choice("+-*/").join([one] * min(many, 9000 // (len(one) + 1))),
         "(" * many + one + ")" * many,
-        "sin(" * many + one + ")" * many,
-        "(" * many + one + ")^3" * many,
+        "sin(" * min(many, 1900) + one + ")" * min(many, 1900),
+        "(" * min(many, 1900) + one + "+1)^3" * min(many, 1900),
         "-" * many + one,
     ][kind]
 
@@ -131,7 +145,8 @@ def numbers(text, chance, told):
         chance.sample(places, min(chance.choice([1, 1, 2, 9]), len(places))),
         key=lambda one: -one.start(),
     ):
-        new = chance.choice(NUMBERS)
+        # That of another place makes two places one.
+        new = chance.choice([chance.choice(NUMBERS), chance.choice(places)[0], "0"])
         if told == ".json" and chance.random() < 0.7:
             new = json.dumps(new) if not re.fullmatch(r"-?\d+(\.\d+)?(e-?\d+)?", new) else new
         text = text[: found.start()] + new + text[found.end() :]
@@ -151,7 +166,7 @@ def renamed(text, chance, told, names):
     if not (found := [one for one in words(text, told) if one[0]]):
         return text
     old, (start, stop) = chance.choice(found)
-    new = chance.choice(names)
+    new = chance.choice(chance.choice(names))
     if told == ".json":
         new = json.dumps(new)[1:-1]
     elif told != ".asmt" and chance.random() < 0.9:
@@ -162,48 +177,53 @@ def renamed(text, chance, told, names):
 
 
 def pieces(text, told):
-    """The elements of a text: where they begin and end."""
+    """The elements and attributes of a text: where they begin and end. A long text is one."""
+    found, open_at = [(0, len(text))], []
+    if len(text) > 100_000:
+        return found
     if told == ".asmt":
-        lines = [*re.finditer(r"(\t*).*\n?", text)]
-        for k, line in enumerate(lines):
-            below = (one for one in lines[k + 1 :] if len(one[1]) <= len(line[1]))
-            yield line.start(), next(below, lines[-1]).start()
+        for line in re.finditer(r"(\t*)[^\n]*\n?", text):
+            while open_at and len(open_at[-1][1]) >= len(line[1]):
+                found.append((open_at.pop().start(), line.start()))
+            open_at.append(line)
     elif told == ".json":
-        for one in re.finditer(r"[\[{]", text):
-            depth = 0
-            for k in range(one.start(), len(text)):
-                depth += (text[k] in "[{") - (text[k] in "]}")
-                if not depth:
-                    yield one.start(), k + 1
-                    break
-        yield from (one.span() for one in re.finditer(r'"\w+": [^\[{\n]+?(,|(?=\n))', text))
+        for one in re.finditer(r'[\[{]|[\]}]|"\w+": [^\[{\n]+', text):
+            if one[0] in "[{":
+                open_at.append(one)
+            elif one[0] not in "]}":
+                found.append(one.span())
+            elif open_at:
+                found.append((open_at.pop().start(), one.end()))
     else:
-        for one in re.finditer(r"<(\w+)[^>]*?(/?)>", text):
-            end = text.find(f"</{one[1]}>", one.end())
-            yield one.start(), one.end() if one[2] or end < 0 else end + len(one[1]) + 3
-        yield from (one.span() for one in re.finditer(r' \w+="[^"]*"', text))
+        for one in re.finditer(r'<(/?)(\w+)[^>]*?(/?)>| \w+="[^"]*"', text):
+            if one[3] or not one[2]:
+                found.append(one.span())
+            elif not one[1]:
+                open_at.append(one)
+            elif open_at:
+                found.append((open_at.pop().start(), one.end()))
+    return found
 
 
 def rearranged(text, chance, told):
     """An element or attribute removed, repeated, moved, or in place of another one."""
-    places = [*pieces(text, told)] or [(0, len(text))]
+    places = pieces(text, told)
     (start, stop), (other, end) = chance.choice(places), chance.choice(places)
-    piece, apart = text[start:stop], ", " if told == ".json" else ""
+    piece, apart = text[start:stop], ", " if told == ".json" else "\n"
+    many = min(chance.choice([20, 700]), 200_000 // (len(piece) + 1))
     return [
         lambda: text[:start] + text[stop:],
         lambda: text[:stop] + apart + piece + text[stop:],
         lambda: text[:other] + piece + text[end:],
         lambda: text[:end] + apart + piece + text[end:],
-        lambda: (
-            text[:start] + (apart or "\n").join([piece] * chance.choice([20, 700])) + text[stop:]
-        ),
+        lambda: text[:start] + apart.join([piece] * many) + text[stop:],
         lambda: text[:start] + text[other:end] + text[stop:],
     ][chance.randrange(6)]()
 
 
 def nested(text, chance, told):
     """An element inside itself many times."""
-    start, stop = chance.choice([*pieces(text, told), (0, len(text))])
+    start, stop = chance.choice(pieces(text, told))
     piece, many = text[start:stop], int(10 ** chance.uniform(1, 4.5))
     if told == ".json":
         return text[:start] + "[" * many + piece + "]" * many + text[stop:]
@@ -216,7 +236,7 @@ def nested(text, chance, told):
 
 def long(text, chance, told):
     """A text with a place that is long: of blanks, or of a comment."""
-    start, stop = chance.choice([*pieces(text, told), (0, len(text))])
+    start, stop = chance.choice(pieces(text, told))
     at = chance.choice([start, stop])
     fill = chance.choice(["\n", " ", "\t\n", "x", "<!---->", "&#10;", "<a/>", "[],"])
     return text[:at] + fill * (int(10 ** chance.uniform(3, 6.3)) // len(fill)) + text[at:]
@@ -237,11 +257,12 @@ def hostile_law(text, chance, told):
     """A law of a text, another one."""
     new = law(chance)
     new = json.dumps(new)[1:-1] if told == ".json" else new
-    pattern = r'(?<=": ")[^"]*(?=",?\n)' if told == ".json" else r"(?<=\t)[^\t\n]*time[^\n]*"
-    found = [*re.finditer(pattern, text)]
-    if not found:
+    pattern = (
+        r'(?<=": ")[^"]*\bt(ime)?\b[^"]*(?=")' if told == ".json" else r"(?<=\t)[^\t\n]*time[^\n]*"
+    )
+    if not (found := [*re.finditer(pattern, text)]):
         return numbers(text, chance, told)
-    at = chance.choice(found[-6:] if told == ".json" else found)
+    at = chance.choice(found)
     return text[: at.start()] + new + text[at.end() :]
 
 
@@ -263,7 +284,7 @@ def hostile(text, chance, told, names):
         elif kind < 10:
             text = hostile_law(text, chance, told)
         elif kind == 10 and xml:
-            start = chance.choice([*pieces(text, told), (0, len(text))])[chance.randrange(2)]
+            start = chance.choice(pieces(text, told))[chance.randrange(2)]
             start = chance.choice([start, text.find("<", 1)])
             text = text[:start] + chance.choice(DOCTYPES) + text[start:]
         else:
@@ -275,13 +296,17 @@ def hostile(text, chance, told, names):
     return text.encode(errors="surrogatepass")
 
 
-def drawn(kind, seed, folder, names):
+def drawn(kind, seed, names):
     """A file of a kind, ``hostile`` or ``damaged``: its name and its content."""
     chance = random.Random(f"{kind} {seed}")
     # Those of MuJoCo take longest.
     file = chance.choice([name for name in SMALL if not name.endswith(".xml")])
     file = "arm.xml" if seed % 25 == 0 else file
-    text, told = SMALL[file], Path(file).suffix
+    text = SMALL[file]
+    if seed % 25 == 1:
+        file = chance.choice([name for name in LARGE if not name.endswith(".xml")])
+        text, file = LARGE[file](chance.choice([6, 30, 200])), file.replace(" ", "_")
+    told = Path(file).suffix
     if kind == "hostile":
         return file, hostile(text, chance, told, names)
     content = text.encode()
@@ -294,16 +319,19 @@ def drawn(kind, seed, folder, names):
     return file, content
 
 
-def attempt(path):
-    """What is wrong with how a file is read; empty if nothing is. And whether it is a case."""
+def attempt(path, evaluated):
+    """What is wrong with how a file is read, and perhaps evaluated; empty if nothing is. And
+    whether it is a case.
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", RuntimeWarning)
             text = case_of(path)
             compile(text, "case", "exec")
-            if text.count(" = m.") > MANY:
+            links = text.count(" = m.link")
+            scene = read(path) if links <= MANY else None
+            if links > FEW or not evaluated:
                 return "", True
-            scene = read(path)
     except LagrangeCasadiError as error:
         line = str(error)
         return "" if line.isprintable() and len(line) > 10 else f"said {line!r}", False
@@ -325,16 +353,16 @@ def attempt(path):
 def run(kind, first, count):
     """Draw and read so many files."""
     folder = Path.cwd()
-    names = NAMES + names_of_cases(folder)
+    names = NAMES, names_of_cases(folder)
     for seed in range(first, first + count):
-        file, content = drawn(kind, seed, folder, names)
+        print(seed, flush=True)
+        signal.alarm(WAITING)
+        file, content = drawn(kind, seed, names)
         path = folder / f"{kind}.{file}"
         path.write_bytes(content)
-        print(seed, flush=True)
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.alarm(SECONDS)
-        wrong, accepted = attempt(path)
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        wrong, accepted = attempt(path, evaluated=seed % 3 == 0)  # which takes longest
+        signal.setitimer(signal.ITIMER_PROF, 0)
         if accepted:
             print("accepted", flush=True)
         if wrong:

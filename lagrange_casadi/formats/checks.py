@@ -99,12 +99,20 @@ def _connected(model: Model) -> None:
 
 
 def _lengths(model: Model) -> None:
-    """Raise :class:`.ModelFileError` for a rod whose ends are one place of so large a mechanism."""
+    """Raise :class:`.ModelFileError` for a rod that is too short for the mechanism's size, and for
+    wheels whose axes are one.
+    """
     size = extent(model)
     for body in model.bodies.values():
         if body.rod and not (length := math.dist(*body.rod)) > SHORTEST_ROD * size:
             words = f"body '{body.name}': a rod of {length:g} m in a mechanism of {size:g} m"
             raise model.refuse(body.where, f"{words}; expected at least {SHORTEST_ROD:g} of it")
+    for tie in model.ties.values():
+        near, far = model.frames(tie)
+        away = (one.relative(other).place[:2] for one, other in ((near, far), (far, near)))
+        wheels = any(row.kind == "wheels" for row in tie.rows)
+        if wheels and min(map(np.linalg.norm, away)) <= SLACK * size:
+            raise model.refuse(tie.where, "the axes of its two wheels coincide")
 
 
 def _spins(model: Model) -> None:

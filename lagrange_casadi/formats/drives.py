@@ -92,8 +92,9 @@ def _rows(model: Model, twists: dict[str, Rows], size: float) -> list[Rows]:
                 rows[name] = rows.get(name, 0.0) + twist
             found.append(rows)
             check_size(model, factors := factors + 6 * len(rows))
-    for one in model.couplings.values():
-        found.append({one.second: np.ones((1, 1)), one.first: np.array([[-one.ratio]])})
+    for coupling in model.couplings.values():
+        ratio = np.array([[-coupling.ratio]])
+        found.append({coupling.second: np.ones((1, 1)), coupling.first: ratio})
     for tie in model.ties.values():
         slopes = closing(model, tie, tie.rows, size)[1]
         rows = _between(above, twists, tie.parent, tie.child)

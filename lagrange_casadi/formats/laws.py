@@ -69,6 +69,9 @@ class Expression:
         return self.text if self.binds >= binds else f"({self.text})"
 
 
+_ZERO = Expression("0", polynomial=Polynomial([0.0]))
+
+
 def parsed(text: str) -> Expression:
     """Return the expression of a text: numbers, pi, t or time, + - * / ^ and functions.
 
@@ -126,87 +129,73 @@ def _expression(node: ast.expr, parts: Sequence[Expression]) -> Expression:
     """Return an expression of its parts. Raises :class:`LawError` for one that is too large, or has
     a part without t that is no number.
     """
-    text, binds, deep = "t", _ATOM, max((one.deep for one in parts), default=-1) + 1
-    match node:
-        case ast.Constant(value=value):
-            text = repr(value)
-        case ast.Name(id="pi"):
-            text = "pi"
-        case ast.UnaryOp(op=sign):
-            text, binds = (
-                f"{'-' if isinstance(sign, ast.USub) else '+'}{parts[0].within(_SIGN)}",
-                _SIGN,
-            )
-        case ast.BinOp(op=operator):
-            (sign, binds), (left, right) = _OPERATORS[type(operator)], parts
-            power = sign == "**"
-            one, other = left.within(binds + power), right.within(binds + (not power))
-            text, deep = (
-                f"{one} {sign} {other}",
-                max(left.deep + (one != left.text), right.deep + 1),
-            )
-        case ast.Call(func=ast.Name(id=name)):
-            text = f"ca.{_name(name)}({', '.join(one.text for one in parts)})"
+    text, binds = "t", _ATOM
+    found: Polynomial | None = Polynomial([0.0, 1.0])
     tall = max((one.tall for one in parts), default=-1) + 1
-    if tall > _TALLEST or deep > _DEEPEST:
-        words = (
-            f"expected at most {_TALLEST} terms, and {_DEEPEST} pairs of parentheses in each other"
-        )
-        raise LawError(words)
+    deep = max((one.deep for one in parts), default=-1) + 1
     try:
-        polynomial = _polynomial(node, parts)
+        match node:
+            case ast.Constant(value=int() | float() as value):
+                text = repr(value)
+                found = Polynomial([number(value)])
+            case ast.Name(id="pi"):
+                text, found = "pi", Polynomial([math.pi])
+            case ast.UnaryOp(op=sign):
+                symbol, binds = "-" if isinstance(sign, ast.USub) else "+", _SIGN
+                text = f"{symbol}{parts[0].within(binds)}"
+                found = _combined(symbol, _ZERO, parts[0])
+            case ast.BinOp(op=operator):
+                symbol, binds = _OPERATORS[type(operator)]
+                one, other = parts
+                bare = one.binds >= binds + (symbol == "**")
+                deep = max(one.deep + (not bare), other.deep + 1)
+                sides = one.within(binds + (symbol == "**")), other.within(binds + (symbol != "**"))
+                text = f" {symbol} ".join(sides)
+                found = _combined(symbol, one, other)
+            case ast.Call(func=ast.Name(id=name)):
+                text = f"ca.{_name(name)}({', '.join(one.text for one in parts)})"
+                values = [one.number for one in parts]
+                known = None not in values
+                found = Polynomial([getattr(math, _name(name))(*values)]) if known else None
+        if found is not None and found.degree() == 0:
+            number(float(found.coef[0]))
     except (ArithmeticError, TypeError, ValueError):
         raise LawError(f"'{text[:60]}' is no number of at most {LARGEST:g}") from None
-    return Expression(text, binds, polynomial, tall, deep)
+    if tall > _TALLEST or deep > _DEEPEST:
+        most = (
+            f"expected at most {_TALLEST} terms, and {_DEEPEST} pairs of parentheses in each other"
+        )
+        raise LawError(most)
+    return Expression(text, binds, found, tall, deep)
 
 
-def _polynomial(node: ast.expr, parts: Sequence[Expression]) -> Polynomial | None:
-    """Return an expression as a polynomial of t if it is one, of numbers that are finite.
+def _combined(symbol: str, one: Expression, other: Expression) -> Polynomial | None:
+    """Return what an operator makes of two expressions, as a polynomial of t if it is one of finite
+    numbers and a low degree.
 
-    Raises :class:`ValueError` and the like for one without t that is no number of a machine.
+    Raises :class:`ArithmeticError` and the like for numbers that have no such one.
     """
-    known = [one.number for one in parts]
-    match node:
-        case ast.Constant(value=value):
-            return Polynomial([number(value)])
-        case ast.Name(id=name):
-            return Polynomial([math.pi] if name == "pi" else [0.0, 1.0])
-        case ast.Call(func=ast.Name(id=name)):
-            all_known = None not in known
-            return Polynomial([number(getattr(math, _name(name))(*known))]) if all_known else None
-        case ast.BinOp(op=ast.Div()) if known[1] == 0.0:
-            raise ZeroDivisionError
-    given = [one.polynomial for one in parts]
-    if None in given:
+    left, right, value = one.polynomial, other.polynomial, other.number
+    if symbol == "/" and value == 0.0:
+        raise ZeroDivisionError
+    if left is None or right is None:
         return None
+    degree, found = left.degree() + right.degree(), None
     with np.errstate(all="ignore"):
-        found = _combined(node, *given)
-    if found is not None and found.degree() == 0:
-        number(found.coef[0])
+        match symbol:
+            case "+":
+                found = left + right
+            case "-":
+                found = left - right
+            case "*" if degree <= _DEGREE:
+                found = left * right
+            case "/" if value is not None:
+                found = left / value
+            case "**" if value is not None and not degree:
+                found = Polynomial([number(float(left.coef[0]) ** value)])
+            case "**" if value in (0.0, 1.0, 2.0, 3.0) and degree * value <= _DEGREE:
+                found = left ** int(value)
     return found if found is not None and np.isfinite(found.coef).all() else None
-
-
-def _combined(
-    node: ast.expr, one: Polynomial, other: Polynomial | None = None
-) -> Polynomial | None:
-    """Return what an operator makes of polynomials, if it is one of a degree that is not large."""
-    if other is None:
-        return -one if isinstance(node.op, ast.USub) else one
-    value = other.coef[0] if other.degree() == 0 else None
-    match node.op:
-        case ast.Add():
-            return one + other
-        case ast.Sub():
-            return one - other
-        case ast.Mult() if one.degree() + other.degree() <= _DEGREE:
-            return one * other
-        case ast.Div() if value is not None:
-            return one / value
-        case ast.Pow() if value is not None and one.degree() == 0:
-            return Polynomial([number(float(one.coef[0]) ** float(value))])
-        case ast.Pow() if value in (0.0, 1.0, 2.0, 3.0) and one.degree() * value <= _DEGREE:
-            return one ** int(value)
-    return None
 
 
 def python(text: str, less: float = 0.0) -> Call:
