@@ -281,9 +281,9 @@ def hostile(text, chance, told, names):
             text = long(text, chance, told)
         elif kind == 7:
             text = joined(text, chance, told)
-        elif kind < 10:
+        elif kind < 10 or (kind == 10 and not xml):
             text = hostile_law(text, chance, told)
-        elif kind == 10 and xml:
+        elif kind == 10:
             start = chance.choice(pieces(text, told))[chance.randrange(2)]
             start = chance.choice([start, text.find("<", 1)])
             text = text[:start] + chance.choice(DOCTYPES) + text[start:]

@@ -15,10 +15,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from internals import case_of, python
+from internals import LawError, case_of, python
 
 from lagrange_casadi import errors, evaluate, read, save_model
 from lagrange_casadi.motion import expression, polynomial
+from tests.hostile_models import law
 from tests.model_files import LARGE, SMALL, own, own_body, own_joint
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -127,6 +128,19 @@ def test_laws_have_the_values_of_their_texts(seed):
     for t in (0.3, 1.7):
         there = eval(text.replace("^", "**"), names | {"t": t})
         assert abs(value_of(told, t) - there) < 1e-9 * (abs(there) + 1.0), text
+
+
+def test_no_law_hangs_or_ends_in_a_traceback(pytestconfig):
+    """Each is refused, or is a text that Python compiles, inside a case, and evaluates."""
+    found = []
+    for seed in range(20_000 if pytestconfig.getoption("--long") else 300):
+        try:
+            told = python(law(random.Random(seed)))
+        except LawError:
+            continue
+        compile(f"laws = {{\n    'x': {told},\n}}", "case", "exec")
+        found.append(value_of(told, 0.3))
+    assert len(found) > 50
 
 
 FAR = {
