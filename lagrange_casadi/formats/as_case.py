@@ -70,6 +70,7 @@ class _Case:
         self.places = Places(model, self.open, NAMES)
         self.short, self.variables = self.places.short, self.places.variables
         self.lines: list[str] = []
+        self.loaded: set[str] = set()
         turned = [*self.open, *(one.joint for one in model.springs if one.stiffness)]
         ends = (model.joints.get(name) or model.ties[name] for name in turned)
         self.turned = {name for one in ends for name in (one.parent, one.child)}
@@ -266,9 +267,10 @@ class _Case:
                 self.call("m.force", name, point, *force, "turning=True")
 
     def load(self, wanted: str) -> str:
-        """Return a name for a load, which no part has."""
-        while self.model.taken(wanted):
+        """Return a name for a load, which no part and no other load has."""
+        while wanted in self.loaded or self.model.taken(wanted):
             wanted = f"{wanted}_"
+        self.loaded.add(wanted)
         return wanted
 
     def end(self) -> None:

@@ -4,6 +4,11 @@ import json
 
 from assembly_file import assembly, turned
 
+SPRUNG = (
+    "<dynamics><damping>0.1</damping><spring_stiffness>5</spring_stiffness>"
+    "<spring_reference>0.1</spring_reference></dynamics>"
+)
+DAMPED = '<dynamics damping="0.1"/>'
 MOMENTS = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2"/>'
 
 
@@ -154,6 +159,16 @@ def _gears():
     )
 
 
+def _cell(k):
+    """The links and joints of a robot that is a parallelogram, which Gazebo closes."""
+    yield from (link(f"{name}{k}") for name in ("crank", "rod", "rocker"))
+    ends = ("O", "base", f"crank{k}", "0 0 0"), ("A", f"crank{k}", f"rod{k}", "0 1 0")
+    for name, parent, child, at in (*ends, ("C", "base", f"rocker{k}", "2 0 0")):
+        yield joint(f"{name}{k}", parent, child, at).replace("0.1 0", "0 0")
+    closing = sdf_joint(f"B{k}", f"rod{k}", f"rocker{k}", more=SPRUNG)
+    yield f"<gazebo>{closing.replace('<parent', '<pose>0 1 0 0 0 0</pose><parent')}</gazebo>\n"
+
+
 SMALL = {
     "loop.json": _loop(),
     "kinds.json": _kinds(),
@@ -162,10 +177,13 @@ SMALL = {
         '<link name="base"/>',
         *(link(name) for name in ("one", "two", "three")),
         '<link name="frame"/>',
-        joint("j1", "base", "one", more='<dynamics damping="0.1"/>'),
+        joint("j1", "base", "one", more=DAMPED),
         joint("j2", "one", "two", "0.2 0 0", "0 1 0", more='<mimic joint="j1" multiplier="2"/>'),
         joint("j3", "two", "three", "0.2 0 0", "1 0 0", "prismatic"),
         joint("j4", "three", "frame", kind="fixed"),
+        '<link name="lump"><inertial><mass value="0.3"/></inertial></link>\n',
+        joint("j5", "three", "lump", "0.1 0 0", kind="fixed"),
+        '<gazebo reference="two"><turnGravityOff>true</turnGravityOff></gazebo>\n',
         '<transmission name="t"><joint name="j1"/></transmission>',
     ),
     "loop.urdf": urdf(
@@ -177,20 +195,25 @@ SMALL = {
         '<loop_joint name="B" type="spherical"><link1 link="rod"><origin xyz="2 0 0"/></link1>'
         '<link2 link="rocker"><origin xyz="0 1 0"/></link2></loop_joint>',
     ),
+    "cell.urdf": urdf('<link name="base"/>', *_cell(0)),
     "arm.sdf": sdf(
         sdf_link("one"),
-        sdf_link("two", "0.2 0 0 0 0.1 0"),
+        sdf_link("two", "0.2 0 0 0 0.1 0").replace("</link>", "<gravity>false</gravity></link>"),
         sdf_link("three", "0.3 0 0 0 0 0", ' relative_to="f"'),
         '<frame name="f" attached_to="two"><pose>0.1 0 0 0 0 0.2</pose></frame>\n',
-        sdf_joint("j1", "world", "one"),
+        sdf_joint("j1", "world", "one", more=SPRUNG),
         sdf_joint("j2", "one", "two", "0 1 0", "screw", "").replace(
             "</joint>", "<screw_thread_pitch>0.02</screw_thread_pitch></joint>"
         ),
         sdf_joint("j3", "f", "three", more='<mimic joint="j1"><multiplier>2</multiplier></mimic>'),
+        sdf_link("four", "0.1 0 0 0 0.1 0", ' relative_to="three"'),
+        sdf_joint("j4", "three", "four", "1 0 0", "prismatic", SPRUNG),
         world="<gravity>0 0 -9.81</gravity>",
     ),
     "arm.xml": mjcf(
-        mjcf_body("one", mjcf_body("two", mjcf_body("three", axis="0 0 1"))),
+        mjcf_body("one", mjcf_body("two", mjcf_body("three", axis="0 0 1"))).replace(
+            'name="j_three"', 'name="j_three" stiffness="5" damping="0.1" springref="10"'
+        ),
         more='<equality><joint joint1="j_two" joint2="j_one" polycoef="0 2 0 0 0"/></equality>'
         '<actuator><motor joint="j_one"/></actuator>',
     ),
@@ -242,7 +265,9 @@ LARGE = {
     "chain.urdf": lambda count: urdf(
         '<link name="base"/>',
         *(
-            link(name, 1 + k % 7) + joint(hinge, above or "base", name, f"0.{k % 7 + 1} 0 0", axis)
+            link(name, 1 + k % 7)
+            + joint(hinge, above or "base", name, f"0.{k % 7 + 1} 0 0", axis, more=DAMPED)
+            + f'<gazebo reference="{name}"><gravity>{k % 2}</gravity></gazebo>\n'
             for k, (name, above, hinge, axis) in enumerate(_chain(count))
         ),
     ),
@@ -253,10 +278,13 @@ LARGE = {
             for name, above, hinge, axis in reversed(_chain(count))
         ),
     ),
+    "cells.urdf": lambda count: urdf(
+        '<link name="base"/>', *(part for k in range(count // 3) for part in _cell(k))
+    ),
     "chain.sdf": lambda count: sdf(
         *(
             sdf_link(name, f"0.{k} 0 0 0 0 0", f' relative_to="{above}"' if k % 90 else "")
-            + sdf_joint(hinge, above or "world", name, axis)
+            + sdf_joint(hinge, above or "world", name, axis, more=SPRUNG)
             for k, (name, above, hinge, axis) in enumerate(_chain(count))
         )
     ),

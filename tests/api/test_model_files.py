@@ -15,7 +15,17 @@ import numpy as np
 import pytest
 from drawn_models import law
 from internals import LawError, case_of, python
-from model_files import LARGE, SMALL, own, own_body, own_joint
+from model_files import (
+    LARGE,
+    SMALL,
+    SPRUNG,
+    own,
+    own_body,
+    own_joint,
+    sdf,
+    sdf_joint,
+    sdf_link,
+)
 from places import TESTS
 
 from lagrange_casadi import errors, evaluate, read, save_model
@@ -192,9 +202,10 @@ PARTS = {
     "loop.json": ["crank", "rocker", "O", "A", "B", "C"],
     "kinds.json": ["b0", "b1", "b3", "j0", "j1", "j3", "j4", "base", "tip", "gear"],
     "gears.asmt": ["crank", "rocker", "sun", "wheel", "O", "S", "V", "teeth", "rod"],
-    "arm.urdf": ["one", "two", "three", "j1", "j2", "j3"],
+    "arm.urdf": ["one", "two", "three", "lump", "j1", "j2", "j3"],
     "loop.urdf": ["crank", "rod", "rocker", "O", "A", "C"],
-    "arm.sdf": ["one", "two", "three", "j1", "j2", "j3"],
+    "cell.urdf": ["crank0", "rod0", "rocker0", "O0", "A0", "B0", "C0"],
+    "arm.sdf": ["one", "two", "three", "four", "j1", "j2", "j3", "j4"],
     "arm.xml": ["two", "three", "j_one", "j_two", "j_three"],
 }
 
@@ -216,6 +227,15 @@ def test_parts_may_have_the_names_that_a_case_uses(name, tmp_path):
             text = re.sub(rf"(?<!\w){old}(?!\w)", new, text)
         path.write_text(text)
         assert np.allclose(efforts(read(path)), there, rtol=1e-12, atol=1e-12), names[k:]
+
+
+def test_springs_have_names_of_their_own(tmp_path):
+    """Each slides between bodies whose names, with that of its joint, are those of the other."""
+    links = sdf_link("b_spring_c"), sdf_link("c", "0.2 0 0 0 0 0")
+    ends = ("a", "world", "b_spring_c"), ("a_spring_b", "b_spring_c", "c")
+    joints = (sdf_joint(*one, "1 0 0", "prismatic", SPRUNG) for one in ends)
+    (path := tmp_path / "slides.sdf").write_text(sdf(*links, *joints))
+    assert list(read(path).motion) == ["a", "a_spring_b"]
 
 
 def draw(kind, first, count, folder):
