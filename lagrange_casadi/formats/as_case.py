@@ -37,6 +37,21 @@ def turned(angle, cosine, sine):
     return angle + sine * ca.cos(angle) - cosine * ca.sin(angle)
 '''
 
+_OWN = f"""
+from math import pi
+
+import casadi as ca
+
+from lagrange_casadi import Scene, SpatialMechanism
+from lagrange_casadi.motion import expression, polynomial, samples
+{_FRAME}{_TURNED}
+m, laws, scene, t = None, None, None, None
+p, x, y, z = q, u, v, w = frame()
+turn, first, second = None, None, None
+"""
+NAMES = frozenset(compile(_OWN, "names", "exec").co_names)
+"""The names that a case with all features uses by itself, which no variable of a part may have."""
+
 
 def case_text(model: Model) -> str:
     """Return the text of a case file for a checked model."""
@@ -48,12 +63,24 @@ class _Case:
 
     def __init__(self, model: Model) -> None:
         gaps = opened(model)
-        self.counted = [name for name in model.joints if Motions(model, gaps).counted(name)]
+        counted = Motions(model, gaps).counted
+        self.counted = [name for name in model.joints if counted(name)]
         self.open = dict.fromkeys(self.counted, (0.0, 0.0)) | gaps
         self.model, self.motions = model, Motions(model, self.open)
-        self.places = Places(model, self.open)
+        self.places = Places(model, self.open, NAMES)
         self.short, self.variables = self.places.short, self.places.variables
         self.lines: list[str] = []
+        self.loaded: set[str] = set()
+        turned = [*self.open, *(one.joint for one in model.springs if one.stiffness)]
+        ends = (model.joints.get(name) or model.ties[name] for name in turned)
+        self.turned = {name for one in ends for name in (one.parent, one.child)}
+        self.used = {end for one in model.couplings.values() for end in (one.first, one.second)}
+        self.used |= {one.joint for one in model.springs}
+        self.stated = {
+            here: stated
+            for (kind, stated), here in model.named.items()
+            if kind != "mechanism" and stated != here
+        }
 
     def text(self) -> str:
         """Return the whole."""
@@ -85,9 +112,8 @@ class _Case:
 
     def called(self, name: str) -> None:
         """Write what a part is called in the file, where that is no name here."""
-        for (kind, stated), here in self.model.named.items():
-            if here == name != stated and kind != "mechanism":
-                self.lines.append(f"# {safe(stated)} in the file")
+        if name in self.stated:
+            self.lines.append(f"# {safe(self.stated[name])} in the file")
 
     def imports(self) -> str:
         """Return what stands before the declaration."""
@@ -117,16 +143,11 @@ class _Case:
         assert body.inertia is not None
         axes, centre = body.frame.axes, self.short.place(body.frame.at(body.centre))
         own = Frame(np.array(base), self.places.link_axes(body.name))
-        sprung = [one.joint for one in self.model.springs if one.stiffness]
         arguments: list[object] = [json.dumps(body.name)]
         if body.name in self.places.held:
             ends = [self.places.written(base), self.places.written(tip)]
             arguments.append(Call("between=", ends))
-            if any(
-                body.name in (one.parent, one.child)
-                for one in self.model.joints.values()
-                if one.name in self.open or one.name in sprung
-            ):
+            if body.name in self.turned:
                 arguments.append(self.short.direction(own.axes[:, 1], "beside"))
         else:  # no joint gives its posture: it is on its own axes
             axes = own.axes.T @ axes
@@ -167,10 +188,7 @@ class _Case:
             arguments += self.axes(joint, near.axes, far)
             arguments.append(f"at={self.places.written(self.places.at[joint.name])}")
         self.called(joint.name)
-        used = bool(self.model.ties) or any(
-            joint.name in (one.first, one.second) for one in self.model.couplings.values()
-        )
-        used = used or any(joint.name == one.joint for one in self.model.springs)
+        used = self.model.ties or joint.name in self.used
         self.call(f"{name} = m.{joint.kind}" if used else f"m.{joint.kind}", *arguments)
 
     def axes(self, joint: Joint, axes: Array, far: Frame) -> list[object]:
@@ -249,9 +267,10 @@ class _Case:
                 self.call("m.force", name, point, *force, "turning=True")
 
     def load(self, wanted: str) -> str:
-        """Return a name for a load, which no part has."""
-        while wanted in self.model.parts:
+        """Return a name for a load, which no part and no other load has."""
+        while wanted in self.loaded or self.model.taken(wanted):
             wanted = f"{wanted}_"
+        self.loaded.add(wanted)
         return wanted
 
     def end(self) -> None:
@@ -281,7 +300,9 @@ def _tie_lines(places: Places, tie: Tie) -> Iterator[str]:
         x, y, _ = (places.short.direction(axis) for axis in frame.axes.T)
         at = places.written(places.short.place(frame.place))
         yield from Call(f"{names} = frame", [f"m, {places.variables[body]}", at, x, y]).lines()
-    parent, child = (_turns_about(places, tie, body) for body in (tie.parent, tie.child))
+    counts = any(row.kind in ("slide and turn", "wheels") for row in tie.rows)
+    ends = (tie.parent, tie.child)
+    parent, child = (_turns_about(places, tie, body) if counts else "" for body in ends)
     for k, row in enumerate(tie.rows, 1):
         name, value = tie.name if len(tie.rows) == 1 else f"{tie.name}_{k}", row.value
         if row.kind == "slide and turn":
@@ -315,9 +336,9 @@ def _turns_about(places: Places, tie: Tie, body: str) -> str:
     """
     model, ends = places.model, {tie.parent, tie.child}
     along = model.frames(tie)[0].axes[:, 2]
-    for joint in model.joints.values():
+    for joint in (model.joints[name] for name in places.on[body]):
         names = [one for one, _, _ in MOVES[joint.kind] if one in ("", "turn")]
-        mine = body in (joint.parent, joint.child) and not ends <= {joint.parent, joint.child}
+        mine = not ends <= {joint.parent, joint.child}
         cosine = float(model.frames(joint)[0].axes[:, 2] @ along)
         if mine and names and joint.kind != "prismatic" and abs(cosine) > 1.0 - 1e-9:
             direction = cosine if joint.child == body else -cosine

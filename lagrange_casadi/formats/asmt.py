@@ -217,7 +217,7 @@ class _Reader:
                 radius = line.amount("radiusJ")
                 if not value or not radius:
                     raise model.refuse(where, "a radius of zero is impossible")
-                value /= radius
+                value = model.number(where, value / radius, "ratio of radii")
             if kind == "AngleJoint" and abs(math.sin(value)) < 1e-9:
                 kind, key = "ParallelAxesJoint", ""  # the slope of the angle's cosine is zero
             rows = tuple(_numbered(row, key, value) for row in TIES[kind])
@@ -239,9 +239,10 @@ class _Reader:
             words = f"is not supported; valid: {', '.join([*_MOTIONS, 'GeneralMotion'])}"
             raise model.refuse(where, words)
         key, direction, single = _MOTIONS[line.name]
-        valid = {path: name for path, name in self.named.items() if name in model.joints}
-        path = model.known(where, "joint", line.attribute("MotionJoint"), valid)
-        joint = model.joints[valid[path]]
+        if (name := self.named.get(path := line.attribute("MotionJoint"), "")) not in model.joints:
+            valid = [path for path, name in self.named.items() if name in model.joints]
+            model.known(where, "joint", path, valid)
+        joint = model.joints[name]
         coordinate = joint.name if joint.kind == single else f"{joint.name}:{direction}"
         model.motions[coordinate] = Law(_law(line.attribute(key)), where=where)
 

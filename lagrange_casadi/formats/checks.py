@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,10 @@ import numpy as np
 from ..base.arrays import Array
 from .frames import Frame
 from .posture import EXACT, SLACK, apart, assemble, extent, hang, outward
-from .record import GROUND, Body, Model
+from .record import GROUND, Body, Model, Tie
+
+SHORTEST_ROD = 1e-9
+"""The length of a rod, at least, of its mechanism's size: places are as exact as doubles are."""
 
 
 def checked(model: Model, *, accept_inertias: bool = False) -> Model:
@@ -24,8 +28,10 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
     if not any(body.mass for body in model.bodies.values()):
         raise model.refuse("", "no body that moves has a mass: give the bodies masses")
     wrong: dict[str, str] = {}
+    welds = (one for one in model.joints.values() if one.kind == "weld")
+    welded = {name for one in welds for name in (one.parent, one.child)}
     for body in model.bodies.values():
-        model.bodies[body.name] = _body(model, body, wrong)
+        model.bodies[body.name] = _body(model, body, welded, wrong)
     if wrong and not accept_inertias:
         raise model.refuse(
             model.bodies[next(iter(wrong))].where,
@@ -38,10 +44,10 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
             f"{words}: no body has such principal moments of inertia; they are as in the file."
             + (" The energy of this one may be negative." if "negative" in words else "")
         )
+    bodies = {GROUND: None, **model.bodies}
     for joint in model.closures:
         for name in (joint.parent, joint.child):
-            where = f"{joint.where}: joint '{joint.name}'"
-            model.known(where, "body", name, [GROUND, *model.bodies])
+            model.known(f"{joint.where}: joint '{joint.name}'", "body", name, bodies)
         if joint.parent == joint.child:
             words = f"joint '{joint.name}' joins '{joint.parent}' to itself"
             raise model.refuse(joint.where, words)
@@ -49,14 +55,17 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
     if model.drawn:
         assemble(model)
     _connected(model)
-    valid = [name for joint in model.joints.values() for name in joint.coordinates]
+    _lengths(model)
+    names = (name for joint in model.joints.values() for name in joint.coordinates)
+    valid = dict.fromkeys(names)
+    single = {name: None for name in valid if ":" not in name}
     stated = {name: law.where for name, law in model.motions.items()}
     stated |= dict.fromkeys(model.posture, "posture")
     for name, where in stated.items():
         model.known(where, "coordinate", name, valid)
     for one in model.couplings.values():
         for name in (one.first, one.second):
-            model.known(one.where, "coordinate", name, [name for name in valid if ":" not in name])
+            model.known(one.where, "coordinate", name, single)
         if one.first == one.second:
             raise model.refuse(one.where, f"couples joint '{one.first}' to itself")
     _rounding(model)
@@ -64,7 +73,7 @@ def checked(model: Model, *, accept_inertias: bool = False) -> Model:
     return model
 
 
-def _body(model: Model, body: Body, wrong: dict[str, str]) -> Body:
+def _body(model: Model, body: Body, welded: set[str], wrong: dict[str, str]) -> Body:
     """Return a body whose mass can be, with symmetric moments of inertia; say what is wrong with
     these, but for a drawing's rounding. A mass without them that is welded is a lump at its centre.
     """
@@ -73,8 +82,7 @@ def _body(model: Model, body: Body, wrong: dict[str, str]) -> Body:
         raise model.refuse(body.where, f"{what}: a mass of {body.mass:g} kg is impossible")
     inertia = np.zeros((3, 3)) if body.inertia is None else (body.inertia + body.inertia.T) / 2.0
     if not np.any(inertia) and body.mass > 0.0 and not body.point:
-        joints = [one for one in model.joints.values() if body.name in (one.parent, one.child)]
-        if not any(one.kind == "weld" for one in joints):
+        if body.name not in welded:
             words = f"{what} has a mass of {body.mass:g} kg and no inertia"
             words += "; give its moments of inertia about the centre of mass"
             raise model.refuse(body.where, words)
@@ -100,29 +108,43 @@ def _connected(model: Model) -> None:
     hold is free but for these.
     """
     reached = {GROUND}
-    list(outward(model, reached))
-    for tie in model.ties.values():
-        for one, other in ((tie.parent, tie.child), (tie.child, tie.parent)):
-            if one not in reached and other in reached:
-                model.attach(one, GROUND, "free", tie.where)
-                _connected(model)
-                return
+    for one in outward(model.closures, reached):  # a tie comes where no joint can follow
+        for free in {one.parent, one.child} - reached if isinstance(one, Tie) else ():
+            model.attach(free, GROUND, "free", one.where)
     for body in model.bodies.values():
         if body.name not in reached:
             words = f"body '{body.name}' is not connected to the ground"
             raise model.refuse(body.where, words)
 
 
+def _lengths(model: Model) -> None:
+    """Raise :class:`.ModelFileError` for a rod that is too short for the mechanism's size, and for
+    wheels whose axes are one.
+    """
+    size = extent(model)
+    for body in model.bodies.values():
+        if body.rod and not (length := math.dist(*body.rod)) > SHORTEST_ROD * size:
+            words = f"body '{body.name}': a rod of {length:g} m in a mechanism of {size:g} m"
+            raise model.refuse(body.where, f"{words}; expected at least {SHORTEST_ROD:g} of it")
+    for tie in model.ties.values():
+        near, far = model.frames(tie)
+        away = (one.relative(other).place[:2] for one, other in ((near, far), (far, near)))
+        wheels = any(row.kind == "wheels" for row in tie.rows)
+        if wheels and min(map(np.linalg.norm, away)) <= SLACK * size:
+            raise model.refuse(tie.where, "the axes of its two wheels coincide")
+
+
 def _spins(model: Model) -> None:
     """Hold the idle spin of bodies that are no rods: one of their spherical joints is universal."""
+    on = model.joints_on()
     for name in spinning(model):
         body = model.bodies[name]
         if body.rod is not None:
             continue
-        first, last = (one for one in model.joints.values() if name in (one.parent, one.child))
+        first, last = (model.joints[one] for one in on[name])
         other = last.parent if last.child == name else last.child
         along = model.frames(last)[0].place - model.frames(first)[0].place
-        across = _axis_of(model, other, along / np.linalg.norm(along))
+        across = _axis_of(model, on[other], along / np.linalg.norm(along))
         held = []
         for mine, frame in ((last.parent, last.on_parent), (last.child, last.on_child)):
             # The neighbour carries the axis about which it turns; the body the one across it.
@@ -137,10 +159,12 @@ def _spins(model: Model) -> None:
         )
 
 
-def _axis_of(model: Model, body: str, along: Array) -> Array:
-    """Return a direction across a line, about which a body at its end turns, where one does."""
-    for joint in model.joints.values():
-        if joint.kind == "revolute" and body in (joint.parent, joint.child):
+def _axis_of(model: Model, joints: list[str], along: Array) -> Array:
+    """Return a direction across a line, about which the body at its end, which has these joints,
+    turns, where it does.
+    """
+    for joint in (model.joints[one] for one in joints):
+        if joint.kind == "revolute":
             axis = model.frames(joint)[0].axes[:, 2]
             across = axis - (axis @ along) * along
             if (size := float(np.linalg.norm(across))) > 0.1:
@@ -168,9 +192,9 @@ def spinning(model: Model) -> list[str]:
     """Return the bodies between two spherical joints and on no other, whose spin about the line
     between these loads nothing.
     """
-    found = []
+    found, on = [], model.joints_on()
     for body in model.bodies.values():
-        mine = [one for one in model.joints.values() if body.name in (one.parent, one.child)]
+        mine = [model.joints[one] for one in on[body.name]]
         if len(mine) != 2 or any(one.kind != "spherical" for one in mine) or body.point:
             continue
         places = [one.on_parent if one.parent == body.name else one.on_child for one in mine]

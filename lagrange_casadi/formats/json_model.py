@@ -108,8 +108,10 @@ def read(model: Model, text: str) -> None:
     """Read a file. Raises :class:`.ModelFileError`, which names the element."""
     try:
         data = json.loads(text)
-    except (ValueError, RecursionError) as error:
+    except json.JSONDecodeError as error:
         raise model.refuse("", f"no JSON: {error}") from None
+    except (ValueError, RecursionError):
+        raise model.refuse("", "lists in lists are too deep, or a number is too long") from None
     top = _object(model, "", data, TOP, "schema", "version", "bodies", "joints")
     if data["schema"] != SCHEMA or data["version"] != VERSION:
         expected = f'"schema": "{SCHEMA}", "version": {VERSION}'

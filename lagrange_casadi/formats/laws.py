@@ -5,13 +5,15 @@ from __future__ import annotations
 import ast
 import math
 import re
-from collections.abc import Container
+from collections.abc import Container, Sequence
+from dataclasses import dataclass
 
+import numpy as np
 from numpy.polynomial import Polynomial
 
-from .posture import at_reference
+from .posture import at_reference, extent
 from .python_text import Call, of_pi, signed, vector
-from .record import LARGEST, Law, Model
+from .record import LARGEST, Law, Model, number
 
 _TURNS = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh")
 ONE_NUMBER = (*_TURNS, "exp", "log", "sqrt", "fabs")
@@ -21,25 +23,59 @@ NAMES = (*ONE_NUMBER, "atan2")
 """All of them."""
 
 _OTHER_NAMES = {"abs": "fabs", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log"}
-_TIMES = ("t", "time")
 LONGEST = 10_000
-_OPERATORS: dict[type[ast.operator], str] = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.Pow: "**",
+_TALLEST, _DEEPEST, _DEGREE = 1000, 100, 20
+"""Terms of a sum, pairs of parentheses in each other, and degree of a polynomial, at most."""
+
+_OPERATORS: dict[type[ast.operator], tuple[str, int]] = {
+    ast.Add: ("+", 1),
+    ast.Sub: ("-", 1),
+    ast.Mult: ("*", 2),
+    ast.Div: ("/", 2),
+    ast.Pow: ("**", 4),
 }
+"""Operators as Python writes them, each with its rank: the higher one binds first."""
+
+_SIGN, _ATOM = 3, 5
+"""Rank of a sign, and of a part that has no operator."""
 
 
 class LawError(ValueError):
     """Part of a text that no law has, in words."""
 
 
-def parsed(text: str) -> ast.expr:
+@dataclass(frozen=True, eq=False)
+class Expression:
+    """An expression of ``t`` as Python, and as a polynomial of t if it is one.
+
+    ``binds`` is how closely its outermost operator does, ``tall`` how many operators are in each
+    other, ``deep`` how many of them are in parentheses or on the right.
+    """
+
+    text: str
+    binds: int = _ATOM
+    polynomial: Polynomial | None = None
+    tall: int = 0
+    deep: int = 0
+
+    @property
+    def number(self) -> float | None:
+        """The value of one without t."""
+        known = self.polynomial
+        return float(known.coef[0]) if known is not None and known.degree() == 0 else None
+
+    def within(self, binds: int) -> str:
+        """Return the text as part of what binds so closely."""
+        return self.text if self.binds >= binds else f"({self.text})"
+
+
+_ZERO = Expression("0", polynomial=Polynomial([0.0]))
+
+
+def parsed(text: str) -> Expression:
     """Return the expression of a text: numbers, pi, t or time, + - * / ^ and functions.
 
-    Raises :class:`LawError`.
+    Each part without t is a number of at most 1e12. Raises :class:`LawError`.
     """
     if len(text) > LONGEST:
         raise LawError(f"an expression of more than {LONGEST} characters")
@@ -48,77 +84,128 @@ def parsed(text: str) -> ast.expr:
         tree = ast.parse(plain, mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         raise LawError("expected an expression of t") from None
-    try:
-        return _allowed(tree)
-    except RecursionError:
-        raise LawError("its parentheses are too deep") from None
+    waiting, made = [(tree, False)], list[Expression]()
+    while waiting:  # no recursion: a sum of many terms is as deep as these are many
+        node, known = waiting.pop()
+        parts = _parts(node)
+        if known:
+            given = made[len(made) - len(parts) :]
+            made[len(made) - len(parts) :] = [_expression(node, given)]
+        else:
+            waiting += [(node, True), *((part, False) for part in reversed(parts))]
+    return made[0]
 
 
-def _allowed(node: ast.expr) -> ast.expr:
-    """Return a part of an expression under the names that cases use."""
+def _parts(node: ast.expr) -> list[ast.expr]:
+    """Return the parts of an expression. Raises :class:`LawError` for what no law has."""
     match node:
         case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
-            if not abs(value) <= LARGEST:
-                raise LawError(f"numbers are at most {LARGEST:g}")
-            return ast.Constant(value)
-        case ast.Name(id=name) if name in _TIMES:
-            return ast.Name("t")
-        case ast.Name(id="pi"):
-            return node
-        case ast.UnaryOp(op=ast.USub() | ast.UAdd() as sign, operand=inner):
-            return ast.UnaryOp(sign, _allowed(inner))
+            return []
+        case ast.Name(id="t" | "time" | "pi"):
+            return []
+        case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=inner):
+            return [inner]
         case ast.BinOp(left=left, op=operator, right=right) if type(operator) in _OPERATORS:
-            return ast.BinOp(_allowed(left), operator, _allowed(right))
-        case ast.Call(func=ast.Name(id=name), args=given, keywords=[]) if (
-            _OTHER_NAMES.get(name, name) in NAMES
-        ):
-            name = _OTHER_NAMES.get(name, name)
-            if len(given) != (2 if name == "atan2" else 1):
-                raise LawError(f"{name} of {len(given)} numbers")
-            return ast.Call(ast.Name(f"ca.{name}"), [_allowed(one) for one in given], [])
+            return [left, right]
+        case ast.Call(func=ast.Name(id=name), args=given, keywords=[]) if _name(name) in NAMES:
+            if len(given) != (2 if _name(name) == "atan2" else 1):
+                raise LawError(f"{_name(name)} of {len(given)} numbers")
+            return given
+    try:
+        stated = ast.unparse(node)[:60]
+    except RecursionError:
+        stated = type(node).__name__
     raise LawError(
-        f"'{ast.unparse(node)[:60]}' is not supported; valid: numbers, pi, t, + - * / ^,"
-        f" {', '.join(NAMES)}"
+        f"'{stated}' is not supported; valid: numbers, pi, t, + - * / ^, {', '.join(NAMES)}"
     )
+
+
+def _name(name: str) -> str:
+    """Return what a function is called here."""
+    return _OTHER_NAMES.get(name, name)
+
+
+def _expression(node: ast.expr, parts: Sequence[Expression]) -> Expression:
+    """Return an expression of its parts. Raises :class:`LawError` for one that is too large, or has
+    a part without t that is no number.
+    """
+    text, binds = "t", _ATOM
+    found: Polynomial | None = Polynomial([0.0, 1.0])
+    tall = max((one.tall for one in parts), default=-1) + 1
+    deep = max((one.deep for one in parts), default=-1) + 1
+    try:
+        match node:
+            case ast.Constant(value=int() | float() as value):
+                text = repr(value)
+                found = Polynomial([number(value)])
+            case ast.Name(id="pi"):
+                text, found = "pi", Polynomial([math.pi])
+            case ast.UnaryOp(op=sign):
+                symbol, binds = "-" if isinstance(sign, ast.USub) else "+", _SIGN
+                text = f"{symbol}{parts[0].within(binds)}"
+                found = _combined(symbol, _ZERO, parts[0])
+            case ast.BinOp(op=operator):
+                symbol, binds = _OPERATORS[type(operator)]
+                one, other = parts
+                bare = one.binds >= binds + (symbol == "**")
+                deep = max(one.deep + (not bare), other.deep + 1)
+                sides = one.within(binds + (symbol == "**")), other.within(binds + (symbol != "**"))
+                text = f" {symbol} ".join(sides)
+                found = _combined(symbol, one, other)
+            case ast.Call(func=ast.Name(id=name)):
+                text = f"ca.{_name(name)}({', '.join(one.text for one in parts)})"
+                values = [one.number for one in parts]
+                known = None not in values
+                found = Polynomial([getattr(math, _name(name))(*values)]) if known else None
+        if found is not None and found.degree() == 0:
+            number(float(found.coef[0]))
+    except (ArithmeticError, TypeError, ValueError):
+        raise LawError(f"'{text[:60]}' is no number of at most {LARGEST:g}") from None
+    if tall > _TALLEST or deep > _DEEPEST:
+        most = (
+            f"expected at most {_TALLEST} terms, and {_DEEPEST} pairs of parentheses in each other"
+        )
+        raise LawError(most)
+    return Expression(text, binds, found, tall, deep)
+
+
+def _combined(symbol: str, one: Expression, other: Expression) -> Polynomial | None:
+    """Return what an operator makes of two expressions, as a polynomial of t if it is one of finite
+    numbers and a low degree.
+
+    Raises :class:`ArithmeticError` and the like for numbers that have no such one.
+    """
+    left, right, value = one.polynomial, other.polynomial, other.number
+    if symbol == "/" and value == 0.0:
+        raise ZeroDivisionError
+    if left is None or right is None:
+        return None
+    degree, found = left.degree() + right.degree(), None
+    with np.errstate(all="ignore"):
+        match symbol:
+            case "+":
+                found = left + right
+            case "-":
+                found = left - right
+            case "*" if degree <= _DEGREE:
+                found = left * right
+            case "/" if value is not None:
+                found = left / value
+            case "**" if value is not None and not degree:
+                found = Polynomial([number(float(left.coef[0]) ** value)])
+            case "**" if value in (0.0, 1.0, 2.0, 3.0) and degree * value <= _DEGREE:
+                found = left ** int(value)
+    return found if found is not None and np.isfinite(found.coef).all() else None
 
 
 def python(text: str, less: float = 0.0) -> Call:
     """Return a law, less a number, as what a case has for it, in the words of ``motion``."""
-    tree = parsed(text)
-    try:
-        found = (_polynomial(tree) - less).trim().coef
-    except LawError:
-        return Call("expression", [f"lambda t: {ast.unparse(tree)}{signed(-less)}"])
-    return Call("polynomial", [of_pi(one) for one in found.tolist()])
-
-
-def _polynomial(node: ast.expr) -> Polynomial:
-    """Return a law as a polynomial of t. Raises :class:`LawError` for others."""
-    match node:
-        case ast.Constant(value=int() | float() as value):
-            return Polynomial([float(value)])
-        case ast.Name(id=name):
-            return Polynomial([0.0, 1.0] if name == "t" else [math.pi])
-        case ast.UnaryOp(op=sign, operand=inner):
-            return -_polynomial(inner) if isinstance(sign, ast.USub) else _polynomial(inner)
-        case ast.BinOp(left=left, op=operator, right=right):
-            one, other = _polynomial(left), _polynomial(right)
-            whole, *rest = other.coef.tolist()
-            made: Polynomial | None = None
-            match operator:
-                case ast.Add():
-                    made = one + other
-                case ast.Sub():
-                    made = one - other
-                case ast.Mult():
-                    made = one * other
-                case ast.Div() if whole and not rest:
-                    made = one / whole
-                case ast.Pow() if whole in (0.0, 1.0, 2.0, 3.0) and not rest:
-                    made = one ** int(whole)
-            if made is not None:
-                return made
-    raise LawError("no polynomial")
+    found = parsed(text)
+    if found.polynomial is None:
+        return Call("expression", [f"lambda t: {found.text}{signed(-less)}"])
+    return Call(
+        "polynomial", [of_pi(one) for one in (found.polynomial - less).trim().coef.tolist()]
+    )
 
 
 class Motions:
@@ -127,13 +214,17 @@ class Motions:
     """
 
     def __init__(self, model: Model, opened: Container[str]) -> None:
-        self.model, self.opened = model, opened
+        self.model, self.opened, self.size = model, opened, extent(model)
 
     def offset(self, coordinate: str) -> float:
         """Return what a coordinate of the file is where that of the case is zero."""
         if coordinate.partition(":")[0] in self.opened:
             return 0.0
-        return at_reference(self.model, coordinate)
+        return self.at_reference(coordinate)
+
+    def at_reference(self, coordinate: str) -> float:
+        """Return a coordinate in the reference posture."""
+        return at_reference(self.model, coordinate, self.size)
 
     def law(self, coordinate: str, law: Law) -> Call:
         """Return the motion of a coordinate."""
@@ -153,9 +244,9 @@ class Motions:
         """
         joint = self.model.joints[name]
         turns = [one for one in joint.coordinates if ":turn_" in one]
-        given = {one: law for one, law in self.model.motions.items() if one in turns}
-        if len(turns) < 3 or not any(at_reference(self.model, one) for one in turns[:-1]):
+        if len(turns) < 3 or not any(map(self.at_reference, turns[:-1])):
             return False
+        given = {one: law for one in turns if (law := self.model.motions.get(one))}
         if all(str(self.law(one, law)) == "polynomial(0.0)" for one, law in given.items()):
             return False
         if len(given) < len(turns):

@@ -21,7 +21,7 @@ from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..studies.evaluate import evaluate
 from .frames import Frame, turned
-from .laws import LONGEST, ONE_NUMBER
+from .laws import ONE_NUMBER, LawError, parsed
 from .record import Body, Joint, Law, Model
 
 Data = dict[str, Any]
@@ -140,9 +140,9 @@ def _law(law: ca.Function, span: tuple[float, float, int]) -> Law:
     """Return a motion as text, or as samples where it has none."""
     try:
         ((text,),) = interpret(law, [["t"]], _TEXT)
-        if len(text) <= LONGEST:
-            return Law(text)
-    except DeclarationError:
+        parsed(text)
+        return Law(text)
+    except (DeclarationError, LawError):
         pass
     times = np.linspace(span[0], span[1], SAMPLES)
     values: Array = law(times[None, :]).full()[0]

@@ -16,40 +16,39 @@ from ..base.arrays import Array
 from .frames import Frame
 from .posture import extent
 from .python_text import Call, Place, Short, text_of
-from .record import GROUND, Body, Model
-
-_NAMES = {"m", "ca", "pi", "scene", "samples", "polynomial", "expression", "t", "laws"}
-_NAMES |= {*"pqxyzuvw", "turn", "turned", "frame"}
+from .record import GROUND, Body, Joint, Model
 
 
 class Places:
-    """Variables and parameters of a case, and its places by these.
+    """Variables and parameters of a case, which has names of its own, and its places by these.
 
     ``held`` are the bodies that a joint places, ``at`` the places of these joints, ``between`` the
     two places that each link lies between.
     """
 
-    def __init__(self, model: Model, opened: Collection[str]) -> None:
+    def __init__(self, model: Model, opened: Collection[str], own: Collection[str]) -> None:
         self.model, self.size, self.short = model, extent(model), Short(extent(model))
         self.variables: dict[str, str] = {GROUND: "m.ground"}
-        self._used = set(_NAMES)
+        self._used = set(own)
         closed = [one for one in model.joints.values() if one.name not in opened]
         self.held = {GROUND, *(end for one in closed for end in (one.parent, one.child))}
         self.at = {one.name: self.short.place(model.frames(one)[1].place) for one in closed}
-        self.between = {name: self._ends(body) for name, body in model.bodies.items()}
+        self.on = model.joints_on()
+        self.between = {
+            name: self._ends(body, [model.joints[one] for one in self.on[name]])
+            for name, body in model.bodies.items()
+        }
         self._named: dict[Place, str] = {}
         self._lengths: dict[tuple[int, float], str] = {}
         self.masses: dict[float, str] = {}
 
-    def _ends(self, body: Body) -> tuple[Place, Place]:
+    def _ends(self, body: Body, mine: list[Joint]) -> tuple[Place, Place]:
         """Return two places that a link lies between: a joint, and the place farthest from it."""
         place = self.short.place
         if body.rod is not None:
             return place(body.frame.at(body.rod[0])), place(body.frame.at(body.rod[1]))
-        mine = [one for one in self.model.joints.values() if body.name in (one.parent, one.child)]
-        mine.sort(key=lambda one: one.child != body.name)
         origins = []
-        for joint in mine:
+        for joint in sorted(mine, key=lambda one: one.child != body.name):
             near, far = self.model.frames(joint)
             origins.append(place((near if joint.parent == body.name else far).place))
             if joint.name in self.at:
@@ -76,8 +75,10 @@ class Places:
                 self._named[place] = self.variable(f"at_{joint}")
         joint_at = {place: joint for joint, place in reversed(self.at.items())}
         sizes = Counter((k, abs(x)) for place in self._named for k, x in enumerate(place) if x)
+        named = reversed(self._named)
+        owners = {(k, abs(x)): place for place in named for k, x in enumerate(place)}
         for k, size in (one for one, count in sizes.items() if count > 1):
-            owner = next(at for at in self._named if abs(at[k]) == size)
+            owner = owners[k, size]
             name = self._lengths[k, size] = self._parameter(f"{joint_at[owner]}_{'xyz'[k]}")
             yield f'{name} = m.parameter("{name}", {text_of(size)}, "m")'
 
@@ -87,15 +88,13 @@ class Places:
 
     def _parameter(self, wanted: str) -> str:
         """Return a name for a parameter, which no part may have."""
-        while wanted in self.model.parts:
-            wanted = f"{wanted}_"
-        return self.variable(wanted)
+        name = self.variable(wanted)
+        return self._parameter(f"{name}_") if self.model.taken(name) else name
 
     def variable(self, wanted: str) -> str:
         """Return a name for a variable that none has yet."""
         name = re.sub(r"\W", "_", wanted, flags=re.ASCII)
-        name = f"{name}_" if keyword.iskeyword(name) or name in _NAMES else name
-        while name in self._used:
+        while keyword.iskeyword(name) or name in self._used:
             name = f"{name}_"
         self._used.add(name)
         return name

@@ -7,13 +7,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from heapq import heapify, heappop, heappush
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ..base.arrays import Array
+from .blocks import Rows, blocks
 from .frames import Frame, turned
 from .record import GROUND, MOVES, Joint, Model, Row, Tie
+
+Closure = TypeVar("Closure", bound=Joint | Tie)
 
 SLACK = 1e-6
 """Frames of a joint that are apart by less, of the mechanism's size and in rad, are one."""
@@ -33,8 +37,10 @@ _STEP = 1e-100
 _RANK = 1e-9
 """Smaller singular values, of the largest, are those of equations that hold the same twice."""
 
-_MOST, _LEAST = 100, 1e-13
-"""Steps to assemble a drawing, and motions of bodies that are none."""
+_MOST, _LEAST, _WORK = 100, 1e-13, 2e10
+"""Steps to assemble a drawing, motions of bodies that are none, and products of numbers that all
+steps take, at most.
+"""
 
 
 def extent(model: Model) -> float:
@@ -44,13 +50,26 @@ def extent(model: Model) -> float:
     return float(np.max(np.ptp(np.array(places), axis=0))) or 1.0 if places else 1.0
 
 
-def outward(model: Model, reached: set[str]) -> Iterator[Joint]:
-    """Yield the joints that hang on bodies, each after one that reaches it; add what is reached."""
-    waiting = list(model.joints.values())
-    while joint := next((one for one in waiting if {one.parent, one.child} & reached), None):
-        waiting.remove(joint)
-        yield joint
-        reached |= {joint.parent, joint.child}
+def outward(closures: Sequence[Closure], reached: set[str]) -> Iterator[Closure]:
+    """Yield the joints and ties that hang on bodies, each after one that reaches it, the first one
+    of those that can follow; add what is reached.
+    """
+    on: dict[str, list[int]] = {}
+    for k, one in enumerate(closures):
+        for body in (one.parent, one.child):
+            on.setdefault(body, []).append(k)
+    waiting = [k for body in sorted(reached) for k in on.pop(body, ())]
+    heapify(waiting)
+    done = set()
+    while waiting:
+        if (k := heappop(waiting)) in done:
+            continue
+        done.add(k)
+        yield (one := closures[k])
+        for body in (one.parent, one.child):
+            reached.add(body)
+            for other in on.pop(body, ()):
+                heappush(waiting, other)
 
 
 def _axes(kind: str, *moves: str) -> str:
@@ -62,8 +81,10 @@ def _turns(kind: str) -> str:
     return _axes(kind, "turn", "screw")
 
 
-def at_reference(model: Model, name: str) -> float:
-    """Return a coordinate in the reference posture, zero where it is but for rounding."""
+def at_reference(model: Model, name: str, size: float) -> float:
+    """Return a coordinate in the reference posture of a mechanism of a size [m], zero where it is
+    but for rounding.
+    """
     joint = model.joints[name.partition(":")[0]]
     known, turns = _relative(model, joint), [0.0, 0.0]  # of a universal joint
     if len(axes := _turns(joint.kind)) == 1:
@@ -73,7 +94,7 @@ def at_reference(model: Model, name: str) -> float:
         turns = _three_turns(known.axes[np.ix_(order, order)])
     slides = [known.place["xyz".index(axis)] for axis in _axes(joint.kind, "slide")]
     found = float([*slides, *turns][joint.coordinates.index(name)])
-    return 0.0 if abs(found) < EXACT * max(extent(model), 1.0) else found
+    return 0.0 if abs(found) < EXACT * max(size, 1.0) else found
 
 
 def _relative(model: Model, joint: Joint | Tie) -> Frame:
@@ -138,7 +159,7 @@ def apart(model: Model, joint: Joint | Tie) -> tuple[float, float]:
 def _untied(model: Model, tie: Tie) -> tuple[float, float]:
     """Return by how much the frames of a tie miss its rows: in m, and in rad."""
     rows, lengths, angles = _rows(tie), [0.0], [0.0]
-    for row, value in zip(rows, closing(model, tie, rows)[0].tolist(), strict=True):
+    for row, value in zip(rows, closing(model, tie, rows, 1.0)[0].tolist(), strict=True):
         if measure := _LENGTHS.get(row.kind):
             lengths.append(measure(value) - measure(row.value))
         else:
@@ -164,7 +185,7 @@ def hang(model: Model) -> None:
     open_joints = opened(model)
     closed = [one for one in model.joints.values() if one.name not in open_joints]
     placed = {GROUND, *(name for one in closed for name in (one.parent, one.child))}
-    for joint in outward(model, placed):
+    for joint in outward([*model.joints.values()], placed):
         if joint.parent in placed and joint.child in placed:
             continue
         near, far = model.frames(joint)
@@ -182,13 +203,14 @@ def hang(model: Model) -> None:
         )
 
 
-def closing(model: Model, joint: Joint | Tie, rows: Sequence[Row]) -> tuple[Array, Array]:
+def closing(
+    model: Model, joint: Joint | Tie, rows: Sequence[Row], size: float
+) -> tuple[Array, Array]:
     """Return the values of rows, and their slopes by the velocity of the child against the parent,
-    by complex steps: that of the point at the ground's origin over the mechanism's size, and the
-    angular one.
+    by complex steps: that of the point at the ground's origin over a size [m], and the angular one.
     """
     near, far = model.frames(joint)
-    size, values, slopes = extent(model), np.zeros(len(rows)), np.zeros((len(rows), 6))
+    values, slopes = np.zeros(len(rows)), np.zeros((len(rows), 6))
     names: dict[str, Any] = {"ca": np, "p": near.place} | dict(zip("xyz", near.axes.T, strict=True))
     for k, moved in enumerate(1j * _STEP * np.eye(6)):
         speed, spin = moved[:3] * size, moved[3:]
@@ -229,15 +251,17 @@ def assemble(model: Model) -> None:
     Raises :class:`.ModelFileError` for the joint that remains open the most.
     """
     words = "joint '{}' is open by {:.3g} m and {:.3g} rad in the drawing"
-    drawn, nudged = opened(model), False
-    for _ in range(_MOST if drawn else 0):
-        step = _step(model)
+    drawn, nudged, steps, work = opened(model), False, 0, 0.0
+    while drawn and steps < _MOST and work < _WORK:
+        size, steps = extent(model), steps + 1
+        step, products = _step(model, size)
+        work += products
         if (largest := float(np.abs(step).max())) < _LEAST:
             if nudged or not opened(model):
                 break
             # No motion brings a joint nearer, as of parallel axes that are to meet at an angle.
             step, largest, nudged = 0.01 * np.cos(np.arange(step.size)), 0.01, True
-        size, moved = extent(model), (step * min(1.0, 0.5 / largest)).reshape(-1, 6)
+        moved = (step * min(1.0, 0.5 / largest)).reshape(-1, 6)
         for body, (*speed, x, y, z) in zip(list(model.bodies.values()), moved, strict=True):
             angle = math.hypot(x, y, z)
             by = Frame(size * np.array(speed), turned(np.array([x, y, z]) / (angle or 1.0), angle))
@@ -256,16 +280,24 @@ def assemble(model: Model) -> None:
         model.notes.append(f"{words}: parts are moved by as little as closes all joints.")
 
 
-def _step(model: Model) -> Array:
-    """Return the least motions of bodies that close all joints to first order."""
-    column = {name: k for k, name in enumerate([GROUND, *model.bodies])}
-    misses, slopes = [], []
+def _step(model: Model, size: float) -> tuple[Array, float]:
+    """Return the least motions of bodies that close all joints to first order, and about how many
+    products of numbers these take.
+    """
+    misses, equations, products = [], list[Rows](), 0.0
     for joint in model.closures:
-        rows = _rows(joint)
-        values, slope = closing(model, joint, rows)
-        by_body = np.zeros((len(rows), len(column), 6))
-        by_body[:, column[joint.child]] += slope
-        by_body[:, column[joint.parent]] -= slope
-        misses.append([row.value for row in rows] - values)
-        slopes.append(by_body[:, 1:].reshape(len(rows), -1))
-    return np.asarray(np.linalg.lstsq(np.vstack(slopes), np.concatenate(misses), rcond=_RANK)[0])
+        if rows := _rows(joint):
+            values, slope = closing(model, joint, rows, size)
+            ends = {joint.child: slope, joint.parent: -slope}
+            equations.append({name: one for name, one in ends.items() if name != GROUND})
+            misses.append([row.value for row in rows] - values)
+    number, found = (
+        {name: k for k, name in enumerate(model.bodies)},
+        np.zeros((len(model.bodies), 6)),
+    )
+    for matrix, names, group in blocks(model, equations, list(number)):
+        products += matrix.size * min(matrix.shape)
+        missed = np.concatenate([misses[k] for k in group])
+        step = np.linalg.lstsq(matrix, missed, rcond=_RANK)[0]
+        found[[number[name] for name in names]] = step.reshape(-1, 6)
+    return found.reshape(-1), products

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -87,7 +88,7 @@ class Short:
     """Numbers without the rounding of sums, as far as it is of a mechanism's size."""
 
     def __init__(self, size: float) -> None:
-        self.size, self.known = size, [0.0]
+        self.size, self._known = size, [0.0]
 
     def place(self, place: Array) -> Place:
         """Return a place; its components are those of places before where they are so but for
@@ -97,10 +98,11 @@ class Short:
         return x, y, z
 
     def _component(self, value: float) -> float:
-        for one in self.known:
+        at = bisect.bisect(self._known, abs(value))
+        for one in self._known[max(at - 1, 0) : at + 1]:
             if abs(abs(value) - one) <= EXACT * self.size:
                 return math.copysign(one, value) if one else 0.0
-        self.known.append(abs(value))
+        self._known.insert(at, abs(value))
         return value
 
     def direction(self, axis: Array, name: str = "") -> Call:

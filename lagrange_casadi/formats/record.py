@@ -23,7 +23,7 @@ GROUND = "ground"
 """The name of the fixed frame, as of a body."""
 
 LARGEST, SHORTEST = 1e12, 1e-100
-"""A larger number in a file is no length, mass or angle of a machine; a shorter axis is none."""
+"""A larger number in a file is no length, mass or angle of a machine; a smaller one is zero."""
 
 ROWS: dict[str, str] = {
     "slide": "ca.dot(q - p, {e})",
@@ -49,6 +49,18 @@ MOVES: dict[str, tuple[tuple[str, str, str], ...]] = {
 """The name of each coordinate of a kind of joint, empty for one alone, how it moves, and along or
 about which axis of the parent's frame; w is z of the child's.
 """
+
+
+def number(given: Any) -> float:
+    """Return a number that a machine may have, finite and at most 1e12; one below 1e-100, whose
+    powers are no numbers, is zero.
+
+    Raises :class:`ValueError`, :class:`TypeError` or :class:`OverflowError` for what is none.
+    """
+    found = float(given)
+    if isinstance(given, bool) or "_" in str(given) or not abs(found) <= LARGEST:
+        raise ValueError
+    return found if abs(found) > SHORTEST else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,9 +199,9 @@ class Model:
     coordinates at the start, from which loops that are open in the reference posture are assembled;
     bodies that are only ``drawn`` are moved instead. ``drives`` are the joints whose efforts make
     the motion, where these are not those that have one; ``preferred`` are joints that are driven
-    first. ``named`` are the names here by the kind of a part and its name of the file. ``usual``
-    are numbers that are the format's, with the parts that do not give them. ``rounded`` is by how
-    much axes are off right angles, and where.
+    first. ``named`` are the names here by the kind of a part and its name of the file, ``repeated``
+    how often a name was wanted once more. ``usual`` are numbers that are the format's, with the
+    parts that do not give them. ``rounded`` is by how much axes are off right angles, and where.
     """
 
     name: str
@@ -209,12 +221,13 @@ class Model:
     notes: list[str] = field(default_factory=list)
     named: dict[tuple[str, str], str] = field(default_factory=dict)
     usual: dict[str, dict[str, None]] = field(default_factory=dict)
+    repeated: dict[str, int] = field(default_factory=dict)
     rounded: tuple[float, str] = (0.0, "")
 
-    @property
-    def parts(self) -> set[str]:
-        """The names that parts have here."""
-        return {GROUND, *self.bodies, *self.joints, *self.couplings, *self.ties}
+    def taken(self, name: str) -> bool:
+        """Return whether a part has a name here."""
+        parts = (self.bodies, self.joints, self.couplings, self.ties)
+        return name == GROUND or any(name in one for one in parts)
 
     @property
     def closures(self) -> list[Joint | Tie]:
@@ -235,13 +248,10 @@ class Model:
     def number(self, where: str, given: object, what: str) -> float:
         """Return a number of the file, which a machine may have."""
         try:
-            found = float(given)  # type: ignore[arg-type]
+            return number(given)
         except (TypeError, ValueError, OverflowError):
-            raise self.refuse(where, f"{what}: expected a number, got {shown(given)}") from None
-        if isinstance(given, bool) or "_" in str(given) or not abs(found) <= LARGEST:
             expected = f"expected a finite number of at most {LARGEST:g}"
-            raise self.refuse(where, f"{what}: {expected}, got {shown(given)}")
-        return found
+            raise self.refuse(where, f"{what}: {expected}, got {shown(given)}") from None
 
     def numbers(self, where: str, given: object, what: str, count: int = 3) -> Array:
         """Return so many numbers of the file, from a list or from a text with blanks."""
@@ -277,8 +287,9 @@ class Model:
         name = name if name[:1].isalpha() else f"{kind[0]}_{name}"
         if (kind, stated) in self.named:
             raise self.refuse(where, f"{kind} {shown(stated)}: the name is taken")
-        while name in self.parts:
-            name = f"{name}_{kind}"
+        while self.taken(name):
+            again = self.repeated[name] = self.repeated.get(name, 0) + 1
+            name = f"{name}_{kind}{again if again > 1 else ''}"
         self.named[kind, stated] = name
         return name
 
@@ -292,8 +303,9 @@ class Model:
 
     def find(self, kind: str, stated: str, where: str) -> str:
         """Return the name here of a part that the file names."""
-        valid = [name for of, name in self.named if of == kind]
-        return self.named[kind, self.known(where, kind, stated, valid)]
+        if (kind, stated) not in self.named:
+            self.known(where, kind, stated, [name for of, name in self.named if of == kind])
+        return self.named[kind, stated]
 
     def couple(
         self, stated: str, where: str, joints: Sequence[str], ratio: float, offset: float = 0.0
@@ -327,6 +339,14 @@ class Model:
         near = self.frame_of(parent).relative(self.frame_of(body))
         name = f"{body}_{'fixed' if kind == 'weld' else kind}"
         self.add(Joint, name, where, kind, parent, body, near, Frame())
+
+    def joints_on(self) -> dict[str, list[str]]:
+        """Return the names of the joints on each body."""
+        found: dict[str, list[str]] = {name: [] for name in (GROUND, *self.bodies)}
+        for joint in self.joints.values():
+            for name in (joint.parent, joint.child):
+                found[name].append(joint.name)
+        return found
 
     def frame_of(self, body: str) -> Frame:
         """Return where a body is in the reference posture."""

@@ -66,8 +66,8 @@ class Joints:
     def __init__(
         self, model: Model, named: dict[str, Element], on: dict[str, tuple[str, Frame]]
     ) -> None:
-        self.model, self.named, self.on = model, named, on
-        self.own, self.on_model = Frame(), False
+        self.model, self.named, self.on, self.valid = model, named, on, {**on, **named}
+        self.own, self.on_model, self.placed = Frame(), False, dict[str, Frame]()
 
     def read(self) -> None:
         """Read the joints."""
@@ -75,8 +75,9 @@ class Joints:
         for joint in joints:
             if kind := joint.choice("type", KINDS):
                 self.joint(joint, kind)
+        on = self.model.joints_on()
         for joint in joints:
-            self.couplings(joint)
+            self.couplings(joint, on)
 
     def joint(self, line: Element, kind: str) -> None:
         """Declare a joint, whose frames coincide as the model stands."""
@@ -100,8 +101,10 @@ class Joints:
                 losses = axis.optional("dynamics")
                 resist(model, name, losses, losses.inner, first=key == "axis")
 
-    def couplings(self, line: Element) -> None:
-        """Declare what ties a joint to another one: a mimic, a gearbox."""
+    def couplings(self, line: Element, on: dict[str, list[str]]) -> None:
+        """Declare what ties a joint to another one, a mimic or a gearbox, by the joints on each
+        body.
+        """
         model, data, axis = self.model, line.attribute("name"), line.first("axis")
         if axis is not None and (mimic := axis.first("mimic")) is not None:
             ratio = mimic.inner("multiplier", 1.0)
@@ -114,11 +117,10 @@ class Joints:
         carrier = line.needed("gearbox_reference_body").text
         ends = []
         for side in ("parent", "child"):
-            on = self.on[line.known("link", carrier, self.on)][0]
-            bodies = {self.end(line, side), on}
-            found = [
-                name for name, one in model.joints.items() if {one.parent, one.child} == bodies
-            ]
+            body = self.end(line, side)
+            bodies = {body, self.on[line.known("link", carrier, self.on)][0]}
+            mine = (model.joints[name] for name in on[body])
+            found = [one.name for one in mine if {one.parent, one.child} == bodies]
             if len(found) != 1:
                 words = f"its {side} has no joint on the reference body {shown(carrier)}"
                 raise line.refuse(words)
@@ -157,6 +159,8 @@ class Joints:
         """Return where a link, frame or joint is; poses may be given relative to each other."""
         if name in self.on:
             return self.on[name][1]
+        if name in self.placed:
+            return self.placed[name]
         line = self.named[name]
         line.seen = True
         if name in above or len(above) > _DEEPEST:
@@ -169,13 +173,14 @@ class Joints:
             on = line.needed("child").text
         elif not on and line.name == "frame":
             on = str(line.stated("attached_to", ""))
-        return self.known(line, on, (*above, name)).then(_pose(pose))
+        self.placed[name] = self.known(line, on, (*above, name)).then(_pose(pose))
+        return self.placed[name]
 
     def known(self, line: Element, name: str, above: tuple[str, ...]) -> Frame:
         """Return the frame of a name."""
         if name in ("", "__model__"):
             return self.own
-        return self.frame(line.known("frame", name, {**self.on, **self.named}), above)
+        return self.frame(line.known("frame", name, self.valid), above)
 
 
 class _Reader(Joints):

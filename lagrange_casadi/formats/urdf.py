@@ -9,6 +9,7 @@ and joints of SDF in ``<gazebo>``.
 from __future__ import annotations
 
 from dataclasses import replace
+from heapq import heappop, heappush
 
 import numpy as np
 
@@ -62,19 +63,23 @@ class _Robot:
     def read(self) -> None:
         """Read the robot."""
         ends = [[self.end(joint, names)[0] for names in (_ONE, _OTHER)] for joint in self.joints]
-        roots = [name for name in self.links if name not in {child for _, child in ends}]
+        children = {child for _, child in ends}
+        roots = [name for name in self.links if name not in children]
         if len(roots) != 1:
             none = "none: each link is the child of a joint" if self.links else "no link"
             found = ", ".join(map(repr, roots)) or none
             raise self.root.refuse(f"expected one root link, found {found}")
         self.on[roots[0]] = (GROUND, Frame())
-        waiting = list(self.joints)
-        while waiting:
-            ready = [one for one in waiting if self.end(one, _ONE)[0] in self.on]
-            if not ready:
-                raise waiting[0].refuse("its links are not connected to the root")
-            self.grow(ready[0])
-            waiting.remove(ready[0])
+        hung: dict[str, list[int]] = {}
+        for k, (parent, _) in enumerate(ends):
+            hung.setdefault(parent, []).append(k)
+        ready = hung.pop(roots[0], [])
+        while ready:
+            self.grow(self.joints[first := heappop(ready)])
+            for k in hung.pop(ends[first][1], ()):
+                heappush(ready, k)
+        for k in sorted(k for group in hung.values() for k in group):
+            raise self.joints[k].refuse("its links are not connected to the root")
         for loop in self.root.all(*_LOOPS):
             self.loop(loop)
         for line in self.root.all("drake:ball_constraint"):
@@ -84,10 +89,11 @@ class _Robot:
                 name, leader = joint.attribute("name"), mimic.attribute("joint")
                 law = mimic.amount("multiplier", 1.0), mimic.amount("offset", 0.0)
                 self.model.follow(name, leader, mimic.where, *law)
+        below = zip(reversed(ends), reversed(self.joints), strict=True)
+        above = {child: joint for (_, child), joint in below}
         for coupling in self.root.all("coupling"):
-            self.coupling(coupling)
-        for one in self.root.all("gazebo"):
-            self.gazebo(one)
+            self.coupling(coupling, above)
+        self.gazebo()
         self.actuators()
         if self.frames:
             self.model.notes.append(f"Frames without mass are left out: {', '.join(self.frames)}.")
@@ -148,9 +154,8 @@ class _Robot:
         line.given.setdefault("name", f"ball_{len(self.model.joints)}")
         self.add(line, "spherical", sides[0], sides[1])
 
-    def coupling(self, line: Element) -> None:
-        """Read a coupling of two links' joints."""
-        above = {self.end(one, _OTHER)[0]: one for one in reversed(self.joints)}
+    def coupling(self, line: Element, above: dict[str, Element]) -> None:
+        """Read a coupling of two links' joints, of those by the links above which they are."""
         links = [self.end(line, side)[0] for side in (_ONE, _OTHER)]
         for link in links:
             if link not in above:
@@ -161,15 +166,17 @@ class _Robot:
         ratio = line.needed("ratio").amount("value", what="ratio")
         self.model.couple(line.attribute("name"), line.where, joints, ratio)
 
-    def gazebo(self, line: Element) -> None:
+    def gazebo(self) -> None:
         """Read what Gazebo adds: joints of SDF, and which links have no weight."""
-        model, stated = self.model, str(line.stated("reference", ""))
-        if not stated:
-            on = {link: (self.on[link][0], self.placed(link)) for link in self.links}
-            Joints(model, line.by_name("joint"), {"world": (GROUND, Frame()), **on}).read()
-        elif body := model.bodies.get(model.named.get(("body", stated), "")):
-            off = line.switch("turnGravityOff", False) or not line.switch("gravity", True)
-            model.bodies[body.name] = replace(body, weight=float(not off))
+        model, more = self.model, Element(self.model, "gazebo", 0)
+        for line in self.root.all("gazebo"):
+            if not (stated := str(line.stated("reference", ""))):
+                more.inside += line.all("joint")
+            elif body := model.bodies.get(model.named.get(("body", stated), "")):
+                off = line.switch("turnGravityOff", False) or not line.switch("gravity", True)
+                model.bodies[body.name] = replace(body, weight=float(not off))
+        on = {link: (self.on[link][0], self.placed(link)) for link in self.links}
+        Joints(model, more.by_name("joint"), {"world": (GROUND, Frame()), **on}).read()
 
     def actuators(self) -> None:
         """Read which joints have a drive."""

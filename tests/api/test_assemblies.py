@@ -171,6 +171,21 @@ def test_gears_press_on_their_bearings(solved):
     assert np.allclose(solution.reaction("O").fy, tooth, rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("radius", "place", "words"),
+    [
+        (0.2, "0.0\t0.0\t7.0", "GearJoint tie: the axes of its two wheels coincide"),
+        (1e-90, "0.3\t0.0\t0.0", "GearJoint tie: ratio of radii: expected a finite number"),
+    ],
+)
+def test_gears_that_are_none_are_refused(radius, place, words, tmp_path):
+    gear = ("GearJoint", "one/M", "two/M", ("radiusI", 0.1), ("radiusJ", radius))
+    text = assembly(*wheels("3.0d*time*time", gear)).replace("0.3\t0.0\t0.0", place)
+    (path := tmp_path / "press.asmt").write_text(text)
+    with pytest.raises(errors.ModelFileError, match=words):
+        read(path)
+
+
 def shafts(kind, *more):
     """Two shafts whose axes meet at 30 degrees."""
     tilt, parts = turned("y", 30), {}

@@ -163,6 +163,11 @@ MISUSE = {
     ),
     "not a number": (changed(bodies=[ROD | {"mass": "2_0"}]), "at most 1e+12, got '2_0'"),
     "NaN": (json.dumps(changed(gravity=[0, 0, float("nan")])), "expected a finite number"),
+    "short rod": (
+        changed(bodies=[ROD, {"name": "far", "mass": 1, "rod": [[0, 0, 0], [1e12, 0, 0]]}])
+        | {"joints": [HINGE, HINGE | {"name": "second", "child": "far"}]},
+        "body 'arm': a rod of 0.5 m in a mechanism of 5e+11 m; expected at least 1e-09 of it",
+    ),
     "unknown joint": (
         changed(joints=[HINGE | {"kind": "hinge"}]),
         "unknown kind 'hinge'; valid: rev",

@@ -275,11 +275,11 @@ MISUSE = {
     ),
     "no number": (
         robot(BASE, link("a", "heavy"), joint("p", "base", "a")),
-        "<mass>: mass: expected a number, got 'heavy'",
+        "<mass>: mass: expected a finite number of at most 1e+12, got 'heavy'",
     ),
     "no damping": (
         robot(BASE, link("a"), joint("p", "base", "a", more='<dynamics damping="much"/>')),
-        "line 4, <dynamics>: damping: expected a number, got 'much'",
+        "line 4, <dynamics>: damping: expected a finite number of at most 1e+12, got 'much'",
     ),
     "an axis that is too short": (
         robot(BASE, link("a"), joint("p", "base", "a", axis="1e-300 0 0")),

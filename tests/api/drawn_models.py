@@ -1,0 +1,374 @@
+"""Model files that are damaged or hostile, drawn at random, and read: a program of its own, for a
+reader may crash or hang.
+
+``python tests drawn_models KIND FIRST COUNT`` prints a number before each file, and a line for
+whatever does not end in one line of the package's own error or in a case that works.
+"""
+
+import ast
+import codecs
+import json
+import keyword
+import random
+import re
+import signal
+import sys
+import warnings
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from damaging import damaged
+from internals import case_of
+from model_files import LARGE, SMALL
+
+from lagrange_casadi import evaluate, read
+from lagrange_casadi.errors import LagrangeCasadiError
+
+SECONDS, WAITING = 20, 200
+"""What one file may take before the program ends itself: processor time, and time on a clock."""
+
+MANY, FEW = 300, 30
+"""Links of a case that is declared, and of one that is evaluated, at most."""
+
+NUMBERS = ["inf", "-inf", "nan", "1e400", "-1e308", "1e300", "1e-300", "5e-324", "1e13", "-1e12"]
+NUMBERS += ["1e12", "1e6", "1e-6", "0", "-0.0", "-1", "9" * 400, "9" * 5000, "", " ", "1_0", "0x10"]
+NUMBERS += [
+    "1,5",
+    "--1",
+    "true",
+    "null",
+    "1e",
+    "\u0661",
+    "1e-160",
+    "3.2e-9",
+    "1e9",
+    "1 2",
+    "NaN",
+    "Infinity",
+    "-Infinity",
+]
+
+_WORDS = sorted({word for text in SMALL.values() for word in re.findall(r"[A-Za-z_]\w*", text)})
+NAMES = [*keyword.kwlist, *keyword.softkwlist, *dir(__builtins__), "ground", "world", "__model__"]
+NAMES += [
+    '"',
+    "'''",
+    '"""',
+    "\\",
+    "a\nb",
+    "a\rb",
+    "a\tb",
+    "\u2028",
+    "#",
+    "{x}",
+    "%s",
+    "$(ls)",
+    "../x",
+]
+NAMES += [
+    "n" * 100_000,
+    "\u00e9" * 300,
+    "\u4e2d",
+    "\U0001f600",
+    "\ufeff",
+    "\u202e",
+    "\x7f",
+    "1",
+    "",
+]
+NAMES += [" ", "a:b", "a.b", "a/b", "effort:x", "-x", "_", "__", "m", "ca", *_WORDS]
+
+ENCODINGS = [
+    "rot13",
+    "utf-16",
+    "utf-7",
+    "utf-32",
+    "latin-1",
+    "ascii",
+    "hex",
+    "zip",
+    "idna",
+    "cp037",
+]
+ENCODINGS += ["unicode_escape", "undefined", "none", "\u00e9", "x" * 5000, "shift_jis", "punycode"]
+
+DOCTYPES = [
+    '<!DOCTYPE r [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;">]>',
+    '<!DOCTYPE r SYSTEM "file:///etc/passwd">',
+    '<!DOCTYPE r [<!ENTITY x SYSTEM "file:///dev/zero">]>',
+    "<?xml-stylesheet href='file:///etc/passwd'?>",
+    "<![CDATA[",
+    "&lt;&amp;&x;&#0;&#xD800;",
+]
+
+
+def names_of_cases(folder):
+    """The names that the written cases of valid files use."""
+    found = set()
+    for file, text in SMALL.items():
+        if file.endswith(".xml"):  # MuJoCo may not be installed
+            continue
+        (path := folder / file).write_text(text)
+        for node in ast.walk(ast.parse(case_of(path))):
+            found |= {getattr(node, key, "") for key in ("id", "attr", "name", "arg")}
+    return sorted(one for one in found if isinstance(one, str) and one)
+
+
+def law(chance, depth=0):
+    """An expression of time, mostly one that Python must not evaluate."""
+    kind = chance.randrange(3, 12) if depth < chance.randrange(1, 5) else chance.randrange(4)
+    one, other = (law(chance, depth + 1) if kind > 3 else "t" for _ in range(2))
+    many = int(10 ** chance.uniform(0, 4.2))
+    return [
+        chance.choice(["t", "time", "pi", "t", "2", "0.5", "9", "t", "(-8)", "1/3", "0"]),
+        chance.choice(["t", "t", "1e12", "1e-300", "7", *NUMBERS]),
+        chance.choice(
+            ["t", "x", "__import__('os')", "t.real", "lambda: t", "[t]", "t if t else 1"]
+        ),
+        "^".join(chance.choices(["9", "9", "t", "2"], k=chance.randrange(2, 12))),
+        f"({one}{chance.choice('+-*/^')}{other})",
+        f"{one}^{other}",
+        f"{chance.choice(['sin', 'exp', 'log', 'sqrt', 'acos', 'tan', 'f', 'abs'])}({one})",
+        chance.choice("+-*/").join([one] * min(many, 9000 // (len(one) + 1))),
+        "(" * many + one + ")" * many,
+        "sin(" * min(many, 1900) + one + ")" * min(many, 1900),
+        "(" * min(many, 1900) + one + "+1)^3" * min(many, 1900),
+        "-" * many + one,
+    ][kind]
+
+
+def numbers(text, chance, told):
+    """Some numbers in a text, hostile ones."""
+    places = [*re.finditer(r"(?<![\w.])-?\d+(\.\d*)?(e-?\d+)?(?![\w.])", text)]
+    for found in sorted(
+        chance.sample(places, min(chance.choice([1, 1, 2, 9]), len(places))),
+        key=lambda one: -one.start(),
+    ):
+        # That of another place makes two places one.
+        new = chance.choice([chance.choice(NUMBERS), chance.choice(places)[0], "0"])
+        if told == ".json" and chance.random() < 0.7:
+            new = json.dumps(new) if not re.fullmatch(r"-?\d+(\.\d+)?(e-?\d+)?", new) else new
+        text = text[: found.start()] + new + text[found.end() :]
+    return text
+
+
+def words(text, told):
+    """The names in a text with the places where they stand."""
+    if told == ".asmt":
+        return [(one[1], one.span(1)) for one in re.finditer(r"Name\n\t+(\S+)", text)]
+    pattern = r'"(\w+)"(?!\s*:)' if told == ".json" else r'(?:name|joint|link|joint1)="(\w+)"'
+    return [(one[1], one.span(1)) for one in re.finditer(pattern, text)]
+
+
+def renamed(text, chance, told, names):
+    """A name of a text in all its places, or in one of them, another one."""
+    if not (found := [one for one in words(text, told) if one[0]]):
+        return text
+    old, (start, stop) = chance.choice(found)
+    new = chance.choice(chance.choice(names))
+    if told == ".json":
+        new = json.dumps(new)[1:-1]
+    elif told != ".asmt" and chance.random() < 0.9:
+        new = quoteattr(new, {'"': "&quot;", "'": "&apos;"})[1:-1]
+    if chance.random() < 0.7:
+        return re.sub(rf"(?<!\w){old}(?!\w)", lambda _: new, text)
+    return text[:start] + new + text[stop:]
+
+
+def pieces(text, told):
+    """The elements and attributes of a text: where they begin and end. A long text is one."""
+    found, open_at = [(0, len(text))], []
+    if len(text) > 100_000:
+        return found
+    if told == ".asmt":
+        for line in re.finditer(r"(\t*)[^\n]*\n?", text):
+            while open_at and len(open_at[-1][1]) >= len(line[1]):
+                found.append((open_at.pop().start(), line.start()))
+            open_at.append(line)
+    elif told == ".json":
+        for one in re.finditer(r'[\[{]|[\]}]|"\w+": [^\[{\n]+', text):
+            if one[0] in "[{":
+                open_at.append(one)
+            elif one[0] not in "]}":
+                found.append(one.span())
+            elif open_at:
+                found.append((open_at.pop().start(), one.end()))
+    else:
+        for one in re.finditer(r'<(/?)(\w+)[^>]*?(/?)>| \w+="[^"]*"', text):
+            if one[3] or not one[2]:
+                found.append(one.span())
+            elif not one[1]:
+                open_at.append(one)
+            elif open_at:
+                found.append((open_at.pop().start(), one.end()))
+    return found
+
+
+def rearranged(text, chance, told):
+    """An element or attribute removed, repeated, moved, or in place of another one."""
+    places = pieces(text, told)
+    (start, stop), (other, end) = chance.choice(places), chance.choice(places)
+    piece, apart = text[start:stop], ", " if told == ".json" else "\n"
+    many = min(chance.choice([20, 700]), 200_000 // (len(piece) + 1))
+    return [
+        lambda: text[:start] + text[stop:],
+        lambda: text[:stop] + apart + piece + text[stop:],
+        lambda: text[:other] + piece + text[end:],
+        lambda: text[:end] + apart + piece + text[end:],
+        lambda: text[:start] + apart.join([piece] * many) + text[stop:],
+        lambda: text[:start] + text[other:end] + text[stop:],
+    ][chance.randrange(6)]()
+
+
+def nested(text, chance, told):
+    """An element inside itself many times."""
+    start, stop = chance.choice(pieces(text, told))
+    piece, many = text[start:stop], int(10 ** chance.uniform(1, 4.5))
+    if told == ".json":
+        return text[:start] + "[" * many + piece + "]" * many + text[stop:]
+    if told == ".asmt":
+        lines = "".join("\t" * k + "Part\n" for k in range(min(many, 3000)))
+        return text[:start] + lines + text[start:]
+    name = chance.choice(["a", "link", "joint", "model", "body", "world", "frame", "include"])
+    return text[:start] + f"<{name}>" * many + piece + f"</{name}>" * many + text[stop:]
+
+
+def long(text, chance, told):
+    """A text with a place that is long: of blanks, or of a comment."""
+    start, stop = chance.choice(pieces(text, told))
+    at = chance.choice([start, stop])
+    fill = chance.choice(["\n", " ", "\t\n", "x", "<!---->", "&#10;", "<a/>", "[],"])
+    return text[:at] + fill * (int(10 ** chance.uniform(3, 6.3)) // len(fill)) + text[at:]
+
+
+def joined(text, chance, told):
+    """Parts that are joined to themselves, in a circle, or otherwise than they were."""
+    names = [one for one, _ in words(text, told)] or ["x"]
+    for _ in range(chance.choice([1, 1, 2, 3])):
+        old, new = chance.choice(names), chance.choice(names)
+        ends = [*re.finditer(rf"(?<!\w){old}(?!\w)", text)]
+        for found in chance.sample(ends, min(len(ends), chance.choice([1, 1, 2]))):
+            text = text[: found.start()] + new + text[found.start() + len(old) :]
+    return text
+
+
+def hostile_law(text, chance, told):
+    """A law of a text, another one."""
+    new = law(chance)
+    new = json.dumps(new)[1:-1] if told == ".json" else new
+    pattern = (
+        r'(?<=": ")[^"]*\bt(ime)?\b[^"]*(?=")' if told == ".json" else r"(?<=\t)[^\t\n]*time[^\n]*"
+    )
+    if not (found := [*re.finditer(pattern, text)]):
+        return numbers(text, chance, told)
+    at = chance.choice(found)
+    return text[: at.start()] + new + text[at.end() :]
+
+
+def hostile(text, chance, told, names):
+    """The content of a file that somebody made to do harm."""
+    xml, many = told not in (".json", ".asmt"), chance.choice([1, 1, 1, 2, 3])
+    for _ in range(many):
+        kind = chance.randrange(12)
+        if kind < 3:
+            text = numbers(text, chance, told)
+        elif kind < 5:
+            text = renamed(text, chance, told, names)
+        elif kind == 5:
+            text = nested(text, chance, told)
+        elif kind == 6:
+            text = long(text, chance, told)
+        elif kind == 7:
+            text = joined(text, chance, told)
+        elif kind < 10 or (kind == 10 and not xml):
+            text = hostile_law(text, chance, told)
+        elif kind == 10:
+            start = chance.choice(pieces(text, told))[chance.randrange(2)]
+            start = chance.choice([start, text.find("<", 1)])
+            text = text[:start] + chance.choice(DOCTYPES) + text[start:]
+        else:
+            told_as, real = chance.choice(ENCODINGS), chance.choice(ENCODINGS[:6])
+            if xml and chance.random() < 0.7:
+                text = f'<?xml version="1.0" encoding="{told_as}"?>\n' + text.partition("?>\n")[2]
+            if chance.random() < 0.5:
+                return codecs.encode(text, real, "replace") if real != "rot13" else text.encode()
+    return text.encode(errors="surrogatepass")
+
+
+def drawn(kind, seed, names):
+    """A file of a kind, ``hostile`` or ``damaged``: its name and its content."""
+    chance = random.Random(f"{kind} {seed}")
+    # Those of MuJoCo take longest.
+    file = chance.choice([name for name in SMALL if not name.endswith(".xml")])
+    file = "arm.xml" if seed % 25 == 0 else file
+    text = SMALL[file]
+    if seed % 25 == 1:
+        file = chance.choice([name for name in LARGE if not name.endswith(".xml")])
+        text, file = LARGE[file](chance.choice([6, 30, 200])), file.replace(" ", "_")
+    told = Path(file).suffix
+    if kind == "hostile":
+        return file, hostile(text, chance, told, names)
+    content = text.encode()
+    if chance.random() < 0.6:
+        for _ in range(chance.choice([1, 1, 2, 4])):
+            text = rearranged(text, chance, told)
+        content = text.encode()
+    if chance.random() < 0.6 and len(content) > 200:
+        content = damaged(content, chance)
+    return file, content
+
+
+def attempt(path, evaluated):
+    """What is wrong with how a file is read, and perhaps evaluated; empty if nothing is. And
+    whether it is a case.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", RuntimeWarning)
+            text = case_of(path)
+            compile(text, "case", "exec")
+            links = text.count(" = m.link")
+            scene = read(path) if links <= MANY else None
+            if links > FEW or not evaluated:
+                return "", True
+    except LagrangeCasadiError as error:
+        line = str(error)
+        return "" if line.isprintable() and len(line) > 10 else f"said {line!r}", False
+    except Exception as error:
+        return f"{type(error).__name__}: {error}", False
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = evaluate(scene, t=(*scene.span[:2], 3), wanted=["effort"], backend="vm")
+    except LagrangeCasadiError as error:
+        line = str(error)
+        return "" if line.isprintable() and len(line) > 10 else f"said {line!r}", True
+    except Exception as error:
+        return f"evaluated, {type(error).__name__}: {error}", True
+    whole = all(np.isfinite(one).all() for one in found.outputs.values())
+    return "" if whole else "evaluated, not finite", True
+
+
+def run(kind, first, count):
+    """Draw and read so many files."""
+    folder = Path.cwd()
+    names = NAMES, names_of_cases(folder)
+    for seed in range(first, first + count):
+        print(seed, flush=True)
+        signal.alarm(WAITING)
+        file, content = drawn(kind, seed, names)
+        path = folder / f"{kind}.{file}"
+        path.write_bytes(content)
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        wrong, accepted = attempt(path, evaluated=seed % 3 == 0)  # which takes longest
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        if accepted:
+            print("accepted", flush=True)
+        if wrong:
+            print(f"{seed} {file}: {wrong[:500]!r}", flush=True)
+        path.unlink()
+
+
+if __name__ == "__main__":
+    run(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]))

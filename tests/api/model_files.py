@@ -1,0 +1,307 @@
+"""Model files from plain numbers: small ones of every format, and large ones of every kind."""
+
+import json
+
+from assembly_file import assembly, turned
+
+SPRUNG = (
+    "<dynamics><damping>0.1</damping><spring_stiffness>5</spring_stiffness>"
+    "<spring_reference>0.1</spring_reference></dynamics>"
+)
+DAMPED = '<dynamics damping="0.1"/>'
+MOMENTS = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2"/>'
+
+
+def urdf(*parts, name="robot"):
+    return f'<?xml version="1.0"?>\n<robot name="{name}">\n{"".join(parts)}</robot>\n'
+
+
+def link(name, mass=1.0):
+    inside = f'<origin xyz="0.1 0 0"/><mass value="{mass}"/>{MOMENTS}'
+    return f'<link name="{name}"><inertial>{inside}</inertial></link>\n'
+
+
+def joint(name, parent, child, xyz="0 0 0", axis="0 0 1", kind="revolute", more=""):
+    ends = f'<parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}" rpy="0 0.1 0"/>'
+    return f'<joint name="{name}" type="{kind}">{ends}<axis xyz="{axis}"/>{more}</joint>\n'
+
+
+def sdf(*parts, world=""):
+    inside = f'<model name="robot">\n{"".join(parts)}</model>\n'
+    return f'<sdf version="1.9"><world name="w">{world}\n{inside}</world></sdf>\n'
+
+
+def sdf_link(name, pose="0 0 0 0 0 0", more=""):
+    moments = "<inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.2</izz></inertia>"
+    inside = f"<inertial><pose>0.1 0 0 0 0 0</pose><mass>1.5</mass>{moments}</inertial>"
+    return f'<link name="{name}"><pose{more}>{pose}</pose>{inside}</link>\n'
+
+
+def sdf_joint(name, parent, child, axis="0 0 1", kind="revolute", more=""):
+    ends = f"<parent>{parent}</parent><child>{child}</child>"
+    axis = f"<axis><xyz>{axis}</xyz>{more}</axis>" if axis else more
+    return f'<joint name="{name}" type="{kind}">{ends}{axis}</joint>\n'
+
+
+def mjcf(*parts, more=""):
+    return f'<mujoco model="robot">\n<worldbody>\n{"".join(parts)}</worldbody>{more}\n</mujoco>\n'
+
+
+def mjcf_body(name, *parts, pos="0.2 0 0", axis="0 1 0"):
+    own = '<inertial pos="0.1 0 0" mass="1" diaginertia="0.1 0.2 0.2"/>'
+    inside = f'<joint name="j_{name}" axis="{axis}"/>{own}\n{"".join(parts)}'
+    return f'<body name="{name}" pos="{pos}">{inside}</body>\n'
+
+
+def own(bodies, joints, **more):
+    told = {"schema": "lagrange_casadi.model", "version": 1, "name": "machine"}
+    return json.dumps(told | {"bodies": bodies, "joints": joints} | more, indent=1)
+
+
+def own_body(name, place=(0, 0, 0), **more):
+    told = {"name": name, "mass": 1.5, "place": place, "centre": [0.1, 0, 0.02]}
+    return told | {"inertia": [0.1, 0.2, 0.2]} | more
+
+
+def own_joint(name, parent, child, at=(0, 0, 0), z=(0, 0, 1), kind="revolute", **more):
+    """A joint at a place of its parent, and at the origin of its child."""
+    told = {"name": name, "kind": kind, "parent": parent, "child": child}
+    return told | {"on_parent": {"place": at, "z": z}, "on_child": {"z": z}} | more
+
+
+def rod(name, start, end):
+    return {"name": name, "mass": 2.0, "rod": [[*start, 0], [*end, 0]]}
+
+
+def _loop():
+    """A parallelogram of rods in the plane."""
+    places = {"O": (0, 0), "A": (0, 1), "B": (2, 1), "C": (2, 0)}
+    ends = (("O", "ground", "crank"), ("A", "crank", "rod"), ("B", "rod", "rocker"))
+    joints = [
+        own_joint(name, parent, child, (*places[name], 0), on_child={"place": (*places[name], 0)})
+        for name, parent, child in (*ends, ("C", "ground", "rocker"))
+    ]
+    rods = [rod("crank", places["O"], places["A"]), rod("rod", places["A"], places["B"])]
+    return own(
+        [*rods, rod("rocker", places["C"], places["B"])],
+        joints,
+        gravity=[0, -9.81, 0],
+        motions={"O": "pi/3*t + 0.2*sin(2*t)^2"},
+        time={"start": 0, "stop": 1, "count": 5},
+        posture={"A": 0.1},
+        drives=["C"],
+    )
+
+
+def _kinds():
+    """An open chain of joints of many kinds, with a coupling, laws and samples."""
+    kinds = ("revolute", "prismatic", "cylindrical", "spherical", "screw", "planar", "free")
+    bodies = [own_body(f"b{k}", (0.2 * k, 0, 0.1 * k)) for k in range(len(kinds) + 1)]
+    joints = [
+        own_joint(f"j{k}", bodies[k]["name"], bodies[k + 1]["name"], (0.2, 0, 0.1), kind=kind)
+        for k, kind in enumerate(kinds)
+    ]
+    joints[4]["lead"] = 0.01
+    joints.append(own_joint("base", "ground", "b0", z=(0, 1, 0)))
+    return own(
+        [*bodies, {"name": "tip", "mass": 0.3, "point": True, "place": [2, 0, 0]}],
+        [*joints, own_joint("last", "b7", "tip", (0.6, 0, -0.7), kind="weld")],
+        couplings=[{"name": "gear", "first": "j0", "second": "base", "ratio": 2, "offset": 0.1}],
+        motions={
+            "j0": "2.0d*pi*time",
+            "j1": "0.1*exp(-t)*sin(3*t)",
+            "j2:turn": {"times": [0, 0.5, 1, 2], "values": [0, 0.1, 0.3, 0.2]},
+        },
+        notes=["made by a program"],
+    )
+
+
+def _gears():
+    """A crank, a rocker that it drives by a rod of spheres, and two wheels on a carrier."""
+    slim = (1e-3, 0.02, 0.02)
+    return assembly(
+        {"O": (0.0, 0.0, 0.0), "C": (2.0, 0.0, 0.0), "W": (0.0, 0.0, 1.0), "V": (3.0, 0.0, 1.0)},
+        {
+            "crank": (1.0, (0.0, 0.5, 0.0), slim, {"a": (0.0, 0.0, 0.0), "b": (0.0, 1.0, 0.0)}),
+            "rocker": (
+                *(1.0, (0.0, 0.5, 0.0), slim, {"a": (0.0, 0.0, 0.0), "b": (0.0, 1.0, 0.0)}),
+                (2.0, 0.0, 0.0),
+            ),
+            "sun": (1.0, (0.0, 0.0, 1.0), (0.1, 0.1, 0.2), {"m": (0.0, 0.0, 1.0)}),
+            "wheel": (
+                1.0,
+                (0.0, 0.0, 0.0),
+                (0.1, 0.1, 0.2),
+                {"m": (0.0, 0.0, 0.0)},
+                (3.0, 0.0, 1.0),
+            ),
+            "slider": (
+                1.0,
+                (0.0, 0.0, 0.0),
+                (0.1, 0.1, 0.2),
+                {"m": ((0.0, 0.0, 0.0), turned("y", 90))},
+            ),
+        },
+        {
+            "O": ("RevoluteJoint", "O", "crank/a"),
+            "C": ("RevoluteJoint", "C", "rocker/a"),
+            "rod": ("SphSphJoint", "crank/b", "rocker/b", ("distanceIJ", 2.0)),
+            "S": ("RevoluteJoint", "W", "sun/m"),
+            "V": ("RevoluteJoint", "V", "wheel/m"),
+            "teeth": ("GearJoint", "sun/m", "wheel/m", ("radiusI", 1.0), ("radiusJ", 2.0)),
+            "rack": ("CylindricalJoint", "O", "slider/m"),
+        },
+        {
+            "drive": ("RotationalMotion", "O", "0.3*sin(2.0d*pi*time)"),
+            "spin": ("RotationalMotion", "S", "time^2"),
+        },
+        span=(0.0, 1.0, 0.25),
+    )
+
+
+def _cell(k):
+    """The links and joints of a robot that is a parallelogram, which Gazebo closes."""
+    yield from (link(f"{name}{k}") for name in ("crank", "rod", "rocker"))
+    ends = ("O", "base", f"crank{k}", "0 0 0"), ("A", f"crank{k}", f"rod{k}", "0 1 0")
+    for name, parent, child, at in (*ends, ("C", "base", f"rocker{k}", "2 0 0")):
+        yield joint(f"{name}{k}", parent, child, at).replace("0.1 0", "0 0")
+    closing = sdf_joint(f"B{k}", f"rod{k}", f"rocker{k}", more=SPRUNG)
+    yield f"<gazebo>{closing.replace('<parent', '<pose>0 1 0 0 0 0</pose><parent')}</gazebo>\n"
+
+
+SMALL = {
+    "loop.json": _loop(),
+    "kinds.json": _kinds(),
+    "gears.asmt": _gears(),
+    "arm.urdf": urdf(
+        '<link name="base"/>',
+        *(link(name) for name in ("one", "two", "three")),
+        '<link name="frame"/>',
+        joint("j1", "base", "one", more=DAMPED),
+        joint("j2", "one", "two", "0.2 0 0", "0 1 0", more='<mimic joint="j1" multiplier="2"/>'),
+        joint("j3", "two", "three", "0.2 0 0", "1 0 0", "prismatic"),
+        joint("j4", "three", "frame", kind="fixed"),
+        '<link name="lump"><inertial><mass value="0.3"/></inertial></link>\n',
+        joint("j5", "three", "lump", "0.1 0 0", kind="fixed"),
+        '<gazebo reference="two"><turnGravityOff>true</turnGravityOff></gazebo>\n',
+        '<transmission name="t"><joint name="j1"/></transmission>',
+    ),
+    "loop.urdf": urdf(
+        '<link name="base"/>',
+        *(link(name) for name in ("crank", "rod", "rocker")),
+        *(joint("O", "base", "crank").replace("0.1 0", "0 0"),),
+        joint("A", "crank", "rod", "0 1 0").replace("0.1 0", "0 0"),
+        joint("C", "base", "rocker", "2 0 0").replace("0.1 0", "0 0"),
+        '<loop_joint name="B" type="spherical"><link1 link="rod"><origin xyz="2 0 0"/></link1>'
+        '<link2 link="rocker"><origin xyz="0 1 0"/></link2></loop_joint>',
+    ),
+    "cell.urdf": urdf('<link name="base"/>', *_cell(0)),
+    "arm.sdf": sdf(
+        sdf_link("one"),
+        sdf_link("two", "0.2 0 0 0 0.1 0").replace("</link>", "<gravity>false</gravity></link>"),
+        sdf_link("three", "0.3 0 0 0 0 0", ' relative_to="f"'),
+        '<frame name="f" attached_to="two"><pose>0.1 0 0 0 0 0.2</pose></frame>\n',
+        sdf_joint("j1", "world", "one", more=SPRUNG),
+        sdf_joint("j2", "one", "two", "0 1 0", "screw", "").replace(
+            "</joint>", "<screw_thread_pitch>0.02</screw_thread_pitch></joint>"
+        ),
+        sdf_joint("j3", "f", "three", more='<mimic joint="j1"><multiplier>2</multiplier></mimic>'),
+        sdf_link("four", "0.1 0 0 0 0.1 0", ' relative_to="three"'),
+        sdf_joint("j4", "three", "four", "1 0 0", "prismatic", SPRUNG),
+        world="<gravity>0 0 -9.81</gravity>",
+    ),
+    "arm.xml": mjcf(
+        mjcf_body("one", mjcf_body("two", mjcf_body("three", axis="0 0 1"))).replace(
+            'name="j_three"', 'name="j_three" stiffness="5" damping="0.1" springref="10"'
+        ),
+        more='<equality><joint joint1="j_two" joint2="j_one" polycoef="0 2 0 0 0"/></equality>'
+        '<actuator><motor joint="j_one"/></actuator>',
+    ),
+}
+"""A valid file of each format, or two, by their names."""
+
+
+def _chain(count):
+    """The bodies, joints and their names of an arm of so many links."""
+    return [(f"l{k}", f"l{k - 1}" if k else "", f"j{k}", f"0 {k % 2} 1") for k in range(count)]
+
+
+def _cells(count):
+    """The rods and joints of so many parallelograms side by side."""
+    rods, joints = [], []
+    for k in range(count):
+        places = [(3 * k + x, y) for x, y in ((0, 0), (0, 1), (2, 1), (2, 0))]
+        names = ["ground", f"crank{k}", f"rod{k}", f"rocker{k}", "ground"]
+        rods += [rod(name, *places[i : i + 2]) for i, name in enumerate(names[1:4])]
+        for i, (x, y) in enumerate(places):
+            ends = {"on_parent": {"place": (x, y, 0)}, "on_child": {"place": (x, y, 0)}}
+            joints.append(own_joint(f"p{k}_{i}", *names[i : i + 2], **ends))
+    return rods, joints
+
+
+def _bars(count):
+    """The parts of an assembly of pendulums, each in a plane of its own by constraints alone."""
+    slim, planes = (1e-3, 0.02, 0.02), range(count)
+    own = {"a": (0.0, 0.0, 0.0), "b": (0.0, 1.0, 0.0)}
+    return (
+        {f"M{k}": (0.0, 0.0, float(k)) for k in planes},
+        {f"bar{k}": (1.0, (0.0, 0.5, 0.0), slim, own, (0.0, 0.0, float(k))) for k in planes},
+        {f"flat{k}": ("PointInPlaneJoint", f"M{k}", f"bar{k}/a") for k in planes},
+        {},
+    )
+
+
+def _branches(count):
+    """Arms of MuJoCo of 100 links each."""
+    arms = [range(k, min(k + 100, count)) for k in range(0, count, 100)]
+    for arm in arms:
+        text = ""
+        for k in reversed(arm):
+            text = mjcf_body(f"l{k}", text, axis=f"0 {k % 2} 1")
+        yield text
+
+
+LARGE = {
+    "chain.urdf": lambda count: urdf(
+        '<link name="base"/>',
+        *(
+            link(name, 1 + k % 7)
+            + joint(hinge, above or "base", name, f"0.{k % 7 + 1} 0 0", axis, more=DAMPED)
+            + f'<gazebo reference="{name}"><gravity>{k % 2}</gravity></gazebo>\n'
+            for k, (name, above, hinge, axis) in enumerate(_chain(count))
+        ),
+    ),
+    "reversed.urdf": lambda count: urdf(
+        '<link name="base"/>',
+        *(
+            link(name) + joint(hinge, above or "base", name, "0.2 0 0", axis)
+            for name, above, hinge, axis in reversed(_chain(count))
+        ),
+    ),
+    "cells.urdf": lambda count: urdf(
+        '<link name="base"/>', *(part for k in range(count // 3) for part in _cell(k))
+    ),
+    "chain.sdf": lambda count: sdf(
+        *(
+            sdf_link(name, f"0.{k} 0 0 0 0 0", f' relative_to="{above}"' if k % 90 else "")
+            + sdf_joint(hinge, above or "world", name, axis, more=SPRUNG)
+            for k, (name, above, hinge, axis) in enumerate(_chain(count))
+        )
+    ),
+    "chain.json": lambda count: own(
+        [own_body(name, (0.2 * k, 0, 0)) for k, (name, *_) in enumerate(_chain(count))],
+        [
+            own_joint(hinge, above or "ground", name, (0.2 * bool(k), 0, 0), (0, k % 2, 1))
+            for k, (name, above, hinge, _) in enumerate(_chain(count))
+        ],
+        motions={hinge: "sin(t)" for _, _, hinge, _ in _chain(count)[::2]},
+        posture={hinge: 0.1 for _, _, hinge, _ in _chain(count)},
+    ),
+    "same names.json": lambda count: own(
+        [own_body(f"\u00e4{chr(0x4E00 + k)}") for k in range(count)],
+        [own_joint(f"{k}", "ground", f"\u00e4{chr(0x4E00 + k)}") for k in range(count)],
+    ),
+    "cells.json": lambda count: own(*_cells(count // 3)),
+    "bars.asmt": lambda count: assembly(*_bars(count)),
+    "arms.xml": lambda count: mjcf(*_branches(count)),
+}
