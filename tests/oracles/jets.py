@@ -68,6 +68,12 @@ class Jet:
             self.v**n, n * self.v ** (n - 1), n * (n - 1) * self.v ** (n - 2) if n > 1 else 0
         )
 
+    def __gt__(self, o):
+        return float(self.v > o)
+
+    def __lt__(self, o):
+        return float(self.v < o)
+
     __radd__ = __add__
     __rmul__ = __mul__
 

@@ -96,6 +96,33 @@ def line_load(d: Draft, rng: np.random.Generator) -> None:
     d.rng = drawn
 
 
+def one_way(d: Draft, rng: np.random.Generator, motions: list[oracle.Result]) -> None:
+    """Up to two forces that are there on one side of a rate or a place, which the motion passes."""
+    drawn, d.rng = d.rng, rng
+    for _ in range(d.choose(1, 2)):
+        for joint in map(str, d.rng.permutation(d.movable())):
+            rate = d.chance(0.6)
+            jets = [
+                joint_coordinate(d.joints[joint], d.oracle(d.start).places(motion))
+                for motion in motions
+            ]
+            turns = not rate and not d.joints[joint].slides
+            seen = [jet.d if rate else math.sin(jet.v) if turns else jet.v for jet in jets]
+            if max(map(abs, seen)) < 1e-3 or (not rate and max(seen) - min(seen) < 1e-3):
+                continue
+            (name,) = names = d.measured("coordinate", joint, rate=rate)
+            told = f"sin({name})" if turns else name
+            level = 0.0 if rate else d.between(*sorted((min(seen), max(seen))))
+            size = repr(d.between(-1.0, 1.0) * 10.0 ** d.choose(0, 1, 2, 4))
+            form = d.choose("{0} * ({1} > {2})", "{0} * ({1} < {2})", "{0} * {1} * ({1} > {2})")
+            force = d.formula(form.format(size, told, level), names)
+            spot, load = d.spot(d.choose(*d.bodies)), d.new("f")
+            d.lines.append(f'm.force("{load}", {spot.text}, x={force.text}, y={force.text})')
+            d.loads[load] = functools.partial(_force, spot=spot, x=force, y=force, turns=False)
+            break
+    d.rng = drawn
+
+
 def _shape(d: Draft, size: float, start: float, end: float):
     """How a component is written around its amount, the amount, and coefficients of what it is
     times, by powers of the distance.

@@ -17,7 +17,7 @@ import random_drives as drives
 import random_elements as elements
 from random_draft import Draft
 from random_growth import LEAST, attempt, close, dyad, freedom, hang, twice, values
-from random_loads import line_load, load
+from random_loads import line_load, load, one_way
 from random_path import Path, follow
 from random_patterns import PATTERNS
 
@@ -26,7 +26,7 @@ from casadi import cos, sin, sqrt
 from lagrange_casadi import Mechanism, Scene, curve, density, evaluate, motion, table
 from lagrange_casadi.elements import belt, cylinder, disc_cam, gears, two_bearings, wheel
 """
-_ALONG, _ELEMENTS, _DRIVES, _ASKED = 1, 2, 3, 4
+_ALONG, _ELEMENTS, _DRIVES, _ASKED, _SWITCHED = 1, 2, 3, 4, 5
 SPACING = 0.4
 """Of the samples of a motion [s]."""
 
@@ -81,8 +81,8 @@ class Drawn:
 
 
 @functools.lru_cache(maxsize=4)
-def draw(seed: int) -> Drawn:
-    """The mechanism of a seed."""
+def draw(seed: int, switched: bool = False) -> Drawn:
+    """The mechanism of a seed; if it is switched, with one-way forces too."""
     rng = np.random.default_rng([2024, seed])
     while True:
         d = _structure(seed, rng)
@@ -92,7 +92,7 @@ def draw(seed: int) -> Drawn:
             else:
                 drives.move(d, np.random.default_rng((seed, _DRIVES)))
                 drives.lead(d, np.random.default_rng((seed, _DRIVES, 1)))
-            return _finish(seed, d)
+            return _finish(seed, d, switched)
 
 
 def _structure(seed: int, rng: np.random.Generator) -> Draft | None:
@@ -223,7 +223,7 @@ def _law(d: Draft, joint: str) -> None:
         d.drive(joint, f"motion.samples({times}, {[formula.jet(None, x).v for x in times]})", law)
 
 
-def _finish(seed: int, d: Draft) -> Drawn:
+def _finish(seed: int, d: Draft, switched: bool) -> Drawn:
     """Loads, gravity, instants, posture; and the path."""
     d.gravity = d.choose(
         (0.0, -9.81), (0.0, 0.0), (d.between(-10, 10), d.between(-10, 10)), weights=[5, 1, 2]
@@ -244,6 +244,8 @@ def _finish(seed: int, d: Draft) -> Drawn:
     elif d.chance(0.1):
         grid = d.choose((d.start, d.start, 1), (d.start, d.start + 0.05, 2))
     path = follow(d, grid[1], 0.05 if d.whole else 0.1)
+    if switched and path.motions and d.fits:
+        one_way(d, np.random.default_rng((seed, _SWITCHED)), path.motions)
     own = np.random.default_rng((seed, _ASKED))
     if path.motions and d.fits:
         elements.lose(d, own, path.motions[0])

@@ -16,7 +16,7 @@ from random_comparison import Comparison
 from random_mechanisms import Drawn
 from random_path import NEAR
 
-from lagrange_casadi import evaluate
+from lagrange_casadi import evaluate, refine
 from lagrange_casadi.errors import CertificateWarning, LagrangeCasadiError
 
 
@@ -93,6 +93,20 @@ def compare(drawn: Drawn, solution) -> Verdict:
     return Verdict(
         kind=kind, why=(found.faults or [""])[0], notes=found.notes, details=found.faults, **said
     )
+
+
+def peaks_off(scene, solution, dense, names) -> list[str]:
+    """Peaks between instants that are not those of many instants: less, or much more."""
+    largest = {
+        unit: max(abs(dense.peak(name).value) for name in names if dense.unit(name) == unit)
+        for unit in map(dense.unit, names)
+    }
+    off = []
+    for peak in refine(scene, solution, names):
+        size, many = largest[peak.unit], abs(dense.peak(peak.name).value)
+        if not many - 1e-9 * size <= abs(peak.value) <= many * 1.01 + 1e-2 * size:
+            off.append(f"{peak}, {many} at one of many instants")
+    return off
 
 
 def reason(why: str) -> str:

@@ -9,8 +9,9 @@ import rubbing
 from internals import DesignEngine, EvaluationMethod, Status, forces, search
 from oracle import FORCES
 from random_friction import RUB, SEEDS, rubbed
+from random_verdict import peaks_off
 
-from lagrange_casadi import evaluate, refine
+from lagrange_casadi import evaluate
 from lagrange_casadi.errors import AssemblyError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -54,7 +55,7 @@ def compare(made):
     return worst
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", RUB)
 def test_right_or_refused(seed):
     made = rubbed(seed)
@@ -91,17 +92,9 @@ def keeps_peaks(made, monkeypatch):
     one = search._Search.interval
     monkeypatch.setattr(search._Search, "interval", lambda *given: panels.append(1) or one(*given))
     names = [*forces(solution), *(name for name in solution.names() if name.endswith(":loss"))]
-    peaks = refine(scene, solution, names)
+    off = peaks_off(scene, solution, dense, names)
     assert len(panels) < search.INTERVALS / 8
-    largest = {
-        unit: max(abs(dense.peak(name).value) for name in names if dense.unit(name) == unit)
-        for unit in map(dense.unit, names)
-    }
-    for peak in peaks:
-        size, many = largest[peak.unit], abs(dense.peak(peak.name).value)
-        assert many - 1e-9 * size <= abs(peak.value) <= many * 1.01 + 1e-2 * size, (
-            f"{peak}, {many}\n{made.source}"
-        )
+    assert not off, "\n".join([*off, made.source])
 
 
 @pytest.mark.parametrize("seed", [46, 80])

@@ -69,7 +69,7 @@ def compare(case):
     return max(gaps)
 
 
-@pytest.mark.sampled(14)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
 def test_right_or_refused(case):
     worst = compare(case)
