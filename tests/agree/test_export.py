@@ -12,7 +12,7 @@ import pytest
 from compiled import EVALUATED, cc, compilers, present, told
 from conftest import SPATIAL
 from mechanisms import sampled_cam, slider_crank, spline_arm, truss_platform
-from places import TESTS
+from places import FOLDERS
 from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, export, load_case, motion, table
@@ -288,10 +288,10 @@ def test_iterated_loops_report_failure_and_stay_where_they_were(tmp_path):
 
 def test_twice_the_same_bytes(tmp_path):
     program = (
-        "import sys; sys.path.insert(0, sys.argv[1]); from mechanisms import slider_crank; from"
+        f"import sys; sys.path[:0] = {FOLDERS!r}; from mechanisms import slider_crank; from"
         " lagrange_casadi import export; "
     )
-    program += "export(slider_crank(), sys.argv[2], precision='single')"
+    program += "export(slider_crank(), sys.argv[1], precision='single')"
     for name, seed in (("one", "1"), ("two", "2")):
         environment = {
             "PYTHONHASHSEED": seed,
@@ -299,7 +299,7 @@ def test_twice_the_same_bytes(tmp_path):
             "XDG_CACHE_HOME": str(tmp_path / f"cache_{name}"),
         }
         subprocess.run(
-            [sys.executable, "-c", program, TESTS, tmp_path / name],
+            [sys.executable, "-c", program, tmp_path / name],
             check=True,
             env=environment,
         )
