@@ -128,7 +128,7 @@ class Program(Graphs):
     @symbolic_property
     def closing(self) -> ca.Function:
         """The function ``closing(t, d, d_rate, d_acceleration, z, p) -> (squares, rates, slopes)``
-        of what is zero at dead centres: see :func:`.closing_of`.
+        of what is zero at dead centres, as ``closing_of`` returns it.
         """
         return closing_of(self)
 
