@@ -239,7 +239,7 @@ LANES_INLINE casadi_real designs_broken(const designs_now* now, casadi_int i) {
     const lanes_real* row = designs_row(now, DESIGNS_CHECKED + k) + i;
     seen[k] = scene_load(row);
     beside[k] = designs_kind[k] == DESIGNS_IS_TURNED ? scene_load(row + 1) - seen[k] : now->terms[k];
-    if (now->passed[k] < i || now->passed[k] >= i + LANES) continue;
+    if (now->passed[k] == now->n || now->passed[k] < i || now->passed[k] >= i + LANES) continue;
     for (j = 0; j < LANES; ++j) lane[j] = (lanes_real) (now->passed[k] == i + j);
     beside[k] = scene_load(lane);
   }

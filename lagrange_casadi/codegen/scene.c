@@ -130,10 +130,10 @@ LANES_INLINE casadi_real scene_sum(const casadi_real* y, casadi_int columns) {
   casadi_real sum[4];
   casadi_int j, k;
   for (j = 0; j < 4; ++j) sum[j] = 0;
-  for (k = 0; k + 4 <= columns; k += 4) {
+  for (k = 0; k < columns/4*4; k += 4) {
     for (j = 0; j < 4; ++j) sum[j] = sum[j] + y[k + j];
   }
-  for (; k < columns; ++k) sum[0] = sum[0] + y[k];
+  for (k = columns/4*4; k < columns; ++k) sum[0] = sum[0] + y[k];
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 

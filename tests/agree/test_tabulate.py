@@ -326,10 +326,7 @@ REFUSED = {
     ),
     "dead centre": (
         flat_parallelogram,
-        (
-            r"the loop closed by joint 'B' is at a dead centre, or about a degree from one, near O"
-            r" = 3\.\d+ rad"
-        ),
+        r"the loop closed by joint 'B' passes a dead centre near O = 3\.\d+ rad",
     ),
     "gear": (
         lambda: geared(0.7),
