@@ -117,7 +117,8 @@ def passes(path: Path, limit: float) -> bool:
             b += 1
         if a < 0 or b == POINTS or not rate[a] < 0.0 < rate[b]:
             return False
-        order = (x[b] - x[a]) / (square[b] / rate[b] - square[a] / rate[a])
+        with np.errstate(all="ignore"):  # squares of lengths beyond numbers
+            order = (x[b] - x[a]) / (square[b] / rate[b] - square[a] / rate[a])
         if order < 1.0:
             return False
         opposed = slopes[:, a] @ slopes[:, b] < 0.0
