@@ -170,11 +170,11 @@ static int search_depends(const search_now* now, int watch, int quantity) {
 }
 
 /* Whether what is found at a time counts for a quantity: where one of the watched that it depends on may be on a side by rounding, that
-   must be one that it has at an instant before or after. */
+   must be one that it has at an instant before or after, or the number between both. */
 static int search_counts(const search_now* now, int quantity, double t, const search_real* watched, long long apart) {
   const double x = (t - now->t[0])/(2*now->half);
   long long i = now->step >= 0 ? now->step : x > 0 ? (long long) x : 0;
-  search_real side;
+  search_real side, ends[2];
   int j, k, seen;
   i = i < now->n - 2 ? i : now->n - 2;
   for (k = 0; k < now->curves->watches; ++k) {
@@ -183,9 +183,11 @@ static int search_counts(const search_now* now, int quantity, double t, const se
     if (now->step >= 0 && !(now->noise[k] > 0 && search_gap(now, k, watched[k*apart]) <= now->noise[k])) continue;
     side = search_side(now, k, watched[k*apart]);
     for (seen = j = 0; j < 2; ++j) {
-      seen |= side == search_side(now, k, search_watched(&now->all, k)[i + j]);
+      ends[j] = search_side(now, k, search_watched(&now->all, k)[i + j]);
+      seen |= side == ends[j];
       seen |= now->step >= 0 && side == now->sides[2*k + j];
     }
+    seen |= now->step < 0 && search_lower(ends[0], ends[1]) < side && side < search_upper(ends[0], ends[1]);
     if (!seen) return 0;
   }
   return 1;

@@ -28,7 +28,7 @@ class Switches:
     def counts(self, t: Array, watched: Array) -> Flags:
         """Return whether what is found at times counts for each quantity, (quantities, t): where a
         watched function that a quantity depends on may be on a side by rounding, that must be one
-        that it has at an instant before or after.
+        that it has at an instant before or after, or the number between both.
         """
         found = np.ones((len(self.curves.units), t.size), bool)
         step = (t - self.begin) // self.length if self.step < 0 else np.full(t.size, self.step)
@@ -37,8 +37,11 @@ class Switches:
             if watch.kind not in (Kind.SWITCH, Kind.STEP) or self.ignored[k]:
                 continue
             here, all_ = side(watch, watched[k]), side(watch, self.watched[k])
-            seen = (here == all_[step]) | (here == all_[step + 1])
-            if self.step >= 0:
+            before, after = all_[step], all_[step + 1]
+            seen = (here == before) | (here == after)
+            if self.step < 0:
+                seen |= (np.minimum(before, after) < here) & (here < np.maximum(before, after))
+            else:
                 seen |= (here == self.sides[k][:, None]).any(axis=0)
                 seen |= ~((self.noises[k] > 0.0) & (gaps(watch, watched[k]) <= self.noises[k]))
             found &= seen | ~self.curves.depending[k][:, None]

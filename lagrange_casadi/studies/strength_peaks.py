@@ -117,7 +117,7 @@ def refine_safety(
         if refined is None:
             missing.append(
                 f"{verdict.against}: between the instants it may be less than"
-                f" {verdict.factor:.4g}; take more instants"
+                f" {verdict.factor:.4g}; smooth what switches there"
             )
         else:
             verdicts.append(refined)
