@@ -35,15 +35,15 @@ def loop_residual(multibody: Multibody, block: Block, length: ca.SX) -> ca.SX:
     return total
 
 
-def lengths(multibody: Multibody, block: Block, length: ca.SX) -> ca.SX:
+def lengths(multibody: Multibody, block: Block, length: ca.SX, *, sizes: bool = True) -> ca.SX:
     """Factors that make lengths [m] of a block's equations, a column: directions are multiplied by
-    a ``length``, constraints by that over their slopes.
+    a ``length``, constraints by that over their slopes, with or without ``sizes`` of coordinates.
     """
     found = []
     for equation in block.equations:
         held = held_directions(equation.loop.joint) if equation.loop.joint is not None else 0
         if equation.loop.declared:
-            found.append(length / _slope(multibody, equation, length))
+            found.append(length / _slope(multibody, equation, length, sizes=sizes))
         else:
             directs = equation.row >= equation.loop.residual.numel() - held
             found.append(length if directs else ca.SX(1))
@@ -101,13 +101,14 @@ def _turned(multibody: Multibody, equation: Equation) -> Expression:
     return off(joint, *(multibody.frames[body.name] for body in joint.bodies))
 
 
-def _slope(multibody: Multibody, equation: Equation, length: ca.SX) -> ca.SX:
-    """Change of an equation with all coordinates: angles by a radian or their own size, slides by a
-    length or theirs.
+def _slope(multibody: Multibody, equation: Equation, length: ca.SX, *, sizes: bool = True) -> ca.SX:
+    """Change of an equation with all coordinates: angles by a radian, slides by a length. With
+    ``sizes`` either by its own size too, as a sum; else as the root of the sum of squares, which is
+    smooth and repeats as the mechanism does.
     """
-    total = ca.SX(0)
+    changes = []
     for coordinate in multibody.coordinates:
         unit = length if coordinate.kind == "slide" else ca.SX(1)
-        size = 0 if coordinate.kind == "ball" else ca.fabs(coordinate.value)
-        total += ca.fabs(ca.jacobian(equation.residual_rate, coordinate.rate)) * (unit + size)
-    return total
+        size = ca.fabs(coordinate.value) if sizes and coordinate.kind != "ball" else 0
+        changes.append(ca.jacobian(equation.residual_rate, coordinate.rate) * (unit + size))
+    return ca.norm_1(column(changes)) if sizes else ca.norm_2(column(changes))
