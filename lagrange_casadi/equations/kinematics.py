@@ -425,8 +425,7 @@ class _Solver:
             still = ca.SX.zeros(len(block.unknown))
             # Of these it matters beside what equations are large, and what is left open.
             judged = block in self.residuals or len(block.equations) > len(block.unknown)
-            factors = lengths(body, block, self.length, sizes=False) if judged else 1
-            units = found.put_into(factors) if judged else 1
+            units = found.put_into(lengths(body, block, self.length, sizes=False)) if judged else 1
             system = LinearSystem.of(found.put_into(block.jacobian), units)
             for symbols, residual in (
                 (rates, block.residual_rate),
