@@ -58,6 +58,9 @@ def actions(
 def idle(touch: Touch, bodies: Mapping[str, Moving], t: Array) -> Array:
     """The power of a unit of the multiplier, over the largest power that is added up in it (t,):
     zero, but for rounding.
+
+    A body's speed at the contact is added up too, of its origin's and its rotation's: a rack that
+    rolls on a pinion at rest has none.
     """
     one, residuals, sizes = np.ones_like(t), [], []
     for sign in (1.0, -1.0):
@@ -66,9 +69,10 @@ def idle(touch: Touch, bodies: Mapping[str, Moving], t: Array) -> Array:
         for name, at, force, couple in actions(
             replace(touch, slack=0.0), bodies[touch.carrier], sign * one, 0.0
         ):
-            body, speed = bodies[name], bodies[name].speed_at(at)
-            terms += [a * b for a, b in zip(force.components, speed.components, strict=True)]
-            terms += [a * b for a, b in zip(couple.components, body.rate.components, strict=True)]
+            body = bodies[name]
+            moves = body.speed, body.rate.cross(at - body.at)
+            for effort, rate in ((force, moves[0]), (force, moves[1]), (couple, body.rate)):
+                terms += [a * b for a, b in zip(effort.components, rate.components, strict=True)]
         residuals.append(sum(terms, np.zeros_like(t)))
         sizes.append(most(terms))
     residual, size = most(residuals), float(np.max(most(sizes)))
