@@ -45,6 +45,11 @@ _SAMPLED = 4001
 _LONG = 60.0
 """Seconds of which nothing need be said."""
 
+_ENDS = 1e-12
+"""Part of the requested time by which rounding may put an end of it beyond samples: a motion is
+inverted to find the times of ``over=``.
+"""
+
 
 def solve(
     scene: Scene,
@@ -150,8 +155,9 @@ def checked_span(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tup
     Raises :class:`DeclarationError` where there are none, or samples of a motion end.
     """
     start, stop = span_of(laws, timing, values)
+    slack = _ENDS * (stop - start)
     for joint, (low, high) in zip(laws.joints, laws.spans, strict=True):
-        if start < low or stop > high:
+        if start < low - slack or stop > high + slack:
             raise DeclarationError(
                 f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s,"
                 f" but t from {start:g} to {stop:g} s was requested"
