@@ -140,16 +140,19 @@ def balance(placed: Placed, digits: Digits) -> dict[str, list[Residuals]]:
     # of bodies are sums.
     largest = sums.largest * (1.0 + digits.coarseness * placed.declared.extent / size)
     worst = np.maximum(worst, off_laws(placed, digits, float(np.max(largest))))
+    scale = max(float(np.max(largest)), digits.least)
     flow = (
         sums.flow
         + digits.least * fastest
         + digits.coarseness * (sums.pushes * fastest + sums.twists * turned)
     )
     found = {
-        "balance": [(worst, max(float(np.max(largest)), digits.least))],
+        "balance": [(worst, scale)],
         "power": [(np.abs(power), float(np.max(flow)))],
     }
-    return found | ({"ends": [_ends(placed, acting, digits)]} if placed.reported.laws else {})
+    return found | (
+        {"ends": [_ends(placed, acting, digits, scale)]} if placed.reported.laws else {}
+    )
 
 
 def all_actions(placed: Placed) -> Iterator[Action]:
@@ -275,15 +278,15 @@ def _unlike(placed: Placed) -> Scalar:
     return worst
 
 
-def _ends(placed: Placed, acting: Sequence[Action], digits: Digits) -> Residuals:
-    """A link's section at its base is the opposite of all that acts on it there; beside the largest
-    force on a link.
+def _ends(placed: Placed, acting: Sequence[Action], digits: Digits, scale: float) -> Residuals:
+    """Return by how much sections at the bases of links differ from the opposite of all that acts
+    there [N], and the largest force of the mechanism.
 
-    And beside what the rounding of places leaves open, which turns short links most.
+    ``scale`` is the largest force of the balance: links that bear nothing have rounding of that.
+    Rounding of places, which turns short links most, is taken off.
     """
     declared, reported = placed.declared, placed.reported
     worst = np.zeros_like(reported.t)
-    scale = digits.least
     blurred = digits.coarseness * declared.extent
     for link, law in reported.laws.items():
         inside, twisted = reported.inside(link)

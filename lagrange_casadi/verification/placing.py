@@ -134,6 +134,8 @@ class Placed:
     def rates(self) -> tuple[Scalar, Scalar, Scalar]:
         """The largest rate of turning at each instant, of joints too; and a speed and an
         acceleration that none exceeds.
+
+        The acceleration is at least (largest speed)^2 / size: uniform motion has none but rounding.
         """
         reported, declared = self.reported, self.declared
         angles = [
@@ -146,11 +148,9 @@ class Placed:
         )
         turned = most([*turning, *map(reported.rate, angles)])
         gained = most([*gains, *map(reported.acceleration, angles)])
-        return (
-            turned,
-            most(speeds) + turned * declared.extent,
-            most(changes) + (gained + turned**2) * declared.extent,
-        )
+        fastest = most(speeds) + turned * declared.extent
+        changed = most(changes) + (gained + turned**2) * declared.extent
+        return turned, fastest, np.maximum(changed, fastest**2 / declared.size)
 
     @property
     def frictions(self) -> Iterator[tuple[str, LoadNumbers, str]]:
