@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 from balance import settle
-from internals import DTYPES, FORCES, ROUNDING, arithmetic, interpret
+from internals import DTYPES, END, FORCES, ROUNDING, arithmetic, interpret
 from mpmath import mp
 from precise import precise
 
@@ -31,8 +31,10 @@ CHANGE = 20
 """Inputs change by ten to the minus so much."""
 
 RATIOS = (0.0, 1e-12, 0.3, 0.7, 1.0 - 1e-12, 1.0)
-BESIDE = {"double": 1e-12, "single": 1e-5}
-"""How near stations the sections are looked at, as far as their place itself is known."""
+BESIDE = {precision: 2 * at for precision, at in END.items()}
+"""How near load points the sections are looked at: twice as far as a load point that is at the
+section.
+"""
 
 
 @dataclass(frozen=True)
@@ -240,7 +242,7 @@ def _ratios(law):
                 (("double", "single"), BESIDE["single"]),
             ):
                 yield from (
-                    (mp.mpf(float(members["station"] * (1 + side * near))), precisions)
+                    (mp.mpf(float(members["station"] + side * near)), precisions)
                     for side in (-1, 1)
                 )
 
