@@ -84,7 +84,7 @@ def meaning(scene, program, i, t, values):
             mp.mpf(float(x))
             for x in settle(program, t, list(values.values()), program.data.span[0]).full().ravel()
         ]
-        z = _closed(program, rough, time, driven, p)
+        z = closed(program, rough, time, driven, p)
         places, own = _outputs(scene, program, time, driven, z, p, None)
         total = [mp.mpf(0)] * len(own)
         step = mp.mpf(10) ** -CHANGE
@@ -94,7 +94,7 @@ def meaning(scene, program, i, t, values):
                 program,
                 time,
                 changed,
-                _closed(program, z, time, changed, others),
+                closed(program, z, time, changed, others),
                 others,
                 places,
             )
@@ -191,7 +191,7 @@ def _read(scene, program):
     return [k in read for k in range(program.instant.size1_in("p"))]
 
 
-def _closed(program, z, time, driven, p):
+def closed(program, z, time, driven, p):
     """The iterated coordinates to all digits."""
     size = mp.mpf(program.newton is not None)
     while size > mp.mpf(10) ** (4 - DIGITS):
