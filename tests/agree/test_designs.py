@@ -28,8 +28,8 @@ FIELDS = ("status", "value", "t", "xi", "mean", "rms")
 @pytest.mark.sampled(14)
 @pytest.mark.parametrize("name", PLANAR)
 def test_designs_are_their_own_evaluations(name):
-    """Every number of a case a parameter: where loops close only with its own lengths, other designs
-    have no result either way.
+    """Every number of a case a parameter; a design whose loops do not close has no result in either
+    way.
     """
     scene = declared(CASES / name)
     designs = DesignEngine.of(scene, t=(*scene.t[:2], INSTANTS), method=EvaluationMethod("c"))
