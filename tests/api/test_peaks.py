@@ -4,12 +4,10 @@ has a kink, a jump or a pole.
 
 import math
 
-import casadi as ca
 import numpy as np
 import pytest
-from balance import settle
-from conftest import CASES, NAMES, PLANAR
-from internals import forces, rates, refine, shortfall
+from conftest import CASES, PLANAR
+from internals import forces, refine, shortfall
 from mechanisms import LENGTH, MASS, G, four_bar, parallelogram, pendulum
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, motion, save
@@ -22,55 +20,6 @@ def vm(scene, **keywords):
 
 def refined(scene, solution, names=None):
     return {peak.name: peak for peak in refine(scene, solution, names)}
-
-
-def columns(program, t, p):
-    """Columns and their rates at an instant, with iterated loops closed there."""
-    z = settle(program, t, p, program.data.span[0])
-    return [x.full().ravel() for x in rates(program)(ca.vertcat(t, z), p)]
-
-
-@pytest.mark.sampled(19)
-@pytest.mark.parametrize("name", NAMES)
-def test_rates_are_those_of_differences(name):
-    scene = load_case(CASES / name).scene
-    program, p = derive(scene), list(scene.mechanism.values().values())
-    start, span = scene.span[0], scene.span[1] - scene.span[0]
-    # The spindle of the screw lift turns by 420 rad, and little else of it moves.
-    e = (1e-6 if name == "screw_lift" else 1e-4) * span
-    for t in start + np.array([0.1234, 0.5678, 0.8765]) * span:
-        out, rate = columns(program, t, p)
-        near = [columns(program, t + k * e, p)[0] for k in (-2, -1, 1, 2)]
-        difference = (near[0] - 8 * near[1] + 8 * near[2] - near[3]) / (12 * e)
-        allowed = 1e-9 * (np.abs(rate) + np.abs(out) / span) + 1e-14 * np.abs(out).max() / e
-        assert not [
-            program.names[k] for k in np.flatnonzero(~(np.abs(difference - rate) <= allowed))
-        ]
-        moving = ~np.array([name.startswith("_") for name in program.names])
-        assert np.mean(np.abs(rate[moving]) > 100 * allowed[moving]) > (
-            0.3 if name == "screw_lift" else 0.4
-        )
-
-
-@pytest.mark.quick
-def test_rates_are_those_of_a_closed_form():
-    """A pendulum: I theta'' + m g l/2 cos theta, and what holds its centre on its circle."""
-    scene = pendulum(motion.expression(lambda t: 0.4 * ca.sin(3 * t) + t))
-    program, h, inertia = derive(scene), LENGTH / 2, MASS * LENGTH**2 / 3
-    for t in (0.0, 0.37, 1.9):
-        th, w = 0.4 * math.sin(3 * t) + t, 1.2 * math.cos(3 * t) + 1
-        a, j = -3.6 * math.sin(3 * t), -10.8 * math.cos(3 * t)
-        c, s = math.cos(th), math.sin(th)
-        exact = {
-            "motion:pin": w,
-            "motion:pin_rate": a,
-            "motion:pin_acceleration": j,
-            "effort:pin": inertia * j - MASS * G * h * s * w,
-            "reaction:pin:fx": -MASS * h * (j * s + a * c * w + 2 * w * a * c - w**3 * s),
-            "reaction:pin:fy": MASS * h * (j * c - a * s * w - 2 * w * a * s - w**3 * c),
-        }
-        found = dict(zip(program.names, columns(program, t, [])[1], strict=True))
-        assert {name: found[name] for name in exact} == pytest.approx(exact, rel=1e-12, abs=1e-12)
 
 
 @pytest.mark.quick

@@ -93,6 +93,7 @@ def test_two_runs_on_a_busy_machine_recommend_the_same():
     finally:
         for one in busy:
             one.kill()
+            one.wait()
     for accuracy in (1e-3, 1e-6, 1e-9, 1e-13):
         for among in (found, [one.exported for one in found]):
             assert len({one.fastest(accuracy).method for one in among}) == 1

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 from balance import settle
-from internals import DTYPES, FORCES, ROUNDING, arithmetic, interpret
+from internals import DTYPES, END, FORCES, ROUNDING, arithmetic, interpret
 from mpmath import mp
 from precise import precise
 
@@ -31,8 +31,10 @@ CHANGE = 20
 """Inputs change by ten to the minus so much."""
 
 RATIOS = (0.0, 1e-12, 0.3, 0.7, 1.0 - 1e-12, 1.0)
-BESIDE = {"double": 1e-12, "single": 1e-5}
-"""How near stations the sections are looked at, as far as their place itself is known."""
+BESIDE = {precision: 2 * at for precision, at in END.items()}
+"""How near load points the sections are looked at: twice as far as a load point that is at the
+section.
+"""
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,7 @@ def meaning(scene, program, i, t, values):
             mp.mpf(float(x))
             for x in settle(program, t, list(values.values()), program.data.span[0]).full().ravel()
         ]
-        z = _closed(program, rough, time, driven, p)
+        z = closed(program, rough, time, driven, p)
         places, own = _outputs(scene, program, time, driven, z, p, None)
         total = [mp.mpf(0)] * len(own)
         step = mp.mpf(10) ** -CHANGE
@@ -92,7 +94,7 @@ def meaning(scene, program, i, t, values):
                 program,
                 time,
                 changed,
-                _closed(program, z, time, changed, others),
+                closed(program, z, time, changed, others),
                 others,
                 places,
             )
@@ -189,7 +191,7 @@ def _read(scene, program):
     return [k in read for k in range(program.instant.size1_in("p"))]
 
 
-def _closed(program, z, time, driven, p):
+def closed(program, z, time, driven, p):
     """The iterated coordinates to all digits."""
     size = mp.mpf(program.newton is not None)
     while size > mp.mpf(10) ** (4 - DIGITS):
@@ -240,7 +242,7 @@ def _ratios(law):
                 (("double", "single"), BESIDE["single"]),
             ):
                 yield from (
-                    (mp.mpf(float(members["station"] * (1 + side * near))), precisions)
+                    (mp.mpf(float(members["station"] + side * near)), precisions)
                     for side in (-1, 1)
                 )
 
