@@ -113,14 +113,8 @@ def test_nor_do_these_that_did(seed):
     assert_drawn_the_same(seed)
 
 
-WRAPPED = pytest.mark.xfail(strict=True, reason="an angle differs by a whole turn")
-
-
 @pytest.mark.sampled(40)
-@pytest.mark.parametrize(
-    "seed",
-    [pytest.param(seed, marks=WRAPPED) if seed == 219 else seed for seed in range(1000)],
-)
+@pytest.mark.parametrize("seed", range(1000))
 def test_random_mechanisms_in_space_do_not_depend_on_units(seed):
     draw = SPATIAL[seed % len(SPATIAL)]
     drawn = spatial_bridge.plain(draw(seed))
