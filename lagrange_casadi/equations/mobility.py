@@ -34,7 +34,7 @@ from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Link, Point, Vector
+from ..declare.parts import Link, Point, PointMass, Vector
 from ..declare.scene import Scene, Wanted
 from ..geometry.frames import Frame, Velocities
 from ..geometry.rotation import Rotation
@@ -405,7 +405,7 @@ def _in_ground_axes(
         if loop.joint is joint:
             found = Action(*reaction(joint, parent, child, loop.multipliers))
             body = joint.child.body
-            if multibody.tree.lines.get(body) is joint:
+            if isinstance(body, Link | PointMass) and multibody.tree.lines.get(body) is joint:
                 found += Action(*line_reaction(body, joint, multibody.accelerated[body.name]))
             return found
     two_force_link = multibody.tree.two_force_link_of.get(joint)
