@@ -55,14 +55,14 @@ def actions(
     yield touch.second, at + turn(reach), -turn(force), turn(reach.cross(force) - couple)
 
 
-def idle(touch: Touch, bodies: Mapping[str, Moving], t: Array) -> Array:
-    """The power of a unit of the multiplier, over the largest power that is added up in it (t,):
-    zero, but for rounding.
+def idle(touch: Touch, bodies: Mapping[str, Moving], turned: Scalar, fastest: Scalar) -> Array:
+    """The power of a unit of the multiplier (t,), over the largest that it has along the largest
+    rates there are: zero, but for rounding.
 
-    A body's speed at the contact is added up too, of its origin's and its rotation's: a rack that
-    rolls on a pinion at rest has none.
+    Its own bodies may rest while others move: a rack that rolls on a pinion at rest has no speed.
     """
-    one, residuals, sizes = np.ones_like(t), [], []
+    one, residuals = np.ones_like(fastest), []
+    sizes: list[Scalar] = []
     for sign in (1.0, -1.0):
         # What presses apart takes none either.
         terms: list[Scalar] = []
@@ -73,7 +73,7 @@ def idle(touch: Touch, bodies: Mapping[str, Moving], t: Array) -> Array:
             moves = body.speed, body.rate.cross(at - body.at)
             for effort, rate in ((force, moves[0]), (force, moves[1]), (couple, body.rate)):
                 terms += [a * b for a, b in zip(effort.components, rate.components, strict=True)]
-        residuals.append(sum(terms, np.zeros_like(t)))
-        sizes.append(most(terms))
+            sizes += [force.size * fastest, couple.size * turned]
+        residuals.append(sum(terms, np.zeros_like(one)))
     residual, size = most(residuals), float(np.max(most(sizes)))
     return np.asarray(residual / size if size > 0.0 else residual)
