@@ -28,9 +28,9 @@ from ..geometry.frames import Carried, Frame, Velocities
 from ..geometry.vectors import AXES, ZERO, dot, minus, nil, times
 from .applied import applied_by, held_by, push, work
 from .growing import Grown, coordinates_of
-from .joints import loop_residuals
+from .joints import loop_residuals, orientation
 from .meshes import meshed_by
-from .multibody import Applied, LoopEquations, Multibody, RowGraph, change
+from .multibody import Applied, LoopEquations, Multibody, RowGraph, change, released_forces
 from .tree import Tree
 from .two_force_links import TwoForceFrame
 
@@ -116,7 +116,7 @@ def assemble(
     slid = {b.far.body for b in tree.branches if b.reverse and b.joint.slides}
     energies = [
         _energy_on_line(body, tree.lines[body], accelerated.frames[body.name], velocities)
-        if isinstance(body, PointMass) and body in tree.lines
+        if body in tree.lines
         else kinetic_energy(
             body,
             accelerated.frames[body.name],
@@ -242,20 +242,56 @@ def kinetic_energy(
 
 
 def _energy_on_line(
-    body: PointMass, joint: Joint, frame: Frame, velocities: Velocities
+    body: Link | PointMass, joint: Joint, frame: Frame, velocities: Velocities
 ) -> Expression:
-    """The kinetic energy of a point mass along the line on which it slides: what is across, the
-    line bears (:func:`.line_reaction`).
+    """The kinetic energy of a body along the line on which it slides, and about it: what is across,
+    the line bears (:func:`.line_reaction`), but for the moment about it of what is beside it.
     """
-    line = joint.triad[0]
-    speed, acceleration = (dot(part, line) for part in frame.motion_of(ZERO))
-    return body.mass * velocities.number(speed, acceleration) ** 2 / 2
+    line, place = joint.triad[0], joint.child.place
+    speed, acceleration = frame.motion_of(place)
+    along = velocities.number(dot(speed, line), dot(acceleration, line))
+    if isinstance(body, PointMass):
+        return body.mass * along**2 / 2
+    own, going, parts = orientation(joint).resolve(line), ca.SX.sym("going", 4), Velocities()
+    u, v, w, turning = ca.vertsplit(going)
+    moving = Frame(speed=(u, v, w), rate=times(turning, own), anchor=place)
+    energy = kinetic_energy(body, moving, parts, space=True, spun=False, slid=False)
+    energy = ca.substitute(energy, column(parts.symbols), column(parts.graphs))
+    x, y, z, _ = ca.vertsplit(ca.jacobian(ca.jacobian(energy, turning), going).T)
+    couple = dot((x, y, z), frame.rotation.resolve(acceleration))
+    about = velocities.number(dot(frame.rate, line), dot(frame.angular, line), -couple)
+    return ca.substitute(energy, going, ca.vertcat(*times(along, own), about))
 
 
-def line_reaction(body: PointMass, joint: Joint, frame: Frame) -> Vector:
-    """The inertia of a point mass, and its weight, across the line on which it slides [N]."""
-    across = joint.triad[1]
-    return times(body.mass * dot(frame.motion_of(ZERO)[1], across), across)
+def line_reaction(body: Link | PointMass, joint: Joint, frame: Frame) -> tuple[Vector, Vector]:
+    """The inertia of a body, and its weight, across the line on which it slides: a force at the
+    joint's point of it [N], and a couple [N m].
+    """
+    (line, across, _), place = joint.triad, joint.child.place
+    speed, acceleration = frame.motion_of(place)
+    if isinstance(body, PointMass):
+        return times(body.mass * dot(acceleration, across), across), ZERO
+    released, velocities = ca.SX.sym("ed_line", 6), Velocities()
+    moving = Frame(
+        speed=speed,
+        acceleration=acceleration,
+        rotation=frame.rotation,
+        rate=frame.rate,
+        angular=frame.angular,
+        anchor=place,
+    ).displaced(*_vectors(released))
+    energy = kinetic_energy(body, moving, velocities, space=True, spun=False, slid=False)
+    force, couple = (
+        minus(part, times(dot(part, line), line))
+        for part in _vectors(released_forces(energy, released, velocities))
+    )
+    return force, couple
+
+
+def _vectors(six: Expression) -> tuple[Vector, Vector]:
+    """Two vectors, of six entries."""
+    x, y, z, u, v, w = ca.vertsplit(six)
+    return (x, y, z), (u, v, w)
 
 
 def _rigid(

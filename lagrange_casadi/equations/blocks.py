@@ -23,7 +23,7 @@ from ..declare.joints import Joint
 from ..errors import MobilityError
 from ..geometry.vectors import cross, dot
 from .legs import in_fewest, solve_leg
-from .loops import ClosedForm, solve_in_turn, solve_loop, solves
+from .loops import ClosedForm, Verified, solve_in_turn, solve_loop, solves
 from .multibody import Coordinate, LoopEquations, Multibody
 from .released_loops import ReleasedLoops, rank_of
 from .residuals import extent, units
@@ -38,11 +38,14 @@ _ABSENT = 1e-13
 class Equation:
     """One scalar equation of a loop or constraint, with its time derivatives, in the undriven
     coordinates that are ``present``.
+
+    Beside its ``unit``, a length or a slope, a residual is small or large.
     """
 
     loop: LoopEquations
     row: int
     present: frozenset[Coordinate]
+    unit: float
     residual: Any
     residual_rate: Any
     residual_acceleration: Any
@@ -164,18 +167,15 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         largest = float(np.where(np.isnan(values), np.inf, values).max())
         sizes[row][unknown[k]] = largest * unknown[k].size
     found, mechanism = [], multibody.mechanism
-    whole = mechanism.ownership.at_defaults(extent(mechanism)) if mechanism.space else 1.0
+    whole = mechanism.ownership.at_defaults(extent(mechanism))
     for k, (loop, row) in enumerate(
         (group, row) for group in loops for row in range(group.residual.numel())
     ):
         # What has no value at such points may be anything.
-        least = _ABSENT * max(
-            (size for size in sizes[k].values() if np.isfinite(size)), default=0.0
-        )
-        beside = (
-            _ABSENT * units(loop, whole)[row] if mechanism.space and loop.joint is not None else 0.0
-        )
-        there = {c for c, size in sizes[k].items() if size > max(least, beside)}
+        unit = max((size for size in sizes[k].values() if np.isfinite(size)), default=0.0)
+        if loop.joint is not None:
+            unit = max(unit, units(loop, whole)[row])
+        there = {c for c, size in sizes[k].items() if size > _ABSENT * unit}
         # The three of a ball share their variables.
         sphericals = {c.spherical for c in there if c.spherical is not None}
         present = frozenset(c for c in unknown if c in there or c.spherical in sphericals)
@@ -185,7 +185,7 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         if absent:
             symbols = column(ca.vertcat(c.variables, c.rate, c.acceleration) for c in absent)
             parts = ca.substitute(parts, symbols, column(ca.DM([*c.resting, 0, 0]) for c in absent))
-        found.append(Equation(loop, row, present, *ca.vertsplit(parts)))
+        found.append(Equation(loop, row, present, unit or 1.0, *ca.vertsplit(parts)))
     return found
 
 
@@ -306,7 +306,12 @@ def _forms(
         return ()
     two_force_link = all(equation.loop.two_force_link is not None for equation in rows)
     phi = column(equation.residual for equation in rows)
-    form = solve_loop(phi, unknown, multibody.coordinates, two_force_link=two_force_link)
+    beside_units = column(equation.residual / equation.unit for equation in rows)
+
+    def verified(forms: Sequence[ClosedForm]) -> bool:
+        return solves(forms, beside_units, multibody.coordinates)
+
+    form = solve_loop(phi, unknown, multibody.coordinates, verified, two_force_link=two_force_link)
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
     if (
         not forms
@@ -314,9 +319,9 @@ def _forms(
         and len({equation.loop for equation in rows}) == 1
         and (joint := rows[0].loop.joint) is not None
     ):
-        forms = solve_line(joint, [equation.row for equation in rows], phi, unknown, multibody)
-        if not forms and len(unknown) in (2, 3):
-            forms = solve_leg(phi, joint, unknown, multibody)
+        forms = solve_line(joint, rows, unknown, multibody, verified)
+        if not forms and len(unknown) in (2, 3) and len(rows) >= len(unknown):
+            forms = solve_leg(joint, unknown, multibody, verified)
     # An angle whose turns some constraint counts must not come back from its cosine and sine.
     if any(form.branches for form in forms) and any(
         ca.depends_on(counted, c.value) for c in unknown
@@ -381,13 +386,13 @@ def _require_freedom(
 
 def solve_line(
     joint: Joint,
-    rows: Sequence[int],
-    phi: Expression,
+    rows: Sequence[Equation],
     unknown: Sequence[Coordinate],
     multibody: Multibody,
+    verified: Verified,
 ) -> tuple[ClosedForm, ...]:
-    """The closed forms, one after another, of the ``rows`` of a joint that are Phi, given in the
-    plane in which its line moves.
+    """The closed forms, one after another, of equations of a joint, given in the plane in which its
+    line moves.
 
     A slot or a cylindrical joint that closes a loop holds its points together along two lines
     across its own, and its directions as well. What moves in a plane has one of them for each: that
@@ -396,13 +401,14 @@ def solve_line(
     changes.
 
     None where it does not close a loop along a line, where what is unknown does not turn in a plane
-    with it, or none were verified.
+    with it, or none were ``verified``.
     """
     if joint.directions is None or sum(freedom.move == "slide" for freedom in joint.freedoms) != 1:
         return ()
     turn = next((c.name for c in unknown if c.name in multibody.axes), None)
-    pairs = [(k, k + 1) for k in rows if k % 2 == 0]
-    if turn is None or [k for pair in pairs for k in pair] != list(rows):
+    numbers = [equation.row for equation in rows]
+    pairs = [(k, k + 1) for k in numbers if k % 2 == 0]
+    if turn is None or [k for pair in pairs for k in pair] != numbers:
         return ()
     line, first, second = joint.triad
     across = cross(
@@ -413,6 +419,7 @@ def solve_line(
     )
     if weights is None:
         return ()
+    phi = column(equation.residual for equation in rows)
     equations = [weights.T @ phi[2 * k : 2 * k + 2] for k in range(len(pairs))]
     forms = solve_in_turn(equations, unknown, multibody.coordinates)
-    return forms if forms and solves(forms, phi, multibody.coordinates) else ()
+    return forms if forms and verified(forms) else ()

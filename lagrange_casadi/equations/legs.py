@@ -23,23 +23,23 @@ import casadi as ca
 from ..base.arrays import Expression
 from ..declare.joints import Joint
 from ..geometry.vectors import Vector, cross, dot, minus, times
-from .loops import ClosedForm, at_rest, held, solve_in_turn, solves
+from .loops import ClosedForm, Verified, at_rest, held, solve_in_turn
 from .multibody import Coordinate, Multibody
 from .sampling import vanish
 
 
 def solve_leg(
-    phi: ca.SX, joint: Joint, unknown: Sequence[Coordinate], multibody: Multibody
+    joint: Joint, unknown: Sequence[Coordinate], multibody: Multibody, verified: Verified
 ) -> tuple[ClosedForm, ...]:
     """The closed forms, one after another, by which the two points of a joint meet; none where no
-    pattern was verified.
+    pattern was ``verified``.
     """
-    if not multibody.mechanism.space or joint.slides or phi.numel() < len(unknown):
+    if not multibody.mechanism.space or joint.slides:
         return ()
     for first in unknown:
         if first.name in multibody.axes:
             forms = _leg(joint, first, [c for c in unknown if c is not first], multibody)
-            if forms and solves(forms, phi, multibody.coordinates):
+            if forms and verified(forms):
                 return forms
     return ()
 

@@ -20,10 +20,10 @@ what it gives was put back into the equations (:mod:`.sampling`); what has no fo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
+from typing import Any, TypeAlias
 
 import casadi as ca
 
@@ -61,15 +61,20 @@ class ClosedForm:
         )
 
 
+Verified: TypeAlias = Callable[[Sequence[ClosedForm]], bool]
+"""Whether solutions, one after another, were put back into the equations."""
+
+
 def solve_loop(
     phi: ca.SX,
     unknown: Sequence[Coordinate],
     coordinates: Sequence[Coordinate],
+    verified: Verified,
     *,
     two_force_link: bool = False,
 ) -> ClosedForm | None:
     """The closed form of Phi = 0 for some unknown ones of all coordinates, or None where there is
-    none that was verified.
+    none that was ``verified``.
 
     Phi of a ``bar`` is half of a square, and may be one of the unknown.
     """
@@ -78,7 +83,7 @@ def solve_loop(
     if form is None:
         return None
     form = replace(form, unknown=tuple(unknown))
-    return form if solves((form,), phi, coordinates) else None
+    return form if verified((form,)) else None
 
 
 def solve_in_turn(
@@ -209,6 +214,8 @@ def _matching(
 def solves(forms: Sequence[ClosedForm], phi: ca.SX, coordinates: Sequence[Coordinate]) -> bool:
     """Return whether solutions, each of which may depend on those before, are ones of Phi = 0 on
     all branches.
+
+    The equations of Phi have one unit: a gap is judged beside the largest of them.
     """
     symbols = column(c.variables for form in forms for c in form.unknown)
     # The size of what is added up in an equation: its slopes times what they are slopes of.

@@ -46,9 +46,8 @@ from .drives import solve_efforts
 from .friction import Solved, needed, solve
 from .joints import carried, orientation, reaction, supported
 from .kinematics import Kinematics
-from .lagrange import LagrangeSystem
 from .meshes import braking, pressing_apart, transmissions_of
-from .multibody import Multibody, own_coordinate
+from .multibody import Multibody, own_coordinate, released_forces
 from .multipliers import multipliers_of
 from .pressing import frictions_of, joint_friction
 from .residuals import reach
@@ -321,20 +320,11 @@ def _of_any_link(space: bool) -> tuple[Expression, Expression]:
     translation = (released[0], released[1], released[2] if space else 0.0)
     base = velocities.vector(base_frame.displaced(translation, ZERO).motion_of(ZERO))
     lever = velocities.vector(Frame(rate=rate, angular=angular).motion_of((1.0, 0.0, 0.0)))
-    piece = LagrangeSystem(
-        kinetic=mass * ca.sumsqr(base) / 2
-        + first * ca.dot(base, lever)
-        + second * ca.sumsqr(lever) / 2,
-        force_function=ca.SX(0),
-        coordinates=ca.SX(0, 1),
-        rates=ca.SX(0, 1),
-        accelerations=ca.SX(0, 1),
-        mobility_rates=released,
-        velocities=column(velocities.symbols),
-        velocity_graphs=column(velocities.graphs),
-        velocity_rates=column(velocities.rates),
+    kinetic = (
+        mass * ca.sumsqr(base) / 2 + first * ca.dot(base, lever) + second * ca.sumsqr(lever) / 2
     )
-    return ca.jacobian(piece.terms()[1], ca.vertcat(mass, first)), symbols
+    forces = released_forces(kinetic, released, velocities)
+    return ca.jacobian(forces, ca.vertcat(mass, first)), symbols
 
 
 def _loads_on(
@@ -414,9 +404,9 @@ def _in_ground_axes(
     for loop in multibody.loop_equations:
         if loop.joint is joint:
             found = Action(*reaction(joint, parent, child, loop.multipliers))
-            mass = joint.child.body
-            if isinstance(mass, PointMass) and multibody.tree.lines.get(mass) is joint:
-                found += Action(line_reaction(mass, joint, multibody.accelerated[mass.name]))
+            body = joint.child.body
+            if isinstance(body, Link | PointMass) and multibody.tree.lines.get(body) is joint:
+                found += Action(*line_reaction(body, joint, multibody.accelerated[body.name]))
             return found
     two_force_link = multibody.tree.two_force_link_of.get(joint)
     if two_force_link is not None:

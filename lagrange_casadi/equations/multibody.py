@@ -339,3 +339,21 @@ def change(expression: ca.SX, coordinates: tuple[Coordinate, ...], time: ca.SX) 
     moving = column([*(c.variables for c in coordinates), *(c.rate for c in coordinates), time])
     speed = column([*(c.change for c in coordinates), *(c.acceleration for c in coordinates), 1])
     return ca.jtimes(ca.SX(expression), moving, speed)
+
+
+def released_forces(kinetic: ca.SX, released: ca.SX, velocities: Velocities) -> ca.SX:
+    """The forces along ``released`` rates, taken at rest, that a kinetic energy in velocities
+    calls for.
+    """
+    nothing = ca.SX(0, 1)
+    return LagrangeSystem(
+        kinetic=kinetic,
+        force_function=ca.SX(0),
+        coordinates=nothing,
+        rates=nothing,
+        accelerations=nothing,
+        mobility_rates=released,
+        velocities=column(velocities.symbols),
+        velocity_graphs=column(velocities.graphs),
+        velocity_rates=column(velocities.rates),
+    ).terms()[1]

@@ -71,13 +71,20 @@ class Tree:
 
     @cached_property
     def lines(self) -> dict[Body, Joint]:
-        """The joint of each point mass of a plane that closes a loop by a line of the ground: what
-        the line bears of the mass is no difference of what other joints bear.
+        """The joint of each point mass of a plane, and of each link in space, that closes a loop by
+        a line of the ground: what the line bears of the mass is no difference of what other joints
+        bear.
         """
         return {
-            joint.child.body: joint
+            body: joint
             for joint in self.closing
-            if joint.turned is None and joint.slides and isinstance(joint.parent.body, Ground)
+            for body in (joint.child.body,)
+            if isinstance(joint.parent.body, Ground)
+            and (
+                joint.turned is None and joint.slides and not body.oriented
+                if joint.directions is None
+                else joint.kind == "cylindrical" and body.oriented
+            )
         }
 
     def measures(self, joint: Joint, axis: Axis) -> bool:

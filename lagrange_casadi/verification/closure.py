@@ -151,7 +151,7 @@ def _of_equations(placed: Placed, digits: Digits) -> Iterator[Scalar]:
     for equation in placed.declared.equations:
         yield _missed(placed, equation) * placed.declared.size
         for touch in equation.touches:
-            yield idle(touch, placed.bodies, placed.rates, placed.reported.t) * placed.declared.size
+            yield idle(touch, placed.bodies, *placed.rates[:2]) * placed.declared.size
 
 
 def _missed(placed: Placed, equation: Equation) -> Array:

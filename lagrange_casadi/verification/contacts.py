@@ -55,15 +55,14 @@ def actions(
     yield touch.second, at + turn(reach), -turn(force), turn(reach.cross(force) - couple)
 
 
-def idle(touch: Touch, bodies: Mapping[str, Moving], rates: tuple[Scalar, ...], t: Array) -> Array:
-    """The power of a unit of the multiplier, over the largest power that is added up in it (t,):
-    zero, but for rounding.
+def idle(touch: Touch, bodies: Mapping[str, Moving], turned: Scalar, fastest: Scalar) -> Array:
+    """The power of a unit of the multiplier (t,), over the largest that it has along the largest
+    rates there are: zero, but for rounding.
 
-    ``rates`` are the largest rate of turning and the largest speed of the mechanism: what a unit of
-    the multiplier gives at these is added up too, since bodies in contact may be at rest.
+    Its own bodies may rest while others move: a rack that rolls on a pinion at rest has no speed.
     """
-    one, residuals, sizes = np.ones_like(t), [], []
-    turned, fastest, *_ = rates
+    one, residuals = np.ones_like(fastest), []
+    sizes: list[Scalar] = []
     for sign in (1.0, -1.0):
         # What presses apart takes none either.
         terms: list[Scalar] = []
@@ -71,9 +70,10 @@ def idle(touch: Touch, bodies: Mapping[str, Moving], rates: tuple[Scalar, ...], 
             replace(touch, slack=0.0), bodies[touch.carrier], sign * one, 0.0
         ):
             body = bodies[name]
-            for effort, rate in ((force, body.speed_at(at)), (couple, body.rate)):
+            moves = body.speed, body.rate.cross(at - body.at)
+            for effort, rate in ((force, moves[0]), (force, moves[1]), (couple, body.rate)):
                 terms += [a * b for a, b in zip(effort.components, rate.components, strict=True)]
-            sizes.append(force.size * fastest + couple.size * turned)
-        residuals.append(sum(terms, np.zeros_like(t)))
+            sizes += [force.size * fastest, couple.size * turned]
+        residuals.append(sum(terms, np.zeros_like(one)))
     residual, size = most(residuals), float(np.max(most(sizes)))
     return np.asarray(residual / size if size > 0.0 else residual)

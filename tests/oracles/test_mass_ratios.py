@@ -18,18 +18,26 @@ ROUNDINGS = 16.0
 """Of its own peak, that a force may be off."""
 
 
-def held(mass, kind=Mechanism):
-    """A slider-crank at rest, whose guide bears the weight of its slider."""
+def held(mass, kind=Mechanism, *, turns=False):
+    """A slider-crank at rest, whose guide bears the weight of its slider: a point, or in space a
+    link that ``turns`` about the guide.
+    """
     m = kind("held")
     crank, rod = m.link("crank", length=0.1, mass=0.1), m.link("rod", length=0.25, mass=0.1)
-    slider, space = m.point_mass("slider", mass), kind is SpatialMechanism
+    space = kind is SpatialMechanism
+    slider = m.link("slider", length=0.1, mass=mass) if turns else m.point_mass("slider", mass)
     turn = {"axis": (0, 1, 0)} if space else {}
     m.revolute("O", m.ground, crank, **turn)
     m.revolute("A", crank.tip, rod, **turn)
-    m.spherical("B", rod.tip, slider) if space else m.revolute("B", rod.tip, slider)
-    m.prismatic("guide", m.ground, slider, axis=(1, 0, 0) if space else (1, 0))
+    if space and not turns:
+        m.spherical("B", rod.tip, slider)
+    else:
+        m.revolute("B", rod.tip, slider, **turn)
+    guide = m.cylindrical if turns else m.prismatic
+    guide("guide", m.ground, slider, axis=(1, 0, 0) if space else (1, 0))
     sign = -1.0 if space else 1.0
-    rough = {"A": 1.2, "guide": 0.3} if space else {"rod": -0.3}
+    slides = {"guide:slide": 0.3, "guide:turn": 0.0, "B": -0.3} if turns else {"guide": 0.3}
+    rough = {"A": 1.2, **slides} if space else {"rod": -0.3}
     return Scene(m, {"O": polynomial(0.9 * sign)}, t=(0.0, 0.0, 1), posture=rough)
 
 
@@ -62,9 +70,12 @@ def test_nor_does_the_exported_program(tmp_path, precision):
     assert_exact(lambda name: row[names.index(name)], 1e8, precision)
 
 
+@pytest.mark.parametrize("turns", [False, True])
 @pytest.mark.parametrize("mass", MASSES)
-def test_nor_does_one_in_space(mass):
-    light, heavy = (evaluate(held(one, SpatialMechanism), backend="vm") for one in (0.0, mass))
+def test_nor_does_one_in_space(mass, turns):
+    light, heavy = (
+        evaluate(held(one, SpatialMechanism, turns=turns), backend="vm") for one in (0.0, mass)
+    )
     for name in light.names():
         if name.startswith(("effort", "reaction:O", "reaction:A", "reaction:B")):
             one, other = heavy.array(name), light.array(name)
