@@ -130,7 +130,7 @@ from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
 from lagrange_casadi.elements.plate import area_of
 from lagrange_casadi.elements.profile_lift import read_profile
-from lagrange_casadi.equations import assembly, friction, loops, mobility
+from lagrange_casadi.equations import assembly, blocks, friction, loops, mobility
 from lagrange_casadi.equations import derive as equations_derive
 from lagrange_casadi.equations.assembly import assemble
 from lagrange_casadi.equations.blocks import solving_order

@@ -8,7 +8,17 @@ import h5py
 import numpy as np
 import pytest
 from commands import command
-from internals import COARSE, DesignEngine, EvaluationMethod, Solution, Status, check, load, loops
+from internals import (
+    COARSE,
+    DesignEngine,
+    EvaluationMethod,
+    Solution,
+    Status,
+    blocks,
+    check,
+    load,
+    loops,
+)
 from internals import instants_refusal as refusal
 from mechanisms import far, ladder, parallelogram, slider_crank
 
@@ -186,7 +196,7 @@ def mistaken(monkeypatch):
     nobody verified.
     """
     monkeypatch.setattr(loops, "_turns", lambda *_: True)
-    monkeypatch.setattr(loops, "solves", lambda *_: True)
+    monkeypatch.setattr(blocks, "solves", lambda *_: True)
     m = Mechanism("mistaken")
     a, b = m.link("a", length=0.6, mass=1.0), m.link("b", length=0.5, mass=1.2)
     m.revolute("A", m.ground, a)
