@@ -82,16 +82,18 @@ def emit(
     if program.newton is not None:
         macros |= _closing(program.newton.turning, precision, newton)
     macros["BEGINS"] = int(reduction is not None and newton is not None)
+    rare = {}
     if reduction is not None:
         macros["REDUCED"] = ""
         if stages.closing is not None and stages.closing.size1_out(0):
-            wide["closing"] = stages.closing
+            rare["closing"] = stages.closing
     text = (
         start(precision)
         + INSTANTS.text(real)
         + print_functions(narrow, precision, prefix="follow")
         + WIDE
         + print_functions(wide, precision, prefix="scene", packs=True)
+        + print_functions(rare, precision, prefix="closing", packs=True, rare=True)
         + defined("SCENE", macros)
         + written("scene.c")
     )

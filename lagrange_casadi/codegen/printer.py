@@ -67,17 +67,23 @@ def defined(prefix: str, macros: Mapping[str, object]) -> str:
 
 
 def print_functions(
-    functions: Mapping[str, ca.Function], precision: Precision, *, prefix: str, packs: bool = False
+    functions: Mapping[str, ca.Function],
+    precision: Precision,
+    *,
+    prefix: str,
+    packs: bool = False,
+    rare: bool = False,
 ) -> str:
     """Return static C functions, each ``void NAME(const casadi_real** arg, casadi_real** res)``, of
     SX functions by name.
 
     ``casadi_real`` is for the caller to define: a number of the precision, or with ``packs`` a pack
-    of ``lanes_real``. Names of tables begin with ``prefix``. Nothing of it allocates, recurs, or is
+    of ``lanes_real``. Names of tables begin with ``prefix``. Long functions that are ``rare`` are
+    compiled for size. Nothing of it allocates, recurs, or is
     seen outside. Raises :class:`.DeclarationError` for a function that calls another one, or does
     what C has no name for; :class:`.SizeError` for a number that is too large for single precision.
     """
-    printer = _Printer(precision, prefix, packs, {})
+    printer = _Printer(precision, prefix, packs, "RARE" if rare else "PART", {})
     bodies = [printer.function(name, function) for name, function in functions.items()]
     return "\n".join([*printer.tables(), *bodies])
 
@@ -100,6 +106,7 @@ class _Printer:
     precision: Precision
     prefix: str
     packs: bool
+    part: str
     looked_up: dict[str, tuple[str, Lookup]]
 
     def function(self, name: str, function: ca.Function) -> str:
@@ -109,7 +116,7 @@ class _Printer:
         return (
             _whole(name, statements)
             if short
-            else _in_parts(name, statements, "LAGRANGE_CASADI_PART " if self.packs else "")
+            else _in_parts(name, statements, f"LAGRANGE_CASADI_{self.part} " if self.packs else "")
         )
 
     def tables(self) -> Iterator[str]:
