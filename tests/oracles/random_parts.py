@@ -1,5 +1,5 @@
-"""Parts of several bodies or of a shape, joined to random mechanisms: planetary sets, rods in bushes,
-plates, bent bars and dampers in joints; nothing of the package is used.
+"""Parts of several bodies or of a shape, joined to random mechanisms: planetary sets, bushes,
+plates and bent bars; nothing of the package is used.
 """
 
 from __future__ import annotations
