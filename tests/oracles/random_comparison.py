@@ -28,6 +28,12 @@ CONDEMNED, WITHHELD = "its certificate fails", "is withheld, and unique"
 _UNJUDGED = 1e-6
 _INSTANTS, _CLOSED_AT = 4, 12
 _BESIDE, _AT_STATION = 2e-3, 1e-5
+_NOTHING = 1e-300
+_PEAKS, _AT_PEAK, _STEADY_PEAK = 3, 1e-8, 1e-3
+FACTOR, STATED = 10.0, 640.0
+"""An error that is stated is within a factor of what it is of, and no more than so many roundings
+of the largest of its kind, as the loops magnify these.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,9 +86,9 @@ class Comparison:
         self.units: dict[str, float] = {}  # the force of a unit multiplier
         self.size = self.d.oracle(self.d.start).size
 
-    def look(self) -> None:
+    def look(self, peaks=()) -> None:
         """Fill ``faults``, what is wrong, and ``notes``, what is doubtful: the first fault tells
-        most.
+        most. ``peaks`` are those that the package has between the instants.
         """
         path = self._path()
         if path is None:
@@ -93,6 +99,7 @@ class Comparison:
             if self.solution.t[i] <= path.end:
                 self._compare(i, path)
         self._weigh()
+        self._look_at_peaks(peaks, path)
         for name, loose in self.withheld.items():
             if not any(loose):
                 self.notes.append(f"'{name}' {WITHHELD} at all instants that were evaluated")
@@ -310,8 +317,8 @@ class Comparison:
     def _source(self, name: str) -> tuple[str, float]:
         """What an output is so many times of, as the multiplier of a contact; others themselves."""
         _, _, output = name.partition("output:")
-        contact = output.partition("_")[0]
-        if contact in self.d.contacts:
+        contact = next((name for name in self.d.contacts if output.startswith(f"{name}_")), "")
+        if contact:
             return f"multiplier:{contact}", 1.0
         return self.d.outputs.get(output, (name, 1.0))
 
@@ -368,6 +375,7 @@ class Comparison:
             full = name.partition("@")[0]
             peaks[full] = max(peaks[full], *(abs(gap.value) for gap in gaps))
         largest = self._largest(peaks)
+        self._weigh_errors(largest)
         for name, gaps in self.found.items():
             kind, scale = self._kind(name)
             most, kin = peaks[name.partition("@")[0]], largest[kind] / scale
@@ -380,6 +388,71 @@ class Comparison:
                     self.faults.append(f"{value} at t = {gap.t:.6g} s: {off}")
                     break
         self.faults.sort(key=lambda fault: "not unique" in fault)
+
+    def _weigh_errors(self, largest) -> None:
+        """Hold every error that is stated against the gap that there is, and against what rounding
+        may make of the largest of its kind.
+        """
+        for name, gaps in self.found.items():
+            kind, scale = self._kind(name)
+            stated = self.solution.errors.get(name.partition("@")[0])
+            if stated is None:
+                continue
+            least = min(gap.exact.steadiness for gap in gaps)
+            part = STATED * ROUNDING / min(least, self.drawn.path.steadiness) ** 2
+            most = part * largest[kind] / scale + _NOTHING
+            for gap in gaps:
+                own = gap.rounding * largest[kind] / scale
+                told = f"'{name}' states {stated:.3g}"
+                if (
+                    abs(gap.gap) > FACTOR * stated + own
+                    and abs(gap.gap) > self._blur(name, gap) + own
+                ):
+                    self.faults.append(f"{told} and is off by {gap.gap:.3g} at t = {gap.t:.6g} s")
+                    break
+                if stated > most and stated > STATED * self._blur(name, gap):
+                    self.faults.append(f"{told}, far more than the {most:.3g} that rounding makes")
+                    break
+
+    def _look_at_peaks(self, peaks, path: Path) -> None:
+        """Hold peaks against the oracle: none is less than its value at any instant that was looked
+        at, and at the peak's own time that is the value.
+        """
+        told = {peak.name: peak for peak in peaks if math.isfinite(peak.value)}
+        scales = {name: self._kind(name) for name in self.found}
+        sizes: dict[str, float] = collections.defaultdict(float)
+        for name, gaps in self.found.items():
+            kind, scale = scales[name]
+            sizes[kind] = max(sizes[kind], *(abs(gap.value) * scale for gap in gaps))
+        for name, gaps in self.found.items():
+            full, (kind, scale) = name.partition("@")[0], scales[name]
+            most = max(abs(gap.value) for gap in gaps)
+            if full in told and abs(told[full].value) < most - 1e-7 * sizes[kind] / scale:
+                self.faults.append(f"the peak {told[full]} is less than {most}")
+        some = [peak for peak in told.values() if peak.t < min(path.end, path.passes)]
+        for k in self.rng.permutation(len(some))[:_PEAKS]:
+            self._look_at_peak(some[k], path, sizes)
+
+    def _look_at_peak(self, peak, path: Path, sizes) -> None:
+        """At its own time, or just beside where a load comes to a link or leaves it."""
+        kind, scale = self._kind(peak.name)
+        allowed = 1e-6 * max(abs(peak.value), sizes[kind] / scale)
+        for by in (0.0, -_AT_PEAK, _AT_PEAK):
+            t = peak.t + by
+            model = self.d.oracle(t)
+            exact = model.solve(self.d.drives(t), path.near(t))
+            if exact.steadiness < _STEADY_PEAK or exact.vague:
+                return
+            if peak.xi is None:
+                named = self._named(exact, model, collections.defaultdict(list))
+                values = [named.get(peak.name, peak.value)]
+            else:
+                _, link, force = peak.name.split(":")
+                ratios = [min(max(peak.xi + x, 0.0), 1.0) for x in (0.0, -_AT_PEAK, _AT_PEAK)]
+                values = [exact.sections[link](u)[FORCES.index(force)] for u in ratios]
+            if min(abs(abs(value) - abs(peak.value)) for value in values) <= allowed:
+                return
+        self.faults.append(f"the peak {peak} is {values[0]} there")
 
     def _largest(self, peaks: dict[str, float]) -> dict[str, float]:
         """The largest of each kind, given loads, weight and inertia among the forces."""

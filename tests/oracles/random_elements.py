@@ -223,21 +223,29 @@ def gear(d: Draft) -> bool | None:
     )
     arm = -r1 if inside and r1 < r2 else r1
     off = -1.0 if not inside or r1 < r2 else 1.0  # off the teeth: a pinion inward, a ring outward
+    force = teeth_between(first, second, abs(arm), math.copysign(1.0, arm), -off)
+    d.contacts[name] = _mesh(name, formula, force, angle, (first, second), carrier, (r1, r2))
+    return None
+
+
+def teeth_between(first: Spot, second: Spot, radius: float, sense: float, press: float) -> Callable:
+    """What the force on a gear's teeth does, ``along`` the pitch circle forward and ``apart``: the
+    pitch point lies from the first centre toward the second one, or off it where ``sense`` is
+    negative. Teeth press the first gear off the pitch point, or toward it where ``press`` is
+    negative.
+    """
 
     def force(place, along: float, apart: float):
-        """``along`` the pitch circle forward, and ``apart`` toward the first gear's own axis."""
         e, n, length = _centres(place, first, second)
-        sign = math.copysign(1.0, arm)
-        e, n = (sign * e[0], sign * e[1]), (sign * n[0], sign * n[1])
-        f = n[0] * along + off * apart * e[0], n[1] * along + off * apart * e[1]
-        reach = abs(arm) * e[0] - sign * length * e[0], abs(arm) * e[1] - sign * length * e[1]
+        e, n = (sense * e[0], sense * e[1]), (sense * n[0], sense * n[1])
+        f = n[0] * along - press * apart * e[0], n[1] * along - press * apart * e[1]
+        reach = radius * e[0] - sense * length * e[0], radius * e[1] - sense * length * e[1]
         return [
-            (first.point, *f, abs(arm) * along),
+            (first.point, *f, radius * along),
             (second.point, -f[0], -f[1], -(reach[0] * f[1] - reach[1] * f[0])),
         ]
 
-    d.contacts[name] = _mesh(name, formula, force, angle, (first, second), carrier, (r1, r2))
-    return None
+    return force
 
 
 def _mesh(name: str, formula: Formula, force: Callable, angle: float, *axes) -> Contact:

@@ -13,9 +13,11 @@ from random_growth import anything
 from spread import Spread
 
 
-def load(d: Draft) -> None:
+def load(d: Draft, kind: str | None = None) -> None:
     """A force, a torque, a spring or a damper, somewhere."""
-    kind = d.choose("force", "torque", "spring", "damper", "torsion", weights=[4, 3, 2, 1, 1])
+    kind = kind or d.choose(
+        "force", "torque", "spring", "damper", "torsion", weights=[4, 3, 2, 1, 1]
+    )
     size = 10.0 ** d.choose(0, 1, 2, 4, 6, weights=[3, 3, 3, 1, 1])
     turning = [name for name in d.bodies if d.bodies[name].oriented]
     if kind == "force":
@@ -68,13 +70,13 @@ def load(d: Draft) -> None:
         d.loads[name] = functools.partial(_coil, joint=d.joints[joint], **numbers)
 
 
-def line_load(d: Draft, rng: np.random.Generator) -> None:
+def line_load(d: Draft, rng: np.random.Generator, often: float) -> None:
     """A load along a link, or a part of it: even, linear, or a polynomial of the distance; by a
     generator of its own.
     """
     links = [name for name, body in d.bodies.items() if body.length]
     drawn, d.rng = d.rng, rng
-    if links and d.chance(0.4):
+    if links and d.chance(often):
         link, size = d.choose(*links), 10.0 ** d.choose(0, 1, 2, 4)
         length, turns, name = d.bodies[link].length, d.chance(0.4), d.new("f")
         start, end = (

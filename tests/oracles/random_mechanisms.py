@@ -15,6 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 import random_drives as drives
 import random_elements as elements
+import random_linkages as linkages
+import random_parts as parts
+import random_patterns as patterns
 from random_draft import Draft
 from random_growth import LEAST, attempt, close, dyad, freedom, hang, twice, values
 from random_loads import line_load, load, one_way
@@ -24,8 +27,23 @@ from random_patterns import PATTERNS
 _HEAD = """import casadi as ca
 from casadi import cos, sin, sqrt
 from lagrange_casadi import Mechanism, Scene, curve, density, evaluate, motion, table
-from lagrange_casadi.elements import belt, cylinder, disc_cam, gears, two_bearings, wheel
+from lagrange_casadi.elements import belt, bent_bar, cylinder, disc_cam, gears, planetary, plate
+from lagrange_casadi.elements import two_bearings, two_bushes, wheel
 """
+_LINKAGES = [linkages.slider_crank, linkages.crank_rocker, linkages.inverted, patterns.open_chain]
+KINDS = {
+    **dict.fromkeys(parts.PARTS, _LINKAGES),
+    "line": [*_LINKAGES, linkages.platform],
+    "damper": _LINKAGES,
+    "torsion": _LINKAGES,
+    "timed": [patterns.led_arm],
+    "oldham": [linkages.oldham],
+    "toothed": [patterns.planetary, patterns.geared_five_bar, patterns.rack],
+    "rolling": [patterns.sleigh, patterns.rolling_wheel],
+    "one_way": [],
+}
+"""What may be asked for in a mechanism, and on which patterns that is built: by default on any."""
+
 _ALONG, _ELEMENTS, _DRIVES, _ASKED, _SWITCHED = 1, 2, 3, 4, 5
 SPACING = 0.4
 """Of the samples of a motion [s]."""
@@ -44,6 +62,7 @@ class Drawn:
     """
 
     seed: int
+    kind: str
     draft: Draft
     instants: tuple[float, float, int]
     grid: tuple[float, float, int]
@@ -81,49 +100,38 @@ class Drawn:
 
 
 @functools.lru_cache(maxsize=4)
-def draw(seed: int, switched: bool = False) -> Drawn:
-    """The mechanism of a seed; if it is switched, with one-way forces too."""
-    rng = np.random.default_rng([2024, seed])
+def draw(seed: int, kind: str = "") -> Drawn:
+    """The mechanism of a seed; if it is of a kind, with what that says."""
+    among = KINDS.get(kind)
+    rng = np.random.default_rng([2024, seed, *([[*KINDS].index(kind)] if among else [])])
     while True:
-        d = _structure(seed, rng)
+        d = _structure(seed, rng, kind)
         if d is not None and _drive(d):
-            if d.chance(0.03):
+            if not among and d.chance(0.03):
                 _misdrive(d)
             else:
                 drives.move(d, np.random.default_rng((seed, _DRIVES)))
                 drives.lead(d, np.random.default_rng((seed, _DRIVES, 1)))
-            return _finish(seed, d, switched)
+            return _finish(seed, d, kind)
 
 
-def _structure(seed: int, rng: np.random.Generator) -> Draft | None:
+def _structure(seed: int, rng: np.random.Generator, kind: str) -> Draft | None:
     """A mechanism without drives; None where chance made too much of it, or nothing."""
-    d = Draft(f"random_{seed}", rng)
+    d = Draft(f"random_{kind}{seed}", rng)
     d.parametric, d.far = d.choose(
         (0.0, 0.0), (0.2, 1.0), (0.5, 1.0), (0.2, 0.0), weights=[5, 3, 1, 1]
     )
     d.start = d.choose(0.0, d.between(-2.0, 5.0), weights=[3, 1])
-    whole: list[str] = []
-    if d.chance(0.7):
-        for _ in range(d.choose(1, 2, weights=[9, 1])):
-            pattern = d.choose(*PATTERNS, weights=list(PATTERNS.values()))
-            whole = pattern(d)
-            d.lines.insert(0, f"# {pattern.__name__}")
-        grows = d.choose(0, 1, 2, 4, weights=[5, 3, 2, 1])
-    else:
-        d.loose_axes = True
-        for _ in range(d.choose(2, 3, 4, 5, 7, weights=[2, 3, 3, 2, 1])):
-            hang(d)
-        for _ in range(8):
-            if freedom(d) > d.choose(0, 1, 2, weights=[1, 5, 2]):
-                close(d)
-        grows = d.choose(0, 1, 2)
+    if among := KINDS.get(kind):
+        return _of_kind(d, kind, d.choose(*among))
+    whole, grows = _pattern(d)
     for _ in range(grows):
-        kind = d.choose("hang", "dyad", "close", "twice", weights=[6, 6, 4, 1])
-        if kind == "hang":
+        way = d.choose("hang", "dyad", "close", "twice", weights=[6, 6, 4, 1])
+        if way == "hang":
             hang(d)
-        elif kind == "dyad":
+        elif way == "dyad":
             attempt(d, dyad, takes=0)
-        elif kind == "twice":
+        elif way == "twice":
             attempt(d, twice)
         elif freedom(d) > 1 and close(d):
             whole = []
@@ -133,6 +141,37 @@ def _structure(seed: int, rng: np.random.Generator) -> Draft | None:
     d.leads = [*whole[:1], *d.leads]
     d.whole = bool(whole) and freedom(d) == 1
     return d if len(d.bodies) <= 14 else None
+
+
+def _of_kind(d: Draft, kind: str, pattern) -> Draft | None:
+    """A pattern with what a kind says, none of it written by parameters."""
+    d.leads = [*pattern(d)[:1], *d.leads]
+    d.lines.insert(0, f"# {pattern.__name__}, {kind}")
+    d.parametric, parametric = 0.0, d.parametric
+    if kind in parts.PARTS and not parts.join(d, kind):
+        return None
+    d.parametric = parametric
+    return d if any(body.mass for body in d.bodies.values()) else None
+
+
+def _pattern(d: Draft):
+    """A pattern that has a name, or chance alone: joints that may turn all the way round, and how
+    often more is joined.
+    """
+    whole: list[str] = []
+    if d.chance(0.7):
+        for _ in range(d.choose(1, 2, weights=[9, 1])):
+            pattern = d.choose(*PATTERNS, weights=list(PATTERNS.values()))
+            whole = pattern(d)
+            d.lines.insert(0, f"# {pattern.__name__}")
+        return whole, d.choose(0, 1, 2, 4, weights=[5, 3, 2, 1])
+    d.loose_axes = True
+    for _ in range(d.choose(2, 3, 4, 5, 7, weights=[2, 3, 3, 2, 1])):
+        hang(d)
+    for _ in range(8):
+        if freedom(d) > d.choose(0, 1, 2, weights=[1, 5, 2]):
+            close(d)
+    return whole, d.choose(0, 1, 2)
 
 
 def _drive(d: Draft) -> bool:
@@ -223,7 +262,7 @@ def _law(d: Draft, joint: str) -> None:
         d.drive(joint, f"motion.samples({times}, {[formula.jet(None, x).v for x in times]})", law)
 
 
-def _finish(seed: int, d: Draft, switched: bool) -> Drawn:
+def _finish(seed: int, d: Draft, kind: str) -> Drawn:
     """Loads, gravity, instants, posture; and the path."""
     d.gravity = d.choose(
         (0.0, -9.81), (0.0, 0.0), (d.between(-10, 10), d.between(-10, 10)), weights=[5, 1, 2]
@@ -231,9 +270,10 @@ def _finish(seed: int, d: Draft, switched: bool) -> Drawn:
     if d.gravity != (0.0, -9.81):
         x, y = (d.number(value, 0.5) for value in d.gravity)
         d.lines.append(f"m.set_gravity({x.text}, {y.text})")
-    for _ in range(d.choose(0, 1, 2, 4)):
-        load(d)
-    line_load(d, np.random.default_rng((seed, _ALONG)))
+    asked = kind if kind in ("damper", "torsion") else None
+    for _ in range(3 if asked else d.choose(0, 1, 2, 4)):
+        load(d, asked)
+    line_load(d, np.random.default_rng((seed, _ALONG)), 1.0 if kind == "line" else 0.4)
     duration = d.choose(d.between(0.3, 1.0), d.between(0.8, 2.5), weights=[2, 1])
     scene_grid = (d.start, d.start + duration, d.choose(5, 21, 61, 121))
     moves = scene_grid[2] - 1
@@ -244,7 +284,7 @@ def _finish(seed: int, d: Draft, switched: bool) -> Drawn:
     elif d.chance(0.1):
         grid = d.choose((d.start, d.start, 1), (d.start, d.start + 0.05, 2))
     path = follow(d, grid[1], 0.05 if d.whole else 0.1)
-    if switched and path.motions and d.fits:
+    if kind == "one_way" and path.motions and d.fits:
         one_way(d, np.random.default_rng((seed, _SWITCHED)), path.motions)
     own = np.random.default_rng((seed, _ASKED))
     if path.motions and d.fits:
@@ -272,8 +312,8 @@ def _finish(seed: int, d: Draft, switched: bool) -> Drawn:
         posture = {name: value for name, value in posture.items() if d.chance(0.7)}
     if d.chance(0.3):
         d.lines = _shuffled(d)
-    asked = drives.over(d, own, scene_grid, grid) if path.end >= grid[1] else None
-    keywords = {"t": grid} if asked is None else {"over": asked}
+    over = drives.over(d, own, scene_grid, grid) if path.end >= grid[1] else None
+    keywords = {"t": grid} if over is None else {"over": over}
     if moved := {
         name: value for name, (default, value) in d.parameters.items() if default != value
     }:
@@ -285,7 +325,7 @@ def _finish(seed: int, d: Draft, switched: bool) -> Drawn:
             + ["effort"]
         )
         keywords["wanted"] = ["motion", *(name for name in sorted(names) if d.chance(0.4))]
-    return Drawn(seed, d, scene_grid, grid, posture, keywords, path.until(grid[1]), told)
+    return Drawn(seed, kind, d, scene_grid, grid, posture, keywords, path.until(grid[1]), told)
 
 
 def _shuffled(d: Draft) -> list[str]:

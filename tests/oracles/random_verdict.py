@@ -13,6 +13,7 @@ import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
+from internals import forces
 from random_comparison import Comparison
 from random_mechanisms import Drawn
 from random_path import NEAR
@@ -41,17 +42,22 @@ class Verdict:
     regular: bool
     notes: list[str] = field(default_factory=list)
     details: list[str] = field(default_factory=list)
+    solution: object = None
 
 
-def judge(drawn: Drawn, seconds: float = 120.0, **method) -> Verdict:
-    """Evaluate a random mechanism, and compare with the oracle."""
-    said = {"seed": drawn.seed, "regular": is_regular(drawn)}
+def judge(drawn: Drawn, seconds: float = 120.0, *, peaks: bool = False, **method) -> Verdict:
+    """Evaluate a random mechanism, and compare with the oracle; its ``peaks`` between instants
+    too.
+    """
+    said, scene = {"seed": drawn.seed, "regular": is_regular(drawn)}, drawn.scene()
     try:
         with _within(seconds), warnings.catch_warnings():
             warnings.simplefilter(
                 "ignore", CertificateWarning
             )  # what the certificate says is among the notes
-            solution = evaluate(drawn.scene(), **drawn.keywords, **method)
+            solution = evaluate(scene, **drawn.keywords, **method)
+            peaks = peaks and drawn.grid[2] > 1 and "wanted" not in drawn.keywords
+            found = refine(scene, solution, forces(solution)) if peaks else []
     except LagrangeCasadiError as error:
         return Verdict(kind="refused", why=f"{type(error).__name__}: {error}", **said)
     except TooLongError:
@@ -63,7 +69,7 @@ def judge(drawn: Drawn, seconds: float = 120.0, **method) -> Verdict:
             details=[traceback.format_exc()],
             **said,
         )
-    return compare(drawn, solution)
+    return compare(drawn, solution, found)
 
 
 def is_regular(drawn: Drawn) -> bool:
@@ -81,18 +87,23 @@ def is_regular(drawn: Drawn) -> bool:
     )
 
 
-def compare(drawn: Drawn, solution) -> Verdict:
-    """A solution beside the oracle."""
+def compare(drawn: Drawn, solution, peaks=()) -> Verdict:
+    """A solution beside the oracle, and its peaks between instants."""
     said = {"seed": drawn.seed, "regular": is_regular(drawn)}
     if not drawn.draft.fits:
         return Verdict(
             kind="wrong", why="there is a result, but the drives do not fit the freedoms", **said
         )
     found = Comparison(drawn, solution)
-    found.look()
+    found.look(peaks)
     kind = "wrong" if found.faults else "right"
     return Verdict(
-        kind=kind, why=(found.faults or [""])[0], notes=found.notes, details=found.faults, **said
+        kind=kind,
+        why=(found.faults or [""])[0],
+        notes=found.notes,
+        details=found.faults,
+        solution=solution,
+        **said,
     )
 
 

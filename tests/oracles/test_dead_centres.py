@@ -217,7 +217,7 @@ def test_many_that_pass_a_dead_centre(name, backend, seed):
 
 
 def test_the_virtual_machine_has_the_same_rule():
-    check("change", "vm", 12, 2, 0)
+    check("change", "vm", 3, 2, 0)
 
 
 def moved(scene, start, rate, curve=0.0, **options):

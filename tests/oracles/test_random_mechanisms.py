@@ -1,8 +1,9 @@
-"""Random mechanisms of any pattern that can be declared: right by the oracle, or refused in words;
+"""Random mechanisms of any pattern that can be declared: right by the oracle, refused in words;
 never else.
 
-Each seed is a mechanism of its own. One that fails is printed as Python to paste, with what is
-wrong; ``random_verdict`` says what right means.
+Each seed is a mechanism of its own, of any kind or of one that is asked for. One that fails is
+printed as Python to paste, with what is wrong; ``random_verdict`` says what right means: efforts,
+reactions, section forces, peaks between instants, certificates and stated errors.
 """
 
 import functools
@@ -12,66 +13,92 @@ import numpy as np
 import pytest
 from internals import Output, forces
 from random_comparison import CONDEMNED, WITHHELD
-from random_mechanisms import draw
+from random_exported import by_exported_c
+from random_mechanisms import KINDS, draw
 from random_verdict import compare, is_regular, judge, peaks_off
 
 from lagrange_casadi import evaluate
 
-QUICK, LONG = [*range(130), 700042], range(130, 1000)
-"""Seeds; of the last of the quick ones gears rest while drives move."""
+COUNT, LONG, QUICK = 10, 100, 3
+"""Mechanisms of each kind by default, with ``--long``, and for whoever is editing."""
 
-SWITCHED, LONG_SWITCHED = range(1000, 1024), range(1024, 1500)
-"""Seeds of mechanisms that have one-way forces too."""
+ANY, LONG_ANY, AT_ONCE = [*range(60), 700042], range(60, 1000), 15
+"""Seeds of mechanisms of any kind, of which the first are for whoever is editing; of the last one
+gears rest while drives move.
+"""
 
-AT_ONCE = 40
-"""So many of the seeds are for whoever is editing."""
+FIRST = {"one_way": 1000}
+"""The first seed of a kind, 0 for others."""
 
 DENSE = 2001
 REFUSED = 0.02
 """How many of the regular mechanisms may be refused."""
 
 REGULAR = [3, 4, 6, 7]
+SMALL = 6
+"""Bodies of a mechanism whose peaks are looked at."""
+
+TOGETHER = 6
+"""Mechanisms in one exported program."""
 
 
-@functools.cache
-def verdict(seed, switched=False):
-    """By compiled code for every tenth mechanism, else without a compiler."""
-    backend = "vm" if seed % 10 else ("lanes", "c")[seed // 10 % 2]
-    return judge(draw(seed, switched), backend=backend)
+def cases():
+    """Kinds and seeds: parameters of a test."""
+    found = [("", k, k < AT_ONCE, k in LONG_ANY) for k in (*ANY, *LONG_ANY)]
+    for kind in KINDS:
+        for k in range(LONG):
+            found.append((kind, FIRST.get(kind, 0) + k, k < QUICK, k >= COUNT))
+    for kind, seed, quick, long in found:
+        marks = [pytest.mark.quick] * quick + [pytest.mark.long] * long
+        yield pytest.param(kind, seed, marks=marks, id=f"{kind or 'any'}-{seed}")
 
 
-def seeds(usual, long):
-    """Parameters of a test: the first of the usual ones are quick."""
-    return [
-        *(pytest.param(seed, marks=pytest.mark.quick) for seed in usual[:AT_ONCE]),
-        *usual[AT_ONCE:],
-        *(pytest.param(seed, marks=pytest.mark.long) for seed in long),
-    ]
+@functools.lru_cache(maxsize=4)
+def verdict(seed, kind=""):
+    """With peaks where these take little time."""
+    drawn = draw(seed, kind)
+    few = kind != "one_way" and len(drawn.draft.bodies) <= SMALL
+    return judge(drawn, backend="vm", peaks=few)
 
 
-@pytest.mark.parametrize("seed", seeds(QUICK, LONG))
-def test_right_and_certified_or_refused(seed):
+@pytest.mark.parametrize(("kind", "seed"), cases())
+def test_right_and_certified_or_refused(kind, seed):
     """And nothing that is unique is withheld."""
-    holds(seed, switched=False)
-
-
-@pytest.mark.parametrize("seed", seeds(SWITCHED, LONG_SWITCHED))
-def test_right_under_one_way_forces(seed):
-    holds(seed, switched=True)
-
-
-def holds(seed, switched):
-    found = verdict(seed, switched)
-    told = "\n".join([draw(seed, switched).describe(), *found.details[:20]])
-    assert found.kind in ("right", "refused"), f"{found.kind}: {found.why}\n{told}"
+    found = verdict(seed, kind)
+    told = "\n".join([draw(seed, kind).describe(), *found.details[:20]])
+    refused = found.kind == "refused" and not (kind and found.regular)
+    assert found.kind == "right" or refused, f"{found.kind}: {found.why}\n{told}"
     doubts = [note for note in found.notes if CONDEMNED in note or WITHHELD in note]
     assert not doubts, "; ".join(doubts)
 
 
-@pytest.mark.parametrize("seed", SWITCHED[::2])
-def test_peaks_are_those_of_many_instants(seed):
-    drawn = draw(seed, True)
-    if verdict(seed, True).kind != "right" or drawn.grid[2] < 2 or "wanted" in drawn.keywords:
+def in_c():
+    """Every tenth of all that run by default, several in one program."""
+    every = [("", seed) for seed in ANY[5::10]] + [(kind, FIRST.get(kind, 0) + 4) for kind in KINDS]
+    return [every[k : k + TOGETHER] for k in range(0, len(every), TOGETHER)]
+
+
+@pytest.mark.parametrize("several", in_c(), ids=lambda many: "-".join(k or "any" for k, _ in many))
+def test_exported_c_has_the_same(several, tmp_path):
+    many = []
+    for kind, seed in several:
+        drawn = draw(seed, kind)
+        given = {**drawn.keywords, "backend": "vm", "certificate": False}
+        moves = (drawn.draft.laws or drawn.draft.guides) and "wanted" not in given
+        if moves and judge(drawn, backend="vm").kind == "right":
+            many.append((drawn, drawn.scene(), evaluate(drawn.scene(), **given)))
+    assert len(many) >= len(several) / 2
+    for drawn, solution, off in by_exported_c(many, tmp_path):
+        found = compare(drawn, solution)
+        told = "\n".join([drawn.describe(), *found.details[:20]])
+        assert found.kind == "right", f"{found.why}\n{told}"
+        assert off < 1e-13, drawn.describe()
+
+
+@pytest.mark.parametrize("seed", range(1000, 1020, 2))
+def test_peaks_of_one_way_forces_are_those_of_many_instants(seed):
+    drawn = draw(seed, "one_way")
+    if verdict(seed, "one_way").kind != "right" or drawn.grid[2] < 2 or "wanted" in drawn.keywords:
         pytest.skip("it is refused, at one instant, or tells some quantities alone")
     scene, (start, stop, count) = drawn.scene(), drawn.grid
     given = {"parameters": drawn.keywords.get("parameters"), "backend": "vm", "certificate": False}
@@ -81,7 +108,7 @@ def test_peaks_are_those_of_many_instants(seed):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seeds", [QUICK, [*QUICK, *LONG]], ids=["few", "many"])
+@pytest.mark.parametrize("seeds", [ANY, [*ANY, *LONG_ANY]], ids=["few", "many"])
 def test_few_regular_mechanisms_are_refused(seeds):
     found = [verdict(seed) for seed in seeds]
     refused = [f"{v.seed}: {v.why}" for v in found if v.kind == "refused" and v.regular]
@@ -144,21 +171,3 @@ def test_a_small_fault_in_any_quantity_is_found(right):
         assert found.kind == "wrong", name
         seen += 1
     assert seen > 5
-
-
-def test_what_is_not_finite_is_found(right):
-    drawn, solution = right
-    name = next(name for name in solution.series if name.startswith("reaction:"))
-    nothing = {Output.of(name): np.full_like(solution.t, np.nan)}
-    assert (
-        compare(drawn, replace(solution, outputs={**solution.outputs, **nothing})).kind == "wrong"
-    )
-
-
-def test_another_motion_is_found(right):
-    drawn, solution = right
-    late = {
-        output: np.roll(values, 1) if solution.t.size > 2 else values[::-1]
-        for output, values in solution.outputs.items()
-    }
-    assert compare(drawn, replace(solution, outputs=late)).kind == "wrong"
