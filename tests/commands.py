@@ -15,3 +15,13 @@ def words(line):
 def command(line, *more):
     """The status of a command, which further words may follow."""
     return main([*words(line), *map(str, more)])
+
+
+def missing(stated, printed):
+    """Return the first stated piece that is not printed; an ellipsis stands for anything."""
+    rest = " ".join(printed.split())
+    for piece in filter(None, (" ".join(part.split()) for part in stated.split("..."))):
+        _, found, rest = rest.partition(piece)
+        if not found:
+            return f"{piece!r} is not in:\n{printed}"
+    return None

@@ -1,305 +1,282 @@
-"""Pipes, devices and standard output as outputs: written straight to or refused, never replaced.
-
-All nodes are the tests' own.
+"""What commands write to: pipes, devices, standard output, links, full disks and closed terminals.
+Each is written to, or refused in one line, and never replaced; all nodes are the tests' own.
 """
 
-import csv
 import os
+import resource
+import shlex
+import shutil
+import signal
+import socket
 import stat
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
+import h5py
 import pytest
-import sweeps
-from internals import (
-    EvaluationMethod,
-    Folder,
-    Measurement,
-    Trade,
-    check_writable,
-    draw_trade,
-    filling,
-    replacing,
-    sweep,
-    writing,
-)
+from commands import command
 
-from lagrange_casadi import save
-from lagrange_casadi.cli import main
-from lagrange_casadi.errors import PathError, StoreError
+from lagrange_casadi import check, load_case, sweep
+from lagrange_casadi.errors import PathError
 
-CASE = str(Path(__file__).parents[2] / "cases" / "slider_crank")
-COLUMN = "peak:effort:O"
+PROGRAM = f"{shlex.quote(sys.executable)} -B -m lagrange_casadi"
+ARM = """
+from lagrange_casadi import Mechanism, Scene, motion
+
+def scene():
+    m = Mechanism("arm")
+    m.revolute("J", m.ground, m.link("a", length=m.parameter("l", 0.2, "m"), mass=1))
+    return Scene(m, {"J": motion.polynomial(0, 1)}, t=(0, 1, 5))
+"""
+RUN = "run arm.py --out x.h5"
+SWEEP = "sweep arm.py --grid l=0.2:0.3:3000 --want effort --quiet --out s.h5"
+TABLES = ["best s.h5 --minimise peak:effort:J --csv", "table s.h5 --csv"]
+TYPES = {"pipe": "a pipe", "null": "a device"}
 
 
-@pytest.fixture
-def file(monkeypatch, here):
-    sweeps.use(monkeypatch)
-    return sweep(sweeps.scene(), {"l": [0.2, 0.3], "r": [0.05, 0.1]}, out=here / "s.h5").path
-
-
-@pytest.fixture
-def pipe(here):
-    os.mkfifo(here / "pipe")
-    return here / "pipe"
+@pytest.fixture(scope="module")
+def made(tmp_path_factory, interpreted):
+    """A case, a run and a sweep."""
+    folder = tmp_path_factory.mktemp("made")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        Path("arm.py").write_text(ARM)
+        assert command(f"{RUN} --no-figures") == 0
+        assert command(SWEEP) == 0
+    return folder
 
 
 @pytest.fixture
-def null(here):
-    """A device that takes everything, made for the test where that is allowed."""
+def folder(made, here, capfd):
+    """An own copy of the three, which is the working directory."""
+    shutil.copytree(made, here, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
+    return here
+
+
+def put(kind, name):
+    """Make a pipe, a device that takes everything, or a device that is full."""
+    if kind == "pipe":
+        os.mkfifo(name)
+        return
     try:
-        os.mknod(here / "null", stat.S_IFCHR | 0o666, os.makedev(1, 3))
-        (here / "null").open("wb").close()
+        os.mknod(name, stat.S_IFCHR | 0o666, os.makedev(1, {"null": 3, "full": 7}[kind]))
+        open(name, "wb").close()
     except OSError as error:
         pytest.skip(f"no device can be made here: {error}")
-    return here / "null"
 
 
-@pytest.fixture
-def listen():
-    """Read a pipe in a thread; what came is told when all of it did."""
-
-    def start(path):
-        came = []
-        thread = threading.Thread(target=lambda: came.append(path.read_bytes()), daemon=True)
-        thread.start()
-
-        def heard():
-            thread.join(30)
-            return came[0]
-
-        return heard
-
-    return start
+def shell(line, **keywords):
+    own = {"shell": True, "capture_output": True, "text": True, "timeout": 120, "check": False}
+    return subprocess.run(line, **own, **keywords)
 
 
-TABLES = [["best", "s.h5", "--minimise", COLUMN], ["table", "s.h5", "--column", COLUMN]]
+def kind(name):
+    return stat.S_IFMT(os.lstat(name).st_mode)
 
 
-@pytest.mark.parametrize("command", TABLES)
-def test_csv_goes_through_a_pipe(file, pipe, listen, capfd, command):
-    main([*command, "--csv", "x.csv"])
-    heard = listen(pipe)
-    assert main([*command, "--csv", "pipe"]) == 0
-    assert heard() == Path("x.csv").read_bytes()
-    assert stat.S_ISFIFO(os.stat(pipe).st_mode)
+@pytest.mark.parametrize(("line", "delay"), zip(TABLES, (0.0, 0.3), strict=True))
+def test_csv_goes_through_a_pipe(folder, capfd, line, delay):
+    """However late it is read."""
+    put("pipe", "pipe")
+    came = []
+    timer = threading.Timer(delay, lambda: came.append(Path("pipe").read_bytes()))
+    timer.start()
+    assert command(f"{line} x.csv") == command(f"{line} pipe") == 0
+    timer.join(30)
+    assert came == [Path("x.csv").read_bytes()]
+    assert kind("pipe") == stat.S_IFIFO
     assert "wrote pipe: " in capfd.readouterr().out
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
-def test_a_picture_goes_through_a_pipe(pipe, listen, ending):
-    one = Measurement(EvaluationMethod("c"), 1e-9, 9, 1e-3, 1e-3, "effort:O")
-    heard = listen(pipe)
-    with writing(pipe) as (opened,):
-        draw_trade(Trade("x", 1, 1, (one,), {}), opened, ending)
-    assert heard()[:5] in (b"\x89PNG\r", b"<?xml", b"%PDF-")
+def read_a_byte():
+    with open("pipe", "rb") as reader:
+        reader.read(1)
 
 
-@pytest.mark.parametrize("command", TABLES)
-def test_a_pipe_that_nobody_reads_is_one_line(file, pipe, monkeypatch, capfd, command):
-    monkeypatch.setattr("lagrange_casadi.base.streams._PATIENCE", 0.2)
-    assert main([*command, "--csv", "pipe"]) == 1
-    assert capfd.readouterr().err == "error: cannot write pipe: nothing reads from it\n"
-    assert stat.S_ISFIFO(os.stat(pipe).st_mode)
-
-
-def test_a_pipe_may_be_read_later(pipe, listen):
-    heard = []
-    timer = threading.Timer(0.3, lambda: heard.append(listen(pipe)))
-    timer.start()
-    with writing(pipe) as (opened,):
-        opened.write(b"in the end")
-    timer.join()
-    assert heard[0]() == b"in the end"
-
-
-def test_a_pipe_that_is_no_longer_read_is_one_line(pipe):
-    def close_early():
-        with pipe.open("rb") as reader:
-            reader.read(1)
-
-    def write():
-        with writing(pipe) as (opened,):
-            opened.write(b"x" * 10)
-            opened.flush()
-            thread.join()
-            opened.write(b"x" * 1_000_000)
-
-    thread = threading.Thread(target=close_early)
-    thread.start()
-    with pytest.raises(StoreError, match=r"cannot write .*pipe: Broken pipe$"):
-        write()
-
-
-@pytest.mark.parametrize("command", TABLES)
-def test_a_device_stays_one(file, null, capfd, command):
-    assert main([*command, "--csv", "null"]) == 0
-    assert stat.S_ISCHR(os.stat(null).st_mode)
-    assert sorted(path.name for path in null.parent.iterdir()) == ["null", "s.h5"]
-
-
-def test_a_device_that_is_full_is_one_line(here, capfd):
-    try:
-        os.mknod(here / "full", stat.S_IFCHR | 0o666, os.makedev(1, 7))
-        (here / "full").open("wb").close()
-    except OSError as error:
-        pytest.skip(f"no device can be made here: {error}")
-    with (
-        pytest.raises(StoreError, match=r"cannot write .*full: No space left on device$"),
-        writing(here / "full") as (opened,),
-    ):
-        opened.write(b"x")
-    assert stat.S_ISCHR(os.stat(here / "full").st_mode)
-
-
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize("command", TABLES)
-@pytest.mark.parametrize("onto", ["pipe", "file"])
-def test_standard_output_is_the_csv_alone(file, here, command, onto):
-    """By a link of the test's own to what the process has as its standard output, as /dev/stdout
-    is.
-    """
-    (here / "out.csv").symlink_to("/proc/self/fd/1")
-    main([*command, "--csv", "x.csv"])
-    arguments = [sys.executable, "-m", "lagrange_casadi", *command, "--csv", "out.csv"]
-    if onto == "pipe":
-        done = subprocess.run(arguments, capture_output=True, text=True, check=True)
-        came = done.stdout
-    else:
-        with open("came", "w") as output:
-            done = subprocess.run(
-                arguments, stdout=output, stderr=subprocess.PIPE, text=True, check=True
-            )
-        came = Path("came").read_text()
-    assert came == Path("x.csv").read_text()
-    assert done.stderr.startswith("wrote out.csv: ")
-    assert (here / "out.csv").is_symlink()
-
-
-@pytest.mark.parametrize("node", ["pipe", "null"])
 @pytest.mark.parametrize(
-    "arguments",
-    [
-        ["run", CASE, "--no-figures", "--out", "NODE.h5"],
-        ["sweep", CASE, "--grid", "l=0.2,0.3", "--out", "NODE.h5"],
-        ["sweep", CASE, "--grid", "l=0.2,0.3", "--force", "--out", "NODE.h5"],
-        ["run", CASE, "--figures", "NODE.h5"],
-        ["plot", "s.h5", "--out", "NODE.h5"],
-        ["export", CASE, "--out", "NODE.h5"],
-    ],
+    ("reader", "says"), [(None, "nothing reads from it"), (read_a_byte, "Broken pipe")]
 )
-def test_what_needs_a_file_or_a_folder_refuses_a_node(request, file, capfd, node, arguments):
-    path = request.getfixturevalue(node)
-    path.rename("x.h5")
-    kind = stat.S_IFMT(os.lstat("x.h5").st_mode)
+def test_a_pipe_that_is_not_read_is_one_line(folder, capfd, monkeypatch, reader, says):
+    put("pipe", "pipe")
+    if reader:
+        threading.Thread(target=reader, daemon=True).start()
+    else:
+        clock = time.monotonic
+        monkeypatch.setattr(time, "monotonic", lambda: 50.0 * clock())
+    assert command("table s.h5 --csv pipe") == 1
+    assert capfd.readouterr().err == f"error: cannot write pipe: {says}\n"
+    assert kind("pipe") == stat.S_IFIFO
+
+
+def test_a_device_stays_one(folder, capfd):
+    for name in ("null", "full"):
+        put(name, name)
     before = sorted(os.listdir())
-    assert main([word.replace("NODE", "x") for word in arguments]) == 2
-    word = "a pipe" if node == "pipe" else "a device"
-    assert capfd.readouterr().err.startswith(f"error: cannot write x.h5: it is {word}, not a ")
-    assert stat.S_IFMT(os.lstat("x.h5").st_mode) == kind
+    assert [command(f"table s.h5 --csv {name}") for name in ("null", "full")] == [0, 1]
+    assert capfd.readouterr().err == "error: cannot write full: No space left on device\n"
+    assert kind("null") == kind("full") == stat.S_IFCHR
     assert sorted(os.listdir()) == before
 
 
-@pytest.mark.parametrize("command", ["info", "check", "plot", "table", "best"])
-def test_what_is_read_is_no_pipe(pipe, capfd, command):
-    pipe.rename("x.h5")
-    more = {"plot": ["--out", "figures"], "best": ["--minimise", COLUMN]}.get(command, [])
-    assert main([command, "x.h5", *more]) == 2
-    assert capfd.readouterr() == ("", "error: x.h5: is a device or a pipe, not a file\n")
+@pytest.mark.parametrize("onto", ["| cat >came", ">came"])
+def test_standard_output_is_the_csv_alone(folder, onto):
+    """By a link of the test's own to the standard output, as /dev/stdout is."""
+    (folder / "out.csv").symlink_to("/proc/self/fd/1")
+    command("table s.h5 --csv x.csv")
+    done = shell(f"{PROGRAM} table s.h5 --csv out.csv {onto}")
+    assert Path("came").read_text() == Path("x.csv").read_text()
+    assert done.stderr.startswith("wrote out.csv: ")
+    assert (folder / "out.csv").is_symlink()
 
 
-def test_a_socket_is_refused(here):
-    import socket
+@pytest.mark.parametrize("node", TYPES)
+def test_what_is_a_file_or_a_folder_is_no_node(folder, capfd, node):
+    """To read one would wait, and to write one would lose what it is."""
+    put(node, "n.h5")
+    before = sorted(os.listdir())
+    for line in (
+        "run arm.py --no-figures --out n.h5",
+        "sweep arm.py --grid l=0.2,0.3 --force --out n.h5",
+        "run arm.py --figures n.h5",
+        "plot x.h5 --out n.h5",
+        "export arm.py --out n.h5",
+    ):
+        assert command(line) == 2
+        told = capfd.readouterr().err
+        assert told.startswith(f"error: cannot write n.h5: it is {TYPES[node]}, not a "), line
+    for line in ("info", "check", "plot --out p", "table", "best --minimise peak:effort:J"):
+        assert command(f"{line} n.h5") == 2
+        assert capfd.readouterr() == ("", "error: n.h5: is a device or a pipe, not a file\n")
+    assert kind("n.h5") == (stat.S_IFIFO if node == "pipe" else stat.S_IFCHR)
+    assert sorted(os.listdir()) == before
 
+
+def test_a_socket_is_refused(folder, capfd):
     with socket.socket(socket.AF_UNIX) as server:
         server.bind("socket")
-        with pytest.raises(PathError, match=r"cannot write socket: it is a socket, not a file$"):
-            check_writable(Path("socket"))
+        assert command("table s.h5 --csv socket") == 2
+    assert capfd.readouterr().err == "error: cannot write socket: it is a socket, not a file\n"
 
 
 @pytest.mark.parametrize("kind", ["pipe", "folder", "link"])
-def test_what_is_in_a_folder_and_not_a_file_is_not_replaced(tmp_path, kind):
-    folder = tmp_path / "figures"
-    folder.mkdir()
-    (folder / "a.png").write_text("old")
-    there = folder / "b.png"
-    {"pipe": os.mkfifo, "folder": os.mkdir, "link": lambda path: path.symlink_to("a.png")}[kind](
-        there
-    )
-
-    def fill():
-        with filling(folder) as draft:
-            for name in ("a.png", "b.png"):
-                (draft / name).write_text("new")
-
-    with pytest.raises(PathError, match=r"cannot write .*b\.png: what is there is not a file$"):
-        fill()
-    assert (folder / "a.png").read_text() == "old"
-    assert sorted(os.listdir(folder)) == ["a.png", "b.png"]
-    assert not stat.S_ISREG(os.lstat(there).st_mode)
-    assert os.listdir(tmp_path) == ["figures"]
+def test_what_is_among_figures_and_not_a_file_is_not_replaced(folder, capfd, kind):
+    assert command("plot x.h5 --out f") == 0
+    first, *others = sorted((folder / "f").glob("*.png"))
+    first.unlink()
+    makers = {"pipe": os.mkfifo, "folder": os.mkdir, "link": lambda path: path.symlink_to("x")}
+    makers[kind](first)
+    for path in others:
+        path.write_text("old")
+    assert command("plot x.h5 --out f") == 2
+    assert capfd.readouterr().err.count("\n") == 1
+    assert not stat.S_ISREG(os.lstat(first).st_mode)
+    assert {path.read_text() for path in others} == {"old"}
 
 
-def test_a_node_that_came_meanwhile_is_not_replaced(tmp_path):
-    def replace():
-        with replacing(tmp_path / "x") as draft:
-            draft.write_text("new")
-            os.mkfifo(tmp_path / "x")
-
-    def write():
-        with writing(tmp_path / "y", tmp_path / "z") as (one, other):
-            one.write(b"new")
-            other.write(b"new")
-            os.mkfifo(tmp_path / "y")
-
-    for put in (replace, write):
-        with pytest.raises(PathError, match="what is there is not a file"):
-            put()
-    assert sorted(os.listdir(tmp_path)) == ["x", "y"]
-
-
-def test_a_node_in_the_place_of_a_sweep_is_not_replaced(monkeypatch, here):
-    sweeps.use(monkeypatch)
-
-    def progress(what, done, total):
-        if not (here / "s.h5").exists():
-            os.mkfifo(here / "s.h5")
+def test_a_node_that_came_meanwhile_is_not_replaced(folder, interpreted):
+    def progress(*_):
+        if not os.path.exists("y.h5"):
+            os.mkfifo("y.h5")
 
     with pytest.raises(PathError, match="what is there is not a file"):
-        sweep(sweeps.scene(), {"l": [0.2, 0.3]}, out=here / "s.h5", progress=progress)
-    assert stat.S_ISFIFO(os.lstat("s.h5").st_mode)
-    assert Folder(here / "s.h5").done() == 2
+        sweep(load_case("arm.py").scene, {"l": [0.2, 0.3]}, out="y.h5", progress=progress)
+    assert kind("y.h5") == stat.S_IFIFO
 
 
-def test_a_link_stays_and_what_it_leads_to_is_written(monkeypatch, solution, here):
-    sweeps.use(monkeypatch)
-    (here / "real").mkdir()
-    for name in ("run.h5", "sweep.h5", "x.csv", "figures"):
-        (here / name).symlink_to(here / "real" / name)
-    save(solution.during(slice(0, 3)), "run.h5")
-    sweep(sweeps.scene(), {"l": [0.2, 0.3]}, out="sweep.h5")
-    assert main(["table", "sweep.h5", "--column", COLUMN, "--csv", "x.csv"]) == 0
-    (here / "real" / "figures").mkdir()
-    with filling(here / "figures") as draft:
-        (draft / "a.png").touch()
-    with open("x.csv", newline="") as text:
-        assert len(list(csv.DictReader(text))) == 2
-    assert sorted(os.listdir("real")) == ["figures", "run.h5", "sweep.h5", "x.csv"]
-    assert os.listdir("figures") == ["a.png"]
-    assert all((here / name).is_symlink() for name in ("run.h5", "sweep.h5", "x.csv", "figures"))
+def test_a_link_stays_and_what_it_leads_to_is_written(folder, interpreted):
+    names = ("run.h5", "sweep.h5", "x.csv", "figures")
+    (folder / "real" / "figures").mkdir(parents=True)
+    for name in names:
+        (folder / name).symlink_to(folder / "real" / name)
+    assert command("run arm.py --out run.h5 --figures figures") == 0
+    assert command("sweep arm.py --grid l=0.2,0.3 --quiet --out sweep.h5") == 0
+    assert command("table sweep.h5 --csv x.csv") == 0
+    assert sorted(os.listdir("real")) == sorted(names)
+    assert "index.html" in os.listdir("real/figures")
+    assert all((folder / name).is_symlink() for name in names)
+
+
+LONG = f"{RUN} --no-figures --want effort --t 0:1:5001 --backend vm"
+
+
+@pytest.mark.parametrize(
+    ("line", "what", "size"),
+    [
+        (LONG, "x.h5", 20_000),
+        (LONG, "x.h5", 60_000),
+        ("export arm.py --out c", "c", 5000),
+        ("cases --copy mine", "mine", 3000),
+    ],
+)
+def test_a_disk_that_is_full_is_one_line(folder, line, what, size):
+    """The system's limit of a file stands for the disk; what was there stays, all of it."""
+
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    done = shell(f"{PROGRAM} {line}", preexec_fn=limit)
+    assert (done.returncode, done.stderr) == (1, f"error: cannot write {what}: File too large\n")
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
 
 @pytest.mark.parametrize("before", [False, True])
-def test_a_table_that_cannot_be_written_leaves_the_files_of_before(here, capfd, before):
+def test_a_table_that_cannot_be_written_leaves_the_files_of_before(folder, capfd, before):
     """A run's file, its figures and its table are put into their places together."""
-    if before:
-        assert main(["run", str(CASE), "--t", "0:0.08:5", "--no-figures"]) == 0
-    there = {path.name: path.read_bytes() for path in here.iterdir()}
-    assert main(["run", str(CASE), "--t", "0:0.08:9", "--csv", "/dev/full"]) == 1
+    if not before:
+        os.remove("x.h5")
+    there = sorted((path.name, path.stat().st_mtime_ns) for path in folder.glob("*.*"))
+    assert command(f"{RUN} --t 0:1:9 --csv /dev/full") == 1
     assert capfd.readouterr().err.endswith(
         "error: cannot write /dev/full: No space left on device\n"
     )
-    assert {path.name: path.read_bytes() for path in here.iterdir()} == there
+    assert sorted((path.name, path.stat().st_mtime_ns) for path in folder.glob("*.*")) == there
+
+
+def test_output_that_cannot_be_written_is_one_line(folder):
+    done = shell(f"{PROGRAM} info arm.py >/dev/full")
+    says = "error: cannot write to standard output: No space left on device\n"
+    assert (done.returncode, done.stderr) == (1, says)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "closed", ["2>&-", "<&-", "<&- 2>&-", ">&- 2>&-", "<&- >&- 2>&-", "2>/dev/full"]
+)
+def test_streams_that_are_closed_stop_nothing(folder, closed):
+    """Nor a cache that cannot be written, of which nobody hears."""
+    lines = (f"{RUN} {closed}", f"{SWEEP} --force {closed}")
+    elsewhere = {**os.environ, "XDG_CACHE_HOME": str(folder / "arm.py")} if "2>" in closed else None
+    done = shell(" && ".join(f"{PROGRAM} {line}" for line in lines), env=elsewhere)
+    assert done.returncode == 0
+    assert ("wrote x.h5" in done.stdout) == (">&- 2" not in closed)
+    assert check("x.h5") == []
+    with h5py.File("s.h5") as file:
+        assert file.attrs["complete"]
+    assert list(folder.glob("*_figures/*.png"))
+    assert shell(f"{PROGRAM} run nothing {closed}").returncode == 2
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("line", [f"{RUN} --no-figures", "cases", "--help"])
+def test_a_reader_that_goes_early_is_no_error(folder, line):
+    """As head, or a pager that is left: no line says so, and what was computed is kept."""
+    os.remove("x.h5")
+    done = shell(f"{{ {PROGRAM} {line}; echo $? >status; }} | true")
+    assert done.stderr == ""
+    assert Path("status").read_text() == "1\n"
+    assert os.path.exists("x.h5") == line.startswith("run")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "backend", ["module://matplotlib_inline.backend_inline", "module://nowhere.at_all", "TkAgg"]
+)
+def test_a_backend_that_a_notebook_set_draws_all_the_same(folder, backend):
+    done = shell(f"{PROGRAM} {RUN} --figures f", env={**os.environ, "MPLBACKEND": backend})
+    assert (done.returncode, done.stderr) == (0, "")
+    assert list((folder / "f").glob("*.png"))

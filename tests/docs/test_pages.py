@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from commands import missing
 
 from lagrange_casadi.cli import main
 
@@ -67,16 +68,6 @@ def run_commands(text):
     done = subprocess.run(["bash", "-c", text], capture_output=True, text=True, env=environment)
     assert done.returncode == 0 or "error:" in done.stderr, done.stderr
     return done.stdout + done.stderr
-
-
-def missing(stated, printed):
-    """Return the first stated piece that is not printed; an ellipsis stands for anything."""
-    rest = " ".join(printed.split())
-    for piece in filter(None, (" ".join(part.split()) for part in stated.split("..."))):
-        _, found, rest = rest.partition(piece)
-        if not found:
-            return f"{piece!r} is not in:\n{printed}"
-    return None
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -6,13 +6,10 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterator
-from typing import Any
 
 import casadi as ca
 import numpy as np
 from calls_declaring import BAR, STEEL, TURN, Call, lift
-from internals import Condition, Grid, Range, Term, Values
-from internals import ListingListed as Listed
 
 from lagrange_casadi import (
     actuators,
@@ -24,6 +21,8 @@ from lagrange_casadi import (
     motion,
     strength,
 )
+from lagrange_casadi.studies.optimise import Constraint, Term
+from lagrange_casadi.studies.sweep import Condition, Grid, Listed, Range, Values
 
 BALL = {"name": "B", "bore": 0.02, "outer": 0.04, "width": 0.01, "dynamic": 9e3, "static": 5e3}
 """A ball bearing's numbers."""
@@ -153,12 +152,5 @@ def laws() -> Iterator[tuple[str, Call]]:
     yield "Condition", (Condition, {"name": "l", "relation": "<", "value": 1.0})
     yield "Condition.parse", (Condition.parse, {"text": "l<0.3"})
     yield "Term.parse", (Term.parse, {"text": "l", "parameters": {"l": 0.5}})
-    yield (
-        "Constraint.parse",
-        (optimise_constraint().parse, {"text": "l<0.3", "parameters": {"l": 0.5}}),
-    )
-
-
-def optimise_constraint() -> Any:
-    """The class of limits."""
-    return importlib.import_module("lagrange_casadi.studies.optimise").Constraint
+    bound = {"text": "l<0.3", "parameters": {"l": 0.5}}
+    yield "Constraint.parse", (Constraint.parse, bound)

@@ -11,7 +11,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from internals import CRITERIA, FINDLEY, KINDS, vocabulary
 
 import lagrange_casadi as lc
 
@@ -142,8 +141,3 @@ def test_imports_take_little_time():
     asked = "import lagrange_casadi as lc; lc.Mechanism, lc.Scene, lc.evaluate"
     assert processor_time(sys.executable, "-c", asked) < 2.5 * least
     assert processor_time(sys.executable, "-m", "lagrange_casadi", "--help") < 2.0 * least
-
-
-def test_words_that_may_be_chosen_are_those_that_are_known():
-    assert set(vocabulary.CRITERIA) == {*CRITERIA, FINDLEY}
-    assert set(vocabulary.YIELDING) == {kind for kind in KINDS if kind not in ("normal", "shear")}

@@ -86,17 +86,18 @@ def told():
             )
 
 
+TOLD = list(told())
+
+
 @pytest.mark.sampled(6)
-@pytest.mark.parametrize(("name", "everything", "efforts", "step"), told())
+@pytest.mark.parametrize(("name", "everything", "efforts", "step"), TOLD)
 def test_the_counts_that_speed_tells(name, everything, efforts, step):
+    """Of many cases."""
+    assert len(TOLD) == 17
     scene = load_case(CASES / name).scene
     count = derive(scene, ["all"]).instructions
     assert (count["instant"], count.get("loops", 0)) == (pytest.approx(everything, rel=0.01), step)
     assert derive(scene, ["effort"]).instructions["instant"] == pytest.approx(efforts, rel=0.01)
-
-
-def test_speed_tells_the_counts_of_many_cases():
-    assert len(list(told())) == 17
 
 
 def chain(links):

@@ -1,5 +1,5 @@
-"""What is of another kind than was expected is told in one line that says what was, whatever
-function it is given to.
+"""What is of another kind than was expected, names that are taken, and choices that Python would
+make, are told in one line that says what was expected, whatever function they are given to.
 """
 
 import os
@@ -221,10 +221,124 @@ def test_a_number_for_a_path_closes_no_stream():
     os.fstat(1)
 
 
-def test_an_error_is_one_line_whatever_it_quotes():
-    with pytest.raises(UnknownNameError) as caught:
-        beams.material("S\n355")
-    assert "\n" not in str(caught.value)
-    with pytest.raises(DeclarationError) as other:
-        Mechanism(np.zeros((3, 3)))
-    assert "\n" not in str(other.value)
+MANY = [f"reaction:joint_{k}" for k in range(100)]
+UNKNOWN = {
+    "unknown link 'crnk' (did you mean 'crank'?); valid: crank, rod": ("crnk", ["crank", "rod"]),
+    "unknown link 'q'; valid: none are declared": ("q", []),
+    "unknown links 'crnk' (did you mean 'crank'?), 'q'; valid: crank, rod": (
+        ["crnk", "q"],
+        ["crank", "rod"],
+    ),
+    "unknown link 'joint_4' (did you mean 'reaction:joint_4'?); `info` lists the 100 there are": (
+        "joint_4",
+        MANY,
+        "`info`",
+    ),
+    "unknown link ''; `info` lists the 100 there are": ("", MANY, "`info`"),
+    f"unknown link 'joint_999' (did you mean 'reaction:joint_99'?); valid: {', '.join(MANY[:15])}"
+    " and 85 more": ("joint_999", MANY),
+}
+
+
+@pytest.mark.parametrize("says", UNKNOWN)
+def test_a_name_that_nothing_bears_is_told_those_there_are(says):
+    assert str(UnknownNameError("link", *UNKNOWN[says])) == says
+
+
+BEARERS = {
+    "a link": lambda m, name: m.link(name, length=1, mass=1),
+    "a point mass": lambda m, name: m.point_mass(name, 1),
+    "a joint": lambda m, name: m.weld(
+        name, m.links["arm"].tip, m.point_mass(f"end{len(m.bodies)}", 1)
+    ),
+    "a load": lambda m, name: m.force(name, m.links["arm"], x=1),
+    "a constraint": lambda m, name: m.constraint(name, m.coordinate(m.joints["pin"])),
+    "a non-holonomic constraint": lambda m, name: m.nonholonomic(
+        name, m.rate(m.joints["pin"]), replaces=m.joints["pin"]
+    ),
+}
+TAKERS = {
+    kind: BEARERS[f"a {kind}"]
+    for kind in ("joint", "load", "constraint", "non-holonomic constraint")
+}
+TAKERS |= {
+    "gear": lambda m, name: m.gear(name, m.joints["pin"], m.joints["pin"], ratio=2),
+    "spring": lambda m, name: m.spring(name, m.ground, m.links["arm"].tip, stiffness=1, length=1),
+    "torque": lambda m, name: m.torque(name, m.links["arm"], 1),
+}
+CALLED = {"gear": "constraint", "spring": "load", "torque": "load"}
+
+
+def machine():
+    m = Mechanism("machine")
+    m.revolute("pin", m.ground, m.link("arm", length=1, mass=1))
+    return m
+
+
+@pytest.mark.parametrize("taker", TAKERS)
+@pytest.mark.parametrize("bearer", BEARERS)
+def test_a_taken_name_says_by_what(bearer, taker):
+    m = machine()
+    BEARERS[bearer](m, "x")
+    kind = CALLED.get(taker, taker)
+    twice = bearer == f"a {kind}"
+    says = (
+        "is declared twice in mechanism 'machine'"
+        if twice
+        else f"the name is taken by {bearer} of mechanism 'machine'"
+    )
+    with pytest.raises(DeclarationError) as told:
+        TAKERS[taker](m, "x")
+    assert str(told.value) == f"{kind} 'x'{' ' if twice else ': '}{says}"
+
+
+@pytest.mark.parametrize("taker", TAKERS)
+def test_the_ground_has_its_name(taker):
+    with pytest.raises(
+        DeclarationError, match="the name is taken by the ground of mechanism 'machine'"
+    ):
+        TAKERS[taker](machine(), "ground")
+
+
+def test_no_name_is_reserved():
+    for declare in (*BEARERS.values(), lambda m, name: m.parameter(name, 1)):
+        for name in ("law", "x_rate", "x_acceleration", "certificate", "all"):
+            declare(machine(), name)
+
+
+CHOICES = {
+    "max": lambda x: max(0, x),
+    "min": lambda x: min(0.1, x),
+    "if": lambda x: x if x > 0 else 0.0,
+    "and": lambda x: x > 0 and x,
+    "sorted": lambda x: sorted([x, 0.1])[0],
+    "clip": lambda x: 0.0 < x < 1.0,
+}
+
+
+def moved(choice):
+    m = Mechanism("m")
+    m.revolute("O", m.ground, m.link("a", length=0.1, mass=1.0))
+    evaluate(Scene(m, {"O": motion.expression(choice)}))
+
+
+def loaded(choice):
+    m = Mechanism("m")
+    m.line_load("wind", m.link("a", length=0.1, mass=1.0), y=choice)
+
+
+def lifted(choice):
+    m = Mechanism("m")
+    disc, stem = m.link("disc", length=0.1, mass=1.0), m.link("stem", length=0.1, mass=1.0)
+    main = m.revolute("main", m.ground, disc)
+    guide = m.prismatic("guide", m.ground, stem, axis=(0, 1), angle="90 deg")
+    elements.disc_cam(m, "cam", main, guide, choice, base_radius=0.03)
+
+
+@pytest.mark.parametrize("called", [moved, loaded, lifted], ids=lambda called: called.__name__)
+@pytest.mark.parametrize("choice", CHOICES)
+def test_a_function_that_chooses_is_told_what_does(called, choice):
+    with pytest.raises(
+        LagrangeCasadiError, match=r"casadi\.if_else.* casadi\.fmin and fmax for 'min' and 'max'"
+    ):
+        called(CHOICES[choice])

@@ -1,21 +1,22 @@
-"""Hostile models of MuJoCo: each command ends soon, in one line, reads nothing outside of the
-model's folder, and leaves nothing.
+"""Files of unknown origin, results and models, are read in a process of their own: each command
+ends soon, in one line, reads nothing outside of a model's folder, and leaves nothing.
 """
 
 import os
 import random
-import signal
+import shutil
 import subprocess
 import sys
 import tempfile
-import time
-from pathlib import Path
 
+import h5py
+import numpy as np
 import pytest
-from commands import words
-from internals import MODEL_LIMITS
+from commands import command
+from forging import forging
 
 from lagrange_casadi import errors, read
+from lagrange_casadi.cli import main
 
 pytest.importorskip("mujoco", reason="MuJoCo is not installed")
 
@@ -130,44 +131,83 @@ ONES = {
         "b.xml",
     ),
     "a pipe": ({"a.xml": '<mujoco><include file="fifo.xml"/></mujoco>'}, "fifo.xml"),
-    **{
-        f"huge {k}": ({"a.xml": f"<mujoco>{part}</mujoco>"}, "a.xml: ")
-        for k, part in enumerate(HUGE)
-    },
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("what", ONES)
-def test_what_is_refused(what, tmp_path, monkeypatch):
-    files, words = ONES[what]
-    monkeypatch.setitem(MODEL_LIMITS, "busy", 4.0)
+def test_what_is_refused(what, tmp_path):
+    files, says = ONES[what]
     hostile = Hostile(0, tmp_path)
     (tmp_path / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n")
     for name, text in files.items():
         (hostile.folder / name).write_text(text.replace("{}", str(tmp_path)))
     with pytest.raises(errors.ModelFileError) as error:
         read(hostile.folder / "a.xml")
-    assert words in str(error.value)
+    assert says in str(error.value)
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="no list of processes")
-def test_an_interrupt_ends_it_at_once(tmp_path):
-    (tmp_path / "a.xml").write_text(f"<mujoco>{HUGE[0]}</mujoco>")
-    (tmp_path / "temporary").mkdir()
-    command = [sys.executable, *words("-m lagrange_casadi new x --from a.xml")]
-    told = {**os.environ, "TMPDIR": str(tmp_path / "temporary")}
-    with subprocess.Popen(
-        command, cwd=tmp_path, env=told, stderr=subprocess.PIPE, text=True
-    ) as process:
-        tasks = Path(f"/proc/{process.pid}/task/{process.pid}/children")
-        while not (children := tasks.read_text().split()):
-            time.sleep(0.05)
-        time.sleep(1.0)
-        process.send_signal(signal.SIGINT)
-        _, told = process.communicate(timeout=30)
-    assert process.returncode == 130
-    assert told.count("\n") == 1
-    assert not any(Path(f"/proc/{child}").exists() for child in children)
-    assert not list((tmp_path / "temporary").iterdir())
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.xml", "temporary"]
+@pytest.fixture
+def file(here, capfd, interpreted):
+    assert command("run CASE --t 0:0.08:5 --xi 0:1:3 --want effort --out x.h5 --no-figures") == 0
+    capfd.readouterr()
+    return here / "x.h5"
+
+
+def test_it_finds_what_check_finds_and_imports_nothing_from_here(file, here, capfd):
+    for name in ("h5py", "json", "numpy", "lagrange_casadi"):
+        (here / f"{name}.py").write_text("open('planted', 'w')")
+    with forging(file) as h:
+        h["effort/O"].attrs["units"] = "N\x1b[2J"
+    assert main(["check", "x.h5"]) == 1
+    usual = capfd.readouterr()
+    assert main(["check", "--untrusted", "x.h5"]) == 1
+    assert capfd.readouterr() == usual
+    assert r"N\x1b[2J" in usual.err
+    assert not (here / "planted").exists()
+
+
+def test_a_file_that_is_read_too_long_is_a_line(file, capfd):
+    assert main(["check", "--untrusted", "--time-limit", "1e-3", "x.h5"]) == 1
+    says = "was not read within 0.001 s, so it is large or forged; --time-limit sets another limit"
+    assert capfd.readouterr() == ("", f"error: x.h5: {says}\n")
+    assert main(["check", "x.h5", "--time-limit", "3"]) == 2
+    assert main(["check", "--untrusted", "y.h5"]) == 2
+    told = capfd.readouterr().err
+    assert told.startswith("error: --time-limit")
+    assert told.endswith("error: y.h5: no such file\n")
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="no compiler")
+def test_a_file_makes_hdf5_load_no_filters(file, here, capfd, monkeypatch):
+    """A filter that HDF5 does not know is looked for among plugins, all of which it loads: not for
+    such a file.
+    """
+    (here / "p.c").write_text(
+        "#include <stdio.h>\n__attribute__((constructor)) static void f(void) {"
+        ' fclose(fopen("loaded", "w")); }\n'
+    )
+    (here / "plugins").mkdir()
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", "plugins/libh5p.so", "p.c"], check=True)
+    with forging(file) as h:
+        shape, kept = h["effort/O"].shape, dict(h["effort/O"].attrs)
+        del h["effort/O"]
+        layout = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+        layout.set_chunk(shape)
+        layout.set_filter(32_123, h5py.h5z.FLAG_OPTIONAL)
+        made = h5py.h5d.create(
+            h.id, b"effort/O", h5py.h5t.NATIVE_DOUBLE, h5py.h5s.create_simple(shape), layout
+        )
+        made.write_direct_chunk((0,) * len(shape), np.zeros(shape).tobytes())
+        for name in set(kept) - {"DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME"}:
+            h["effort/O"].attrs[name] = kept[name]
+    monkeypatch.setenv("HDF5_PLUGIN_PATH", str(here / "plugins"))
+    assert main(["check", "--untrusted", "x.h5"]) == 1
+    assert "x.h5" in capfd.readouterr().err
+    assert not os.path.exists("loaded")
+    subprocess.run(
+        [sys.executable, "-c", "import h5py; h5py.File('x.h5')['effort/O'][()]"],
+        capture_output=True,
+        check=False,
+    )
+    assert os.path.exists("loaded")

@@ -1,0 +1,336 @@
+"""Numbers and texts with units, wherever a declaration takes a number: a text is the number that it
+tells, and what is none, or of another unit, is refused.
+"""
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from decimal import Decimal
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mechanisms import four_bar
+
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    beams,
+    bearings,
+    elements,
+    evaluate,
+    optimise,
+    prepare,
+    read_designs,
+    sweep,
+)
+from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError
+from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial, samples
+
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+
+STEEL = beams.material("C45+QT")
+WORDS = {
+    "m": ("mm", 3),
+    "kg": ("g", 3),
+    "s": ("ms", 3),
+    "rad": ("rad", 0),
+    "m/s": ("mm/s", 3),
+    "rad/s": ("rad/s", 0),
+}
+
+
+def as_number(value, _unit):
+    return value
+
+
+def as_text(value, unit):
+    """The same in another word for its unit."""
+    word, places = WORDS[unit]
+    return f"{Decimal(repr(value)).scaleb(places)} {word}"
+
+
+def written(thing):
+    """All that a part is declared by."""
+    if dataclasses.is_dataclass(thing):
+        return {one.name: written(getattr(thing, one.name)) for one in dataclasses.fields(thing)}
+    if isinstance(thing, Mapping):
+        return {name: written(one) for name, one in thing.items()}
+    return [written(one) for one in thing] if isinstance(thing, list | tuple) else str(thing)
+
+
+def parts_of(m):
+    return [written(parts) for parts in (m.bodies, m.joints, m.loads, m.constraints)]
+
+
+def wheels(u):
+    m = SpatialMechanism("wheels")
+    sizes = {"radius": u(0.03, "m"), "bore": u(0.01, "m"), "width": u(0.02, "m")}
+    pair = [elements.wheel(m, name, **sizes, turned=u(0.1, "rad")) for name in "ab"]
+    for wheel, x in zip(pair, (0.0, 0.06), strict=True):
+        m.revolute(f"J{wheel.name}", m.ground.at(x, 0, 0), wheel)
+    radii = (u(0.03, "m"), u(0.03, "m"))
+    slant = {"helix_angle": u(0.2, "rad"), "offset": u(0.001, "m")}
+    elements.gears(m, "mesh", *pair, radii=radii, **slant)
+    m.screw("way", m.ground, m.link("nut", length=0.1, mass=1.0), axis=(1, 0, 0),
+            lead=u(0.004, "m"), turned=[("z", u(0.2, "rad"))])  # fmt: skip
+    return parts_of(m)
+
+
+def train(u):
+    m = Mechanism("train")
+    sun, other = (elements.wheel(m, name, radius=0.03, mass=u(0.5, "kg")) for name in "ab")
+    arm = m.link("arm", length=0.06, mass=1.0, centre=(0.0, 0.0), inertia=1e-3)
+    m.revolute("S", m.ground, sun)
+    m.revolute("C", m.ground, arm)
+    m.revolute("W", m.ground.at(u(0.3, "m"), 0.0), other)
+    elements.planetary(m, "set", sun, arm, m.ground, teeth=(30, 30, 90), module=u(0.002, "m"),
+                       mass=u(0.3, "kg"), pressure_angle=u(0.4, "rad"))  # fmt: skip
+    radii = [u(0.03, "m"), u(0.05, "m")]
+    elements.belt(m, "belt", sun, other, radii=radii, offset=u(0.01, "m"))
+    return parts_of(m)
+
+
+def shapes(u):
+    m = Mechanism("shapes")
+    corners = [[u(x, "m") for x in pair] for pair in ((0.0, 0.0), (0.2, 0.0), (0.2, 0.1))]
+    bar = elements.bent_bar(m, "bar", corners, mass=u(0.7, "kg"))
+    plate = elements.plate(m, "plate", corners, mass=u(0.6, "kg"))
+    joint = m.revolute("O", m.ground, bar.pieces[0])
+    m.weld("W", bar.pieces[-1].tip, plate.link, angle=u(0.3, "rad"))
+    ram = elements.cylinder(m, "ram", m.ground.at(0.5, -0.5), bar.pieces[0], closed=u(0.4, "m"),
+                            bore=u(0.05, "m"), rod=u(0.03, "m"), barrel_mass=u(2.5, "kg"),
+                            rod_mass=u(1.5, "kg"))  # fmt: skip
+    pin = bearings.Pin(u(0.01, "m"), u(0.02, "m"), u(0.01, "m"), STEEL, gap=u(0.001, "m"))
+    plain = bearings.Plain(u(0.01, "m"), u(0.02, "m"), pressure=1e7, speed=u(1.5, "m/s"))
+    bearings.fit(m, joint, pin, plain)
+    return [parts_of(m), ram.cap_area, ram.rod_area]
+
+
+def cams(u):
+    m = Mechanism("cam")
+    disc, stem = m.link("disc", length=0.03, mass=0.6), m.link("stem", length=0.1, mass=0.2)
+    main = m.revolute("main", m.ground, disc)
+    guide = m.prismatic("guide", m.ground, stem, axis=(0, 1), angle=u(1.5, "rad"))
+    up, down = move(by=u(0.01, "m"), time=u(0.2, "s")), move(to=u(0.0, "m"), time=u(0.2, "s"))
+    law = moves([up, dwell(u(0.1, "s")), down], start=u(0.0, "m"))
+    sizes = {"base_radius": u(0.03, "m"), "roller": u(0.008, "m"), "width": u(0.01, "m")}
+    cam = elements.disc_cam(m, "cam", main, guide, lambda a: 5e-3 * (1 - ca.cos(a)), **sizes)
+    return [parts_of(m), cam.profile().x.tolist(), str(law.span), str(law.period)]
+
+
+def loaded(u):
+    m = SpatialMechanism("loaded")
+    arm = m.link("arm", length=u(0.3, "m"), mass=1.0)
+    pin = m.revolute("O", m.ground, arm)
+    way = m.prismatic("S", arm, m.link("slide", length=0.1, mass=u(0.5, "kg")), axis=(1, 0, 0))
+    around = {"radius": u(0.01, "m"), "length": u(0.05, "m")}
+    m.friction("pin", pin, mu=0.1, **around, smooth=u(0.2, "rad/s"))
+    m.friction("way", way, mu=0.1, **around, static=0.2, stribeck=u(0.03, "m/s"))
+    places = m.ground.at(u(0.1, "m"), 0, 0), arm.at(u(0.15, "m"))
+    m.spring("back", *places, stiffness=100.0, length=u(0.05, "m"))
+    m.line_load("wind", arm, y=10.0, between=(u(0.1, "m"), u(0.2, "m")))
+    return parts_of(m)
+
+
+def notched(u):
+    flat, walls = (u(0.05, "m"), u(0.04, "m")), (u(0.003, "m"), u(0.004, "m"))
+    corners = [(u(0.01, "m"), u(-0.01, "m")), (u(0.01, "m"), u(0.01, "m")), (u(-0.01, "m"), 0.0)]
+    return written([
+        beams.shoulder(0.3, u(0.03, "m"), u(0.02, "m"), u(0.002, "m")),
+        beams.hole(0.6, u(0.03, "m"), u(0.006, "m")),
+        beams.sensitivity(u(0.001, "m"), 7e8),
+        *(beams.rectangle(*flat), beams.ellipse(*flat), beams.round_bar(u(0.02, "m"))),
+        *(beams.box(*flat, *walls), beams.i_section(*flat, *walls), beams.polygon(corners)),
+        beams.tube(u(0.03, "m"), u(0.002, "m")),
+    ])  # fmt: skip
+
+
+def crank(u=as_number, law=None):
+    m = Mechanism("crank")
+    r = m.parameter("r", u(0.1, "m"), "m", low=u(0.02, "m"), high=u(0.3, "m"))
+    lean = m.parameter("lean", u(0.25, "rad"), "rad", low=u(0.0, "rad"), high=u(1.0, "rad"))
+    arm = m.link("arm", length=r, mass=u(1.5, "kg"))
+    hand = m.link("hand", length=u(0.1, "m"), mass=0.5)
+    m.revolute("O", m.ground, arm)
+    m.weld("fist", arm.tip, hand, angle=lean)
+    law = law or harmonic(u(0.2, "rad"), u(0.5, "rad"), 6.0, u(0.1, "rad"))
+    return Scene(m, {"O": law}, t=(u(0.0, "s"), u(1.5, "s"), 7), wanted=["effort"])
+
+
+def evaluated(u):
+    values = {"r": u(0.05, "m"), "lean": u(0.5, "rad")}
+    return evaluate(crank(u), parameters=values).effort("O").tolist()
+
+
+DECLARED = [wheels, train, shapes, cams, loaded, notched, evaluated]
+
+
+@pytest.mark.parametrize("declared", DECLARED)
+def test_what_is_declared_by_a_text_is_what_its_number_declares(declared):
+    """And in another unit, a length in seconds, anything else in metres, each place in turn refuses
+    it.
+    """
+    places = []
+    declared(lambda value, unit: places.append(unit) or value)
+    assert declared(as_text) == declared(as_number)
+    for wrong, unit in enumerate(places):
+        told = iter(range(len(places)))
+
+        def at(value, _unit, told=told, wrong=wrong, unit=unit):
+            other = f"{value} s" if unit.startswith("m") else f"{value} m"
+            return other if next(told) == wrong else value
+
+        with pytest.raises(LagrangeCasadiError, match=r"got .*'|the law is in (m|s|rad), but"):
+            declared(at)
+
+
+def listed(u, folder):
+    """Designs and where a search may go, in every way in which they are listed."""
+    folder.mkdir()
+    rows = [(u(0.05, "m"), u(0.5, "rad")), (u(0.07, "m"), u(0.25, "rad"))]
+    text = "\n".join(["r,lean", *(f"{r},{lean}" for r, lean in rows)])
+    (folder / "designs.csv").write_text(text)
+    axes = {"r": [u(0.05, "m"), u(0.07, "m")], "lean": (u(0.1, "rad"), u(0.3, "rad"), 3)}
+    search = {"minimise": "peak:effort:O", "over": {"r": (u(0.05, "m"), u(0.2, "m"))}}
+    best = optimise(crank(), **search, parameters={"lean": u(0.1, "rad")}, starts=1, screen=2)
+    found = [
+        sweep(crank(), grid, out=folder / f"{k}.h5")
+        for k, grid in enumerate((axes, read_designs(folder / "designs.csv")))
+    ]
+    columns = [one["peak:effort:O"].tolist() for one in found]
+    return columns, found[0].select(r=u(0.07, "m"))["peak:effort:O"].tolist(), best.values
+
+
+def test_what_is_listed_by_texts_is_what_its_numbers_list(tmp_path):
+    assert listed(as_text, tmp_path / "texts") == listed(as_number, tmp_path / "numbers")
+
+
+def default(value, unit):
+    m = Mechanism("m")
+    m.parameter("x", value, unit)
+    return m.parameters["x"].default
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        (1.2, "rad", 1.2),
+        (np.float64(0.5), "rad", 0.5),
+        ("1.2rad", "rad", 1.2),
+        (" -90  deg ", "rad", -math.pi / 2),
+        ("1e2deg", "rad", 100 / 180 * math.pi),
+        ("100 mm", "m", 0.1),
+        ("0.3mm", "m", 0.0003),
+        ("500 g", "kg", 0.5),
+        ("20 ms", "s", 0.02),
+        ("90 deg/s", "rad/s", math.pi / 2),
+    ],
+)
+def test_a_text_is_the_number_of_its_unit(text, unit, value):
+    assert default(text, unit) == value
+
+
+@given(st.floats(-1e6, 1e6))
+def test_degrees_are_degrees(value):
+    assert default(f"{value!r} deg", "rad") == value / 180 * math.pi
+    assert default(f"{value!r}rad", "rad") == value
+
+
+NO_NUMBERS = ["", "deg", "1.2", "90 grad", "90 degrees", "1_0 deg", "nan", "inf deg", "1 2 deg"]
+NO_NUMBERS += [math.inf, math.nan, None, True, np.True_, (1,), 2j, b"3", 10**400, np.ones(1)]
+
+
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
+def test_what_is_no_number_is_refused(value):
+    m = crank().mechanism
+    for refused in (
+        lambda: m.link("a", length=value, mass=1.0),
+        lambda: m.weld("w", m.links["hand"].tip, m.point_mass("p", 1.0), angle=value),
+        lambda: m.values({"lean": value}),
+    ):
+        with pytest.raises(LagrangeCasadiError, match=r"\A[^\n]*\Z"):
+            refused()
+
+
+A_NUMBER = r"expected a finite number \[rad\], or a text such as '350 deg' or '1\.2 rad', got "
+POSTURES = {
+    r"85 rad is 4870\.14 deg, more than two turns; '85 deg' is 85 degrees$": 85,
+    r"-12\.6 rad is -721\.927 deg, more than two turns; '-12\.6 deg' is": -12.6,
+    r"13\.9626 rad is 800 deg, more than two turns$": "800 deg",
+    f"{A_NUMBER}'north'": "north",
+    "expected a finite number": math.nan,
+}
+
+
+@pytest.mark.parametrize("says", POSTURES)
+def test_a_posture_in_degrees_without_the_word_is_refused(says):
+    plain = four_bar()
+    with pytest.raises(DeclarationError, match=f"posture of 'c': {says}"):
+        Scene(plain.mechanism, plain.motion, t=plain.t, posture={"c": POSTURES[says]})
+    told = Scene(plain.mechanism, plain.motion, t=plain.t, posture={"c": "85 deg"})
+    assert dict(told.posture) == {"c": 85 / 180 * math.pi}
+
+
+def test_angles_are_questioned_where_they_are_none():
+    scene = crank(law=polynomial(0.0, 400.0))
+    for refused, says in (
+        (lambda: evaluate(scene, over=("O", 0, 360, 7)), "two turns; '360 deg' is 360 degrees"),
+        (
+            lambda: evaluate(scene, parameters={"r": "30 deg"}),
+            r"'r' must be a number \[m\], or a t",
+        ),
+        (lambda: evaluate(scene, parameters={"lean": "steep"}), r"must be a number \[rad\], or a"),
+        (lambda: evaluate(scene, parameters={"lean": "90 deg"}), r"1\.57\d* rad is out of its"),
+        (lambda: scene.mechanism.values({"r": 0.30000000001}), r"= 0\.30000000001 m is out of its"),
+        (lambda: crank(law=polynomial("10 mm")), "the law is in m, but the coordinate is in rad"),
+        (lambda: Mechanism("m").link("a", 0.1, 1.0), "name them: length=, mass="),
+        (
+            lambda: sweep(scene, {"r": ["10 deg"]}, out="x.h5"),
+            r"expected numbers \[m\], not angles",
+        ),
+        (lambda: sweep(scene, {"lean": ["steep"]}, out="x.h5"), "grid of lean: expected .*numbers"),
+        (
+            lambda: prepare(scene, wanted=np.array([1.0])),
+            "expected a list of output names, got arr",
+        ),
+    ):
+        with pytest.raises(LagrangeCasadiError, match=says):
+            refused()
+    assert evaluate(scene, over=("O", 0, "360 rad", 7)).over[-1] == 360.0
+    assert samples([0, 1, 2, 3], ["0 deg", "1 deg", "3 deg", "2 deg"]).unit == "rad"
+
+
+@pytest.mark.parametrize("function", [math.sin, float, lambda t: np.array(t)])
+def test_functions_of_math_name_casadis(function):
+    m = Mechanism("m")
+    arm = m.link("arm", length=0.3, mass=1.0)
+    with pytest.raises(
+        DeclarationError, match=r"must be finite, got nan; the functions of math .* use casadi\.sin"
+    ):
+        m.force("push", arm.tip, x=function(m.time))
+
+
+FUNCTIONS = [
+    lambda t: np.hypot(t, 0.4) + np.arctan2(t, -0.3) + np.deg2rad(t) + np.sin(t),
+    lambda t: np.where(t > 0.55, 3.0 * t, -1.0) + np.heaviside(t - 0.5, 0.25),
+    lambda t: np.interp(t, [0.3, 0.5, 0.9], [1.0, 4.0, -2.0]) + np.clip(t, 0.35, 0.75),
+    lambda t: np.maximum(t, 0.5) - np.minimum(t, 0.4) + np.power(t, 3) + np.sqrt(t),
+    lambda t: np.abs(t - 0.5) + np.floor(3 * t) + np.mod(t, 0.3),
+]
+
+
+@pytest.mark.filterwarnings("ignore::FutureWarning")
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_numpys_functions_of_symbols_are_what_they_are_of_numbers(function):
+    """They go into the graph as CasADi's own: the load at every instant is NumPy's value there."""
+    m = Mechanism("pendulum")
+    arm = m.link("arm", length=0.3, mass=1.0)
+    m.revolute("O", m.ground, arm)
+    m.force("push", arm.tip, x=function(m.time))
+    solution = evaluate(Scene(m, {"O": polynomial(0, 1.0)}, t=(0.2, 1, 9)), wanted=["load"])
+    load, expected = solution.array("load:push:fx"), function(solution.t)
+    np.testing.assert_allclose(load, expected, rtol=1e-15, atol=1e-15)

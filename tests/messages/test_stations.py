@@ -1,0 +1,150 @@
+"""Stations along links: those at the ends within rounding, those beyond, which are refused with
+lines that make a link of what reaches there, and sections where there are none.
+"""
+
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lagrange_casadi import Mechanism, Scene, evaluate, read, save_model
+from lagrange_casadi.errors import DeclarationError, ParameterError
+from lagrange_casadi.motion import polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+
+def shelf(x, length):
+    """A lump on a level arm, without a mass of its own; both are parameters."""
+    m = Mechanism("shelf")
+    arm = m.link("arm", length=m.parameter("l", length, "m"), mass=0.0)
+    m.revolute("O", m.ground, arm)
+    place = arm.at(m.parameter("x", x, "m"))
+    m.weld("lump", place, m.point_mass("mass", 2.0))
+    m.force("push", place, y=-1.0)
+    return Scene(m, {"O": polynomial(0.0)}, t=(0.0, 1.0, 3), xi=(0.0, 1.0, 3))
+
+
+@settings(max_examples=10, deadline=None)
+@given(parts=st.lists(st.integers(1, 999), min_size=2, max_size=12))
+def test_a_station_that_misses_an_end_by_rounding_is_there(parts):
+    """However a length is summed up: the weight is in the section at the very tip, and what is at
+    the base loads no section.
+    """
+    forward, backward = (sum(part / 1000 for part in way) for way in (parts, parts[::-1]))
+    weight = 2.0 * 9.81 + 1.0
+    for x, length in ((forward, backward), (backward, forward), (sum(parts) / 1000, forward)):
+        section = evaluate(shelf(x, length)).section("arm")
+        np.testing.assert_allclose(section.shear, -weight, rtol=1e-14)
+        moments = -weight * length * np.array([1.0, 0.5, 0.0])
+        np.testing.assert_allclose(section.bending[0], moments, rtol=1e-14, atol=1e-13 * length)
+        solution = evaluate(shelf(0.0, 0.3), parameters={"x": forward - backward, "l": forward})
+        np.testing.assert_array_equal(solution.section("arm").shear, np.zeros((3, 3)))
+        assert solution.certified
+
+
+def test_a_part_in_1e9_beyond_an_end_is_beyond():
+    scene = shelf(0.1, 0.3)
+    for x in (0.3 + 1e-14, -1e-14):
+        evaluate(scene, parameters={"x": x})
+    for x in (0.3 + 1e-9, -1e-9):
+        with pytest.raises(ParameterError, match=r"point at .* m is outside link 'arm', 0 to 0\.3"):
+            evaluate(scene, parameters={"x": x})
+    with pytest.raises(ParameterError, match=r"; with the default parameters l = 0\.2"):
+        shelf(0.3, 0.2)
+
+
+LENGTH, MASS, WEIGHT, G = 0.1, 0.6, 4.0, 9.81
+
+
+def crank(place):
+    """A crank with a counterweight where ``place`` says."""
+    m = Mechanism("balanced")
+    arm, weight = m.link("arm", length=LENGTH, mass=MASS), m.point_mass("weight", WEIGHT)
+    m.revolute("O", m.ground, arm)
+    m.weld("bolt", place(m, arm), weight)
+    return Scene(m, {"O": polynomial(0.3, 2.0, 5.0)}, t=(0, 1, 21))
+
+
+@pytest.mark.parametrize("station", [-0.05, -0.3, 0.13])
+def test_the_lines_of_a_refusal_make_what_was_meant(station):
+    """The drive's torque against J alpha + g (sum of m x) cos(angle), for a rod about its end and a
+    point mass.
+    """
+    says = rf"'bolt': its point at {station} m is outside link 'arm', 0 to 0\.1 m; for a"
+    with pytest.raises(ParameterError, match=says) as error:
+        crank(lambda m, arm: arm.at(station))
+    lines = re.search(r"declare another link: (tail = .*); and use tail\.tip as", str(error.value))
+
+    def place(m, arm):
+        names = {"m": m}
+        exec(lines[1].replace("; ", "\n"), names)
+        return names["tail"].tip
+
+    solution = evaluate(crank(place))
+    assert solution.certified
+    angle, alpha = solution.motion("O").value, 10.0
+    inertia = MASS * LENGTH**2 / 3 + WEIGHT * station**2
+    torque = inertia * alpha + G * (MASS * LENGTH / 2 + WEIGHT * station) * np.cos(angle)
+    limit = 1e-13 * np.abs(torque).max()
+    np.testing.assert_allclose(solution.effort("O"), torque, rtol=0, atol=limit)
+    arm = station - max(0.0, min(station, LENGTH))
+    weight = WEIGHT * (G * np.cos(angle) + station * alpha) * arm
+    bending = solution.section("arm_tail").bending
+    np.testing.assert_allclose(np.abs(bending[:, 0]), np.abs(weight), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(bending[:, -1], 0.0, atol=1e-13)
+
+
+def slide(start):
+    """A block that slides past the tip of its rail; its line begins at a station."""
+    m = Mechanism("rail")
+    rail, block = m.link("rail", length=0.4, mass=1.0), m.point_mass("block", 2.0)
+    m.revolute("O", m.ground, rail)
+    m.prismatic("P", rail.at(start), block, axis=(1, 0))
+    laws = {"O": polynomial(0.3, 2.0), "P": polynomial(0.5 - start, 0.4)}
+    return Scene(m, laws, t=(0.0, 0.2, 5))
+
+
+def test_a_line_may_be_told_by_a_place_beyond_the_end(tmp_path):
+    """The same sections are loaded; and the model that a file holds takes the same effort."""
+    scene = slide(0.1)
+    save_model(scene, tmp_path / "rail.json")
+    within = evaluate(scene)
+    again = evaluate(read(tmp_path / "rail.json"), t=scene.t)
+    np.testing.assert_allclose(again.effort("O"), within.effort("O"), rtol=1e-12)
+    for other in (slide(0.5), slide(-0.2)):
+        beyond = evaluate(other)
+        for name in ("axial", "shear", "bending"):
+            forces, there = (getattr(one.section("rail"), name) for one in (beyond, within))
+            np.testing.assert_allclose(forces, there, rtol=0.0, atol=1e-12 * np.abs(there).max())
+
+
+WHY = {
+    "plate": "link 'plate' has sections only if its mass is given along it",
+    "lump": "'lump' is not a link and has no sections; links: rod, plate",
+    "rod": "the sections of link 'rod' were not evaluated; add section:rod",
+}
+
+
+@pytest.mark.parametrize("part", WHY)
+def test_the_same_explanation_wherever_sections_are_asked_for(part):
+    m = Mechanism("plated")
+    rod = m.link("rod", length=0.5, mass=1.0)
+    plate = m.link("plate", length=0.5, mass=1.0, centre=(0.1, 0.0), inertia=0.1)
+    m.revolute("O", m.ground, rod)
+    m.revolute("A", rod.tip, plate)
+    m.weld("W", plate.tip, m.point_mass("lump", 1.0))
+    scene = Scene(m, {"O": polynomial(0, 1), "A": polynomial(0, 1)}, t=(0, 1, 3))
+    solution = evaluate(scene, wanted=["effort"])
+    for ask in (
+        lambda: solution.section(part),
+        lambda: solution.peak(f"section:{part}:bending"),
+        lambda: solution.array(f"section:{part}:shear"),
+        lambda: evaluate(scene, wanted=[f"section:{part}" if part != "rod" else "effort"]).section(
+            part
+        ),
+    ):
+        with pytest.raises(DeclarationError, match=WHY[part]):
+            ask()
