@@ -66,24 +66,6 @@ def test_the_least_peak_is_that_of_a_golden_section(name, parameter, bounds, qua
     assert found.values[parameter] == pytest.approx(x, abs=2e-4 * (bounds[1] - bounds[0]))
 
 
-@pytest.mark.long
-def test_a_limit_of_a_parameter_and_what_it_costs():
-    """Its multiplier is what the objective, a mean, gains where it is relaxed."""
-    scene = case("slider_crank")
-    words = {"minimise": "rms:effort:O", "over": {"m3": (0.02, 0.4), "l": (0.12, 0.4)}, "starts": 2}
-    found, relaxed = (
-        optimise(scene, subject_to=["peak:section:rod:bending <= 0.9", f"m3 >= {limit}"], **words)
-        for limit in (0.05, 0.0499)
-    )
-    for one in (found, relaxed):
-        assert one.feasible
-        assert one.converged
-    _, mass = found.limits
-    assert mass.active
-    assert mass.value == pytest.approx(0.05)
-    assert (found.objective - relaxed.objective) / 1e-4 == pytest.approx(mass.multiplier, rel=1e-2)
-
-
 def test_what_seems_better_by_the_violation_that_passes_is_not_taken_for_what_converged():
     """A program's design may be a little beyond a limit, and gain much by it where the limit costs
     much.
@@ -334,20 +316,6 @@ def test_a_jump_that_goes_with_what_is_chosen_is_followed(start):
     assert found.objective == pytest.approx(1.0, rel=1e-9)
 
 
-def test_a_peak_at_a_jump_is_told():
-    m = Mechanism("brake")
-    m.set_gravity(0.0, 0.0)
-    drag = m.parameter("drag", 2.0, "N m", low=0.0)
-    arm = m.link("arm", length=0.3, mass=1.0)
-    m.revolute("O", m.ground, arm)
-    m.torque("brake", arm, -ca.if_else(m.time > 0.5, drag * ca.exp(0.5 - m.time), 0.0))
-    scene = Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 42), wanted=["effort"])
-    found = optimise(scene, minimise="peak:effort:O", over={"drag": (1.0, 3.0)}, starts=1)
-    assert found.objective == pytest.approx(1.0, rel=1e-6)
-    (note,) = found.notes
-    assert note.startswith("peak:effort:O is at a kink or a jump, at t = 0.5")
-
-
 def turning(*, over=None, shift=0.0, law=None, gravity=0.0):
     """A rod that turns by pi less c in T seconds, from rest to rest: the largest torque is 6 I (pi
     - c)/T^2, at both ends.
@@ -433,32 +401,6 @@ def test_instants_go_with_what_is_chosen(shift, term):
     (limit,) = found.limits
     assert limit.multiplier == pytest.approx(found.values["T"] / 4, rel=1e-5)
     assert found.curvature == math.inf
-
-
-def test_instants_that_a_steady_drive_gives_go_with_its_speed():
-    """One turn of a shaft whose gravity torque is the same at every speed, and a damper's that
-    grows with it.
-    """
-    m = Mechanism("mill")
-    rate = m.parameter("rate", 2.0, "rad/s", low=0.1)
-    arm = m.link("arm", length=0.3, mass=1.0)
-    joint = m.revolute("O", m.ground, arm)
-    m.torque("drag", arm, -0.5 * m.rate(joint))
-    scene = Scene(
-        m, {"O": polynomial(0.3, rate)}, over=("O", 0.3, 0.3 + 2 * math.pi, 73), wanted=["effort"]
-    )
-    found = optimise(
-        scene,
-        minimise="rate",
-        over={"rate": (0.5, 9.0)},
-        subject_to=["peak:effort:O <= 3", "rate >= 1"],
-        **ONE,
-    )
-    assert found.values["rate"] == pytest.approx(1.0, rel=1e-6)
-    most = optimise(
-        scene, minimise="mean:effort:O", over={"rate": (0.5, 9.0)}, subject_to=["rate >= 2"], **ONE
-    )
-    assert most.objective == pytest.approx(0.5 * 2.0, rel=1e-9)
 
 
 def test_a_motion_that_cannot_be_inverted_is_told():

@@ -10,7 +10,6 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import CASES
-from parametric import declared
 
 from lagrange_casadi import (
     Mechanism,
@@ -70,14 +69,6 @@ def test_slopes_of_peaks_are_those_of_their_differences(name):
     assert not (gradient.kinds == UNKNOWN).any()
     worst = max(found, key=found.get)
     assert found[worst] <= 1e-6, (worst, found[worst])
-
-
-@pytest.mark.long
-def test_loops_that_are_iterated():
-    scene = declared(CASES / "rrr3")
-    f = prepare(scene, wanted=["effort", "section"])
-    found, _ = gaps(f, scene, f.parameters[:: len(f.parameters) // 2])
-    assert max(found.values()) <= 1e-6
 
 
 def rotor(**motion):
@@ -214,17 +205,6 @@ def test_a_jump_of_the_users_own():
     assert bends["onset"]["onset"] == pytest.approx(9 * exact / 400, rel=1e-8)
     assert bends["onset"]["speed"] == pytest.approx(exact * (3 - 9 * at) / 400, rel=1e-8)
     assert bends["speed"]["speed"] == pytest.approx(exact * (9 * at**2 - 6 * at) / 400, rel=1e-8)
-
-
-def test_a_peak_without_bound_has_no_slope():
-    """Where the skate's lead grows without bound the peak is infinite; others have theirs."""
-    f = prepare(declared(CASES / "sleigh"), wanted=["effort", "reaction"])
-    gradient = f.gradient()
-    endless = np.isinf(gradient.value)
-    assert endless.any()
-    assert not endless.all()
-    assert np.isnan(gradient.slopes[endless]).all()
-    assert np.isfinite(gradient.slopes[~endless]).all()
 
 
 @pytest.mark.parametrize("asked", ["times", "over"])
@@ -426,23 +406,6 @@ def test_a_pendulum_ties_where_a_bias_tells_its_sides_apart(backend):
     assert f.gradient(bias=1e-7).tied.tolist() == [False]
 
 
-def test_what_changes_alike_is_no_tie():
-    """Two turns of the same motion, and both sides of a pendulum without a bias."""
-    m = Mechanism("plain")
-    m.set_gravity(0, 0)
-    arm = m.link("arm", length=m.parameter("l", 0.8, "m"), mass=2.0)
-    m.revolute("O", m.ground, arm)
-    f = prepare(
-        Scene(m, {"O": harmonic(0.0, 0.6, 1.0)}, t=(0.0, 2.0, 57)),
-        wanted=["effort", "section", "reaction"],
-    )
-    gradient = f.gradient()
-    assert not gradient.tied.any()
-    step = 1e-6
-    slope = (abs(f.peaks(l=0.8 + step).value[0]) - abs(f.peaks(l=0.8 - step).value[0])) / (2 * step)
-    assert abs(gradient["effort:O"]["l"]) == pytest.approx(slope, rel=1e-8)
-
-
 def test_along_a_link():
     scene = bar()
     f = prepare(scene)
@@ -459,22 +422,6 @@ def test_along_a_link():
     assert shrunk == pytest.approx(10.1)
 
 
-def test_kinks_between_instants():
-    """Two tents as high, each by a parameter of its own, whose tips no instant meets."""
-    m = Mechanism("tents")
-    m.set_gravity(0, 0)
-    a, b = m.parameter("a", 2.0, "N m"), m.parameter("b", 2.0, "N m")
-    arm = m.link("arm", length=1.0, mass=1.0)
-    angle = m.coordinate(m.revolute("O", m.ground, arm))
-    first, second = (ca.fmax(0.0, 1 - ca.fabs(angle - place) / 0.3) for place in (0.413, 1.627))
-    m.torque("push", arm, a * first + b * second)
-    f = prepare(Scene(m, {"O": polynomial(0.0, 1.0)}, wanted=["effort"], t=(0.0, 2.0, 41)))
-    gradient = f.gradient()
-    assert gradient.kinds.tolist() == [SWITCH]
-    assert gradient.tied.tolist() == [True]
-    assert f.gradient(b=1.99).tied.tolist() == [False]
-
-
 def test_solutions_say_it_too():
     scene = pendulum()
     solution = evaluate(scene, wanted=["effort", "sensitivity:bias"], certificate=False)
@@ -482,12 +429,3 @@ def test_solutions_say_it_too():
     assert change.tied
     other = evaluate(scene, parameters={"bias": 0.1}, wanted=["effort"], certificate=False)
     assert not sensitivities(scene, other).peak("effort:O").tied
-
-
-def test_a_peak_at_an_end_of_its_link():
-    f = prepare(load_case(CASES / "slider_crank").scene, wanted=["section:rod"])
-    gradient = f.gradient()
-    kinds = dict(zip(f.quantities, gradient.kinds.tolist(), strict=True))
-    assert kinds["section:rod:shear"] == LINK_END
-    assert kinds["section:rod:bending"] == SMOOTH
-    assert kinds["section:rod:axial"] == END

@@ -36,7 +36,7 @@ from lagrange_casadi import (
 from lagrange_casadi.cli import main
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.motion import dwell, harmonic, move, moves
+from lagrange_casadi.motion import harmonic
 
 OWN = {
     "beam_pump": ["r", "counterweight", "fluid"],
@@ -143,6 +143,13 @@ def test_slopes_are_those_of_differences_in_50_digits(name):
     t = scene.span[0] + 0.37 * (scene.span[1] - scene.span[0])
     changes, values = made(scene, t), scene.mechanism.values()
     _, held = columns_at(derive(scene, ["all"]), t, values)
+    sizes = sizes_of(
+        {
+            name: [np.abs(changes.array(name, one)[-1] * x).max() for one, x in values.items()]
+            for name in changes.solution.names()
+            if changes.solution.determined(name)
+        }
+    )
     for parameter in parameters:
         x = values[parameter]
 
@@ -152,7 +159,6 @@ def test_slopes_are_those_of_differences_in_50_digits(name):
         exact = slopes_in_digits(at, x)
         names = quantities(changes, exact)
         own = {name: np.atleast_1d(changes.array(name, parameter)[-1]) for name in names}
-        sizes = sizes_of({name: rows * x for name, rows in own.items()})
         most = sizes_of({name: changes.solution.array(name)[-1] for name in names})
         for name in names:
             gap = np.abs(own[name] - exact[name]).max() * abs(x)
@@ -202,6 +208,8 @@ def test_in_space_too(name):
     t = scene.span[0] + 0.37 * (scene.span[1] - scene.span[0])
     changes, values = made(scene, t, count=40), scene.mechanism.values()
     for parameter, x in values.items():
+        if x == 0.0:  # it gives steps no size
+            continue
 
         def at(moved, parameter=parameter):
             return truth(scene, [t], {parameter: moved}).sides[0][0]
@@ -286,23 +294,6 @@ def test_series_and_sections_are_those_of_differences(parameter):
         assert found.shape == solution.array(name).shape
         size = np.abs(exact).max() + np.abs(solution.array(name)).max() / abs(at)
         np.testing.assert_allclose(found, exact, rtol=0, atol=1e-9 * size, err_msg=name)
-
-
-def test_where_friction_rests_there_are_no_numbers():
-    m = Mechanism("resting")
-    l = m.parameter("l", 0.4, "m")
-    bar = m.link("bar", length=l, mass=2.0)
-    m.friction("rub", m.revolute("O", m.ground, bar), mu=0.1, radius=0.02)
-    law = moves([move(1.0, time=0.4), dwell(0.1), move(by=-1.0, time=0.5)])
-    scene = Scene(m, {"O": law}, t=(0, 1, 41), wanted=["effort"])
-    solution = evaluate(scene, backend="vm")
-    assert 0 < np.count_nonzero(solution.resting) < 41
-    found = sensitivities(scene, solution, backend="vm").array("effort:O", "l")
-    assert np.isnan(found).tolist() == solution.resting.tolist()
-    exact = differences(
-        lambda x: evaluate(scene, parameters={"l": x}, backend="vm"), "effort:O", "l", 0.4
-    )
-    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-8 * np.nanmax(np.abs(exact)))
 
 
 @pytest.mark.sampled(2)
@@ -440,31 +431,6 @@ def test_a_file_has_them(tmp_path, capsys, solution):
         assert h["sensitivity/m3/effort/O"].attrs["units"] == "N m/kg"
     assert main(["info", str(file)]) == 0
     assert "sensitivities: of 4 quantities by r, l, m1, m2, m3\n" in capsys.readouterr().out
-
-
-def test_some_parameters(tmp_path, solution):
-    one = evaluate(slider_crank(), wanted=["effort", "sensitivity:l"], t=SHORT)
-    assert one.sensitivities.parameters == ("l",)
-    np.testing.assert_allclose(
-        one.sensitivities.array("effort:O", "l"),
-        solution.sensitivities.array("effort:O", "l"),
-        rtol=1e-12,
-    )
-    part = one.during(slice(2, 4))
-    np.testing.assert_array_equal(
-        part.sensitivities.array("effort:O", "l"), one.sensitivities.array("effort:O", "l")[2:4]
-    )
-    save(one, tmp_path / "one.h5")
-    assert load(tmp_path / "one.h5").sensitivities.parameters == ("l",)
-    with pytest.raises(
-        UnknownNameError, match="unknown parameter with sensitivities 'r'; valid: l"
-    ):
-        one.sensitivities.array("effort:O", "r")
-    with pytest.raises(
-        UnknownNameError,
-        match="unknown quantity with sensitivities 'reaction:O:fx'; valid: effort:O",
-    ):
-        one.sensitivities.array("reaction:O:fx", "l")
 
 
 def test_tables_have_them(solution):

@@ -341,61 +341,6 @@ def test_lives_and_masses_of_designs_and_the_lightest_that_is_safe():
     assert chosen.number == np.where(safe, swept["mass:all"], np.inf).argmin()
 
 
-def at_once(scene, link):
-    """Utilisation against fatigue of a link of one design as sweeps tell it, and as its solution
-    does.
-    """
-    (name, value), *_ = scene.mechanism.values().items()
-    found = sweep(scene, {name: [value]}, wanted=[f"safety:{link}"], backend="vm")
-    solution = evaluate(scene, backend="vm", certificate=False)
-    return 1.0 / found[f"least:fatigue:{link}"][0], 1.0 / solution.safety(link).against("fatigue")
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("seed", range(16))
-def test_drawn_loads_are_told_of_all_designs_at_once(seed):
-    """Any that stand still, on any beam, in the plane and in space; a solution looks at more
-    ratios.
-    """
-    rng = np.random.default_rng(seed)
-    space = seed % 2 == 1
-    m = SpatialMechanism("arm") if space else Mechanism("arm")
-    wide, narrow = rng.uniform(0.015, 0.03, 2)
-    course = [
-        beams.rectangle(wide, 0.012),
-        beams.tapered(beams.round_bar(wide), beams.round_bar(narrow)),
-        beams.tube(wide, 0.003),
-    ]
-    course += [beams.stepped([0.4], [beams.rectangle(wide, 0.012), beams.rectangle(narrow, 0.012)])]
-    notches = [beams.Notch(rng.uniform(0.1, 0.9), bending=1.8, shear=1.4, sensitivity=0.8)][
-        : seed % 3
-    ]
-    beam = beams.Beam(course[seed % 4], STEEL.but(endurance=2e8), notches)
-    arm = m.link("arm", length=m.parameter("l", 0.5, "m"), beam=beam)
-    m.revolute("O", m.ground, arm, **({"axis": tuple(rng.normal(size=3))} if space else {}))
-    axes = "xyz" if space else "xy"
-    for k in range(rng.integers(1, 4)):
-        place = arm.at(float(rng.uniform(0.0, 0.5)), 0.01)
-        m.force(
-            f"push{k}",
-            place,
-            **dict(zip(axes, rng.normal(0.0, 300.0, 3).tolist(), strict=False)),
-            turning=bool(rng.integers(2)),
-        )
-    for k in range(rng.integers(0, 3)):
-        between = tuple(np.sort(rng.uniform(0.0, 0.5, 2)).tolist())
-        m.line_load(
-            f"wind{k}",
-            arm,
-            y=tuple(rng.normal(0.0, 900.0, 2).tolist()),
-            between=between,
-            turning=bool(rng.integers(2)),
-        )
-    law = polynomial(0.3) if seed % 5 == 0 else harmonic(0.2, 0.6, 2.0)
-    found, told = at_once(Scene(m, {"O": law}, t=(0, 0.5, 17), wanted=["section:arm"]), "arm")
-    assert found == pytest.approx(told, rel=1e-9)
-
-
 def test_strength_that_is_open_has_no_number(tmp_path):
     """Of bars side by side equilibrium leaves the axial forces open, as evaluations say; one that
     nothing holds is told.
@@ -525,24 +470,6 @@ def test_the_lightest_that_does_not_tire_is_found():
         0.002 * h
     )
     assert limit.multiplier == pytest.approx(-7850.0 * 0.012 * 0.5 / slope, rel=1e-3)
-
-
-@pytest.mark.long
-def test_as_an_objective_in_space_where_stresses_are_out_of_phase():
-    """Shear counts there, and swings are counted: the multiplier of the bound it ends at, against
-    differences of sweeps.
-    """
-    scene = robot(beams.tube(0.03, 0.003), STEEL.but(endurance=220e6))
-    term = "peak:utilisation:upper:fatigue"
-    found = optimise(scene, minimise=term, over={"pull": (200.0, 300.0)}, starts=1, screen=4)
-    assert found.converged
-    assert found.unit == "1"
-    pull = found.values["pull"]
-    swept = sweep(scene, {"pull": [pull, pull + 0.01, pull + 0.02]}, wanted=["safety:upper"])
-    here, _, high = (1.0 / x for x in swept["least:fatigue:upper"])
-    assert found.objective == pytest.approx(here, rel=1e-9)
-    assert pull == pytest.approx(200.0, rel=1e-6)
-    assert found.bounds["pull"] == pytest.approx(-(high - here) / 0.02, rel=1e-3)
 
 
 @pytest.mark.parametrize(
