@@ -12,7 +12,7 @@ from ..instants.beyond_equilibrium import Elasticity
 from ..instants.solution import Provenance, Solution
 from ..methods import method
 from .opening import SCHEMA
-from .untrusted import check_shape, parsed, shown
+from .untrusted import check_shape, number, parsed, shown
 from .words import conventions
 
 Attributes: TypeAlias = Mapping[str, Any]
@@ -93,7 +93,7 @@ def read_attributes(attributes: Attributes) -> dict[str, Any]:
         "provenance": Provenance(**words, versions=stated("versions", {str: str})),
         "indeterminate": tuple(map(Output.of, stated("undetermined", [str]))),
         "errors": stated("error_estimates", {str: float}, "{}"),
-        "tolerance": float(attributes["certificate_tolerance"]),
+        "tolerance": number(attributes, "certificate_tolerance"),
         "elasticity": Elasticity(tuple(map(Output.of, completed)), tuple(reasons)),
         "holding": stated("holding", {str: str}, "{}"),
     }

@@ -56,6 +56,7 @@ from .untrusted import (
     check_chunks,
     check_dataset,
     check_links,
+    number,
     parsed,
     reported_as,
     shown,
@@ -478,7 +479,7 @@ def _read(file: h5py.File) -> Solution:
         ):
             output = Output.of(place.replace("/", ":"))
             if "error_estimate" in item.attrs:
-                errors[str(output)] = float(item.attrs["error_estimate"])
+                errors[str(output)] = number(item.attrs, "error_estimate")
             if output.quantity.axes == ("t",) and output.group not in ("certificate", "holding"):
                 outputs[output] = numbers(item, t.shape)
 

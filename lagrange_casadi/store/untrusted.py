@@ -17,6 +17,7 @@ from types import FunctionType
 from typing import Any
 
 import h5py
+import numpy as np
 
 from ..errors import LagrangeCasadiError, StoreError, one_line
 
@@ -71,6 +72,17 @@ def shown(value: str) -> str:
     if not isinstance(value, str) or re.search("[\0\ud800-\udfff]", value):
         raise ValueError(f"{value!r:.40} is not a text")
     return value
+
+
+def number(attributes: Mapping[str, Any], name: str) -> float:
+    """The number that an attribute states.
+
+    Raises ``ValueError`` for an attribute that is no real number, ``KeyError`` for none.
+    """
+    value = attributes[name]
+    if not isinstance(value, float | np.floating):
+        raise ValueError(f"{name} is not of the expected kind")
+    return float(value)
 
 
 def check_links(file: h5py.File) -> None:

@@ -253,11 +253,11 @@ def _sums(placed: Placed, acting: Sequence[Action], centres: Mapping[str, Motion
 
 
 def _weight(placed: Placed, body: str, reach: float) -> Scalar:
-    """The inertia of a body and its weight [N], none against another: of its origin, and of what
-    turns about it.
+    """The inertia of a body and its weight [N], none against another: of its origin, of what turns
+    about it, and of uniform motion, whose accelerations are rounding of speed^2 / size.
     """
     _, change, rate, acceleration = placed.bodies[body].sizes
-    weight = Vector(*placed.declared.gravity).size
+    weight = Vector(*placed.declared.gravity).size + placed.rates[1] ** 2 / placed.declared.size
     return placed.declared.bodies[body].mass * (change + (rate**2 + acceleration) * reach + weight)
 
 

@@ -92,27 +92,6 @@ def scene(**keywords):
     return mechanisms.slider_crank(**{"t": (0, 0.08, 7), **keywords})
 
 
-def identity(case="x"):
-    """What a sweep is of, as parts keep it."""
-    words = dict.fromkeys(
-        ("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), ""
-    )
-    tables = {name: {} for name in ("parameters", "bodies", "joints", "loads", "rows")}
-    mechanism = {"name": case, "gravity": [0.0, -9.81], "constraints": [], **tables}
-    grid = {"l": "0.1:0.2:11"}
-    return {
-        "schema_version": 1,
-        "case": case,
-        "versions": {},
-        **words,
-        "wanted": {},
-        "t": [0.0, 1.0, 11],
-        "xi": None,
-        "mechanism": mechanism,
-        "grid": grid,
-    }
-
-
 @contextlib.contextmanager
 def process(*command, **keywords):
     """A process of its own that does not outlive its test."""

@@ -4,14 +4,13 @@ import hashlib
 import json
 
 import pytest
-from internals import INDEX_MANIFEST as MANIFEST
 
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import PathError
 
 pytestmark = pytest.mark.quick
 
 RUN = ["run", "four_bar", "--t", "0:0.1:11", "--want", "effort"]
+
 SWEEP = ["sweep", "four_bar", "--grid", "a=0.1:0.12:3", "--t", "0:0.1:11", "--want", "effort"]
 
 
@@ -43,15 +42,16 @@ def contents(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
+MANIFEST = "figures.json"
+
+
 def test_a_folder_is_drawn_again_and_keeps_what_lies_beside(command):
     words, folder = command
     assert main(words) == 0
     first = contents(folder)
-    told = json.loads(first[MANIFEST.name])["files"]
+    told = json.loads(first[MANIFEST])["files"]
     assert told == {
-        name: hashlib.sha256(text).hexdigest()
-        for name, text in first.items()
-        if name != MANIFEST.name
+        name: hashlib.sha256(text).hexdigest() for name, text in first.items() if name != MANIFEST
     }
     assert len(told.keys() - {"index.html"}) == len(told) - 1 > 0
     (folder / "notes.txt").write_text("mine")
@@ -91,55 +91,12 @@ def test_what_was_changed_or_came_under_a_name_of_ours_stays(command, capsys):
     picture.unlink()
     assert main(words) == 0
     assert picture.read_bytes() == drawn
-    told = json.loads((folder / MANIFEST.name).read_text())
+    told = json.loads((folder / MANIFEST).read_text())
     del told["files"][picture.name]
-    (folder / MANIFEST.name).write_text(json.dumps(told))
+    (folder / MANIFEST).write_text(json.dumps(told))
     capsys.readouterr()
     assert main(words) == 2
     assert (
         f"'{picture.name}' there is no file of an earlier drawing; move it"
         in capsys.readouterr().err
     )
-
-
-def test_what_is_drawn_no_more_is_known_still(files, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for wanted in ("effort", "motion", "effort"):
-        assert main(["run", "four_bar", "--t", "0:0.1:11", "--want", wanted]) == 0
-    assert main(["plot", str(files[1]), "--out", "four_bar_figures"]) == 0
-    assert {"effort_O.png", "index.html", "mechanism.png"} <= MANIFEST.known(
-        tmp_path / "four_bar_figures"
-    ).keys()
-
-
-def test_an_empty_folder_and_one_with_hidden_files_are_free(files, tmp_path):
-    (tmp_path / ".gitignore").write_text("*")
-    assert main(["plot", str(files[0]), "--out", str(tmp_path)]) == 0
-    assert (tmp_path / ".gitignore").read_text() == "*"
-
-
-OURS = '{"schema": "lagrange-casadi figures"'
-
-
-@pytest.mark.parametrize(
-    "text", ["", "[]", "{", "[" * 100_000, "\xff", OURS + "}", OURS + ', "files": 3}']
-)
-def test_what_is_no_manifest_is_a_file_of_somebody_else(tmp_path, text):
-    (tmp_path / MANIFEST.name).write_bytes(text.encode("latin-1"))
-    with pytest.raises(PathError, match=r"'figures\.json' there is no file of an earlier drawing"):
-        MANIFEST.check(tmp_path)
-
-
-def test_a_link_or_a_folder_under_a_known_name_was_changed(tmp_path):
-    one = tmp_path / "one.png"
-    one.write_text("drawn")
-    (tmp_path / "drawn").mkdir()
-    for make in (lambda path: path.symlink_to(one), lambda path: path.mkdir()):
-        place = tmp_path / "drawn" / "one.png"
-        (tmp_path / "drawn" / MANIFEST.name).write_text(
-            MANIFEST.text({"one.png": hashlib.sha256(b"drawn").hexdigest()})
-        )
-        make(place)
-        with pytest.raises(PathError, match=r"whose 'one\.png' was changed since"):
-            MANIFEST.check(tmp_path / "drawn")
-        place.unlink() if place.is_symlink() else place.rmdir()

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 from conftest import CASES, PLANAR
-from internals import forces, refine, shortfall
 from mechanisms import LENGTH, MASS, G, four_bar, parallelogram, pendulum
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
+from lagrange_casadi.peaks import forces, refine, shortfall
 
 
 def vm(scene, **keywords):
@@ -167,15 +167,6 @@ def test_a_solution_brings_its_parameters_and_outputs(tmp_path, slider_crank):
     assert refine(slider_crank.scene, half, ["effort:O"])[0].t < half.t[-1]
 
 
-def test_iterated_loops_are_followed_from_instant_to_instant():
-    scene = load_case(CASES / "rrr3").scene
-    coarse, fine = vm(scene, t=(0, 1, 21)), vm(scene, t=(0, 1, 2001))
-    for one, other in zip(
-        refine(scene, coarse, forces(coarse)), refine(scene, fine, forces(fine)), strict=True
-    ):
-        assert one.value == pytest.approx(other.value, rel=1e-12), one.name
-
-
 def test_the_shortfall_of_a_cosine():
     """The effort is a cosine: what its instants miss is known exactly."""
     speed, start = 3.0, 0.1
@@ -187,16 +178,6 @@ def test_the_shortfall_of_a_cosine():
         assert row.count == count
         assert row.sampled_worst == row.sampled_median == pytest.approx(missed, rel=1e-10)
         assert abs(row.refined_worst) < 1e-14
-
-
-def test_the_shortfall_of_instants_falls_with_the_square_of_the_step(slider_crank):
-    counts = [25, 50, 100, 200, 400]
-    rows = shortfall(slider_crank.scene, counts, parameters={"l": 0.21})
-    order = -np.polyfit(np.log(counts), np.log([row.sampled_worst for row in rows]), 1)[0]
-    assert 1.7 < order < 2.3
-    for row in rows:
-        assert 0 <= row.sampled_median <= row.sampled_worst
-        assert 0 <= row.refined_median <= row.refined_worst < 1e-13
 
 
 def test_misuse_is_named(slider_crank):

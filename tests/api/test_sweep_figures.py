@@ -1,18 +1,16 @@
-"""Figures that a sweep suggests by itself, on pages and in files; what shows nothing is said and
-not drawn.
-"""
+"""Figures of a sweep: each draws what it says, from the file's arrays, and says what it omits."""
 
 import numpy as np
 import plotted
 import pytest
 import sweeps
-from internals import Front, Peaks, Scatter, default_plots, draw_sweep, sweep
-from internals import ListingListed as Listed
+from internals import Front, Peaks, Scatter, best, default_plots, draw_sweep, sweep
 from internals import PlotsAlong as Along
-from plotted import BENDING, CLOSED, EFFORT, lines, plain, rewritten
+from internals import scale_number as number
+from plotted import BENDING, EFFORT, REACH, legend, lines, plain, rewritten
 
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
+from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 
 @pytest.fixture
@@ -23,6 +21,117 @@ def swept(monkeypatch, tmp_path):
 @pytest.fixture
 def listed(monkeypatch, tmp_path):
     return plotted.list_of(monkeypatch, tmp_path)
+
+
+def test_curves_over_a_parameter(swept):
+    figure = Peaks("x", (EFFORT, BENDING), ("l",), at={"r": 0.1}).draw(swept)
+    assert len(figure.axes) == 2
+    for axes, name in zip(figure.axes, (EFFORT, BENDING), strict=True):
+        values = np.abs(swept[name][:, 1, 0])
+        (line,), (star,), (crosses,) = (lines(axes, marker) for marker in (".", "*", "x"))
+        np.testing.assert_array_equal(line.get_xdata(), np.linspace(0.15, 0.4, 9))
+        np.testing.assert_array_equal(line.get_ydata(), values)
+        k = np.nanargmin(values)
+        assert (star.get_xdata()[0], star.get_ydata()[0]) == (swept["l"][k], values[k])
+        np.testing.assert_array_equal(crosses.get_xdata(), swept["l"][np.isnan(values)])
+        assert (
+            plain(axes.get_title(loc="left")) == f"★ {number(values[k])} at l = {swept['l'][k]:.4g}"
+        )
+    assert figure.axes[1].get_xlabel() == "l [m]"
+    assert plain(figure.axes[1].get_ylabel()) == "rod bending, |peak| [N m]"
+    assert (
+        plain(figure.get_suptitle())
+        == "slider_crank: peak over time of each design at r = 0.1 m, m1 = 0.1 kg"
+    )
+    assert legend(figure) == [REACH, "smallest of those drawn"]
+
+
+def test_maps_over_two_parameters_in_either_order(swept):
+    """Values that are not in order on the grid are in order on the map; what has no result is
+    masked, and shaded instead.
+    """
+    sizes = np.abs(swept[BENDING][:, [0, 2, 1], 1])
+    assert 0 < np.isnan(sizes).sum() < sizes.size
+    l, r = np.unravel_index(np.nanargmin(sizes), sizes.shape)
+    for over, expected in ((("l", "r"), sizes.T), (("r", "l"), sizes)):
+        figure = Peaks("x", (BENDING,), over, at={"m1": 0.2}).draw(swept)
+        axes, bar = figure.axes
+        cells, shade = axes.collections
+        np.testing.assert_array_equal(np.ma.filled(cells.get_array(), np.nan), expected)
+        np.testing.assert_array_equal(np.ma.getmaskarray(shade.get_array()), ~np.isnan(expected))
+        (star,) = lines(axes, "*")
+        place = {"l": swept["l"][l], "r": np.sort(swept["r"])[r]}
+        assert (star.get_xdata()[0], star.get_ydata()[0]) == tuple(place[name] for name in over)
+        assert legend(figure) == [REACH, "smallest of those drawn"]
+        assert plain(bar.get_xlabel()) == "rod bending, |peak| [N m]"
+
+
+@pytest.mark.parametrize("sized", [False, True])
+def test_section_forces_along_the_link(swept, sized):
+    """With their sign, unless it alternates from cell to cell, where it is that of rounding."""
+
+    def signed(values):
+        steady = np.where(np.arange(5) < 2, -1.0, 1.0)
+        alternating = np.where((np.arange(9)[:, None] + np.arange(5)) % 2, -1.0, 1.0)[:, None, None]
+        return np.abs(values) * (alternating if sized else steady)
+
+    found = rewritten(swept, "peak_at:section:rod:bending", signed)
+    figure = Along("x", "rod", "l", {"r": 0.1, "m1": 0.2}).draw(found)
+    values = found["peak_at:section:rod:bending"][:, 1, 1].T
+    assert np.nanmin(values) < 0.0 < np.nanmax(values)
+    cells, shade = figure.axes[2].collections
+    np.testing.assert_array_equal(
+        np.ma.filled(cells.get_array(), np.nan), np.abs(values) if sized else values
+    )
+    np.testing.assert_array_equal(np.ma.getmaskarray(shade.get_array()), ~np.isnan(values))
+    assert cells.norm.vmin == (0.0 if sized else -cells.norm.vmax)
+    assert (
+        plain(cells.colorbar.ax.get_xlabel())
+        == f"rod bending, {'|peak|' if sized else 'peak'} [N m]"
+    )
+
+
+def test_the_front_and_all_designs(swept):
+    figure = Front("x", EFFORT, BENDING).draw(swept)
+    dots, _, front = (
+        lines(figure.axes[0], "o")[0],
+        *lines(figure.axes[0], "None"),
+        lines(figure.axes[0], "o")[1],
+    )
+    both = ~np.isnan(swept[EFFORT]).ravel()
+    assert np.isfinite(dots.get_xdata()).sum() == both.sum()
+    designs = best(swept, minimise=[EFFORT, BENDING])
+    np.testing.assert_array_equal(
+        front.get_ydata(), [abs(design.values[BENDING]) for design in designs]
+    )
+    (low, high), axes = figure.axes[0].get_xlim(), figure.axes[0]
+    assert low < front.get_xdata().min()
+    assert front.get_xdata().max() < high
+    assert plain(figure.get_suptitle()) == "slider_crank: designs and their front"
+    keys = list(legend(figure)[2:])
+    named = [
+        ", ".join(
+            f"{name} = {design.values[name]:.4g} {unit}" for name, unit in swept.parameters.items()
+        )
+        for design in designs
+    ]
+    assert keys
+    assert keys[0] == named[0]
+    assert keys[-1] == named[-1]
+    assert set(keys) <= set(named)
+    for k, words in enumerate(keys, 1):
+        ((x, y),) = lines(axes, f"${k}$")[0].get_xydata()
+        design = designs[named.index(words)]
+        assert (x, y) == (abs(design.values[EFFORT]), abs(design.values[BENDING]))
+        assert any((ring.get_xydata() == [x, y]).all() for ring in lines(axes, "o")[2:])
+    some = Front("x", EFFORT, "l", {"m1": 0.2}).draw(swept)
+    assert (
+        np.isfinite(lines(some.axes[0], "o")[0].get_xdata()).sum()
+        == (~np.isnan(swept[EFFORT][:, :, 1])).sum()
+    )
+    assert some.axes[0].get_ylabel() == "l [m]"
+    assert plain(some.get_suptitle()).endswith("at m1 = 0.2 kg")
+    assert all(words.startswith("l = ") and "m1" not in words for words in legend(some)[2:])
 
 
 @pytest.mark.sampled(2)
@@ -85,78 +194,6 @@ def test_a_list_is_drawn_over_each_parameter(listed, tmp_path):
         .endswith(f"design {25 + np.nanargmin(np.abs(listed[EFFORT][25:]))}")
     )
     assert [why for _, why in draw_sweep(listed, specs, tmp_path)] == [""] * 4
-
-
-def test_many_columns_and_parameters_come_on_pages(monkeypatch, tmp_path):
-    engine = sweeps.use(monkeypatch)
-    engine.quantities = tuple(f"reaction:J{k}:resultant" for k in range(10))
-    grid = sweep(
-        sweeps.scene(),
-        {"l": (0.15, 0.4, 3), "r": [0.05, 0.1]},
-        out=tmp_path / "x.h5",
-        wanted=["effort"],
-    )
-    specs = [spec for spec in default_plots(grid) if isinstance(spec, Peaks)]
-    assert [(spec.name, len(spec.columns)) for spec in specs] == [
-        ("peak_reactions_1", 5),
-        ("peak_reactions_2", 5),
-    ]
-    rows = np.random.default_rng(3).uniform(0.1, 0.3, (9, 4))
-    found = sweep(
-        sweeps.scene(),
-        Listed(("l", "r", "m1", "m2"), rows),
-        out=tmp_path / "y.h5",
-        wanted=["effort"],
-    )
-    specs = [spec for spec in default_plots(found) if isinstance(spec, Scatter)]
-    assert [spec.name for spec in specs] == [f"peak_reactions_{k}" for k in range(1, 7)]
-    assert [len(spec.columns) * len(spec.over) for spec in specs] == [8, 8, 6, 6, 6, 6]
-    assert {(c, n) for spec in specs for c in spec.columns for n in spec.over} == {
-        (f"peak:reaction:J{k}:resultant", name) for k in range(10) for name in found.parameters
-    }
-
-
-def test_what_is_the_same_for_all_is_said_and_not_drawn(swept, tmp_path):
-    found = rewritten(swept, EFFORT, lambda values: np.where(np.isnan(values), np.nan, [3.0, 4.0]))
-    figure = Peaks("x", (EFFORT, BENDING), ("l", "r")).draw(found)
-    assert len(figure.axes) == 2, "a map and its bar"
-    assert "at m1 = 0.1 kg; the same for all drawn: effort O, |peak| [N m] = 3" in plain(
-        figure.get_suptitle()
-    )
-    ((path, why),) = draw_sweep(found, [Peaks("x", (EFFORT,), ("l", "r"))], tmp_path)
-    assert why == "the same for all drawn, at m1 = 0.1 kg: effort O, |peak| [N m] = 3"
-    assert not path.exists()
-
-
-def test_no_empty_axes(swept, tmp_path):
-    """Of designs that have no result there is no figure, and of a sweep without any there is an
-    error.
-    """
-
-    def without(values):
-        values[0] = np.nan if values.dtype.kind == "f" else 1
-        return values
-
-    found = swept
-    for name in ("status", BENDING, "peak_at:section:rod:axial"):
-        found = rewritten(found, name, without)
-    specs = [
-        Peaks("a", (BENDING,), ("r", "m1"), at={"l": 0.15}),
-        Along("b", "rod", "r", {"l": 0.15}),
-    ]
-    drawn = list(draw_sweep(found, [*specs, Front("c", BENDING, BENDING, {"l": 0.15})], tmp_path))
-    assert [why for _, why in drawn] == [
-        "no design at l = 0.15 m has a result",
-        "no design at l = 0.15 m, m1 = 0.1 kg has a result",
-        "no design at l = 0.15 m has a result",
-    ]
-    assert not any(path.exists() for path, _ in drawn)
-    found = rewritten(found, "status", lambda values: np.where(values, values, 4))
-    with pytest.raises(
-        NoDesignError,
-        match=rf"no design has a result \(\d+ x {CLOSED}; \d+ x a loop cannot be closed",
-    ):
-        default_plots(found)
 
 
 def test_what_cannot_be_drawn_is_named(swept, listed, monkeypatch, tmp_path):
@@ -239,18 +276,4 @@ def test_the_command_writes_figures_or_nothing(swept, tmp_path, capsys):
     assert capsys.readouterr().err.endswith(
         "(54 x a loop cannot be closed: its links do not reach): there is nothing to draw\n"
     )
-    assert not (tmp_path / "none").exists()
-
-
-def test_a_command_whose_figures_all_show_nothing_writes_none(monkeypatch, tmp_path, capsys):
-    engine = sweeps.use(monkeypatch)
-    engine.quantities, engine.efforts = ("load:gas:fx",), ()
-    found = sweep(sweeps.scene(), {"l": (0.2, 0.3, 5)}, out=tmp_path / "x.h5")
-    rewritten(found, "peak:load:gas:fx", lambda values: np.zeros_like(values))
-    assert main(["plot", str(found.path), "--out", str(tmp_path / "none")]) == 1
-    words = (
-        "error: there is nothing to draw: peak_loads.png: the same for all drawn: load gas fx,"
-        " |peak| [N] = 0\n"
-    )
-    assert capsys.readouterr().err == words
     assert not (tmp_path / "none").exists()

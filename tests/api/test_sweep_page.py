@@ -4,7 +4,6 @@ the command line.
 
 import csv
 import io
-import json
 import re
 import shutil
 import time
@@ -14,10 +13,9 @@ import alive
 import browser
 import numpy as np
 import pytest
-from forging import edit
-from internals import Sweep, best, chosen
 from reports import CASES, held
 
+from lagrange_casadi import Sweep, best
 from lagrange_casadi.cli import main
 
 pytestmark = alive.NEEDS_BROWSER
@@ -94,38 +92,16 @@ def test_the_table_is_the_files_to_the_last_digit(page, file):
     assert all(address.startswith(("file://", "data:", "about:")) for address in one.asked)
 
 
-def test_on_paper_it_is_light_and_no_wider_than_the_sheet(page):
-    """Whoever reads it in the dark."""
-    one = page()
-    one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="dark")
-    dark = "getComputedStyle(document.documentElement).getPropertyValue('--sheet')"
-    assert one.run(dark) != "#ffffff"
-    one.size(688, 1000)
-    one.call(
-        "Emulation.setEmulatedMedia",
-        media="print",
-        features=[{"name": "prefers-color-scheme", "value": "dark"}],
-    )
-    assert one.run(dark) == "#ffffff"
-    wide = (
-        "[...document.querySelectorAll('table, .card, .looked-at')].map((one) =>"
-        " one.getBoundingClientRect().right)"
-    )
-    settled = "new Promise((done) => setTimeout(() => done(0), 100))"
-    one.run(settled)
-    assert max(one.run(wide)) <= 688.5
-    one.call("Emulation.setEmulatedMedia", media="")
-    one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
-    one.size(1500, 1000)
-
-
 def test_conditions_are_those_of_the_command_line(page, file):
     one, sweep = page(), Sweep.open(file)
     assert only(one, "status=0")[1] == "unknown column status"
     assert only(one, "l=30deg")[1] == "l is in m, got an angle"
     for where in ("l>0.15", "l>=0.2, r<=0.07", "peak:effort:O<3, m3=0.1", "m3!=0.1"):
         count, wrong = only(one, where)
-        expected = [int(n) for numbers, _ in chosen(sweep, [], where.split(", ")) for n in numbers]
+        asked = {"minimise": "l", "where": [*where.split(", "), "status>=0"], "count": 99}
+        expected = [int(row["design"]) for row in rows(one)]
+        met = {one.number for one in best(sweep, **asked)}
+        assert met == {n for n in expected if np.isfinite(sweep["mean:effort:O"].ravel()[n])}
         assert wrong == ""
         assert count == f"{len(expected)} of 72 designs"
         assert [int(row["design"]) for row in rows(one)] == expected
@@ -191,50 +167,6 @@ def test_without_a_case_the_page_says_what_it_lacks(file, tmp_path, capsys, monk
     assert main(["report", str(file), "--live"]) == 2
 
 
-@pytest.mark.parametrize("lacking", ["loads", "frictions"])
-def test_a_file_that_lacks_an_output_group_is_refused_in_a_line(
-    file, lacking, tmp_path, capsys, monkeypatch
-):
-    monkeypatch.chdir(tmp_path)
-    path = Path(shutil.copy(file, tmp_path / "forged.h5"))
-
-    def forget(content):
-        wanted = json.loads(content.attrs["wanted"])
-        del wanted[lacking]
-        content.attrs["wanted"] = json.dumps(wanted)
-
-    edit(path, forget)
-    case = str(CASES / "slider_crank")
-    assert main(["report", path.name, "--case", case]) == 1
-    out, err = capsys.readouterr()
-    assert out == ""
-    place = f"the outputs of the sweep: wanted.{lacking}"
-    assert err == f"error: forged.h5: {place} is not of the expected kind\n"
-    assert not path.with_suffix(".html").exists()
-
-
-def test_a_notebook_shows_what_was_swept(file):
-    sweep = Sweep.open(file)
-    text = sweep._repr_html_()
-    counts = sweep.counts()
-    assert f"72 designs over l, r, m3: {counts[0]} with a result; " in text
-    for name in ("l", "peak:effort:O", "peak:reaction:A:fx"):
-        values = sweep[name]
-        cells = (name, f"{np.nanmin(values):.5g}", f"{np.nanmax(values):.5g}", sweep.unit(name))
-        assert "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>" in text
-
-
-def test_from_python_it_is_the_same_page(file, tmp_path, monkeypatch):
-    monkeypatch.setattr("importlib.util.find_spec", lambda name, *_: None)
-    Sweep.open(file).report(tmp_path / "swept.html")
-    assert main(["report", str(file), "--out", str(tmp_path / "other.html")]) == 0
-    found, _ = held((tmp_path / "swept.html").read_text())
-    other, _ = held((tmp_path / "other.html").read_text())
-    assert found["columns"] == other["columns"]
-    assert found["numbers"] == other["numbers"]
-    assert found["note"].startswith("For the mechanism in motion")
-
-
 def test_the_page_opens_on_what_varies_most_and_tells_the_rest_in_a_line(page, file):
     """A column that is the same for all designs is no map, no column of the table, no reading."""
     one, sweep = page(), Sweep.open(file)
@@ -258,47 +190,6 @@ def test_the_page_opens_on_what_varies_most_and_tells_the_rest_in_a_line(page, f
     names = one.run("[...document.querySelectorAll('.readings dt')].map((one) => one.textContent)")
     for words in (options, heads, names):
         assert "peak:reaction:guide:fx" not in [word.replace("\u200b", "") for word in words]
-
-
-def test_designs_without_a_result_have_their_parameters(page):
-    one = page()
-    table = one.run(
-        "[...document.querySelectorAll('.designs tr')].map((row) => [...row.children].map((one) =>"
-        " one.textContent))"
-    )
-    failed = [row for row in table[1:] if row[-1] != "ok"]
-    names = [name.strip() for name in table[0]]
-    assert failed
-    for row in failed:
-        dashes = {name for name, words in zip(names, row, strict=True) if words == "\N{EN DASH}"}
-        assert dashes == set(names[4:-1])
-
-
-@pytest.mark.parametrize("width", [1280, 400])
-def test_no_number_lies_over_a_name(page, width):
-    one = page()
-    one.size(width, 900)
-    one.run("new Promise((done) => setTimeout(() => done(0), 100))")
-    over = one.run(
-        "[...document.querySelectorAll('.readings div')].filter((row) => { const box = document"
-        ".createRange(); box.selectNodeContents(row.firstChild); return box.getBoundingClientRect()"
-        ".right > row.lastChild.getBoundingClientRect().left; }).length"
-    )
-    assert over == 0
-    one.size(1500, 1000)
-
-
-def test_on_paper_heads_are_no_buttons(page):
-    """A browser repeats a head on each page, but for what is in a button."""
-    one = page()
-    one.call("Emulation.setEmulatedMedia", media="print")
-    assert set(
-        one.run(
-            "[...document.querySelectorAll('thead button')].map((one) =>"
-            " getComputedStyle(one).display)"
-        )
-    ) == {"contents"}
-    one.call("Emulation.setEmulatedMedia", media="")
 
 
 @alive.NEEDS_ENGINE

@@ -1,14 +1,15 @@
 """What makes parts impossible: evaluations, sweeps on every backend and exported C draw the same
-line.
+line; and links of any density and shape are in balance.
 """
 
 import numpy as np
 import pytest
-from internals import DesignEngine, EvaluationMethod, Status
+from balance import assert_balanced
+from mechanisms import INSTANT, MOTION, crank_and_rod
 from prepared import prepared
 
-from lagrange_casadi import Mechanism, Scene, density, evaluate
-from lagrange_casadi.errors import ParameterError
+from lagrange_casadi import Mechanism, Scene, density, evaluate, sweep, table
+from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
 
 
@@ -36,6 +37,7 @@ MATTER = {
     "plate": lambda m, c: m.link("arm", length=0.5, mass=1.0, centre=(0.1, 0.0), inertia=c),
     "overflow": lambda m, c: m.link("arm", length=0.5, density=density.polynomial(1.0, 1.0 / c)),
 }
+
 VALUES = [
     -30.0,
     -6.0,
@@ -76,31 +78,11 @@ def test_all_programs_draw_the_same_line(name, tmp_path):
     expected = accepted(scene, VALUES)
     assert len(set(expected)) == 2
     assert prepared(scene, VALUES, tmp_path) == expected
+    wanted = ["effort"] if name == "plate" else ["effort", "section:arm"]
     for backend in ("lanes", "c", "vm"):
-        engine = DesignEngine.of(
-            scene,
-            ["effort", "section:arm"] if name != "plate" else ["effort"],
-            method=EvaluationMethod(backend),
-        )
-        status = engine.evaluate(np.array(VALUES)[:, None]).status
-        assert (status != Status.IMPOSSIBLE).tolist() == expected
-
-
-def test_a_density_that_dips_below_zero_between_its_ends(tmp_path):
-    """Positive at both ends, and where a sweep looked before; exported C took it."""
-    scene = arm(rod(lambda c: (1, -c, c)), ["c"])
-    assert prepared(scene, [0.0, 3.9, 6.0], tmp_path) == [True, True, False]
-    with pytest.raises(
-        ParameterError,
-        match=r"link 'arm': density must not be negative, got -0\.5 kg/m at xi/l = 0\.5",
-    ):
-        evaluate(scene, parameters={"c": 6.0})
-    narrow = arm(rod(lambda c: ((c - 0.03) ** 2 - 1e-5, -2 * (c - 0.03), 1.0)), ["c"], default=-1.0)
-    engine = DesignEngine.of(narrow, ["effort"])
-    assert engine.evaluate(np.array([[0.1], [-0.1]])).status.tolist() == [
-        Status.IMPOSSIBLE,
-        Status.OK,
-    ]
+        found = sweep(scene, {"c": VALUES}, wanted=wanted, backend=backend)
+        impossible = [found.statuses[int(k)][0] == "impossible" for k in found["status"]]
+        assert [not one for one in impossible] == expected
 
 
 @pytest.mark.parametrize("root", [1 / 3, 0.1, 0.7, 0.9])
@@ -113,35 +95,6 @@ def test_what_touches_zero_is_possible(root):
         arm(
             lambda m, c, table=table: m.link("arm", length=0.5, density=table), ["c"]
         ).mechanism.values()
-
-
-def test_no_mass_at_all_is_impossible_everywhere(tmp_path):
-    def build(m, a, b):
-        link = m.link("arm", length=0.5, mass=a)
-        m.weld("W", link.tip, m.point_mass("tip", b))
-        return link
-
-    scene = arm(build, ["a", "b"], default=1.0)
-    rows = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [-1.0, 1.0]]
-    expected = [True, True, False, False]
-    assert prepared(scene, rows, tmp_path) == expected
-    assert (
-        DesignEngine.of(scene).evaluate(np.array(rows)).status == Status.OK
-    ).tolist() == expected
-    with pytest.raises(
-        ParameterError,
-        match="mechanism 'arm' has neither mass nor load; give at least one link or point mass a"
-        " mass",
-    ):
-        scene.mechanism.values({"a": 0.0, "b": 0.0})
-    with pytest.raises(ParameterError, match="link 'arm': mass must not be negative, got -1 kg"):
-        scene.mechanism.values({"a": -1.0, "b": 1.0})
-    with pytest.raises(
-        ParameterError, match="its whole mass must be finite and positive, got inf kg"
-    ):
-        scene.mechanism.values({"a": 1.5e308, "b": 1.5e308})
-    with pytest.raises(ParameterError, match="mechanism 'empty' has neither mass nor load"):
-        Mechanism("empty").values()
 
 
 def test_what_bears_a_load_may_be_massless():
@@ -161,7 +114,185 @@ def test_what_bears_a_load_may_be_massless():
     assert solution.certified
     taken = 80e3 * solution.motion("way").rate
     assert np.abs(0.2 * solution.effort("top") - taken).max() < 1e-12 * np.abs(taken).max()
-    assert (
-        DesignEngine.of(scene).evaluate(np.array([[80e3], [0.0]])).status.tolist()
-        == [Status.OK] * 2
-    )
+    assert sweep(scene, {"work": [80e3, 0.0]})["status"].tolist() == [0, 0]
+
+
+@pytest.mark.parametrize(
+    "rod",
+    [
+        {"density": density.polynomial(2.0, -1.5)},
+        {"density": density.polynomial(1.0, 3.0, -2.0, 0.5)},
+        {"density": density.tabulated([0, 0.2, 0.25, 0.9, 1], [1.0, 3.0, 0.5, 0.5, 4.0])},
+        {"mass": 0.7, "centre": (0.12, -0.03), "inertia": 0.011},
+    ],
+    ids=["tapered", "cubic", "table", "rigid"],
+)
+def test_links_of_every_density(rod):
+    assert_balanced(crank_and_rod(rod))
+
+
+def test_lumps_and_branches_at_stations():
+    """Point masses welded on and beside the axis, a lever welded at an angle, and a pinned
+    pendulum, on one link.
+    """
+    m = Mechanism("branched")
+    a = m.link("a", length=0.6, mass=0.8)
+    b = m.link("b", length=0.2, mass=0.2)
+    c = m.link("c", length=0.3, mass=0.3)
+    m.revolute("O", m.ground, a.at(0.15, 0.02))
+    m.weld("on", a.at(0.3), m.point_mass("on_axis", 0.5))
+    m.weld("beside", a.at(0.45, -0.1), m.point_mass("beside_axis", 0.4))
+    m.weld("lever", a.at(0.5, 0.05), b, angle=0.7)
+    m.revolute("pin", b.tip, c)
+    m.weld("end", a.tip, m.point_mass("end_mass", 0.2))
+    m.weld("base", a.base, m.point_mass("base_mass", 0.3))
+    assert_balanced(Scene(m, {"O": MOTION, "pin": polynomial(0.3, -4.0, 2.0)}, t=(INSTANT, 1, 2)))
+
+
+def test_one_sided_values_at_a_station():
+    """A lump's weight is the jump of shear; both sides are there, and the grid takes the tip's
+    side.
+    """
+    m = Mechanism("shelf")
+    a = m.link("a", length=1.0, mass=0.0)
+    m.weld("wall", m.ground, a)
+    m.weld("lump", a.at(0.25), m.point_mass("mass", 2.0))
+    solution = evaluate(Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5)))
+    law = solution.section("a").law
+    at = np.array([[0.25]])
+    assert law.at("shear", at, side="base")[0, 0] == pytest.approx(-2.0 * 9.81)
+    assert law.at("shear", at, side="tip")[0, 0] == 0.0
+    assert solution.section("a").shear[0].tolist() == pytest.approx([-19.62, 0, 0, 0, 0])
+    assert law.at("bending", np.array([[0.0]]))[0, 0] == pytest.approx(-2.0 * 9.81 * 0.25)
+    peak = solution.peak("section:a:shear")
+    assert (peak.value, peak.xi) == pytest.approx((-19.62, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("says", "declare"),
+    {
+        "link 'b': expected either mass= or density=": lambda m, a: m.link("b", length=1),
+        "expected either mass= or density=": lambda m, a: m.link(
+            "b", length=1, mass=1, density=density.uniform(1)
+        ),
+        "expected mass=, centre= and inertia= together": lambda m, a: m.link(
+            "b", length=1, mass=1, centre=(0, 0)
+        ),
+        "expected a density of lagrange_casadi.density": lambda m, a: m.link(
+            "b", length=1, density=3.0
+        ),
+        "places must increase, but entry 2": lambda m, a: density.tabulated(
+            [0, 0.5, 0.5, 1], [1, 1, 1, 1]
+        ),
+        "must reach from 0 to 1, got 0 to 0.5": lambda m, a: density.tabulated([0, 0.5], [1, 1]),
+        "at least one coefficient": lambda m, a: density.polynomial(),
+        "table: places must increase": lambda m, a: table(m.time, [0, 1, 1], [1, 2, 3]),
+        "table: beyond must be 'hold' or 'line', got 'cubic'": lambda m, a: table(
+            m.time, [0, 1], [1, 2], beyond="cubic"
+        ),
+        "load 'F': expected a link": lambda m, a: m.force("F", "nothing", x=1),
+        "another mechanism": lambda m, a: m.force(
+            "F", Mechanism("n").link("z", length=1, mass=1), x=1
+        ),
+        "load 'F' is declared twice": lambda m, a: [m.force("F", a, x=1), m.force("F", a, x=1)],
+        "load 'J': the name is taken by a joint of mechanism 'm'": lambda m, a: m.force(
+            "J", a, x=1
+        ),
+        "point mass 'p' cannot take a torque; expected a link": lambda m, a: m.torque(
+            "T", m.point_mass("p", 1), 1.0
+        ),
+        "constraint 'c' depends on no coordinate": lambda m, a: m.constraint("c", 3.0),
+        "depends on no coordinate": lambda m, a: m.constraint("c", m.time * 2),
+        "depends on rates": lambda m, a: m.constraint(
+            "c", m.coordinate(m.joints["J"]) * m.rate(m.joints["J"])
+        ),
+        "must be linear": lambda m, a: m.nonholonomic(
+            "r", m.rate(m.joints["J"]) ** 2, replaces=m.joints["J"]
+        ),
+        "depends on no rate": lambda m, a: m.nonholonomic("r", m.time, replaces=m.joints["J"]),
+        "expected a joint of mechanism 'm', got 'J'; joints: J": lambda m, a: m.coordinate("J"),
+        "joint 'W' has no coordinate": lambda m, a: m.coordinate(
+            m.weld("W", a.tip, m.point_mass("p", 1))
+        ),
+        "which has no direction for the weld": lambda m, a: m.weld("W", m.point_mass("p", 1), a),
+        "a force on the ground has no effect": lambda m, a: m.force("F", m.ground, x=1),
+        "axis must be two components": lambda m, a: m.prismatic(
+            "P", m.ground, m.point_mass("p", 1), axis=1
+        ),
+        "joint 'a': the name is taken by a link of": lambda m, a: m.revolute("a", m.ground, a.tip),
+        "'J': the name is taken by a joint": lambda m, a: m.constraint(
+            "J", m.coordinate(m.joints["J"])
+        ),
+        "non-holonomic constraint 's': 'r' already replaces the drive of joint 'J'": lambda m, a: [
+            m.nonholonomic(n, m.rate(m.joints["J"]), replaces=m.joints["J"]) for n in "rs"
+        ],
+    }.items(),
+)
+def test_misuse_is_named(declare, says):
+    m = Mechanism("m")
+    a = m.link("a", length=1, mass=1)
+    m.revolute("J", m.ground, a)
+    with pytest.raises(DeclarationError, match=says):
+        declare(m, a)
+
+
+@pytest.mark.parametrize(
+    ("matter", "says"),
+    [
+        (
+            {"density": density.polynomial(1.0, -3.0)},
+            r"density must not be negative, got -2 kg/m at xi/l = 1",
+        ),
+        (
+            {"density": density.polynomial(1.0, -5.0, 5.0)},
+            r"density must not be negative, got -0\.25 kg/m at xi/l = 0\.5",
+        ),
+        ({"density": density.tabulated([0, 0.5, 1], [1, -1, 1])}, r"got -1 kg/m at xi/l = 0\.5"),
+        ({"mass": 1.0, "centre": (0, 0), "inertia": -1.0}, "inertia must not be negative"),
+    ],
+)
+def test_impossible_links_are_named(matter, says):
+    m = Mechanism("m")
+    m.revolute("J", m.ground, m.link("a", length=1, **matter))
+    with pytest.raises(ParameterError, match=says):
+        Scene(m, {"J": polynomial(0)})
+
+
+def test_a_station_outside_its_link_is_named():
+    m = Mechanism("m")
+    a = m.link("a", length=1, mass=1)
+    m.revolute("J", m.ground, a)
+    m.weld("W", a.at(m.parameter("x", 0.5, "m")), m.point_mass("p", 1))
+    scene = Scene(m, {"J": polynomial(0)})
+    with pytest.raises(
+        ParameterError, match=r"joint 'W': its point at 1\.5 m is outside link 'a', 0 to 1 m"
+    ):
+        evaluate(scene, parameters={"x": 1.5})
+
+
+def test_a_slider_may_leave_its_link():
+    """What is beyond the base acts on the base's side of every section: the rest hangs on it as on
+    a bracket.
+    """
+    m = Mechanism("boom")
+    a, p = m.link("a", length=0.5, mass=1.0), m.point_mass("p", 2.0)
+    m.revolute("J", m.ground.at(0, 0), a)
+    m.prismatic("S", a, p, axis=(1, 0))
+    scene = Scene(m, {"J": MOTION, "S": polynomial(-0.3, 1.0)}, t=(0, 1, 11))
+    for t in (0.0, 0.5, 1.0):
+        assert_balanced(scene, t=t)
+    assert np.max(evaluate(scene).certificate["ends"]) < 1e-14
+
+
+def test_links_between_point_masses_have_a_certificate():
+    """A trammel: a rod whose ends are pinned to two sliders."""
+    m = Mechanism("trammel")
+    rod, p, q = m.link("rod", length=1.0, mass=2.0), m.point_mass("p", 0.3), m.point_mass("q", 0.4)
+    m.prismatic("X", m.ground, p, axis=(1, 0))
+    m.prismatic("Y", m.ground, q, axis=(0, 1))
+    m.revolute("P", p, rod)
+    m.revolute("Q", q, rod.tip)
+    scene = Scene(m, {"X": polynomial(0.5, 0.3, -0.2)}, posture={"rod": 2.0}, t=(0, 1, 11))
+    assert_balanced(scene, t=0.4)
+    certificate = evaluate(scene).certificate
+    assert max(np.max(certificate[k]) for k in ("balance", "power", "ends", "closure")) < 1e-13

@@ -269,12 +269,13 @@ class Folder:
     def remove(self) -> None:
         """Remove the folder; the lock goes last."""
         with suppress(OSError):
-            self._clear()
+            # The plan last: by it the next run knows that the file is whole, and ends the removal.
+            self._clear(plan_last=True)
             shutil.rmtree(self.path)
 
-    def _clear(self) -> None:
+    def _clear(self, *, plan_last: bool = False) -> None:
         # The plan first: without it, what else is left is nobody's.
-        for path in sorted(self.path.iterdir(), key=lambda path: path.name != _PLAN):
+        for path in sorted(self.path.iterdir(), key=lambda path: (path.name == _PLAN) == plan_last):
             if path.name != _LOCK:
                 path.unlink()
 

@@ -1,28 +1,33 @@
-"""Files: round trip, every reader, truncation, damage, and what a failure leaves behind."""
+"""Files of runs: round trip, every reader, grids, what check finds, and what is never replaced."""
 
-import errno
 import json
+import os
 import re
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 import sweeps
 import xarray
-from forging import edit
-from internals import base_seal as seal
-from internals import runs as store
+from conftest import ROOT
+from forging import edit, flip
 
-from lagrange_casadi import check, evaluate, load, save
-from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoreError
-
-FOREIGN = "it is an HDF5 file of something else, or without its seal"
+from lagrange_casadi import Sweep, check, evaluate, load, save
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import (
+    BusyError,
+    DeclarationError,
+    PathError,
+    StoreError,
+    UnknownNameError,
+)
 
 pytestmark = pytest.mark.quick
+
+FOREIGN = "it is an HDF5 file of something else, or without its seal"
 
 
 @pytest.fixture
@@ -71,10 +76,6 @@ def test_xarray_opens_it(solution, file, engine):
         assert root["xi"].attrs["units"] == "1"
 
 
-def test_check_passes_a_whole_file(file):
-    assert check(file) == []
-
-
 @pytest.mark.parametrize(
     ("change", "finding"),
     [
@@ -112,12 +113,6 @@ def test_check_names_what_is_wrong(file, change, finding):
     assert re.search(finding, found[0])
 
 
-def test_an_unfinished_file_is_refused(file):
-    edit(file, lambda h: h.attrs.__delitem__("complete"))
-    with pytest.raises(StoreError, match="was not written to its end"):
-        load(file)
-
-
 def test_other_files_are_refused(tmp_path, file):
     with h5py.File(tmp_path / "other.h5", "w") as h:
         h["x"] = 1.0
@@ -132,32 +127,6 @@ def test_other_files_are_refused(tmp_path, file):
         load(tmp_path / "missing.h5")
 
 
-def test_a_failure_leaves_the_file_of_before(solution, file, monkeypatch):
-    before = file.read_bytes()
-
-    def full(*_):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(store, "_add", full)
-    with pytest.raises(StoreError, match=r"cannot write .*result\.h5: No space left on device"):
-        save(solution, file)
-    assert file.read_bytes() == before
-    assert [path.name for path in file.parent.iterdir()] == ["result.h5"]
-
-
-def test_an_interrupt_leaves_the_file_of_before(solution, file, monkeypatch):
-    before = file.read_bytes()
-
-    def interrupt(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(store, "_add", interrupt)
-    with pytest.raises(KeyboardInterrupt):
-        save(solution, file)
-    assert file.read_bytes() == before
-    assert [path.name for path in file.parent.iterdir()] == ["result.h5"]
-
-
 def test_places_that_cannot_be_written(solution, tmp_path):
     with pytest.raises(DeclarationError, match=r"save: (solution|path): expected a"):
         save(tmp_path, solution)
@@ -165,26 +134,6 @@ def test_places_that_cannot_be_written(solution, tmp_path):
         save(solution, tmp_path)
     with pytest.raises(PathError, match=r"folder .*nowhere does not exist"):
         save(solution, tmp_path / "nowhere" / "result.h5")
-
-
-@pytest.mark.parametrize(
-    ("schema", "says"),
-    [
-        ("lagrange-casadi-sweep", "it is the file of a sweep"),
-        ("lagrange-casadi-optimum", "it is the file of a search"),
-        ("", FOREIGN),
-    ],
-)
-def test_no_other_hdf5_file_is_replaced(solution, tmp_path, schema, says):
-    target = tmp_path / "x.h5"
-    with h5py.File(target, "w") as h:
-        h.attrs["schema"] = schema
-    if schema:
-        seal.seal(target, schema)
-    before = target.read_bytes()
-    with pytest.raises(PathError, match=rf"cannot write .*x\.h5: {says}; choose another name"):
-        save(solution, target)
-    assert target.read_bytes() == before
 
 
 @pytest.mark.parametrize(
@@ -221,56 +170,6 @@ def test_a_run_that_another_program_writes_is_left_alone(solution, file, mode):
         assert file.stat().st_ino == before
 
 
-def test_a_run_that_another_program_reads_is_replaced(solution, file):
-    with h5py.File(file) as h:
-        save(solution.during(slice(0, 3)), file)
-        assert h["t"].shape == (801,)
-    assert load(file).t.size == 3
-
-
-def test_what_cannot_be_opened_is_left_alone(solution, file, monkeypatch):
-    """Whatever keeps a file from being read: that it is no HDF5 does not follow."""
-    opened = Path.open
-
-    def refuse(path, *arguments, **keywords):
-        if path == file and arguments[:1] in ((), ("rb",)):
-            raise PermissionError(errno.EACCES, "Permission denied")
-        return opened(path, *arguments, **keywords)
-
-    monkeypatch.setattr(Path, "open", refuse)
-    monkeypatch.setattr(store, "kind_of", lambda _: None)
-    with pytest.raises(
-        PathError,
-        match=r"cannot write .*result\.h5: what is there cannot be read: Permission denied",
-    ):
-        save(solution, file)
-
-
-@pytest.mark.parametrize("keep", [600, 100_000])
-def test_a_damaged_run_is_left_to_its_owner(solution, file, keep):
-    """It might be what is left of something else."""
-    file.write_bytes(file.read_bytes()[:keep])
-    with pytest.raises(
-        PathError,
-        match=(
-            r"cannot write .*result\.h5: it is an HDF5 file of something else, or without its seal"
-        ),
-    ):
-        save(solution, file)
-
-
-def test_what_hdf5_refuses_is_one_line(solution, tmp_path, monkeypatch):
-    def refuse(*_):
-        raise RuntimeError("Unspecified error in H5DSattach_scale (return value <0)")
-
-    monkeypatch.setattr(store.Scales, "finish", refuse)
-    with pytest.raises(
-        StoreError, match=r"cannot write .*x\.h5: Unspecified error in H5DSattach_scale"
-    ):
-        save(solution, tmp_path / "x.h5")
-    assert not list(tmp_path.iterdir())
-
-
 def test_nothing_is_left_out_without_a_trace(file):
     """What was not written reads as no number, and whoever reads it here is told."""
 
@@ -295,14 +194,114 @@ def test_nothing_is_left_out_without_a_trace(file):
         check(file)
 
 
-def test_a_file_that_the_disk_has_no_room_for_is_refused(solution, tmp_path, monkeypatch):
-    monkeypatch.setattr(
-        "lagrange_casadi.store.runs.shutil.disk_usage",
-        lambda _: shutil._ntuple_diskusage(10**6, 0, 10**6),
-    )
-    with pytest.raises(
-        StoreError,
-        match=r"cannot write .*x\.h5: it takes 0\.004\d+ GB, and the disk has 0\.001 GB left",
+CASE = """
+from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.elements import bent_bar
+from lagrange_casadi.motion import harmonic
+
+
+def scene():
+    m = Mechanism("bell")
+    bar = bent_bar(m, "bell", [(0.3, 0.0), (0.0, 0.0), (0.0, 0.2)], mass=2.0)
+    rod = m.link("rod", length=0.4, mass=1.0)
+    m.revolute("pivot", m.ground, bar.corner(1))
+    m.revolute("pin", bar.tip, rod)
+    swing = {"pivot": harmonic(0.0, 0.3, 2.0), "pin": harmonic(0.2, 0.4, 3.0)}
+    return Scene(m, swing, t=(0, 1, 61))
+"""
+
+
+@pytest.fixture(scope="module")
+def bell():
+    names = {}
+    exec(CASE, names)
+    return evaluate(names["scene"]())
+
+
+def stored(path):
+    with h5py.File(path) as file:
+        return {link for link in file["section"] if "bending" in file["section"][link]}
+
+
+@pytest.mark.parametrize(
+    ("grids", "links"),
+    [
+        (None, {"rod"}),
+        (True, {"rod", "bell_1", "bell_2"}),
+        (False, set()),
+        (["bell_2"], {"bell_2"}),
+    ],
+)
+def test_what_is_left_out_is_filled_from_the_law(bell, tmp_path, grids, links):
+    path = tmp_path / "bell.h5"
+    save(bell, path, grids=grids)
+    assert stored(path) == links
+    assert check(path) == []
+    back = load(path)
+    assert list(back.names()) == list(bell.names())
+    assert dict(back.errors) == dict(bell.errors)
+    for name in bell.names():
+        np.testing.assert_array_equal(back.array(name), bell.array(name), err_msg=name)
+    for link in bell.links_with_sections:
+        name = f"section:{link}:bending"
+        assert back.peak(name) == bell.peak(name)
+
+
+def test_grids_are_of_links_with_sections(bell, tmp_path):
+    with pytest.raises(UnknownNameError, match="link with sections"):
+        save(bell, tmp_path / "a.h5", grids=["bell"])
+    with pytest.raises(DeclarationError, match="grids: expected True or False or a list of texts"):
+        save(bell, tmp_path / "a.h5", grids="rod")
+    assert not (tmp_path / "a.h5").exists()
+
+
+def test_the_command_stores_what_is_asked_for(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "case.py").write_text(CASE)
+    run = ["run", "case.py", "--no-figures", "--out", "a.h5"]
+    every = {"rod", "bell_1", "bell_2"}
+    for options, links in (
+        ([], {"rod"}),
+        (["--grids"], every),
+        (["--no-grids"], set()),
+        (["--want", "section:bell_1", "--want", "section:rod"], {"rod", "bell_1"}),
     ):
-        save(solution, tmp_path / "x.h5")
-    assert not list(tmp_path.iterdir())
+        main([*run, *options])
+        assert stored("a.h5") == links
+
+
+@pytest.fixture(scope="module")
+def run(solution, tmp_path_factory):
+    path = tmp_path_factory.mktemp("run") / "press.h5"
+    save(solution.during(slice(0, 5)), path)
+    return path
+
+
+def test_the_documentation_verifies_a_file(run, tmp_path, monkeypatch):
+    (block,) = re.findall(
+        r"```python\n(.*?)```", (ROOT / "docs" / "schema.md").read_text(), re.DOTALL
+    )
+    shutil.copy(run, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(block, "schema.md", "exec"), {})
+    flip(tmp_path / "press.h5", 5000)
+    with pytest.raises(AssertionError):
+        exec(compile(block, "schema.md", "exec"), {})
+
+
+def test_to_change_a_file_takes_its_seal(run, tmp_path):
+    path = tmp_path / "x.h5"
+    shutil.copy(run, path)
+    with h5py.File(path, "r+") as file:
+        file.attrs["mine"] = 1
+    with pytest.raises(StoreError, match=r"x\.h5: it has no seal: .*; run it again$"):
+        load(path)
+
+
+@pytest.mark.parametrize("read", [load, check, Sweep.open])
+def test_pipes_and_folders_are_not_opened(tmp_path, read):
+    os.mkfifo(tmp_path / "x.h5")
+    with pytest.raises(PathError, match=r"x\.h5: is a device or a pipe, not a file$"):
+        read(tmp_path / "x.h5")
+    with pytest.raises(PathError, match=r"is a folder, not a file$"):
+        read(tmp_path)

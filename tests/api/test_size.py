@@ -4,14 +4,13 @@ import math
 
 import pytest
 from commands import command
-from internals import Profile, read_profiles, size
-from internals import equations_derive as derive
 from places import FOLDERS
 from strong import BARS, arms
 
-from lagrange_casadi import Mechanism, Scene, beams, evaluate
+from lagrange_casadi import Mechanism, Scene, beams, evaluate, size
+from lagrange_casadi.beams import Profile, read_profiles
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
+from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -55,21 +54,6 @@ def test_every_link_is_safe_and_none_alone_can_be_lighter(scene, sized):
         assert found.factor < 2.0 <= one.safety.factor
     assert sized.mass == pytest.approx(sum(one.mass for one in sized.links))
     assert sized.left == {"plate": "diameter is not a dimension of its rectangle"}
-
-
-def test_all_profiles_have_one_graph(monkeypatch):
-    """Profiles are parameters: one graph is derived for all loads, and one for what is told."""
-    derived, real = [], derive._derive
-
-    def counted(scene, want):
-        derived.append(want)
-        return real(scene, want)
-
-    monkeypatch.setattr(derive, "_derive", counted)
-    monkeypatch.setenv("LAGRANGE_CASADI_CACHE_SIZE", "0")
-    derive._kept.cache_clear()
-    assert size(arms(), BARS, safety=2.0).evaluations > len(BARS)
-    assert len(derived) == 2
 
 
 @pytest.mark.long
@@ -204,51 +188,6 @@ def test_two_links_that_share_a_parameter():
         DeclarationError, match="links 'upper' and 'fore' share parameter 'd1'; give each its own"
     ):
         size(arms(shared=True), BARS)
-
-
-def table(here, text):
-    (here / "bars.csv").write_text(text)
-    return read_profiles(here / "bars.csv")
-
-
-def test_tables_have_units_and_blank_lines(here):
-    found = table(here, "name, height [mm],width[cm],web,flange [m]\n\nA 1,35, 2.8,0.007,0.007\n")
-    assert found == (
-        Profile("A 1", {"height": 0.035, "width": 0.028, "web": 0.007, "flange": 0.007}),
-    )
-    assert found[0].shape("i_section").area == pytest.approx(11 * 0.007**2)
-    with pytest.raises(
-        DeclarationError, match="a round_bar has the dimensions diameter, got height, width"
-    ):
-        found[0].shape("round_bar")
-
-
-@pytest.mark.parametrize(
-    ("text", "says"),
-    [
-        ("", r"bars\.csv: it has no rows; expected a head and a line for every profile"),
-        ("name,d\n", r"bars\.csv, line 1: expected a line for every profile below this head"),
-        ("d,e\n1,2\n", "expected a column 'name' and one for each dimension, got d, e"),
-        ("name,d,d\nx,1,2\n", "expected a column 'name'"),
-        ("name,d [ft]\nx,1\n", r"column 'd \[ft\]': expected a name, and m, cm or mm as its unit"),
-        ("name,d\nx,1,2\n", "line 2: 3 cells, expected 2"),
-        ("name,d\nx,1\nx,2\n", "line 3: profile 'x' is listed twice"),
-        ("name,d\n ,1\n", "line 2: it has no name"),
-        ("name,d\nx,-1\n", "line 2: d: expected a positive number, got '-1'"),
-        ("name,d\nx,thick\n", "line 2: d: expected a positive number, got 'thick'"),
-    ],
-)
-def test_a_bad_line_is_named(here, text, says):
-    with pytest.raises(DeclarationError, match=says):
-        table(here, text)
-
-
-def test_a_table_that_is_not_there(here):
-    with pytest.raises(PathError, match=r"bars\.csv: no such file"):
-        read_profiles("bars.csv")
-    (here / "bars.csv").write_bytes(b"\xff\xfe\x00name")
-    with pytest.raises(PathError, match="cannot be read as text"):
-        read_profiles("bars.csv")
 
 
 @pytest.mark.long

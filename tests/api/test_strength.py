@@ -1,0 +1,599 @@
+"""Strength: factors of safety and lives beside sums worked out by hand, between instants, as series
+and peaks of outputs, in sweeps, as limits of searches, on the command line and in pictures.
+"""
+
+import itertools
+import math
+import re
+
+import numpy as np
+import pytest
+from commands import command
+from matplotlib.figure import Figure
+from places import FOLDERS
+from strong import STEEL, press, robot, slider
+
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    beams,
+    best,
+    derive,
+    evaluate,
+    figures,
+    load,
+    optimise,
+    prepare,
+    refine,
+    save,
+    sweep,
+)
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import DeclarationError, NoDesignError
+from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.peaks import refine_safety, refine_stress
+
+BAR = beams.rectangle(0.012, 0.006)
+NOTCH = beams.Notch(0.3, axial=2.0, bending=1.8, sensitivity=0.8)
+ONE_CYCLE = 0.2094395
+QUIET = {"backend": "vm", "certificate": False}
+
+
+@pytest.fixture(scope="module")
+def pressed():
+    return evaluate(press(BAR, [NOTCH]), **QUIET)
+
+
+def test_yield_is_the_strength_over_the_largest_stress(pressed):
+    found = pressed.safety("rod")
+    assert found.against("yield") == pytest.approx(
+        490e6 / pressed.stress("rod").peak("von_mises").value
+    )
+    assert pressed.safety("rod", yield_criterion="tresca").against("yield") == pytest.approx(
+        490e6 / pressed.stress("rod").peak("tresca").value
+    )
+
+
+def goodman(stress):
+    """Utilisation against fatigue of histories along the last axis, by Goodman's line."""
+    high, low = stress.max(axis=-1), stress.min(axis=-1)
+    mean = np.maximum((high + low) / 2, 0.0)
+    return (high - low) / 2 / STEEL.endurance + mean / STEEL.ultimate
+
+
+def test_fatigue_by_hand_along_the_edges(pressed):
+    """At the corners there is no shear: largest and smallest stress over time at each ratio, the
+    notch's beside, then Goodman.
+    """
+    law, grid = pressed.section("rod").law, np.linspace(0.0, 1.0, 4001)
+    worst = 0.0
+    for places, k_n, k_m in ((grid, 1.0, 1.0), (np.array([0.3]), 1.8, 1.64)):
+        u = np.broadcast_to(places, (pressed.t.size, places.size))
+        for side, sign in ((s, e) for s in ("base", "tip") for e in (-1, 1)):
+            n, m = (law.at(force, u, side) for force in ("axial", "bending"))
+            stress = k_n * n / (0.012 * 0.006) + sign * k_m * m / (0.006 * 0.012**2 / 6)
+            worst = max(worst, goodman(stress.T).max())
+    assert pressed.safety("rod").against("fatigue") == pytest.approx(1 / worst, rel=2e-5)
+
+
+def test_buckling_by_hand(pressed):
+    found = pressed.safety("rod")
+    law = pressed.section("rod").law
+    compression, moment = -law.reached("axial")[1][0], np.abs(law.extreme("bending")[1])
+    euler = math.pi**2 * 210e9 * (0.006 * 0.012**3 / 12) / 0.4**2
+    weak = math.pi**2 * 210e9 * (0.012 * 0.006**3 / 12) / 0.2**2
+    factors = []
+    for n, m in zip(compression, moment, strict=True):
+        if n > 0:
+            a, b, e = n / min(euler, weak), m / (490e6 * 0.006 * 0.012**2 / 6), n / euler
+            # Euler's load in the plane bends, the lower of both is the column's.
+            factors.append(2 / ((a + b + e) + math.sqrt((a + b + e) ** 2 - 4 * a * e)))
+    assert found.against("buckling") == pytest.approx(min(factors), rel=1e-9)
+    assert found.governs.factor == found.factor == min(v.factor for v in found.verdicts)
+    assert found.utilisation == 1 / found.factor
+
+
+def test_life_by_hand():
+    """A rod that breaks in time: one swing a turn at the worst edge, its life by the S-N line from
+    1000 cycles at 0.9 of the ultimate strength to a million at the endurance limit.
+    """
+    rough = STEEL.but(endurance=30e6)
+    solution = evaluate(press(beams.rectangle(0.012, 0.004), material=rough), **QUIET)
+    found = solution.life("rod")
+    assert 1e3 < found.cycles < 1e6
+    assert found.hours == pytest.approx(found.cycles * ONE_CYCLE / 3600)
+    assert found.damage == pytest.approx(1 / found.cycles)
+    values = solution.stress("rod").at(found.xi)
+    k = solution.stress("rod").fibres(found.xi).index(found.fibre)
+    high, low = values[0, k].max(), values[0, k].min()
+    amplitude = (high - low) / 2 / (1 - max((high + low) / 2, 0.0) / STEEL.ultimate)
+    slope = math.log10(0.9 * STEEL.ultimate / 30e6) / 3
+    cycles = 1e6 * (amplitude / 30e6) ** (-1 / slope)
+    assert cycles / 1.2 <= found.cycles <= cycles * (1 + 1e-9)
+    stout = evaluate(press(beams.round_bar(0.04)), **QUIET).life("rod")
+    assert (stout.damage, stout.cycles, stout.hours) == (0.0, math.inf, math.inf)
+
+
+SPEED, PUSH, LENGTH, HEIGHT, WIDTH = 40.0, 500.0, 0.4, 0.03, 0.012
+
+
+@pytest.fixture(scope="module")
+def turning():
+    """A bar that turns evenly without weight, with a force on its tip that keeps its direction; and
+    its solution.
+    """
+    m = Mechanism("turning")
+    m.set_gravity(0.0, 0.0)
+    bar = m.link("bar", length=LENGTH, beam=beams.Beam(beams.rectangle(HEIGHT, WIDTH), STEEL))
+    m.revolute("O", m.ground, bar)
+    m.force("push", bar.tip, y=-PUSH)
+    scene = Scene(m, {"O": polynomial(0.0, SPEED)}, t=(0.003, 0.003 + 2 * math.pi / SPEED, 14))
+    return scene, evaluate(scene, certificate=False, backend="vm")
+
+
+def test_the_stress_of_a_turning_bar_is_its_closed_form(turning):
+    """N/A + M/W at the base: the mass beyond it pulls evenly, and the force is N at one angle and M
+    a quarter turn away.
+    """
+    scene, solution = turning
+    area, modulus = HEIGHT * WIDTH, WIDTH * HEIGHT**2 / 6
+    exact = 7850.0 * SPEED**2 * LENGTH**2 / 2 + PUSH * math.hypot(1 / area, LENGTH / modulus)
+    peak = refine_stress(scene, solution, "bar", "normal")
+    assert peak.value == pytest.approx(exact, rel=1e-12)
+    assert solution.stress("bar").peak("normal").value < exact * (1 - 1e-4)
+    angle = math.atan2(LENGTH / modulus, 1 / area)
+    times = np.mod(np.array([angle - math.pi / 2, -angle - math.pi / 2]), 2 * math.pi) / SPEED
+    assert np.abs(times - peak.t).min() < 1e-6 / SPEED
+    assert peak.xi == 0.0
+    assert refine_safety(scene, solution, "bar").against("yield") == pytest.approx(
+        STEEL.yield_strength / exact, rel=1e-6
+    )
+
+
+I_SECTION = beams.i_section(0.04, 0.03, 0.004, 0.005)
+
+LINKS = {
+    "held at its drive": lambda: (slider(), "crank"),
+    "rectangle": lambda: (press(beams.rectangle(0.03, 0.012)), "rod"),
+    "sliding": lambda: (press(I_SECTION, sliding=True), "rod"),
+    "steps": lambda: (
+        press(beams.stepped([0.4], [beams.round_bar(0.03), beams.round_bar(0.02)])),
+        "rod",
+    ),
+    "tapered I": lambda: (
+        press(beams.tapered(I_SECTION, beams.i_section(0.03, 0.02, 0.003, 0.005))),
+        "rod",
+    ),
+    "tapered rectangle": lambda: (
+        press(beams.tapered(beams.rectangle(0.06, 0.02), beams.rectangle(0.02, 0.03))),
+        "rod",
+    ),
+    "tube in space": lambda: (robot(beams.tube(0.04, 0.003)), "upper"),
+    "C in space": lambda: (robot(beams.c_section(0.04, 0.03, 0.004, 0.005)), "upper"),
+}
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("name", LINKS)
+def test_series_are_the_largest_along_the_link(name):
+    """Against all zeros of slopes along the link and its elastic curve, by other code; a
+    cross-section that changes is followed less closely.
+    """
+    scene, link = LINKS[name]()
+    wanted = [f"stress:{link}", f"safety:{link}", f"deflection:{link}"]
+    solution = evaluate(scene, wanted=wanted, backend="vm", certificate=False)
+    exact, safety = np.abs(solution.stress(link).largest("von_mises").value), solution.safety(link)
+    found = solution.array(f"stress:{link}:von_mises")
+    tapered = name.startswith("tapered")
+    assert np.all(found <= exact * (1.0 + 1e-12))
+    assert np.abs(found - exact).max() <= (1e-5 if tapered else 1e-10) * exact.max()
+    used = {way: solution.array(f"utilisation:{link}:{way}").max() for way in ("yield", "buckling")}
+    for way, accuracy in (("yield", 1e-9), ("buckling", 1e-8)):
+        assert used[way] == pytest.approx(1.0 / safety.against(way), rel=accuracy)
+    exact = np.abs(solution.deflection(link).largest()[0])
+    found = solution.array(f"deflection:{link}:across")
+    assert exact.max() > 1e-6
+    assert np.abs(found - exact).max() <= (1e-8 if tapered else 1e-9) * exact.max()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("names", "accuracy", "least"),
+    [
+        (
+            [
+                *("stress:crank:von_mises", "stress:rod:von_mises"),
+                *("utilisation:rod:yield", "utilisation:rod:buckling"),
+            ],
+            1e-5,
+            1e-3,
+        ),
+        (["deflection:crank:across", "deflection:rod:across"], 1e-6, 0.0),
+    ],
+    ids=["strength", "deflection"],
+)
+def test_gradients_of_peaks_are_exact(names, accuracy, least):
+    """Against differences of peaks, at which the place along the link and the time move."""
+    f = prepare(slider(), wanted=["stress", "safety", "deflection"])
+    base = {"r": 0.1, "l": 0.4, "h": 0.014}
+    slopes = f.gradient(base)
+    for name in names:
+        k = f.quantities.index(name)
+        for parameter, value in base.items():
+            step = 1e-5 * value
+            ends = [
+                f.peaks({**base, parameter: value + way * step}).value[k].copy() for way in (1, -1)
+            ]
+            size = abs(slopes[name][parameter]) + least * abs(slopes.value[k]) / value
+            difference = (ends[0] - ends[1]) / (2 * step)
+            assert abs(slopes[name][parameter] - difference) <= accuracy * size
+
+
+def test_files_keep_what_was_wanted_and_peaks_are_sought_between_instants(tmp_path):
+    """A coarse cycle refined, against a fine one."""
+    scene = slider(200e6)
+    wanted = ["stress:rod", "safety:rod", "life:rod", "deflection:rod"]
+    coarse = evaluate(scene, t=(0, ONE_CYCLE, 33), wanted=wanted, backend="vm")
+    assert coarse.certified
+    save(coarse, tmp_path / "a.h5")
+    again = load(tmp_path / "a.h5")
+    units = {
+        "stress:rod:von_mises": "Pa",
+        "utilisation:rod:yield": "1",
+        "utilisation:rod:buckling": "1",
+        "deflection:rod:across": "m",
+    }
+    for name, unit in units.items():
+        assert again.unit(name) == unit
+        np.testing.assert_array_equal(again.array(name), coarse.array(name))
+    assert again.life("rod") == coarse.life("rod")
+    fine = evaluate(
+        scene,
+        t=(0, ONE_CYCLE, 8193),
+        wanted=["stress:rod", "deflection:rod"],
+        backend="vm",
+        certificate=False,
+    )
+    peaks = {peak.name: peak.value for peak in refine(scene, coarse)}
+    for name, accuracy in (("stress:rod:von_mises", 1e-7), ("deflection:rod:across", 1e-6)):
+        assert peaks[name] == pytest.approx(fine.array(name).max(), rel=accuracy)
+        assert peaks[name] > coarse.array(name).max()
+
+
+def test_what_cannot_be_told_is_one_line():
+    for wanted, series in (("stress", "von_mises"), ("deflection", "across")):
+        told = rf"table: {wanted}:rod:{series} is not a polynomial of the rate; want section:rod"
+        with pytest.raises(DeclarationError, match=told):
+            evaluate(slider(), wanted=[f"{wanted}:rod"], table=64)
+    m = SpatialMechanism("odd")
+    bars = {
+        "paper": beams.Beam(beams.rectangle(0.02, 0.01), beams.Material("paper", 700.0)),
+        "odd": beams.Beam(beams.polygon([(0, 0), (0.02, 0), (0, 0.03)]), STEEL),
+    }
+    for name, beam in bars.items():
+        m.revolute(f"at_{name}", m.ground, m.link(name, length=1.0, beam=beam), axis=(0, 0, 1))
+    scene = Scene(m, {f"at_{name}": polynomial(0.0) for name in bars}, t=(0, 0, 1))
+    with pytest.raises(
+        DeclarationError,
+        match="output 'deflection:odd': there is no formula for torsion of a polygon; use",
+    ):
+        derive(scene, ["deflection:odd"])
+    with pytest.raises(
+        DeclarationError,
+        match="material 'paper' has no elasticity and no shear_modulus, which output",
+    ):
+        derive(scene, ["deflection"])
+
+
+def compared(scene, link, found, values):
+    """The columns of one design against its solution: yielding and buckling between instants
+    too.
+    """
+    solution = evaluate(
+        scene, parameters=values, wanted=[f"section:{link}"], certificate=False, backend="vm"
+    )
+    safety = refine_safety(scene, solution, link)
+    columns = {
+        verdict.against: float(np.squeeze(found[f"least:{verdict.against}:{link}"]))
+        for verdict in safety.verdicts
+    }
+    assert columns["yield"] == pytest.approx(safety.against("yield"), rel=1e-9)
+    assert columns["fatigue"] == pytest.approx(safety.against("fatigue"), rel=1e-9)
+    assert columns == pytest.approx(
+        {verdict.against: verdict.factor for verdict in safety.verdicts}, rel=1e-3
+    )
+    assert float(np.squeeze(found[f"least:safety:{link}"])) == min(columns.values())
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["rod", *(pytest.param(x, marks=pytest.mark.long) for x in ("sliding", "notched", "space"))],
+)
+def test_least_factors_of_designs_are_those_of_a_solution(name):
+    """Loads that travel are looked at one by one; in space most fibres are sheared."""
+    notches = [beams.Notch(0.6, bending=2.5, sensitivity=0.8)]
+    span = (0, ONE_CYCLE, 41)
+    scene, link = {
+        "rod": lambda: (slider(200e6), "rod"),
+        "sliding": lambda: (press(beams.rectangle(0.03, 0.012), sliding=True, t=span), "rod"),
+        "notched": lambda: (press(I_SECTION, notches, t=span), "rod"),
+        "space": lambda: (robot(beams.rectangle(0.03, 0.02)), "upper"),
+    }[name]()
+    (parameter, value), *_ = scene.mechanism.values().items()
+    found = sweep(scene, {parameter: [value, 1.1 * value]}, wanted=[f"safety:{link}"])
+    for x in found[parameter]:
+        compared(scene, link, found.select(**{parameter: x}), {parameter: x})
+
+
+def test_lives_and_masses_of_designs_and_the_lightest_that_is_safe():
+    scene, grid = slider(5e6), {"l": [0.3, 0.4], "h": [0.006, 0.05]}
+    swept = sweep(scene, grid, wanted=["safety", "life:crank"])
+    worn = evaluate(scene, parameters={"h": 0.006}, wanted=["life:crank"], **QUIET).life("crank")
+    assert swept["life:crank"][1, 0] == pytest.approx(worn.cycles, rel=1e-9)
+    assert worn.cycles < math.inf
+    l, h = swept["l"][:, None], swept["h"][None]
+    np.testing.assert_allclose(swept["mass:rod"], 7850.0 * 0.012 * h * l)
+    np.testing.assert_allclose(swept["mass:all"], 15.0 + 7850.0 * 0.012 * h * (l + 0.1))
+    safe = swept["least:yield:crank"] >= 20.0
+    assert 0 < safe.sum() < 4
+    (chosen,) = best(swept, minimise="mass:all", where="least:yield:crank>=20")
+    assert chosen.number == np.where(safe, swept["mass:all"], np.inf).argmin()
+
+
+def test_strength_that_is_open_has_no_number(tmp_path):
+    """Of bars side by side equilibrium leaves the axial forces open, as evaluations say; one that
+    nothing holds is told.
+    """
+    m = Mechanism("bars")
+    beam = beams.Beam(beams.rectangle(0.02, 0.01), STEEL.but(endurance=200e6))
+    bar = m.link("bar", length=m.parameter("l", 1.0, "m"), mass=1.0)
+    arm = m.link("arm", length=0.3, beam=beam)
+    for k, place in enumerate((bar.base, bar.at(0.5), bar.at(0.9))):
+        m.revolute(
+            f"G{k}",
+            m.ground.at((0.0, 0.5, 0.9)[k], 0.0),
+            one := m.link(f"a{k}", length=0.2, beam=beam),
+        )
+        m.revolute(f"B{k}", one.tip, place)
+    m.weld("held", bar.tip, arm)
+    posture = {"a0": 1.2, "a1": 1.2, "a2": 1.2, "bar": 0.0, "arm": 0.0}
+    scene = Scene(
+        m,
+        {"G0": harmonic(1.2, 0.3, 1.0)},
+        t=(0, 1, 5),
+        posture=posture,
+        wanted=["safety:a0", "life:a1", "section:arm"],
+    )
+    with pytest.raises(
+        DeclarationError,
+        match="equilibrium does not determine axial, so its strength is not evaluated",
+    ):
+        evaluate(scene, backend="vm", certificate=False).safety("a0")
+    found = sweep(scene, {"l": [1.0, 1.1]}, backend="vm", out=tmp_path / "bars.h5")
+    assert command("check", tmp_path / "bars.h5") == 0
+    for name in ("least:safety:a0", "least:yield:a0", "least:fatigue:a0", "life:a1"):
+        assert np.isnan(found[name]).all(), name
+    assert np.isfinite(found["peak:section:arm:bending"]).all()
+    with pytest.raises(
+        NoDesignError,
+        match="no design within the bounds has a result: section:a0:axial is indeterminate for all"
+        " of them",
+    ):
+        optimise(scene, minimise="peak:utilisation:a0:fatigue", over={"l": (0.95, 1.1)}, screen=4)
+
+
+def test_what_rounding_leaves_at_a_free_end_buckles_nothing():
+    """A swinging arm is pulled outward: at its free end it feels nothing, but for rounding, which
+    may be compression.
+    """
+    m = Mechanism("swinging")
+    m.set_gravity(0.0, 0.0)
+    height = m.parameter("h", 0.02, "m", low=0.0)
+    arm = m.link("arm", length=0.5, beam=beams.Beam(beams.rectangle(height, 0.012), STEEL))
+    m.revolute("O", m.ground, arm)
+    scene = Scene(m, {"O": harmonic(0.0, 0.6, 2.0)}, t=(0, 0.5, 33))
+    found = sweep(scene, {"h": [0.01, 0.02]}, wanted=["safety:arm"])
+    assert found["status"].tolist() == [0, 0]
+    assert found["least:buckling:arm"].tolist() == [math.inf, math.inf]
+    assert (
+        evaluate(scene, certificate=False, backend="vm").safety("arm").against("buckling")
+        == math.inf
+    )
+
+
+LACKING = [
+    names
+    for count in range(3)
+    for names in itertools.combinations(("endurance", "ultimate"), count)
+]
+
+
+def without(*names):
+    return press(
+        beams.rectangle(0.03, 0.012), material=STEEL.but(**dict.fromkeys(names)), t=(0, 0.2, 5)
+    )
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("names", LACKING, ids=" ".join)
+def test_fatigue_is_open_alike_in_solutions_and_sweeps(names):
+    """It is left out by name where the material lacks a number, and the other factors stay."""
+    safety = evaluate(without(*names), certificate=False, backend="vm").safety("rod")
+    found = sweep(without(*names), {"r": [0.1]}, wanted=["safety:rod"], backend="vm")
+    why = f"material 'C45+QT' has no {' and no '.join(names)}"
+    assert safety.not_evaluated == ((f"fatigue: {why}",) if names else ())
+    assert ("least:fatigue:rod" in found.columns) == (not names)
+    assert {f"least:{verdict.against}:rod" for verdict in safety.verdicts} == set(found.columns) & {
+        f"least:{way}:rod" for way in ("yield", "buckling", "fatigue")
+    }
+    if names:
+        with pytest.raises(DeclarationError, match=re.escape(why)):
+            optimise(
+                without(*names),
+                minimise="r",
+                over={"r": (0.05, 0.1)},
+                subject_to=["least:fatigue:rod >= 2"],
+            )
+        with pytest.raises(
+            DeclarationError, match=r"'C45.QT' has no .*, which output 'life:rod' needs"
+        ):
+            sweep(without(*names), {"r": [0.1]}, wanted=["life:rod"], backend="vm")
+
+
+def used(scene, link, values):
+    """Utilisation against fatigue, by the code that judges one solution."""
+    solution = evaluate(
+        scene, parameters=values, wanted=[f"section:{link}"], certificate=False, backend="vm"
+    )
+    return 1.0 / solution.safety(link).against("fatigue")
+
+
+def test_the_lightest_that_does_not_tire_is_found():
+    scene = slider(80e6)
+    found = optimise(
+        scene,
+        minimise="mass:all",
+        over={"h": (0.004, 0.04)},
+        subject_to=["least:fatigue:crank >= 2"],
+        starts=1,
+        screen=4,
+    )
+    assert found.converged
+    assert found.feasible
+    (limit,) = found.limits
+    assert limit.active
+    h = found.values["h"]
+    # The worst place is the base of the crank, at which a solution and a search look alike.
+    assert used(scene, "crank", {"h": h}) == pytest.approx(0.5, rel=1e-7)
+    slope = (used(scene, "crank", {"h": h * 1.001}) - used(scene, "crank", {"h": h * 0.999})) / (
+        0.002 * h
+    )
+    assert limit.multiplier == pytest.approx(-7850.0 * 0.012 * 0.5 / slope, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (slider, "'C45.QT' has no endurance, which fatigue by goodman needs"),
+        pytest.param(
+            lambda: press(
+                beams.rectangle(0.03, 0.012),
+                material=STEEL.but(endurance=2e8),
+                sliding=True,
+                t=(0, 0.2, 9),
+            ),
+            "a load moves along link 'rod'; its fatigue is available in sweeps only",
+            marks=pytest.mark.long,
+        ),
+    ],
+)
+def test_what_cannot_be_limited(make, told):
+    scene = make()
+    name = next(iter(scene.mechanism.parameters))
+    with pytest.raises(DeclarationError, match=told):
+        optimise(
+            scene,
+            minimise="peak:effort:O",
+            over={name: (0.05, 0.1)},
+            subject_to=["least:fatigue:rod >= 2"],
+            starts=1,
+            screen=2,
+        )
+
+
+def test_the_lightest_that_is_stiff_and_safe_is_found():
+    scene, limit = slider(), 5e-5
+    found = optimise(
+        scene,
+        minimise="mass:rod",
+        over={"h": (0.004, 0.04)},
+        subject_to=[f"peak:deflection:rod:across <= {limit}", "least:safety:crank >= 2"],
+        starts=1,
+        screen=4,
+    )
+    assert found.converged
+    assert found.feasible
+    fine = evaluate(scene, parameters=found.values, t=(0, ONE_CYCLE, 1025), **QUIET)
+    used = (abs(fine.deflection("rod").peak().value) / limit, 2.0 / fine.safety("crank").factor)
+    assert max(used) == pytest.approx(1.0, rel=1e-4)
+
+
+CASE = """
+import sys
+sys.path[:0] = {folders!r}
+from strong import press
+from lagrange_casadi import beams
+def scene():
+    return press(beams.rectangle(0.012, {width}), [beams.Notch(0.3, bending=1.8)])
+"""
+
+
+def written(here, width):
+    (here / "case.py").write_text(CASE.format(folders=FOLDERS, width=width))
+    return ["run", "case.py", "--no-figures", "--no-certificate", "--backend", "vm"]
+
+
+def test_run_tells_what_governs(here, capsys):
+    assert (
+        main([*written(here, 0.006), "--want", "stress:rod,safety:rod", "--want", "life:rod"]) == 0
+    )
+    out = capsys.readouterr().out
+    found = evaluate(press(BAR, [beams.Notch(0.3, bending=1.8)]), certificate=False)
+    safety, peak = found.safety("rod"), found.stress("rod").peak("von_mises")
+    assert (
+        f"  stress:rod:von_mises        {peak.value / 1e6:>13.6g} MPa  at t = {peak.t:.5g} s, xi/l"
+        " ="
+        f" {round(peak.xi, 4):g}" in out
+    )
+    assert f"{safety.utilisation:>8.4g} |" in out
+    assert f"| {safety.governs.against} governs" in out
+    for verdict in safety.verdicts:
+        assert f"    {verdict.against:<18} {verdict.factor:>8.4g} " in out
+    assert "lives, 0.20944 s repeated:\n  life:rod " in out
+
+
+def test_run_says_that_a_part_fails(here, capsys):
+    assert main([*written(here, 0.0005), "--want", "safety,life"]) == 0
+    out = capsys.readouterr().out
+    assert " governs, FAILS\n" in out
+    assert "stresses" not in out
+    assert "an estimate: the S-N line begins at 1000 cycles" in out
+
+
+def drawn(scene, folder, monkeypatch):
+    """The figures of a scene's solution, by name."""
+    found = {}
+    own = Figure.savefig
+
+    def kept(figure, *words, **named):
+        found[len(found)] = figure
+        return own(figure, *words, **named)
+
+    monkeypatch.setattr(Figure, "savefig", kept)
+    solution = evaluate(scene, xi=(0, 1, 21), **QUIET)
+    specs = [
+        figures.StrengthPlot("strength_rod", "rod"),
+        figures.UtilisationPlot("utilisation", ("rod",)),
+    ]
+    assert {spec.name for spec in specs} <= {one.name for one in figures.default_figures(solution)}
+    assert all(path.stat().st_size > 2000 for _, path in figures.draw(solution, specs, folder))
+    return solution, *found.values()
+
+
+def test_pictures_show_what_is_told(tmp_path, monkeypatch):
+    """The map of stress, Haigh's diagram with its notches, and bars."""
+    notch = beams.Notch(0.5, axial=3.0, bending=3.0)
+    solution, strength, bars = drawn(press(BAR, [notch], t=(0, 0.2, 21)), tmp_path, monkeypatch)
+    mapped, diagram = strength.axes[:2]
+    np.testing.assert_allclose(
+        np.ravel(mapped.collections[0].get_array()),
+        solution.stress("rod").grid("von_mises").T.ravel() / 1e6,
+    )
+    line = {one.get_label(): one.get_xydata() for one in diagram.get_lines()}
+    assert line["Goodman"].tolist() == [[0.0, 350.0], [700.0, 0.0]]
+    worst = (line["in notches"] @ [1 / 700, 1 / 350]).max()
+    safety = solution.safety("rod")
+    assert worst == pytest.approx(1 / safety.against("fatigue"), rel=1e-12)
+    widths = [bar.get_width() for bar in bars.axes[0].patches]
+    assert widths == [1 / verdict.factor for verdict in safety.verdicts]

@@ -1,0 +1,237 @@
+"""A sweep's file: its layout, that every reader finds every number, that it is the same however the
+sweep was cut and goes on, and what is never overwritten.
+"""
+
+import contextlib
+import gc
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+
+import h5py
+import numpy as np
+import pytest
+import sweeps
+import xarray
+from commands import command
+from sweeps import StopError, stop_after
+
+from lagrange_casadi import Scene, Sweep, motion, read_designs, sweep
+from lagrange_casadi.errors import (
+    BusyError,
+    DeclarationError,
+    PathError,
+    StoppedError,
+    StoreError,
+)
+
+ASKED = {"t": (0, 0.08, 7)}
+GRID = {"l": (0.15, 0.4, 20), "r": [0.05, 0.1, 0.07]}
+SIZE = 60
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch):
+    """Let plain formulas answer, a few designs a block."""
+    monkeypatch.setattr("lagrange_casadi.studies.sweep.columns._MOST", 5)
+    return sweeps.use(monkeypatch)
+
+
+def run(path, grid=None, scene=None, **words):
+    """The bytes of a sweep's file."""
+    scene, grid = scene or sweeps.scene(), grid or GRID
+    return sweep(scene, grid, out=path, **{**ASKED, **words}).path.read_bytes()
+
+
+@pytest.fixture
+def whole(tmp_path_factory):
+    """The bytes of a sweep that nobody stops."""
+    return run(tmp_path_factory.mktemp("whole") / "x.h5", workers=1)
+
+
+@pytest.mark.parametrize("kind", ["grid", "list"])
+@pytest.mark.parametrize("engine", ["h5netcdf", "netcdf4"])
+def test_every_reader_finds_every_number(tmp_path, kind, engine):
+    """Each dataset has its unit, its name, a checksum and a scale for every axis."""
+    (tmp_path / "d.csv").write_text("l,r\n0.2,0.05\n0.3,0.1\n0.25,0.06\n")
+    designs = GRID if kind == "grid" else read_designs(tmp_path / "d.csv")
+    path = tmp_path / "x.h5"
+    found = sweep(sweeps.scene(), designs, out=path, xi=(0, 1, 4), keep="histories", **ASKED)
+    dims = ("l", "r") if kind == "grid" else ("design",)
+    with xarray.open_dataset(path, engine=engine, group="history/section/rod") as section:
+        assert section["bending"].dims == (*dims, "t", "xi")
+        assert section["bending"].attrs["units"] == "N m"
+        expected = found["history:section:rod:bending"]
+        np.testing.assert_array_equal(section["bending"], expected)
+    with h5py.File(path) as h:
+        assert h.attrs["schema"] == "lagrange-casadi-sweep"
+        assert h.attrs["Conventions"] == "CF-1.8"
+        assert json.loads(h.attrs["parameters"])["m1"] == 0.1
+        assert "tension is positive" in h["peak/section/rod/axial"].attrs["sign"]
+        names = []
+
+        def visit(name, item):
+            if isinstance(item, h5py.Dataset):
+                assert item.attrs["units"], name
+                assert item.attrs["long_name"], name
+                assert item.fletcher32, name
+                if not item.is_scale and not name.startswith("grid/"):
+                    names.append(name.replace("/", ":"))
+                    assert all(len(dim) == 1 for dim in item.dims), name
+                    np.testing.assert_array_equal(item[()], found[names[-1]], err_msg=name)
+
+        h.visititems(visit)
+    assert set(names) == set(found.columns)
+    assert str(tmp_path).encode() not in path.read_bytes()
+    assert command("check", path) == 0
+
+
+@pytest.mark.parametrize("workers", [2, 5, None])
+def test_the_same_bytes_whatever_the_workers(whole, tmp_path, workers):
+    assert run(tmp_path / "x.h5", workers=workers) == whole
+
+
+def test_the_same_bytes_whatever_the_stops_and_what_is_lost(whole, tmp_path):
+    """Stopped by its progress and by interrupts, which say how to go on, and with parts deleted or
+    damaged in between.
+    """
+    path, chance, stops, told = tmp_path / "x.h5", random.Random(5), 0, set()
+    folder = tmp_path / "x.h5.parts"
+    while not path.exists():
+        progress = stop_after(chance.randint(2, 4))
+        if stops % 3 == 0:
+            progress = interrupting
+        try:
+            run(path, resume=True, workers=2, progress=progress)
+        except (StopError, StoppedError, StoreError) as error:
+            stops += 1
+            told |= {word for word in SAID if word in str(error)}
+        parts = sorted(folder.glob("*.part"))
+        if stops % 4 == 1 and parts:
+            parts[0].unlink()
+        if stops % 4 == 2 and len(parts) > 1:
+            content = bytearray(parts[1].read_bytes())
+            content[chance.randrange(len(content))] ^= 1
+            parts[1].write_bytes(content)
+    assert stops > 3
+    assert told == SAID
+    assert path.read_bytes() == whole
+    assert os.listdir(tmp_path) == ["x.h5"]
+
+
+SAID = {"x.h5.parts: continue with resume=True"}
+
+
+def interrupting(what, done, _total):
+    if done and what == "designs":
+        signal.raise_signal(signal.SIGINT)
+
+
+def test_what_is_there_is_not_overwritten(whole, tmp_path):
+    path, folder = tmp_path / "x.h5", tmp_path / "x.h5.parts"
+    with pytest.raises(StopError):
+        run(path, workers=1, progress=stop_after(4))
+    with pytest.raises(PathError, match=r"holds an unfinished sweep: continue with resume=True"):
+        run(path)
+    told = "x.h5: its sweep is not finished"
+    assert command("info", path) == 0
+    assert command("check", path) == 1
+    with pytest.raises(PathError, match=told):
+        Sweep.open(path)
+    designs = []
+    run(path, resume=True, workers=1, progress=lambda what, done, _: designs.append((what, done)))
+    assert 0 < min(done for what, done in designs if what == "designs") < SIZE
+    assert path.read_bytes() == whole
+    with pytest.raises(PathError, match=r"x\.h5 exists: force=True replaces it, resume=True"):
+        run(path)
+    assert run(path, resume=True, progress=pytest.fail) == whole
+    with pytest.raises(DeclarationError, match="resume and force exclude each other"):
+        run(path, force=True, resume=True)
+    seen = []
+    run(path, {"l": [0.2]}, force=True, progress=lambda *_: seen.append(path.read_bytes() == whole))
+    assert all(seen), "the old file stays until the new one is whole"
+    path.write_text("mine")
+    for words, says in (({}, "exists"), ({"resume": True}, "not a file of this program")):
+        with pytest.raises((PathError, StoreError), match=says):
+            run(path, **words)
+    folder.mkdir()
+    (folder / "thesis.txt").write_text("mine")
+    for words in ({}, {"resume": True}, {"force": True}):
+        with pytest.raises(PathError, match=r"holds 'thesis\.txt', which is not part of a sweep"):
+            run(tmp_path / "x.h5", **words)
+    assert path.read_text() == "mine"
+    assert os.listdir(folder) == ["thesis.txt"]
+
+
+OTHERS = [
+    ({"grid": {"l": (0.15, 0.4, 21), "r": GRID["r"]}}, "grid l was 0.15:0.4:20 and is 0.15:0.4:21"),
+    ({"grid": {"l": GRID["l"]}}, "grid r was there, and is not"),
+    ({"grid": dict(reversed(GRID.items()))}, "the axes of the grid were l, r and are r, l"),
+    ({"parameters": {"m3": 0.2}}, "mechanism parameters m3 value was 0.1 and is 0.2"),
+    ({"wanted": ["effort"]}, "wanted reactions was "),
+    ({"t": (0, 0.08, 9)}, "t was [0.0, 0.08, 7] and is [0.0, 0.08, 9]"),
+    ({"keep": "histories"}, "keep was peaks and is histories"),
+    (
+        {"law": motion.polynomial(0, 1)},
+        "an expression, a law of motion or the posture of the scene",
+    ),
+]
+
+
+@pytest.mark.parametrize("finished", [True, False])
+def test_another_sweep_is_refused_with_the_difference(whole, tmp_path, finished):
+    path = tmp_path / "x.h5"
+    if finished:
+        path.write_bytes(whole)
+    else:
+        with pytest.raises(StopError):
+            run(path, progress=stop_after(2))
+    for change, says in OTHERS:
+        scene, words = sweeps.scene(), dict(change)
+        if law := words.pop("law", None):
+            scene = Scene(scene.mechanism, {"O": law}, t=scene.t, posture=scene.posture)
+        with pytest.raises(StoreError) as caught:
+            run(path, scene=scene, resume=True, **words)
+        assert f"is of another sweep: {says}" in str(caught.value)
+        assert str(caught.value).endswith("; start anew with force=True, or write another file")
+
+
+def test_one_writer_at_a_time(whole, tmp_path):
+    """A second sweep into the file, and one into a file that another program has open, are refused;
+    the first goes on undisturbed.
+    """
+    path, refused = tmp_path / "x.h5", []
+
+    def second(*_):
+        for words in ({}, {"resume": True}, {"force": True}):
+            with contextlib.suppress(BusyError):
+                run(path, **words)
+                refused.append(words)
+
+    assert run(path, progress=second) == whole
+    assert not refused
+    program = f"import h5py, sys; h = h5py.File({str(path)!r}, 'r+'); print(1, flush=True);"
+    asked = (sys.executable, "-c", program + " sys.stdin.read()")
+    with sweeps.process(*asked, stdin=subprocess.PIPE) as holder:
+        holder.stdout.readline()
+        for words in ({}, {"force": True}, {"resume": True}):
+            with pytest.raises(BusyError, match="another program has it open to write"):
+                run(path, **words)
+    assert os.listdir(tmp_path) == ["x.h5"]
+    assert threading.active_count() < 10
+
+
+def test_without_a_file_it_lives_as_long_as_the_sweep():
+    found = sweep(sweeps.scene(), {"l": [0.2, 0.3]}, **ASKED)
+    path, part = found.path, found.select(l=0.2)
+    assert part["peak:effort:O"].shape == (1,)
+    del found
+    gc.collect()
+    assert path.exists()
+    del part
+    gc.collect()
+    assert not path.exists()
