@@ -1,40 +1,136 @@
 """Model files from plain numbers: small ones of every format, and large ones of every kind."""
 
 import json
+from math import cos, radians, sin
 
-from assembly_file import assembly, turned
+IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def turned(axis, degrees):
+    """The rotation about a coordinate axis, by rows."""
+    c, s = cos(radians(degrees)), sin(radians(degrees))
+    rows = {"x": ((1, 0, 0), (0, c, -s), (0, s, c)), "y": ((c, 0, s), (0, 1, 0), (-s, 0, c))}
+    return rows.get(axis, ((c, -s, 0), (s, c, 0), (0, 0, 1)))
+
+
+def assembly(points, parts, joints, motions, gravity=(0.0, -9.81, 0.0), span=(0.0, 1.0, 0.01)):
+    """Return the text of an assembly as FreeCAD writes it.
+
+    ``points`` are markers of the ground: a place, or a place and a rotation by rows. ``parts`` are
+    (mass, centre, principal moments, markers) and where they are, by name; ``joints`` (kind, marker
+    I, marker J) and numbers, by name; ``motions`` (kind, joint, expression) by name, a general
+    motion (kind, marker I, marker J, place, turns).
+    """
+    lines = ["OndselSolver", "Assembly"]
+
+    def put(depth, *texts):
+        lines.extend("\t" * depth + str(text) for text in texts)
+
+    def numbers(depth, head, values):
+        put(depth, head)
+        put(depth + 1, "\t".join(repr(float(value)) for value in values))
+
+    def frame(depth, place, rows=IDENTITY):
+        numbers(depth, "Position3D", place)
+        put(depth, "RotationMatrix")
+        for row in rows:
+            put(depth + 1, "\t".join(repr(float(value)) for value in row))
+
+    def markers(depth, told):
+        put(depth, "RefPoints")
+        for name, where in told.items():
+            put(depth + 1, "RefPoint")
+            frame(depth + 2, (0.0, 0.0, 0.0))
+            put(depth + 2, "Markers")
+            put(depth + 3, "Marker")
+            put(depth + 4, "Name")
+            put(depth + 5, name)
+            frame(depth + 4, *(where if isinstance(where[0], tuple) else (where,)))
+        put(depth, "RefCurves", "RefSurfaces")
+
+    put(1, "Notes", "\t(Text string: '' runs: (Core.RunArray runs: #() values: #()))")
+    put(1, "Name", "\tPress")
+    frame(1, (0.0, 0.0, 0.0))
+    markers(1, points)
+    put(1, "Parts")
+    for name, (mass, centre, moments, own, *where) in parts.items():
+        put(2, "Part")
+        put(3, "Name", f"\t{name}")
+        frame(3, *(where or [(0.0, 0.0, 0.0)]))
+        put(3, "FeatureOrder", "PrincipalMassMarker")
+        put(4, "Name", "\tMassMarker")
+        frame(4, centre)
+        put(4, "Mass", f"\t{mass!r}")
+        numbers(4, "MomentOfInertias", moments)
+        markers(3, own)
+    put(1, "KinematicIJs", "ConstraintSets")
+    put(2, "Joints")
+    for name, (kind, one, other, *told) in joints.items():
+        put(3, kind)
+        put(4, "Name", f"\t{name}", "MarkerI", f"\t/Press/{one}", "MarkerJ", f"\t/Press/{other}")
+        for key, value in told:
+            put(4, key, f"\t{value!r}")
+    put(2, "Motions")
+    for name, (kind, *told) in motions.items():
+        put(3, kind)
+        if kind == "GeneralMotion":
+            one, other, place, turns = told
+            put(
+                4, "Name", f"\t{name}", "MarkerI", f"\t/Press/{one}", "MarkerJ", f"\t/Press/{other}"
+            )
+            for k, law in enumerate((*place, *turns)):
+                put(4, f"rIJI{k + 1}" if k < 3 else f"angIJJ{k - 2}", f"\t{law}")
+            put(4, "RotationOrder", "\t1\t2\t3")
+            continue
+        joint, law = told
+        put(4, "Name", f"\t{name}", "MotionJoint", f"\t/Press/{joint}")
+        put(4, "RotationZ" if kind == "RotationalMotion" else "TranslationZ", f"\t{law}")
+    put(2, "GeneralConstraintSets")
+    put(1, "ForceTorques")
+    numbers(1, "ConstantGravity", gravity)
+    put(1, "SimulationParameters")
+    for key, value in zip(("tstart", "tend", "hout"), span, strict=True):
+        put(2, key, f"\t{value!r}")
+    return "\n".join(lines) + "\n"
+
 
 SPRUNG = (
     "<dynamics><damping>0.1</damping><spring_stiffness>5</spring_stiffness>"
     "<spring_reference>0.1</spring_reference></dynamics>"
 )
 DAMPED = '<dynamics damping="0.1"/>'
-MOMENTS = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2"/>'
 
 
 def urdf(*parts, name="robot"):
     return f'<?xml version="1.0"?>\n<robot name="{name}">\n{"".join(parts)}</robot>\n'
 
 
-def link(name, mass=1.0):
-    inside = f'<origin xyz="0.1 0 0"/><mass value="{mass}"/>{MOMENTS}'
+def link(name, mass=1.0, centre="0.1 0 0", inertia="0.1 0.2 0.2"):
+    xx, yy, zz = inertia.split()
+    moments = f'<inertia ixx="{xx}" ixy="0" ixz="0" iyy="{yy}" iyz="0" izz="{zz}"/>'
+    inside = f'<origin xyz="{centre}"/><mass value="{mass}"/>{moments}'
     return f'<link name="{name}"><inertial>{inside}</inertial></link>\n'
 
 
-def joint(name, parent, child, xyz="0 0 0", axis="0 0 1", kind="revolute", more=""):
-    ends = f'<parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}" rpy="0 0.1 0"/>'
+def joint(name, parent, child, xyz="0 0 0", axis="0 0 1", kind="revolute", more="", rpy="0 0 0"):
+    ends = f'<parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}" rpy="{rpy}"/>'
     return f'<joint name="{name}" type="{kind}">{ends}<axis xyz="{axis}"/>{more}</joint>\n'
 
 
-def sdf(*parts, world=""):
+def sdf(*parts, world="", version="1.10"):
     inside = f'<model name="robot">\n{"".join(parts)}</model>\n'
-    return f'<sdf version="1.9"><world name="w">{world}\n{inside}</world></sdf>\n'
+    return f'<sdf version="{version}"><world name="w">{world}\n{inside}</world></sdf>\n'
 
 
-def sdf_link(name, pose="0 0 0 0 0 0", more=""):
-    moments = "<inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.2</izz></inertia>"
-    inside = f"<inertial><pose>0.1 0 0 0 0 0</pose><mass>1.5</mass>{moments}</inertial>"
-    return f'<link name="{name}"><pose{more}>{pose}</pose>{inside}</link>\n'
+def inertial(mass=1.5, pose="0.1 0 0 0 0 0", inertia="0.1 0.2 0.2"):
+    xx, yy, zz = inertia.split()
+    moments = f"<inertia><ixx>{xx}</ixx><iyy>{yy}</iyy><izz>{zz}</izz></inertia>"
+    return f"<inertial><pose>{pose}</pose><mass>{mass}</mass>{moments}</inertial>"
+
+
+def sdf_link(name, pose="0 0 0 0 0 0", more="", inside="", centre="0.1 0 0 0 0 0", **told):
+    held = inertial(pose=centre, **told) + inside
+    return f'<link name="{name}"><pose{more}>{pose}</pose>{held}</link>\n'
 
 
 def sdf_joint(name, parent, child, axis="0 0 1", kind="revolute", more=""):
@@ -43,8 +139,9 @@ def sdf_joint(name, parent, child, axis="0 0 1", kind="revolute", more=""):
     return f'<joint name="{name}" type="{kind}">{ends}{axis}</joint>\n'
 
 
-def mjcf(*parts, more=""):
-    return f'<mujoco model="robot">\n<worldbody>\n{"".join(parts)}</worldbody>{more}\n</mujoco>\n'
+def mjcf(*parts, more="", compiler=""):
+    head = f'<mujoco model="robot"><compiler angle="radian" {compiler}/>'
+    return f"{head}\n<worldbody>\n{''.join(parts)}</worldbody>{more}\n</mujoco>\n"
 
 
 def mjcf_body(name, *parts, pos="0.2 0 0", axis="0 1 0"):
@@ -164,7 +261,7 @@ def _cell(k):
     yield from (link(f"{name}{k}") for name in ("crank", "rod", "rocker"))
     ends = ("O", "base", f"crank{k}", "0 0 0"), ("A", f"crank{k}", f"rod{k}", "0 1 0")
     for name, parent, child, at in (*ends, ("C", "base", f"rocker{k}", "2 0 0")):
-        yield joint(f"{name}{k}", parent, child, at).replace("0.1 0", "0 0")
+        yield joint(f"{name}{k}", parent, child, at)
     closing = sdf_joint(f"B{k}", f"rod{k}", f"rocker{k}", more=SPRUNG)
     yield f"<gazebo>{closing.replace('<parent', '<pose>0 1 0 0 0 0</pose><parent')}</gazebo>\n"
 
@@ -177,7 +274,7 @@ SMALL = {
         '<link name="base"/>',
         *(link(name) for name in ("one", "two", "three")),
         '<link name="frame"/>',
-        joint("j1", "base", "one", more=DAMPED),
+        joint("j1", "base", "one", more=DAMPED, rpy="0 0.1 0"),
         joint("j2", "one", "two", "0.2 0 0", "0 1 0", more='<mimic joint="j1" multiplier="2"/>'),
         joint("j3", "two", "three", "0.2 0 0", "1 0 0", "prismatic"),
         joint("j4", "three", "frame", kind="fixed"),
@@ -189,16 +286,16 @@ SMALL = {
     "loop.urdf": urdf(
         '<link name="base"/>',
         *(link(name) for name in ("crank", "rod", "rocker")),
-        *(joint("O", "base", "crank").replace("0.1 0", "0 0"),),
-        joint("A", "crank", "rod", "0 1 0").replace("0.1 0", "0 0"),
-        joint("C", "base", "rocker", "2 0 0").replace("0.1 0", "0 0"),
+        joint("O", "base", "crank"),
+        joint("A", "crank", "rod", "0 1 0"),
+        joint("C", "base", "rocker", "2 0 0"),
         '<loop_joint name="B" type="spherical"><link1 link="rod"><origin xyz="2 0 0"/></link1>'
         '<link2 link="rocker"><origin xyz="0 1 0"/></link2></loop_joint>',
     ),
     "cell.urdf": urdf('<link name="base"/>', *_cell(0)),
     "arm.sdf": sdf(
         sdf_link("one"),
-        sdf_link("two", "0.2 0 0 0 0.1 0").replace("</link>", "<gravity>false</gravity></link>"),
+        sdf_link("two", "0.2 0 0 0 0.1 0", inside="<gravity>false</gravity>"),
         sdf_link("three", "0.3 0 0 0 0 0", ' relative_to="f"'),
         '<frame name="f" attached_to="two"><pose>0.1 0 0 0 0 0.2</pose></frame>\n',
         sdf_joint("j1", "world", "one", more=SPRUNG),
@@ -212,7 +309,7 @@ SMALL = {
     ),
     "arm.xml": mjcf(
         mjcf_body("one", mjcf_body("two", mjcf_body("three", axis="0 0 1"))).replace(
-            'name="j_three"', 'name="j_three" stiffness="5" damping="0.1" springref="10"'
+            'name="j_three"', 'name="j_three" stiffness="5" damping="0.1" springref="0.1"'
         ),
         more='<equality><joint joint1="j_two" joint2="j_one" polycoef="0 2 0 0 0"/></equality>'
         '<actuator><motor joint="j_one"/></actuator>',
