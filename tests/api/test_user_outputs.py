@@ -1,16 +1,14 @@
-"""Outputs of a user's own."""
+"""Outputs of a user's own: what they are made of, what they cost, and how they are misused."""
 
 import math
 
 import casadi as ca
 import numpy as np
 import pytest
-from five_bars import five_bar
-from internals import derive_derive as derive
-from internals import figures
 
-from lagrange_casadi import Mechanism, Scene, density, evaluate, motion, refine
+from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, motion, refine
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.figures import default_figures
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -147,24 +145,6 @@ def test_what_equilibrium_leaves_open_leaves_them_open():
     np.testing.assert_allclose(found.output("whole"), 2.0 * 9.81)
 
 
-def test_nothing_is_added_to_a_scene():
-    made = five_bar().mechanism
-    with pytest.raises(DeclarationError, match="frozen"):
-        made.output("late", made.time)
-
-
-def test_an_effort_where_nothing_drives_is_named():
-    def more(m, parts):
-        m.output("wrong", m.results.effort(parts["bore"]))
-
-    with pytest.raises(
-        DeclarationError,
-        match=r"made of effort:bore, but joint 'bore' is not a drive; drives:"
-        r" main",
-    ):
-        evaluate(engine(more=more))
-
-
 @pytest.mark.parametrize(
     ("declare", "error", "told"),
     [
@@ -265,18 +245,13 @@ def test_frictions_and_what_they_take_are_results():
     assert solution.output("heat") == pytest.approx(gained, rel=0, abs=1e-10 * gained.max())
 
 
-def test_an_unknown_output_lists_what_there_is():
-    with pytest.raises(UnknownNameError, match=r"output:power"):
-        evaluate(engine(), wanted=["output:powr"])
-    with pytest.raises(
-        UnknownNameError,
-        match=r"unknown user-defined output of the mechanism 'powr' .*valid: power",
-    ):
-        evaluate(engine(), wanted=["output:power"]).output("powr")
-
-
-def test_a_figure_says_their_names():
+def test_a_figure_and_an_error_say_their_names():
     found = evaluate(engine(t=(0, 1, 21)), wanted=["output:power"])
-    spec = next(spec for spec in figures.default_figures(found) if spec.name == "output_power")
+    spec = next(spec for spec in default_figures(found) if spec.name == "output_power")
     (axes,) = spec.draw(found).axes
     assert (axes.get_ylabel(), axes.get_title()) == ("power [W]", "engine: power")
+    with pytest.raises(UnknownNameError, match=r"output:power"):
+        evaluate(engine(), wanted=["output:powr"])
+    says = r"unknown user-defined output of the mechanism 'powr' .*valid: power"
+    with pytest.raises(UnknownNameError, match=says):
+        found.output("powr")
