@@ -13,6 +13,60 @@ def turned(axis, degrees):
     return rows.get(axis, ((c, -s, 0), (s, c, 0), (0, 0, 1)))
 
 
+ORIGIN = (0.0, 0.0, 0.0)
+
+
+def _lines(tree, depth=0):
+    """Lines of a tree, indented: each part is a word, or a word and the parts inside."""
+    for part in tree:
+        head, inside = (part, ()) if isinstance(part, str) else part
+        yield "\t" * depth + head
+        yield from _lines(inside, depth + 1)
+
+
+def _row(values):
+    return "\t".join(repr(float(value)) for value in values)
+
+
+def _leaves(told):
+    return [(key, [str(value)]) for key, value in told.items()]
+
+
+def _frame(place, rows=IDENTITY):
+    return [("Position3D", [_row(place)]), ("RotationMatrix", list(map(_row, rows)))]
+
+
+def _markers(told):
+    points = []
+    for name, where in told.items():
+        own = _frame(*(where if isinstance(where[0], tuple) else (where,)))
+        marker = ("Markers", [("Marker", [*_leaves({"Name": name}), *own])])
+        points.append(("RefPoint", [*_frame(ORIGIN), marker]))
+    return [("RefPoints", points), "RefCurves", "RefSurfaces"]
+
+
+def _part(name, mass, centre, moments, own, *where):
+    held = [*_leaves({"Name": "MassMarker"}), *_frame(centre), *_leaves({"Mass": repr(mass)})]
+    held.append(("MomentOfInertias", [_row(moments)]))
+    placed = [*_leaves({"Name": name}), *_frame(*(where or [ORIGIN]))]
+    return ("Part", [*placed, "FeatureOrder", ("PrincipalMassMarker", held), *_markers(own)])
+
+
+def _joint(name, kind, one, other, *told):
+    ends = {"Name": name, "MarkerI": f"/Press/{one}", "MarkerJ": f"/Press/{other}"}
+    return (kind, _leaves(ends | {key: repr(value) for key, value in told}))
+
+
+def _motion(name, kind, *told):
+    if kind == "GeneralMotion":
+        one, other, place, turns = told
+        names = [f"rIJI{k}" for k in (1, 2, 3)] + [f"angIJJ{k}" for k in (1, 2, 3)]
+        laws = _leaves(dict(zip(names, (*place, *turns), strict=True)))
+        return (kind, [*_joint(name, kind, one, other)[1], *laws, ("RotationOrder", ["1\t2\t3"])])
+    law = "RotationZ" if kind == "RotationalMotion" else "TranslationZ"
+    return (kind, _leaves({"Name": name, "MotionJoint": f"/Press/{told[0]}", law: told[1]}))
+
+
 def assembly(points, parts, joints, motions, gravity=(0.0, -9.81, 0.0), span=(0.0, 1.0, 0.01)):
     """Return the text of an assembly as FreeCAD writes it.
 
@@ -21,77 +75,27 @@ def assembly(points, parts, joints, motions, gravity=(0.0, -9.81, 0.0), span=(0.
     I, marker J) and numbers, by name; ``motions`` (kind, joint, expression) by name, a general
     motion (kind, marker I, marker J, place, turns).
     """
-    lines = ["OndselSolver", "Assembly"]
-
-    def put(depth, *texts):
-        lines.extend("\t" * depth + str(text) for text in texts)
-
-    def numbers(depth, head, values):
-        put(depth, head)
-        put(depth + 1, "\t".join(repr(float(value)) for value in values))
-
-    def frame(depth, place, rows=IDENTITY):
-        numbers(depth, "Position3D", place)
-        put(depth, "RotationMatrix")
-        for row in rows:
-            put(depth + 1, "\t".join(repr(float(value)) for value in row))
-
-    def markers(depth, told):
-        put(depth, "RefPoints")
-        for name, where in told.items():
-            put(depth + 1, "RefPoint")
-            frame(depth + 2, (0.0, 0.0, 0.0))
-            put(depth + 2, "Markers")
-            put(depth + 3, "Marker")
-            put(depth + 4, "Name")
-            put(depth + 5, name)
-            frame(depth + 4, *(where if isinstance(where[0], tuple) else (where,)))
-        put(depth, "RefCurves", "RefSurfaces")
-
-    put(1, "Notes", "\t(Text string: '' runs: (Core.RunArray runs: #() values: #()))")
-    put(1, "Name", "\tPress")
-    frame(1, (0.0, 0.0, 0.0))
-    markers(1, points)
-    put(1, "Parts")
-    for name, (mass, centre, moments, own, *where) in parts.items():
-        put(2, "Part")
-        put(3, "Name", f"\t{name}")
-        frame(3, *(where or [(0.0, 0.0, 0.0)]))
-        put(3, "FeatureOrder", "PrincipalMassMarker")
-        put(4, "Name", "\tMassMarker")
-        frame(4, centre)
-        put(4, "Mass", f"\t{mass!r}")
-        numbers(4, "MomentOfInertias", moments)
-        markers(3, own)
-    put(1, "KinematicIJs", "ConstraintSets")
-    put(2, "Joints")
-    for name, (kind, one, other, *told) in joints.items():
-        put(3, kind)
-        put(4, "Name", f"\t{name}", "MarkerI", f"\t/Press/{one}", "MarkerJ", f"\t/Press/{other}")
-        for key, value in told:
-            put(4, key, f"\t{value!r}")
-    put(2, "Motions")
-    for name, (kind, *told) in motions.items():
-        put(3, kind)
-        if kind == "GeneralMotion":
-            one, other, place, turns = told
-            put(
-                4, "Name", f"\t{name}", "MarkerI", f"\t/Press/{one}", "MarkerJ", f"\t/Press/{other}"
-            )
-            for k, law in enumerate((*place, *turns)):
-                put(4, f"rIJI{k + 1}" if k < 3 else f"angIJJ{k - 2}", f"\t{law}")
-            put(4, "RotationOrder", "\t1\t2\t3")
-            continue
-        joint, law = told
-        put(4, "Name", f"\t{name}", "MotionJoint", f"\t/Press/{joint}")
-        put(4, "RotationZ" if kind == "RotationalMotion" else "TranslationZ", f"\t{law}")
-    put(2, "GeneralConstraintSets")
-    put(1, "ForceTorques")
-    numbers(1, "ConstantGravity", gravity)
-    put(1, "SimulationParameters")
-    for key, value in zip(("tstart", "tend", "hout"), span, strict=True):
-        put(2, key, f"\t{value!r}")
-    return "\n".join(lines) + "\n"
+    sets = [
+        ("Joints", [_joint(name, *told) for name, told in joints.items()]),
+        ("Motions", [_motion(name, *told) for name, told in motions.items()]),
+        "GeneralConstraintSets",
+    ]
+    inside = [
+        ("Notes", ["(Text string: '' runs: (Core.RunArray runs: #() values: #()))"]),
+        *_leaves({"Name": "Press"}),
+        *_frame(ORIGIN),
+        *_markers(points),
+        ("Parts", [_part(name, *told) for name, told in parts.items()]),
+        "KinematicIJs",
+        ("ConstraintSets", sets),
+        "ForceTorques",
+        ("ConstantGravity", [_row(gravity)]),
+        (
+            "SimulationParameters",
+            _leaves(dict(zip(("tstart", "tend", "hout"), map(repr, span), strict=True))),
+        ),
+    ]
+    return "\n".join(["OndselSolver", *_lines([("Assembly", inside)])]) + "\n"
 
 
 SPRUNG = (

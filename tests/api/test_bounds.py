@@ -19,13 +19,24 @@ from lagrange_casadi.errors import DeclarationError, SizeError
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 HUGE = "99999999999999999999999"
+
+
 COUNT = r"t: COUNT must be a whole number from 1 to 2\^63 - 1, got "
+
+
 STEPS = (
     r"newton: expected a number of steps, from 1 to 1000 \(after some ten nothing changes\), got "
 )
+
+
 THREADS = "is not in the range 1<=x<=1024"
+
+
 GRID = "--grid l=0.2:0.3:3"
+
+
 FREE = r"GB, and this machine has \S+ GB free"
+
 
 REFUSED = {
     "newton": ("run CASE --newton 1000000000", 2, STEPS + "1000000000"),
@@ -118,13 +129,6 @@ def test_python_refuses_them_too(keywords):
         sweep(slider_crank(), {"l": (0.2, 0.3, 3)}, workers=1025)
 
 
-def test_more_rows_than_there_are_are_all(here, capsys):
-    sweep(slider_crank(), {"l": (0.2, 0.3, 25)}, t=(0, 0.08, 5), wanted=["effort"], out="x.h5")
-    for line in (f"table x.h5 --rows {HUGE}", f"best x.h5 --minimise peak:effort:O --count {HUGE}"):
-        assert command(line) == 0
-        assert len(capsys.readouterr().out.splitlines()) == 26
-
-
 def test_what_takes_long_is_said_before_it_starts(monkeypatch):
     module = importlib.import_module("lagrange_casadi.studies.solving")
     monkeypatch.setattr(module, "_LONG", 1e-9)
@@ -138,7 +142,11 @@ def test_what_takes_long_is_said_before_it_starts(monkeypatch):
 MEMINFO = (
     "MemTotal: 64000000 kB\nMemFree: 100000 kB\nMemAvailable: 3200000 kB\nSwapFree: 100000 kB\n"
 )
+
+
 STAT = "anon 900\ninactive_file 4000000\ntotal_inactive_file 6000000\n"
+
+
 ROOMS = {
     "3.38": {"/proc/meminfo": MEMINFO},
     "4.1": {"/proc/meminfo": "MemTotal: 5 kB\n"},

@@ -12,7 +12,7 @@ import pytest
 import xarray
 from commands import command
 from forging import edit
-from mechanisms import driven_slider, press, slider_crank, uneven
+from mechanisms import press, slider_crank, uneven
 from stepped import two_rods
 
 from lagrange_casadi import (
@@ -25,7 +25,6 @@ from lagrange_casadi import (
     load_case,
     motion,
     prepare,
-    refine,
     save,
     sweep,
 )
@@ -146,20 +145,6 @@ def test_a_rung_is_told_in_the_provenance():
     assert solution.provenance.flags.endswith(" -O1")
 
 
-@pytest.mark.parametrize("backend", ["c", "vm"])
-def test_series_are_told_where_a_peak_cannot_be(backend):
-    m = Mechanism("buzz")
-    m.revolute("O", m.ground, m.link("arm", length=m.parameter("l", 0.3, "m"), mass=1.0))
-    m.output("fast", ca.sin(1e6 * m.time))
-    f = prepare(
-        Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 9), wanted=["output:fast"]), backend=backend
-    )
-    np.testing.assert_allclose(f(l=0.4)["output:fast"], np.sin(1e6 * f.t), atol=1e-9)
-    if backend == "c":  # which is quick to find out
-        with pytest.raises(AssemblyError, match="a peak cannot be located"):
-            f.peaks(l=0.4)
-
-
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("backend", ["auto", "c", "vm"])
 def test_calls_are_the_rows_of_designs_to_the_last_byte(backend):
@@ -254,20 +239,6 @@ def test_values_that_have_no_result_are_refused_as_evaluate_does():
 TURN = math.tau
 
 
-PEAKS = ["effort:O", "reaction:O:fx", "section:rod:bending"]
-
-
-def test_bounds_of_time_are_expressions_of_parameters():
-    """A whole turn at any speed, as if its bounds were given in numbers."""
-    scene = press(t=lambda rpm: (0, 60 / rpm, 37))
-    for rpm in (600.0, 45.0):
-        found = evaluate(scene, parameters={"rpm": rpm})
-        expected = evaluate(press(t=(0, 0.1, 37)), parameters={"rpm": rpm}, t=(0, 60 / rpm, 37))
-        for name in expected.series:
-            np.testing.assert_array_equal(found.series[name], expected.series[name], err_msg=name)
-        assert found.motion("O").value[-1] == pytest.approx(TURN, rel=1e-15)
-
-
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 @pytest.mark.parametrize("rpm", [600.0, 77.0])
@@ -305,43 +276,6 @@ def test_efforts_over_a_drive_are_those_of_a_textbook(rpm):
     np.testing.assert_allclose(
         w * found.t + 0.2 * np.sin(w * found.t), angle, rtol=0, atol=1e-14 * 11
     )
-
-
-@pytest.mark.parametrize("law", [motion.polynomial, uneven])
-def test_refined_peaks_do_not_depend_on_how_instants_were_asked_for(law):
-    """Between unequal instants as between equal ones, with the drive's coordinate at the peak."""
-    scene = press(law)
-    over, even = evaluate(scene, over=("O", 0, TURN, 91)), evaluate(scene, t=(0, 0.1, 91))
-    assert over.t[-1] == pytest.approx(0.1, rel=1e-15)
-    for one, other in zip(refine(scene, over, PEAKS), refine(scene, even, PEAKS), strict=True):
-        assert one.value == pytest.approx(other.value, rel=1e-13)
-        assert one.t == pytest.approx(other.t, abs=1e-9)
-        w = 20 * math.pi
-        assert one.over == pytest.approx(
-            w * one.t + (0.2 * math.sin(w * one.t) if law is uneven else 0.0), abs=1e-13
-        )
-        assert other.over is None
-
-
-def test_a_drive_that_turns_backwards_goes_from_the_higher_angle_to_the_lower():
-    m = press(lambda zero, w: motion.polynomial(zero, -w))
-    found = evaluate(m, over=("O", "360 deg", 0, 73), wanted=["motion", "effort"])
-    assert found.t[0] == pytest.approx(-0.1, rel=1e-15)
-    assert found.t[-1] == 0.0
-    np.testing.assert_allclose(found.motion("O").value, found.over.values, atol=2e-15)
-
-
-def test_a_slide_is_a_drive_too():
-    scene = driven_slider()
-    joint, law = next(iter(scene.motion.items()))
-    first, last = (float(law.graph(ca.DM(t))) for t in (scene.t[0], scene.t[0] + 0.02))
-    found = evaluate(scene, over=(joint, first, last, 9))
-    assert (found.over.unit, found.over.label) == ("m", f"{joint} [m]")
-    with pytest.raises(
-        DeclarationError,
-        match=r"STOP: expected a number \[m\], or a text such as '100 mm', got '3 deg'",
-    ):
-        evaluate(scene, over=(joint, 0.0, "3 deg", 9))
 
 
 def test_a_swing_is_followed_from_the_start_of_t():
@@ -430,15 +364,6 @@ def test_bounds_that_parameters_make_impossible_are_told_with_them():
         match=r"the motion of joint 'O' is at rest.*; with the parameters rpm = 0, l = ",
     ):
         evaluate(scene, over=("O", 0, 1, 5), parameters={"rpm": 0.0})
-
-
-def test_a_scene_is_assembled_where_its_drive_starts():
-    """The posture is that of the first instant, which the drive's coordinate decides."""
-    late = press(over=("O", math.pi, 3 * math.pi, 9))
-    assert late.span == pytest.approx((0.05, 0.15))
-    np.testing.assert_allclose(
-        evaluate(late).pose("ram").y, evaluate(press(), t=(0.05, 0.15, 9)).pose("ram").y, rtol=1e-14
-    )
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from drawn_scenes import CASES, every_kind, moved
-from reports import snowed, solved
+from reports import solved
 
 from lagrange_casadi import evaluate
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
@@ -146,13 +146,6 @@ def test_what_is_no_spec_is_named(solution, tmp_path):
 
 def texts(figure):
     return [text.get_text().replace("\N{MINUS SIGN}", "-") for text in figure.axes[0].texts]
-
-
-def test_in_space_there_are_six():
-    figure = SectionDiagrams("d", ("bar",)).draw(snowed(space=True))
-    written = texts(figure)
-    for symbol in ("$N$", "$V_{y}$", "$V_{z}$", "$T$", "$M_{y}$", "$M_{z}$"):
-        assert any(text.startswith(symbol) for text in written)
 
 
 def test_polar_plots_show_the_largest_load():

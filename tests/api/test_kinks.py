@@ -30,6 +30,8 @@ from lagrange_casadi.motion import expression, polynomial
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 X, Y, T = (ca.SX.sym(name) for name in "xyt")
+
+
 TURN = np.linspace(0.0, math.tau, 37)
 
 
@@ -67,6 +69,8 @@ SMOOTH = {
     "a size of what only touches zero": Y - ca.fabs(ca.sin(7 * X + 0.0652521) + 1),
     "a corner that is rounded": Y - ca.sqrt((X - 0.3) ** 2 + 1e-9),
 }
+
+
 BROKEN = {
     "a table": (Y - table(X, TURN, np.sin(TURN)), "slope"),
     "a table of micrometres": (
@@ -212,6 +216,8 @@ PLACES = {
     disc: "cam 'profile': its lift: its slope jumps",
     drum: "cam 'profile': its lift: its slope jumps",
 }
+
+
 SCENES = pytest.mark.parametrize("scene", PLACES, ids=[one.__name__ for one in PLACES])
 
 
@@ -293,21 +299,6 @@ def test_the_way_out_gives_what_newton_says():
     np.testing.assert_allclose(solution.effort("turn"), torque, rtol=1e-12, atol=1e-12)
     without = 2.0 * 9.81 * 0.02 * np.cos(q)
     assert np.abs(torque - without).max() > 0.4 * np.abs(torque).max()
-
-
-def test_pieces_that_go_on_smoothly_are_a_cam():
-    """Rise, dwell, return by if_else: both the curve and its derivative go on."""
-    up = 0.02
-    scene = cam(lambda q: up * (rise(q / 2) - rise((q - 3) / 2)), polynomial(0.0, 30.0))
-    solution = evaluate(scene)
-    u = solution.motion("turn").value / 2
-    bend = np.where(u < 1, 60 * u - 180 * u**2 + 120 * u**3, 0) / 4
-    slope = np.where(u < 1, 30 * u**2 - 60 * u**3 + 30 * u**4, 0) / 2
-    early = solution.motion("turn").value < 3.0
-    torque = 2.0 * (up * bend * 900 + 9.81) * up * slope
-    np.testing.assert_allclose(
-        solution.effort("turn")[early], torque[early], rtol=1e-11, atol=1e-12
-    )
 
 
 def test_tables_stay_in_loads_and_rows():

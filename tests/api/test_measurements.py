@@ -56,23 +56,6 @@ def test_each_encoder_has_its_counts(tmp_path):
             read_measurements(path, names={"B": "slow"}, counts_per_turn=wrong)
 
 
-def test_a_file_of_a_logger_is_read_as_it_is(tmp_path):
-    """Its angle begins again after each turn, and it has columns that no one needs."""
-    path, t = tmp_path / "log.csv", np.arange(60) * 0.01
-    counts = np.round(np.linspace(300.0, 900.0, 60)) % 400
-    rows = zip(t, counts, 0.0 * t + 21.0, 0.0 * t, np.cos(t), strict=True)
-    heads = "clock [s],position [counts],temperature [C],A [deg],effort:A [N m]"
-    path.write_text("\n".join([heads, *(",".join(f"{x:.6g}" for x in row) for row in rows)]))
-    given = read_measurements(path, names={"t": "clock", "A": "position"}, counts_per_turn=400)
-    away = given.columns["A"] - np.linspace(1.5 * np.pi, 4.5 * np.pi, 60)
-    assert np.abs(away).max() <= np.pi / 400 + 1e-9
-    assert given.quantities(["A"]) == ("effort:A",)
-    motion = given.motion(["A"])  # at constant speed, as far as counts tell
-    assert not motion.acceleration.any()
-    assert motion.rate == pytest.approx(3.0 * np.pi / 0.59, rel=1e-2)
-    assert given.cutoff("A") == 0.0
-
-
 def test_heads_and_units_of_a_file_may_stand_in_two_lines(tmp_path):
     path = tmp_path / "log.csv"
     rows = [f"{k},{k},{10 * k}" for k in range(9)]
@@ -194,6 +177,8 @@ def strained(given, name):
 
 
 NOTHING, NONE = "nothing that is measured depends on the unknown", "expected at least one unknown"
+
+
 IMPOSSIBLE = {
     "parameter": (lambda s, g: identify(s, g, ["mass"]), "unknown parameter 'mass'"),
     "quantity": (

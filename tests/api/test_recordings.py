@@ -177,6 +177,8 @@ def test_counts_of_encoders_are_turns(here):
 
 
 RAMP_ROWS = "\n".join(f"{t},{q}" for t, q in RAMP)
+
+
 REFUSED = {
     "column": ("t,q", RAMP_ROWS, {"value": "w"}, r"unknown column 'w'; valid: t, q"),
     "number": ("t,q", RAMP_ROWS, {"value": 3}, "column 3 is not one of its 2 columns, numbered"),
@@ -203,7 +205,7 @@ REFUSED = {
     "auto": ("t,q", RAMP_ROWS, {"smoothing": "auto"}, "or 'estimated', got 'auto'"),
     "straight": ("t,q", RAMP_ROWS, {"smoothing": 1e3}, "a smoothing of 1000 leaves only a"),
     "points": ("t,q", RAMP_ROWS, {"points": 3}, "points: expected a whole number of at least 5"),
-    "rows": ("t,q", RAMP_ROWS[: RAMP_ROWS.index("0.4")], {}, "expected at least 5 rows of numbers, got "),
+    "rows": ("t,q", RAMP_ROWS[: RAMP_ROWS.index("0.4")], {}, "expected at least 5 rows"),
     "back": ("t,q", RAMP_ROWS + "\n0.7,1", {}, "line 10: times must increase, but 0.7 follows 0.7"),
     "nan": ("t,q", RAMP_ROWS + "\n0.9,nan", {}, "line 10: expected a finite number, got 'nan'"),
     **{
@@ -263,7 +265,11 @@ def geared(law, **keywords):
 
 
 POINTS = np.linspace(0.0, 1.0, 14)
+
+
 ANGLES = 0.4 * np.sin(5 * POINTS) + POINTS**2
+
+
 SCALED = {
     "vector": lambda r, a, T: samples(POINTS, r * ANGLES),
     "divided": lambda r, a, T: samples(list(POINTS), [angle / r + a for angle in ANGLES]),

@@ -12,15 +12,11 @@ import numpy as np
 import pytest
 from commands import command
 from reports import HOSTILE, held, hostile, page, press, snowed, solved, wound
-from strong import STEEL, robot, slider
-from strong import press as strong_press
+from strong import slider
 
 from lagrange_casadi import (
     Mechanism,
     Scene,
-    SpatialMechanism,
-    beams,
-    bearings,
     evaluate,
     load,
     load_case,
@@ -28,7 +24,7 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.motion import polynomial
 
 
 @pytest.mark.parametrize("name", ["four_bar", "excavator", "rssr"])
@@ -114,18 +110,6 @@ def test_rows_are_the_solutions_peaks_means_and_errors(name):
             if name in solution.errors
             else True
         )
-
-
-def test_sensitivities_are_charted_in_their_units():
-    scene = load_case("slider_crank").scene
-    solution = evaluate(
-        scene, wanted=["motion", "effort", "sensitivity:l"], t=(0, 0.08, 5), backend="vm"
-    )
-    found, array = held(page(solution))
-    series = {one["name"]: one for one in found["series"] if one["group"] == "sensitivity"}
-    assert series["sensitivity:l:effort:O"]["unit"] == "N m/m"
-    exact = solution.sensitivities.array("effort:O", "l")
-    np.testing.assert_array_equal(array(series["sensitivity:l:effort:O"]["values"]), exact)
 
 
 def test_what_is_open_is_said_and_has_no_number():
@@ -278,22 +262,6 @@ def test_a_page_of_two_designs_holds_both(tmp_path):
     assert again.read_bytes() == (tmp_path / "both.html").read_bytes()
 
 
-def test_two_runs_that_are_the_same_are_said_to_be(here, capfd):
-    """On the console and on the page; files of one name in two folders are named by their paths."""
-    first, second = designs()
-    save(first, "one.h5")
-    assert main(["report", "one.h5", "one.h5"]) == 0
-    assert "note: both runs are the same" in capfd.readouterr().err
-    assert held((here / "one_and_one.html").read_text())[0]["same"] is True
-    (here / "other").mkdir()
-    save(second, "other/one.h5")
-    assert main(["report", "one.h5", "other/one.h5"]) == 0
-    assert "the same" not in capfd.readouterr().err
-    found, _ = held((here / "one_and_one.html").read_text())
-    assert found["same"] is False
-    assert [run["name"] for run in found["runs"]] == ["one.h5", "other/one.h5"]
-
-
 def test_the_command_line_shows_two(here, capfd):
     first, second = designs()
     save(first, "short.h5")
@@ -349,25 +317,6 @@ def test_a_map_is_the_solutions_grid_and_peak():
         np.testing.assert_allclose(values, grid, rtol=0, atol=1e-12 * np.abs(grid).max())
 
 
-def test_a_solution_is_shown_with_its_largest_peaks():
-    text = solved("excavator")._repr_html_()
-    assert text.count("<svg") == 1
-    assert text.count("<tr>") == 13
-    largest = max(
-        (solved("excavator").peak(f"section:{link}:bending") for link in ("boom", "stick")),
-        key=lambda p: abs(p.value),
-    )
-    assert f"{largest.value:.5g} N m" in text
-    assert "certified" in text
-    assert text == solved("excavator")._repr_html_()
-
-
-def test_without_motion_the_peaks_are_shown_alone():
-    text = press(wanted=("effort",))._repr_html_()
-    assert "<svg" not in text
-    assert "effort" in text
-
-
 def test_a_view_is_the_report_in_a_frame_that_reaches_nothing_else():
     solution = press()
     found = solution.view(500)
@@ -395,79 +344,3 @@ def test_a_scene_that_cannot_be_assembled_is_told_without_a_drawing():
     text = Scene(m, motion={"O": polynomial(0, 1)}, posture={"rod": 0.0})._repr_html_()
     assert "<svg" not in text
     assert "guide (slot)" in text
-
-
-PIN = bearings.Pin(0.01, 0.02, 0.01, STEEL, pressure=1e8)
-
-
-def unaimed_bar():
-    """A flat bar that spins freely about its line, between a crank and a rocker."""
-    m = SpatialMechanism("bar")
-    rod = m.link(
-        "rod", between=((0, 0, 0), (1, 0, 0)), beam=beams.Beam(beams.rectangle(0.03, 0.01), STEEL)
-    )
-    crank = m.link("crank", between=((0, -0.2, 0), (0, 0, 0)), mass=0.4)
-    rocker = m.link(
-        "rocker", between=((1, -0.2, 0), (1, 0, 0)), beam=beams.Beam(beams.round_bar(0.02), STEEL)
-    )
-    m.revolute("O", m.ground, crank, at=(0, -0.2, 0), axis=(0, 0, 1))
-    bearings.fit(m, m.revolute("Q", m.ground, rocker, at=(1, -0.2, 0), axis=(0, 0, 1)), PIN)
-    m.spherical("A", crank, rod, at=(0, 0, 0))
-    m.spherical("B", rod, rocker, at=(1, 0, 0))
-    return Scene(m, {"O": harmonic(0.0, 0.3, 2.0)}, t=(0, 0.5, 5))
-
-
-def lacking(*numbers):
-    """A slider-crank of a material that lacks some numbers."""
-    return strong_press(
-        beams.rectangle(0.02, 0.012), material=STEEL.but(**dict.fromkeys(numbers)), t=(0, 0.2, 5)
-    )
-
-
-def twisted():
-    """An arm whose cross-section bears torsion for which there is no formula."""
-    return robot(beams.polygon([(0.02, -0.01), (0.02, 0.01), (-0.02, 0.01), (-0.02, -0.01)]))
-
-
-def held_twice():
-    """A beam on three pins: equilibrium leaves its bending open, and what its pins bear."""
-    m = Mechanism("beam")
-    girder = m.link("girder", length=1.0, beam=beams.Beam(beams.rectangle(0.03, 0.01), STEEL))
-    swing = m.link("swing", length=0.3, beam=beams.Beam(beams.rectangle(0.03, 0.01), STEEL))
-    m.weld("left", m.ground, girder)
-    bearings.fit(m, m.revolute("right", m.ground.at(1.0, 0.0), girder.tip), PIN)
-    m.revolute("O", m.ground, swing)
-    return Scene(m, {"O": harmonic(0.0, 0.3, 2.0)}, t=(0, 0.5, 5))
-
-
-OPEN = {
-    unaimed_bar: {"rod"},
-    twisted: {"upper"},
-    held_twice: {"girder", "right"},
-    lambda: lacking("yield_strength"): {"rod"},
-    lambda: lacking("elasticity"): {"rod"},
-    lambda: slider(200e6): set(),
-}
-
-
-@pytest.mark.parametrize("scene", OPEN)
-def test_what_is_open_is_told_by_its_name(scene, tmp_path, capsys):
-    given = scene()
-    solution = evaluate(given)
-    rows = held(page(solution))[0]["strength"]
-    parts = {name for name, body in solution.description["bodies"].items() if "beam" in body}
-    parts |= {name for name, joint in solution.description["joints"].items() if "fitted" in joint}
-    assert {row["part"] for row in rows} == parts
-    assert {row["part"] for row in rows if row["open"] and row["part"] in OPEN[scene]} == OPEN[
-        scene
-    ]
-    for row in rows:
-        assert row["open"] == (row["factor"] is row["used"] is None and row["against"] == "")
-    for part in OPEN[scene]:
-        with pytest.raises(DeclarationError) as refused:
-            solution.safety(part)
-        assert [row["where"] for row in rows if row["part"] == part] == [str(refused.value)]
-    save(solution, tmp_path / "x.h5")
-    assert main(["info", str(tmp_path / "x.h5")]) == 0
-    told = "".join(capsys.readouterr())
-    assert set(re.findall("note: no factor of safety of '(.*?)'", told)) == OPEN[scene]

@@ -5,7 +5,6 @@ numbers of their solutions to the digits shown; live pages find what the package
 import base64
 import csv
 import io
-import json
 import re
 import struct
 import urllib.parse
@@ -16,7 +15,6 @@ import alive
 import browser
 import numpy as np
 import pytest
-import strong
 from commands import command
 from drawn_scenes import every_kind
 from reports import HOSTILE, held, hostile, press, solved
@@ -25,7 +23,7 @@ from reports import page as page_of
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.motion import polynomial
 
 pytestmark = alive.NEEDS_BROWSER
 
@@ -260,88 +258,6 @@ def test_a_section_map_tells_the_solutions_forces(page, name):
     quiet(one)
 
 
-def test_a_map_of_stress_tells_the_solutions_stress_and_where_it_is_largest(page):
-    solution = evaluate(
-        strong.slider(), wanted=["all", "stress:rod"], backend="vm", certificate=False
-    )
-    one = page(solution)
-    card = (
-        "[...document.querySelectorAll('.card')].find((one) =>"
-        " one.querySelectorAll('select')[1]?.value === 'stress')"
-    )
-    one.run(
-        f"{{ const list = {card}.querySelector('select'); list.value = 'rod';"
-        " list.dispatchEvent(new Event('change')); }"
-    )
-    stress = solution.stress("rod")
-    peak = stress.peak("von_mises")
-    words = one.run(f"{card}.querySelector('.peak-button').textContent").translate({0xA0: " "})
-    place = f"ξ/l = {peak.xi:.3g}, t = {to_digits(1e3 * peak.t, 5):g} ms, {peak.fibre}"
-    assert words == f"largest: {to_digits(peak.value / 1e6, 5):g} MPa at {place}"
-    one.run(
-        f"document.querySelectorAll('.map').forEach((map) => map.closest('.card') === {card} ||"
-        " map.closest('.card').remove())"
-    )
-    head, lines = hovered(one, "map", 0.5, 0.4)
-    i, xi = instant_of(solution, head), float(re.search(r"ξ/l = ([\d.]+)", head)[1])
-    value, unit = lines["von Mises' stress"]
-    expected = stress.grid("von_mises", np.array([xi]))[i, 0]
-    assert value * FACTORS[unit[0]] == pytest.approx(expected, rel=1e-4)
-    quiet(one)
-
-
-def test_a_polar_plot_tells_a_bearings_load_in_ground_axes_and_on_a_body(page):
-    solution = solved("slider_crank")
-    one = page(solution)
-    joint = one.run(
-        "document.querySelector('.polar').closest('.card').querySelector('select').value"
-    )
-    reaction = solution.reaction(joint)
-    head, lines = hovered(one, "polar", 0.45, 0.5)
-    i = instant_of(solution, head)
-    assert {name: lines[name][0] for name in ("fx", "fy")} == pytest.approx(
-        {"fx": reaction.fx[i], "fy": reaction.fy[i]}, rel=1e-4
-    )
-    one.run(
-        "{ const ways ="
-        " document.querySelector('.polar').closest('.card').querySelectorAll('select')[1];"
-        " ways.value = '1'; ways.dispatchEvent(new Event('change')); }"
-    )
-    body = (
-        one.run("document.querySelector('.polar').getAttribute('aria-label')")
-        .split(" on ")[1]
-        .split(",")[0]
-    )
-    head, lines = hovered(one, "polar", 0.45, 0.5)
-    i = instant_of(solution, head)
-    turned = (reaction.fx[i] + 1j * reaction.fy[i]) * np.exp(-1j * solution.pose(body).angle[i])
-    assert [lines[name][0] for name in ("along", "across")] == pytest.approx(
-        [turned.real, turned.imag], rel=1e-4, abs=1e-4 * abs(turned)
-    )
-    quiet(one)
-
-
-def test_a_mechanism_in_space_is_turned_and_seen_from_the_front(page):
-    one = page(solved("rssr"))
-    picture = "document.querySelector('.picture').toDataURL()"
-    seen = [one.run(picture)]
-    left, top = (
-        one.run(f"document.querySelector('.picture').getBoundingClientRect().{side}")
-        for side in ("left", "top")
-    )
-    one.point(left + 200, top + 100, "mousePressed", button="left", clickCount=1)
-    one.point(left + 260, top + 120, button="left", buttons=1)
-    one.point(left + 260, top + 120, "mouseReleased", button="left", clickCount=1)
-    seen.append(one.run(picture))
-    for key in "234":
-        one.press(key, key)
-        seen.append(one.run(picture))
-    one.press("1", "1")
-    assert len(set(seen)) == 5
-    assert one.run(picture) == seen[0]
-    quiet(one)
-
-
 def test_names_are_texts_and_never_markup(page):
     one = page(hostile())
     assert one.run("window.told === undefined && document.images.length === 0")
@@ -355,23 +271,6 @@ def test_names_are_texts_and_never_markup(page):
             "[...document.querySelectorAll('tbody th')].some((cell) => cell.lastChild.textContent"
             f" === {name!r})"
         )
-    quiet(one)
-
-
-def test_a_largest_moment_is_found_at_a_glance_and_its_section_shown(page):
-    solution = solved("slider_crank")
-    one = page(solution)
-    one.run(
-        "[...document.querySelectorAll('.tile')].find((tile) =>"
-        " tile.textContent.includes('bending')).click()"
-    )
-    peak = max(
-        (solution.peak(f"section:{link}:bending") for link in ("crank", "rod")),
-        key=lambda peak: abs(peak.value),
-    )
-    readout = one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')")
-    assert readout == f"t = {to_digits(1e3 * peak.t, 5):g} ms"
-    assert f"ξ/l = {peak.xi:.3g}" in one.run("document.querySelector('.ratio').textContent")
     quiet(one)
 
 
@@ -506,137 +405,6 @@ def test_charts_are_saved_as_pictures_and_numbers(page):
     np.testing.assert_allclose(maps, exact, atol=1e-12 * np.abs(exact).max())
 
 
-def case(name, count=31):
-    scene = load_case(name).scene
-    if scene.over:
-        return replace(scene, over=(*scene.over[:3], count))
-    return replace(scene, t=(*scene.t[:2], count))
-
-
-SCENES = {
-    "a machine over its drive": alive.sheller,
-    "a machine over time": lambda: alive.sheller(over=False),
-    "one in space": lambda: case("rssr"),
-    "one whose loops are iterated": lambda: case("bricard"),
-    "a cam, which repeats": lambda: case("roller_cam"),
-    "wheels": lambda: case("planetary_gear"),
-}
-
-
-INNER = """(() => {
-  const { contents, array, live } = window.page;
-  live.engine.show(%s);
-  const all = (number) => [...array(number)];
-  return live.engine.why ?? {
-    t: all(contents.instants.t),
-    over: contents.instants.over && all(contents.instants.over.values),
-    series: contents.series.map((one) => [one.name, all(one.values), one.places === null ? null : all(one.places)]),
-    poses: contents.bodies.map((body) => body.pose.map(all)),
-    picture: [contents.bodies, contents.joints, contents.loads, contents.paths],
-    rows: contents.rows,
-    forces: window.page.sections.map((section) => [
-      section.link,
-      [...section.forces.values()].filter((force) => !force.open).map((force) => [
-        force.name,
-        [0, 21, 50, 100].map((ratio) =>
-          Array.from({ length: contents.instants.shown }, (_, i) => window.page.sectionForce(section, force.name, i, ratio))),
-      ]),
-    ]),
-  };
-})()"""  # noqa: E501
-"""What a page shows of a design, all digits of it."""
-
-
-def live(chromium, scene, folder, wanted=None):
-    """Open the live report of a scene, its inner parts in reach."""
-    scene.report(folder / "own.html", wanted=wanted, live=True)
-    alive.opened(chromium, folder / "live.html", (folder / "own.html").read_text())
-
-
-def near(found, expected, scale, what):
-    found, expected = (
-        np.array([np.nan if x is None else x for x in values], float)
-        for values in (found, expected)
-    )
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * scale, err_msg=str(what))
-
-
-@pytest.mark.sampled(9)
-@pytest.mark.parametrize("what", SCENES)
-def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what):
-    """Every array, every row and every part of the picture, to 1e-12 of the largest value."""
-    scene = SCENES[what]()
-    rng = np.random.default_rng(len(what))
-    given = scene.mechanism.parameters.values()
-    values = {one.name: one.default * (1 + 0.05 * rng.uniform(-1, 1)) for one in given}
-    moving = {name: value * (1 + 0.01 * rng.uniform(-1, 1)) for name, value in values.items()}
-    live(chromium, scene, tmp_path, ["all"])
-    found = chromium.run(INNER % json.dumps(list(values.values())))
-    assert isinstance(found, dict), found
-    true = evaluate(scene, parameters=values, wanted=["all"], backend="vm")
-    expected, array = held(page_of(true))
-    near(found["t"], true.t, 1.0, "t")
-    if true.over:
-        near(found["over"], true.over.values, 1.0, "over")
-    largest = {}
-    for one in expected["series"]:
-        largest[one["unit"]] = max(
-            largest.get(one["unit"], 0.0), np.nanmax(np.abs(array(one["values"])))
-        )
-    for one, (name, values, places) in zip(expected["series"], found["series"], strict=True):
-        assert name == one["name"]
-        if one["group"] == "certificate":
-            assert set(values) == {None}
-            continue
-        exact = array(one["values"])
-        near(values, exact, max(np.abs(exact).max(), 1e-3 * largest[one["unit"]]), name)
-        if places is not None:
-            law = true.section(one["part"]).law
-            force = name.rpartition(":")[2]
-            # At a station that is off by rounding, either side may be meant.
-            about = [
-                np.clip(np.array(places)[:, None] + off, 0.0, 1.0) for off in (-1e-10, 0.0, 1e-10)
-            ]
-            there = np.stack([law.at(force, u)[:, 0] for u in about])
-            assert np.abs(there - exact).min(axis=0).max() <= 1e-8 * max(
-                np.abs(exact).max(), 1e-3 * largest[one["unit"]]
-            )
-    for body, columns in zip(expected["bodies"], found["poses"], strict=True):
-        for number, column in zip(body["pose"], columns, strict=True):
-            near(column, array(number), 1.0, body["name"])
-    rows = {row["name"]: row for row in found["rows"]}
-    for row in expected["rows"]:
-        for end in () if row["open"] else ("peak", "smallest", "largest"):
-            scale = max(abs(row["peak"]["value"]), 1e-3 * largest[row["unit"]])
-            near([rows[row["name"]][end]["value"]], [row[end]["value"]], scale, (row["name"], end))
-        for mean in ("mean", "rms"):
-            if row[mean] is not None:
-                near([rows[row["name"]][mean]], [row[mean]], scale, (row["name"], mean))
-    for link, forces in found["forces"]:
-        for force, columns in forces:
-            law = true.section(link).law
-            for ratio, column in zip((0.0, 0.21, 0.5, 1.0), columns, strict=True):
-                exact = law.on_grid(force, np.array([ratio]))[:, 0]
-                near(
-                    column,
-                    exact,
-                    max(law.bound(force, np.linspace(0, 1, 5)), 1e-3 * largest["N"]),
-                    (link, force),
-                )
-    # While a slider moves, not all is looked for: every end of the cycle is the same, to the last
-    # bit.
-    rows_of = (
-        "(() => {{ window.page.live.engine.show({}, {}); return window.page.contents.rows; }})()"
-    )
-    quick, whole = (
-        chromium.run(rows_of.format(json.dumps(list(moving.values())), asked))
-        for asked in ("false", "true")
-    )
-    assert quick == whole
-    assert quick != found["rows"]
-    assert chromium.complaints == []
-
-
 def peaks(one):
     """The largest values of a page by their names, as text."""
     return {row["name"]: row["largest in size"] for row in copied(one, "Peaks")}
@@ -750,21 +518,14 @@ def test_what_cannot_come_alive_is_told_in_one_line(tmp_path, capsys, monkeypatc
 chromium = alive.chromium
 
 
-LINKS, INSTANTS = 30, 2000
+def live(chromium, scene, folder, wanted=None):
+    """Open the live report of a scene, its inner parts in reach."""
+    scene.report(folder / "own.html", wanted=wanted, live=True)
+    alive.opened(chromium, folder / "live.html", (folder / "own.html").read_text())
 
 
 PICTURE = 1000 / 30
 """What a picture may take at 30 a second [ms]."""
-
-
-PLAY = """(async () => {
-  const range = document.querySelector('.transport input');
-  for (let k = 0; k < %d; k += 1) {
-    range.value = (37 * k) %% Number(range.max);
-    range.dispatchEvent(new Event('input'));
-    await new Promise((done) => requestAnimationFrame(done));
-  }
-})()"""
 
 
 DRAG = """(async () => {
@@ -797,30 +558,8 @@ def work(one, script, pictures=60):
     return 1e3 * (task() - before) / pictures
 
 
-def chained():
-    """So many links on one another, each driven."""
-    m = Mechanism("chain")
-    at, motion = m.ground, {}
-    for k in range(LINKS):
-        link = m.link(f"link{k}", length=0.1, mass=0.2)
-        m.revolute(f"J{k}", at, link)
-        motion[f"J{k}"] = harmonic(0.05, 0.1, 1.0 + 0.1 * k)
-        at = link.tip
-    return Scene(m, motion, t=(0, 1, INSTANTS))
-
-
-def test_a_chain_of_thirty_links_and_two_thousand_instants_plays_at_thirty_pictures_a_second(
-    chromium, tmp_path
-):
-    path = tmp_path / "chain.html"
-    evaluate(chained(), wanted=["all"], certificate=False).report(path)
-    chromium.open(path)
-    alive.wait(chromium, "document.querySelectorAll('.card').length > 3")
-    assert work(chromium, PLAY) < PICTURE
-    assert chromium.complaints == []
-
-
 @alive.NEEDS_ENGINE
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["slider_crank", "delta"])
 def test_a_slider_is_followed_at_thirty_pictures_a_second(chromium, tmp_path, name):
     scene = load_case(name).scene

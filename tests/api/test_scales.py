@@ -2,10 +2,8 @@
 
 import h5py
 import numpy as np
-import pytest
-import xarray
 
-from lagrange_casadi import Mechanism, Scene, check, evaluate, load, save
+from lagrange_casadi import Mechanism, Scene, evaluate, save
 from lagrange_casadi.motion import polynomial
 
 
@@ -56,19 +54,3 @@ def test_a_file_grows_as_its_mechanism_does(tmp_path):
         save(chain(links), tmp_path / "x.h5")
         sizes.append((tmp_path / "x.h5").stat().st_size)
     assert sizes[1] < 4 * sizes[0]
-
-
-@pytest.mark.long
-def test_750_links_are_saved_and_read(tmp_path):
-    solution, path = chain(750), tmp_path / "chain.h5"
-    save(solution, path)
-    assert path.stat().st_size < 750 * 75_000
-    back = load(path)
-    assert list(back.names()) == list(solution.names())
-    for name, values in solution.series.items():
-        np.testing.assert_array_equal(back.series[name], values, err_msg=name)
-    assert check(path) == []
-    for engine in ("h5netcdf", "netcdf4"):
-        with xarray.open_dataset(path, engine=engine, group="section/link749") as section:
-            assert section["bending"].dims == ("t", "xi")
-            np.testing.assert_array_equal(section["bending"], solution.section("link749").bending)

@@ -70,15 +70,6 @@ def test_what_is_not_wanted_costs_nothing():
     assert max(effort, motion) < section < everything
 
 
-def test_each_output_alone_has_the_numbers_of_all():
-    whole = evaluate(slider_crank(), t=(0, 0.08, 5))
-    for name in ("effort", "reaction:guide", "section:rod", "motion"):
-        alone = evaluate(slider_crank(), t=(0, 0.08, 5), wanted=[name])
-        for quantity, values in alone.series.items():
-            size = np.abs(whole.series[quantity]).max()
-            np.testing.assert_allclose(values, whole.series[quantity], rtol=0, atol=1e-13 * size)
-
-
 def test_loops_are_closed_alike_whatever_is_wanted():
     """A guide carried by a link that is cut, at the cut side: the closed form sees no cut."""
     m = Mechanism("m")
@@ -94,6 +85,8 @@ def test_loops_are_closed_alike_whatever_is_wanted():
 
 
 VALID = "valid: all, effort, motion, reaction:O, reaction:A, reaction:B, reaction:guide,"
+
+
 VALID += " section:crank, section:rod, sensitivity:r"
 
 
@@ -168,9 +161,6 @@ def test_grids_are_what_their_decimals_say_with_both_ends():
     assert evaluate(slider_crank(), t=(0.3, 0.3, 1)).t.tolist() == [0.3]
 
 
-# How loops are closed.
-
-
 def moved(scene, **changes):
     """A scene at its start."""
     at = replace(scene, t=(scene.t[0], scene.t[0], 1), wanted=("motion",), **changes)
@@ -204,22 +194,6 @@ def test_a_joints_coordinate_chooses_the_branch(joint, rocker):
     told = float(solution.motion(joint).value[0])
     for rough in (told + 0.35, told - 0.35, told + math.tau, f"{math.degrees(told):.1f} deg"):
         assert same(moved(scene, posture={joint: rough}), solution)
-
-
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("case", ["six_bar", "andrews_squeezer", "rrr3", "engine", "quick_return"])
-def test_all_joints_serve_as_well_as_directions(case):
-    """Iterated loops get the directions of their links from the joints' coordinates, one after
-    another.
-    """
-    scene = load_case(case).scene
-    solution, posture = moved(scene), {}
-    for name, joint in scene.mechanism.joints.items():
-        if joint.coordinate:
-            value = float(solution.motion(name).value[0])
-            off = 0.03 * (-1) ** len(posture)
-            posture[name] = value if joint.slides else math.remainder(value, math.tau) + off
-    assert same(moved(scene, posture=posture), solution)
 
 
 @pytest.mark.sampled(3)
@@ -343,9 +317,9 @@ def test_of_many_ways_in_space_some_are_drawn(here, capfd, lengths, many, says):
         assert evaluate(scene).certified
 
 
-# Defaults that cannot be assembled, and other parameters that can.
-
 SHORT, LONG = (0.1, 0.05, 0.05), (0.1, 0.35, 0.25)
+
+
 VALUES = dict(zip("pqr", LONG, strict=True))
 
 
