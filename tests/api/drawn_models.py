@@ -19,11 +19,11 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from damaging import damaged
+from internals import case_of
 from model_files import LARGE, SMALL
 
 from lagrange_casadi import evaluate, read
 from lagrange_casadi.errors import LagrangeCasadiError
-from lagrange_casadi.formats import case_of
 
 SECONDS, WAITING = 20, 200
 """What one file may take before the program ends itself: processor time, and time on a clock."""
