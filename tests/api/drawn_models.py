@@ -31,67 +31,25 @@ SECONDS, WAITING = 20, 200
 MANY, FEW = 300, 30
 """Links of a case that is declared, and of one that is evaluated, at most."""
 
-NUMBERS = ["inf", "-inf", "nan", "1e400", "-1e308", "1e300", "1e-300", "5e-324", "1e13", "-1e12"]
-NUMBERS += ["1e12", "1e6", "1e-6", "0", "-0.0", "-1", "9" * 400, "9" * 5000, "", " ", "1_0", "0x10"]
-NUMBERS += [
-    "1,5",
-    "--1",
-    "true",
-    "null",
-    "1e",
-    "\u0661",
-    "1e-160",
-    "3.2e-9",
-    "1e9",
-    "1 2",
-    "NaN",
-    "Infinity",
-    "-Infinity",
+NUMBERS = [
+    *("inf", "-inf", "nan", "1e400", "-1e308", "1e300", "1e-300", "5e-324", "1e13", "-1e12"),
+    *("1e12", "1e6", "1e-6", "0", "-0.0", "-1", "9" * 400, "9" * 5000, "", " ", "1_0", "0x10"),
+    *("1,5", "--1", "true", "null", "1e", "\u0661", "1e-160", "3.2e-9", "1e9", "1 2", "NaN"),
+    *("Infinity", "-Infinity"),
 ]
 
 _WORDS = sorted({word for text in SMALL.values() for word in re.findall(r"[A-Za-z_]\w*", text)})
-NAMES = [*keyword.kwlist, *keyword.softkwlist, *dir(__builtins__), "ground", "world", "__model__"]
-NAMES += [
-    '"',
-    "'''",
-    '"""',
-    "\\",
-    "a\nb",
-    "a\rb",
-    "a\tb",
-    "\u2028",
-    "#",
-    "{x}",
-    "%s",
-    "$(ls)",
-    "../x",
+NAMES = [
+    *(*keyword.kwlist, *keyword.softkwlist, *dir(__builtins__), "ground", "world", "__model__"),
+    *('"', "'''", '"""', "\\", "a\nb", "a\rb", "a\tb", "\u2028", "#", "{x}", "%s", "$(ls)", "../x"),
+    *("n" * 100_000, "\u00e9" * 300, "\u4e2d", "\U0001f600", "\ufeff", "\u202e", "\x7f", "1", ""),
+    *(" ", "a:b", "a.b", "a/b", "effort:x", "-x", "_", "__", "m", "ca", *_WORDS),
 ]
-NAMES += [
-    "n" * 100_000,
-    "\u00e9" * 300,
-    "\u4e2d",
-    "\U0001f600",
-    "\ufeff",
-    "\u202e",
-    "\x7f",
-    "1",
-    "",
-]
-NAMES += [" ", "a:b", "a.b", "a/b", "effort:x", "-x", "_", "__", "m", "ca", *_WORDS]
 
 ENCODINGS = [
-    "rot13",
-    "utf-16",
-    "utf-7",
-    "utf-32",
-    "latin-1",
-    "ascii",
-    "hex",
-    "zip",
-    "idna",
-    "cp037",
+    *("rot13", "utf-16", "utf-7", "utf-32", "latin-1", "ascii", "hex", "zip", "idna", "cp037"),
+    *("unicode_escape", "undefined", "none", "\u00e9", "x" * 5000, "shift_jis", "punycode"),
 ]
-ENCODINGS += ["unicode_escape", "undefined", "none", "\u00e9", "x" * 5000, "shift_jis", "punycode"]
 
 DOCTYPES = [
     '<!DOCTYPE r [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;">]>',
@@ -135,6 +93,23 @@ def law(chance, depth=0):
         "sin(" * min(many, 1900) + one + ")" * min(many, 1900),
         "(" * min(many, 1900) + one + "+1)^3" * min(many, 1900),
         "-" * many + one,
+    ][kind]
+
+
+def text_of(chance, depth=0):
+    """An expression of t whose value is a number for positive t, as text."""
+    kind = chance.randrange(9 if depth < 5 else 2)
+    one, other = (text_of(chance, depth + 1) if kind > 1 else "" for _ in range(2))
+    return [
+        "t",
+        chance.choice(["2", "0.5", "pi", "3", "1e-3", "7"]),
+        f"({one} {chance.choice('+-*')} {other})",
+        f"{one} {chance.choice('+-')} {other}",
+        f"-{one}",
+        f"sin({one})",
+        f"({one})^{chance.randrange(4)}",
+        f"({one}) / (1.5 + cos({other}))",
+        f"({one}) * ({other})",
     ][kind]
 
 

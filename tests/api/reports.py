@@ -3,6 +3,7 @@
 import base64
 import functools
 import json
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -113,6 +114,13 @@ def hostile():
         description=renamed(solution.description),
         errors={},
     )
+
+
+def page(solution):
+    """The text of a report."""
+    with tempfile.TemporaryDirectory() as folder:
+        solution.report(Path(folder) / "page.html")
+        return (Path(folder) / "page.html").read_text()
 
 
 def held(text):

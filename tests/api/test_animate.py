@@ -1,31 +1,35 @@
-"""Animations: as many frames as are told, of the time that is told, sharp and whole; no name of a
-user is markup.
+"""Animations: as many frames as are told, of the time that is told; bodies and arrows are where the
+solution has them, in glTF at every key; no name of a user is markup.
 """
 
-import io
+import itertools
+import json
 import stat
+import struct
 import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
-import casadi as ca
 import numpy as np
 import pytest
 from commands import command, words
 from drawn_scenes import every_kind
-from internals import Film, Line, gif, picture_of, svg, write_animation
 from PIL import Image
-from reports import HOSTILE, hostile, press, solved, to_polygon
+from reports import HOSTILE, hostile, press, solved
 
-from lagrange_casadi import Mechanism, Scene, evaluate, load, save
+from lagrange_casadi import load, save
+from lagrange_casadi.animation import Film
 from lagrange_casadi.cli import main
-from lagrange_casadi.elements import disc_cam
 from lagrange_casadi.errors import DeclarationError, PathError
-from lagrange_casadi.motion import polynomial
 
 SVG = "{http://www.w3.org/2000/svg}"
+
+
 TURN = (0, 2 * np.pi / 10, 41)
+
+
 SMALL = {"width": 160, "rate": 5, "seconds": 2.0}
+
 
 FFMPEG = f"""#!{sys.executable}
 import sys, pathlib
@@ -37,274 +41,6 @@ size = [int(side) for side in told[told.index("-s") + 1].split("x")]
 film = sys.stdin.buffer.read()
 pathlib.Path(told[-1]).write_text(f"{{told[told.index('-r') + 1]}} {{len(film) / (3 * size[0] * size[1]):g}}")
 """  # noqa: E501
-
-
-def moved(text, name):
-    """The places that every element of a name takes in an SVG, one list for each."""
-    lists = [one.get("values").split(";") for one in ElementTree.fromstring(text).iter(name)]
-    return [values for values in lists if values]
-
-
-def test_a_gif_has_the_frames_and_the_time_that_are_told():
-    picture = picture_of(press(TURN), Film(**SMALL))
-    image = Image.open(io.BytesIO(gif(picture, 2.0)))
-    assert image.size == (picture.width, picture.height)
-    assert image.size[0] == 160
-    assert image.n_frames == 10
-    assert image.info["loop"] == 0
-    times, pixels = [], []
-    for k in range(image.n_frames):
-        image.seek(k)
-        times.append(image.info["duration"])
-        pixels.append(np.asarray(image.convert("RGB")))
-        assert (pixels[-1][0] == 255).all()
-        assert (pixels[-1] < 128).any()
-    assert sum(times) == 2000
-    assert all(
-        (one != other).any() for one, other in zip(pixels, pixels[1:] + pixels[:1], strict=True)
-    )
-
-
-def test_odd_rates_keep_the_time_of_the_cycle():
-    image = Image.open(io.BytesIO(gif(picture_of(press(TURN), Film(160, 7.0, 1.0)), 1.0)))
-    times = []
-    for k in range(image.n_frames):
-        image.seek(k)
-        times.append(image.info["duration"])
-    assert len(times) == 7
-    assert sum(times) == 1000
-
-
-def test_bodies_are_where_the_solution_has_them():
-    """The crank, one thick line of the sheet, has its length and its angle at every frame; x to the
-    right, y up.
-    """
-    solution = press(TURN)
-    picture = picture_of(solution, Film(rate=10, seconds=4.0))
-    assert picture.closed
-    assert picture.frames == 40
-    crank = next(
-        thing for thing in picture.things if isinstance(thing, Line) and thing.width == 8.0
-    )
-    way = crank.points[:, 1] - crank.points[:, 0]
-    np.testing.assert_allclose(np.hypot(*way.T), np.hypot(*way[0]), rtol=1e-12)
-    np.testing.assert_allclose(
-        np.unwrap(np.arctan2(-way[:, 1], way[:, 0])), solution.pose("crank").angle[:-1], atol=1e-12
-    )
-
-
-@pytest.mark.parametrize(
-    "name", ["rssr", "quick_return", "spatial_slider_crank", "andrews_squeezer"]
-)
-def test_everything_is_on_the_sheet_at_all_times(name):
-    section = {"quick_return": "bending", "andrews_squeezer": ""}.get(name, "bending_z")
-    picture = picture_of(solved(name), Film(forces=True, section=section))
-    for thing in picture.things:
-        assert np.isfinite(thing.points).all()
-        assert (thing.points >= 0).all()
-        assert (thing.points <= [picture.width, picture.height]).all()
-    assert picture.height % 2 == 0
-
-
-def picture_size(solution):
-    """The larger side of all places between which something is drawn, over the whole cycle [m]:
-    here joints, at all frames.
-    """
-    x = [0.0, *(solution.pose(body).x[:-1] for body in ("crank", "rod", "ram"))]
-    y = [0.0, *(solution.pose(body).y[:-1] for body in ("crank", "rod", "ram"))]
-    return max(np.ptp(np.concatenate([np.atleast_1d(one) for one in side])) for side in (x, y))
-
-
-def test_arrows_and_ribbons_have_the_signs_of_the_solution():
-    """Against the solution at the frames' own instants: y is up, ordinates go to the side of n,
-    turns are counter-clockwise.
-    """
-    solution = press(TURN)
-    picture = picture_of(solution, Film(rate=10, seconds=4.0, forces=True, section="bending"))
-    lines = [thing for thing in picture.things if isinstance(thing, Line)]
-    scales = []
-    heads = [line for line in lines if line.colour == "#c2304a" and line.closed]
-    shafts = [line for line in lines if line.colour == "#c2304a" and not line.closed]
-    for joint, shaft, head in zip(("O", "A", "B", "guide"), shafts, heads, strict=True):
-        reaction, way = solution.reaction(joint), (head.points[:, 0] - shaft.points[:, 0]) * [1, -1]
-        force = np.column_stack([reaction.fx, reaction.fy])[:-1]
-        np.testing.assert_allclose(
-            way[:, 0] * force[:, 1],
-            way[:, 1] * force[:, 0],
-            atol=1e-9 * np.abs(way).max() * np.abs(force).max(),
-        )
-        scales.append(np.sum(way * force) / np.sum(force * force))
-    np.testing.assert_allclose(scales, scales[0], rtol=1e-9)
-    assert scales[0] > 0
-
-    largest = max(abs(solution.peak(f"section:{link}:bending").value) for link in ("crank", "rod"))
-    widest = (
-        0.2
-        * np.hypot(*(shafts[0].points[0, 0] - shafts[1].points[0, 0]))
-        / 0.1
-        * picture_size(solution)
-    )
-    for link, both in (("crank", lines[:2]), ("rod", lines[2:4])):
-        angle = solution.pose(link).angle[:-1]
-        values = solution.section(link).law.on_grid("bending", np.linspace(0, 1, 41))[:-1]
-        n = np.column_stack([-np.sin(angle), -np.cos(angle)])[:, None]
-        for line, kept in zip(both, (np.maximum(values, 0), np.minimum(values, 0)), strict=True):
-            ordinates = np.sum((line.points[:, :40:-1] - line.points[:, :41]) * n, axis=-1)
-            np.testing.assert_allclose(ordinates, widest * kept / largest, atol=1e-9 * widest)
-
-    arc, head = (line.points for line in lines if line.colour == "#6d3fc0")
-    centre = lines[[line.width for line in lines].index(8.0)].points[:, :1]
-    turned = np.unwrap(np.arctan2(-(arc - centre)[..., 1], (arc - centre)[..., 0]), axis=1)
-    effort = solution.effort("O")[:-1]
-    np.testing.assert_allclose(
-        turned[:, -1] - turned[:, 0],
-        1.5 * np.pi * effort / np.abs(solution.effort("O")).max(),
-        atol=1e-9,
-    )
-    ahead, last = head[:, 0] - head[:, 1:].mean(axis=1), arc[:, -1] - arc[:, -2]
-    assert (np.sum(ahead * last, axis=1) >= 0).all()
-
-
-def test_gears_turn_and_have_room():
-    """Of the rim of a disc the spoke is a radius; it goes round as the body does."""
-    m = Mechanism("rotor")
-    rotor = m.link("rotor", length=0.3, mass=1.0, centre=(0, 0), inertia=0.1)
-    m.revolute("O", m.ground, rotor)
-    solution = evaluate(
-        Scene(m, {"O": polynomial(0, 1)}, t=(0, 2 * np.pi, 41), wanted=["all"]), backend="vm"
-    )
-    picture = picture_of(solution, Film(rate=10, seconds=4.0))
-    rim, spoke = (
-        thing.points for thing in picture.things if isinstance(thing, Line) and thing.width == 2.4
-    )
-    assert (rim >= 0).all()
-    assert (rim <= [picture.width, picture.height]).all()
-    radius = spoke[:, 1] - spoke[:, 0]
-    np.testing.assert_allclose(
-        np.hypot(*(rim - spoke[:, :1]).transpose(2, 0, 1)), np.hypot(*radius[0]), rtol=1e-9
-    )
-    turned = np.unwrap(np.arctan2(-radius[:, 1], radius[:, 0]))
-    np.testing.assert_allclose(turned - turned[0], solution.motion("O").value[:-1], atol=1e-9)
-
-
-@pytest.mark.parametrize("values", [{}, {"base": 0.06, "wheel": 0.02, "aside": -0.01}])
-def test_rollers_touch_the_cams_that_are_drawn(values):
-    """Two cams on one body, which turns about a point beside its base, and their followers: rods of
-    no sections, and with sections.
-    """
-    m = Mechanism("two_cams")
-    base, wheel = m.parameter("base", 0.04, "m"), m.parameter("wheel", 0.012, "m")
-    aside = m.parameter("aside", 0.005, "m")
-    disc = m.link("disc", length=0.03, mass=1.0, centre=(0, 0), inertia=1e-3)
-    shaft = m.revolute("shaft", m.ground.at(0.1, 0.0), disc.at(0.004, -0.003))
-    rods = m.link("up", length=0.1, mass=0.2), m.link("down", length=0.1, mass=0.2)
-    for rod, up, waves in zip(rods, (1, -1), (1, 2), strict=True):
-        ground = m.ground.at(0.1 + aside, 0.0)
-        guide = m.prismatic(f"{rod.name}_guide", ground, rod, axis=(0, up), angle=up * np.pi / 2)
-        point = rod.at(0.01)
-        lift = lambda x, waves=waves: 0.006 * (1 - ca.cos(waves * x))  # noqa: E731
-        disc_cam(
-            m, f"{rod.name}_cam", shaft, guide, lift, base_radius=base, point=point, roller=wheel
-        )
-    scene = Scene(
-        m, {"shaft": polynomial(0.2, 10.0)}, t=TURN, posture={"up_guide": 0.05, "down_guide": 0.05}
-    )
-    picture = picture_of(evaluate(scene, parameters=values, wanted=["all"], backend="vm"), Film())
-    drawn = [one.points for one in picture.things if isinstance(one, Line) and one.width == 2.0]
-    assert [points.shape for points in drawn] == [(40, n, 2) for n in (240, 240, 48, 48)]
-    for profile, roller in zip(drawn[:2], drawn[2:], strict=True):
-        assert (profile >= 0).all()
-        assert (profile <= [picture.width, picture.height]).all()
-        centre = roller.mean(axis=1)
-        radius = np.hypot(*(roller - centre[:, None]).transpose(2, 0, 1))
-        for place, corners, size in zip(centre, profile, radius, strict=True):
-            np.testing.assert_allclose(size, size[0], rtol=1e-9)
-            assert to_polygon(place, corners) == pytest.approx(size[0], rel=1e-3)
-
-
-def test_joints_of_every_kind_are_drawn():
-    picture = picture_of(every_kind(), Film(**SMALL))
-    assert all(np.isfinite(thing.points).all() for thing in picture.things)
-    ElementTree.fromstring(svg(picture, 2.0))
-
-
-def test_the_longest_arrow_and_the_widest_ribbon_tell_the_peaks():
-    solution = press(TURN)
-    picture = picture_of(solution, Film(rate=10, seconds=4.0, forces=True, section="bending"))
-    texts = [one.text for one in ElementTree.fromstring(svg(picture, 4.0)).iter(f"{SVG}text")]
-    force = max(
-        solution.peak(f"reaction:{joint}:resultant").value for joint in ("O", "A", "B", "guide")
-    )
-    bending = max(abs(solution.peak(f"section:{link}:bending").value) for link in ("crank", "rod"))
-    effort = abs(solution.peak("effort:O").value)
-    assert (
-        texts[-1]
-        == f"arrows: up to {force:.3g} N · drive torques: up to {effort:.3g} N m · bending: up to"
-        f" {bending:.3g} N m"
-    )
-
-
-def test_an_svg_moves_by_itself():
-    """A cycle ends where it begins; a motion that does not come back does not glide back."""
-    for t, count in ((TURN, 11), ((0, 0.3, 41), 10)):
-        picture = picture_of(press(t), Film(**SMALL))
-        text = svg(picture, 2.0)
-        found = moved(text, f"{SVG}animate") + moved(text, f"{SVG}animateTransform")
-        assert found
-        assert {len(values) for values in found} == {count}
-        assert all((values[0] == values[-1]) == (count == 11) for values in found)
-        assert {one.get("dur") for one in ElementTree.fromstring(text).iter(f"{SVG}animate")} == {
-            "2s"
-        }
-        assert "href" not in text
-
-
-def test_no_name_is_markup():
-    picture = picture_of(hostile(), Film(**SMALL, forces=True))
-    root = ElementTree.fromstring(svg(picture, 2.0))
-    kinds = {
-        "svg",
-        "title",
-        "rect",
-        "polyline",
-        "polygon",
-        "circle",
-        "text",
-        "animate",
-        "animateTransform",
-    }
-    assert {element.tag.removeprefix(SVG) for element in root.iter()} <= kinds
-    words = "".join(root.itertext())
-    assert HOSTILE[0] in words
-    assert HOSTILE[1] in words
-    assert gif(picture, 2.0)  # and letters that no font has are not the end of it
-    odd = replace(hostile(), case="a\x00b\x1b$x_1^$")
-    assert (
-        ElementTree.fromstring(svg(picture_of(odd, Film(**SMALL)), 2.0)).find(f"{SVG}title").text
-        == "a\ufffdb\ufffd$x_1^$"
-    )
-
-
-@pytest.mark.parametrize("ending", ["gif", "svg"])
-def test_the_same_solution_gives_the_same_bytes(here, ending):
-    save(press(TURN), "press.h5")
-    write_animation(press(TURN), f"a.{ending}", Film(**SMALL))
-    write_animation(load("press.h5"), f"b.{ending}", Film(**SMALL))
-    assert (here / f"a.{ending}").read_bytes() == (here / f"b.{ending}").read_bytes()
-
-
-def test_no_more_frames_than_instants():
-    assert picture_of(press((0, 2 * np.pi / 10, 9)), Film()).frames == 8
-    assert picture_of(press((0, 0.3, 2)), Film()).frames == 2
-
-
-def test_what_stands_still_is_drawn():
-    m = Mechanism("still")
-    m.revolute("O", m.ground, m.link("bar", length=1.0, mass=1.0))
-    solution = evaluate(Scene(m, {"O": polynomial(0.3)}, t=(0, 1, 5), wanted=["all"]), backend="vm")
-    picture = picture_of(solution, Film(**SMALL, forces=True, section="bending"))
-    assert all(np.isfinite(thing.points).all() for thing in picture.things)
-    assert "<animate" not in svg(picture, 2.0)
 
 
 def put_ffmpeg(folder, monkeypatch):
@@ -326,20 +62,6 @@ def test_a_film_is_made_by_ffmpeg(here, capsys, monkeypatch):
     assert capsys.readouterr().err == "error: ffmpeg failed: no such encoder\n"
     assert (here / "a.mp4").read_text() == "5 10"
     assert sorted(path.name for path in here.iterdir()) == ["a.mp4", "press.h5", "programs"]
-
-
-def test_the_command_shows_a_file_and_a_case(here, capsys):
-    save(press(TURN), "press.h5")
-    assert command("animate press.h5 --forces --section bending --width 160 --rate 5") == 0
-    assert (
-        main(["animate", "four_bar", "--out", "b.svg", "--forces", "--no-names", "--t", "0:0.5:21"])
-        == 0
-    )
-    assert capsys.readouterr().out == "wrote press.gif\nwrote b.svg\n"
-    with Image.open("press.gif") as image:
-        assert image.n_frames == 20
-    root = ElementTree.parse("b.svg").getroot()
-    assert [one.text.split(":")[0] for one in root.iter(f"{SVG}text")] == ["arrows"]
 
 
 @pytest.mark.sampled(4)
@@ -407,10 +129,272 @@ def test_a_mistake_is_one_line(here, capsys, monkeypatch, arguments, told):
     assert sorted(here.iterdir()) == before
 
 
-def test_an_animation_is_replaced_whole_or_not_at_all(here):
+WIDE = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
+
+
+def read(path):
+    """What a file tells, and its arrays by number."""
+    data = path.read_bytes()
+    magic, version, size, length, kind = struct.unpack_from("<4sIIII", data)
+    assert (magic, version, size, kind) == (b"glTF", 2, len(data), 0x4E4F534A)
+    told = json.loads(data[20 : 20 + length])
+    body, kind = struct.unpack_from("<II", data, 20 + length)
+    assert (length % 4, body % 4, kind, 28 + length + body) == (0, 0, 0x004E4942, size)
+    held = data[28 + length :]
+    assert 0 <= len(held) - told["buffers"][0]["byteLength"] < 4
+
+    def array(number):
+        accessor = told["accessors"][number]
+        view = told["bufferViews"][accessor["bufferView"]]
+        assert view["byteOffset"] % 4 == 0
+        values = np.frombuffer(
+            held,
+            {5126: "<f4", 5125: "<u4"}[accessor["componentType"]],
+            view["byteLength"] // 4,
+            view["byteOffset"],
+        )
+        values = values.reshape(accessor["count"], WIDE[accessor["type"]])
+        for end, found in (("min", values.min(axis=0)), ("max", values.max(axis=0))):
+            if end in accessor:
+                assert accessor[end] == found.tolist()
+        return values.astype(float)
+
+    return told, array
+
+
+def turned(quaternions, places):
+    """Places (3,) turned by quaternions x, y, z, w (n, 4)."""
+    axis, w = quaternions[:, :3], quaternions[:, 3:]
+    once = 2.0 * np.cross(axis, places)
+    return places + w * once + np.cross(axis, once)
+
+
+def moved(told, array, name):
+    """Where the node with a name takes a place at every key: a function of the place."""
+    (number,) = [
+        k for k, node in enumerate(told["nodes"]) if node["name"] == name and k in targets(told)
+    ]
+    paths = {
+        channel["target"]["path"]: array(
+            told["animations"][0]["samplers"][channel["sampler"]]["output"]
+        )
+        for channel in told["animations"][0]["channels"]
+        if channel["target"]["node"] == number
+    }
+    turns = paths.get("rotation", np.array([[0.0, 0.0, 0.0, 1.0]]))
+    return lambda place: (
+        turned(turns, np.asarray(place) * paths.get("scale", 1.0)) + paths["translation"]
+    )
+
+
+def targets(told):
+    return {channel["target"]["node"] for channel in told["animations"][0]["channels"]}
+
+
+def written(solution, path, film=None, **more):
+    solution.animate(path, film or Film(**(SMALL | more)))
+    return path
+
+
+def test_a_gif_has_the_frames_and_the_time_that_are_told(tmp_path):
+    """At a rate that does not divide its hundredths of a second too."""
+    for rate, seconds, frames in ((5, 2.0, 10), (7.0, 1.0, 7)):
+        path = written(press(TURN), tmp_path / "a.gif", rate=rate, seconds=seconds)
+        times, pixels = [], []
+        with Image.open(path) as image:
+            assert (image.size[0], image.n_frames, image.info["loop"]) == (160, frames, 0)
+            for k in range(frames):
+                image.seek(k)
+                times.append(image.info["duration"])
+                pixels.append(np.asarray(image.convert("RGB")))
+        assert sum(times) == 1000 * seconds
+        assert all((one != other).any() for one, other in itertools.pairwise(pixels))
+
+
+def drawn(path):
+    """The root of an SVG, and the values that its elements take, one list for each."""
+    root = ElementTree.parse(path).getroot()
+    kinds = (f"{SVG}animate", f"{SVG}animateTransform")
+    lists = [one.get("values").split(";") for kind in kinds for one in root.iter(kind)]
+    return root, lists
+
+
+def test_an_svg_moves_by_itself_and_tells_the_peaks(tmp_path):
+    """A cycle ends where it begins; a motion that does not come back does not glide back."""
+    for t, count in ((TURN, 11), ((0, 0.3, 41), 10)):
+        root, lists = drawn(written(press(t), tmp_path / "a.svg"))
+        assert {len(values) for values in lists} == {count}
+        assert all((values[0] == values[-1]) == (count == 11) for values in lists)
+        assert {one.get("dur") for one in root.iter(f"{SVG}animate")} == {"2s"}
+    solution = press(TURN)
+    film = Film(rate=10, seconds=4.0, forces=True, section="bending")
+    root, _ = drawn(written(solution, tmp_path / "b.svg", film))
+    joints = ("O", "A", "B", "guide")
+    force = max(solution.peak(f"reaction:{joint}:resultant").value for joint in joints)
+    bending = max(abs(solution.peak(f"section:{link}:bending").value) for link in ("crank", "rod"))
+    effort = abs(solution.peak("effort:O").value)
+    texts = [one.text for one in root.iter(f"{SVG}text")]
+    assert texts[-1] == (
+        f"arrows: up to {force:.3g} N \N{MIDDLE DOT} drive torques: up to {effort:.3g} N m"
+        f" \N{MIDDLE DOT} bending: up to {bending:.3g} N m"
+    )
+
+
+def test_arrows_of_an_svg_have_the_directions_and_one_scale_of_the_solution(tmp_path):
+    """At the frames' own instants; y is up, and each ends in the first corner of its head."""
+    solution = press(TURN)
+    film = Film(rate=10, seconds=4.0, forces=True)
+    root, _ = drawn(written(solution, tmp_path / "a.svg", film))
+
+    def starts(kind, colour):
+        for one in root.iter(f"{SVG}{kind}"):
+            if colour in (one.get("stroke"), one.get("fill")):
+                (way,) = one.iter(f"{SVG}animate")
+                values = way.get("values").replace(",", " ").split(";")
+                yield np.array([list(map(float, each.split()[:2])) for each in values])
+
+    scales = []
+    arrows = zip(starts("polyline", "#c2304a"), starts("polygon", "#c2304a"), strict=True)
+    for joint, (tail, tip) in zip(("O", "A", "B", "guide"), arrows, strict=True):
+        reaction, way = solution.reaction(joint), (tip - tail) * [1, -1]
+        force = np.column_stack([reaction.fx, reaction.fy])
+        scales.append(np.sum(way * force) / np.sum(force * force))
+        np.testing.assert_allclose(way, scales[-1] * force, rtol=0, atol=0.2)
+    np.testing.assert_allclose(scales, scales[0], rtol=1e-2)
+    assert scales[0] > 0.0
+
+
+def test_a_film_has_no_more_frames_than_instants(tmp_path):
+    for t, count in (((0, 2 * np.pi / 10, 9), 9), ((0, 0.3, 2), 2)):
+        _, lists = drawn(written(press(t), tmp_path / "a.svg", rate=25, seconds=4.0))
+        assert {len(values) for values in lists} == {count}
+
+
+def test_no_name_is_markup(tmp_path):
+    """Letters that no font has are not the end of it."""
+    odd = replace(hostile(), case="a\x00b\x1b$x_1^$")
+    root, _ = drawn(written(hostile(), tmp_path / "a.svg", forces=True))
+    kinds = ("svg", "title", "rect", "polyline", "polygon", "circle", "text", "animate")
+    found = {element.tag.removeprefix(SVG) for element in root.iter()}
+    assert found <= {*kinds, "animateTransform"}
+    words = "".join(root.itertext())
+    assert HOSTILE[0] in words
+    assert HOSTILE[1] in words
+    root, _ = drawn(written(odd, tmp_path / "b.svg"))
+    assert root.find(f"{SVG}title").text == "a\ufffdb\ufffd$x_1^$"
+    written(odd, tmp_path / "b.gif")
+    told, _ = read(written(hostile(), tmp_path / "c.glb"))
+    assert told["scenes"][0]["name"] == hostile().case
+
+
+@pytest.mark.parametrize("ending", ["gif", "svg", "glb"])
+def test_the_same_solution_gives_the_same_bytes(here, ending):
+    save(press(TURN), "press.h5")
+    written(press(TURN), f"a.{ending}")
+    written(load("press.h5"), f"b.{ending}")
+    assert (here / f"a.{ending}").read_bytes() == (here / f"b.{ending}").read_bytes()
+
+
+def test_the_command_shows_a_file_and_a_case(here, capsys):
+    save(press(TURN), "press.h5")
+    assert command("animate press.h5 --forces --section bending --width 160 --rate 5") == 0
+    line = "animate four_bar --out b.svg --forces --no-names --t 0:0.5:21"
+    assert command(line) == 0
+    assert capsys.readouterr().out == "wrote press.gif\nwrote b.svg\n"
+    with Image.open("press.gif") as image:
+        assert image.n_frames == 20
+    root = ElementTree.parse("b.svg").getroot()
+    assert [one.text.split(":")[0] for one in root.iter(f"{SVG}text")] == ["arrows"]
+    assert command("animate --section bending press.h5 --out c.glb") == 2
+    assert "a .glb has no section forces; they are in .gif, .mp4, .svg" in capsys.readouterr().err
     (here / "a.gif").mkdir()
     with pytest.raises(PathError, match="it is a folder"):
-        write_animation(press(TURN), "a.gif", Film(**SMALL))
-    with pytest.raises(DeclarationError, match=r"write_animation: (solution|path): expected a"):
-        write_animation("press.h5", "b.gif")
-    assert [path.name for path in here.iterdir()] == ["a.gif"]
+        written(press(TURN), "a.gif")
+    with pytest.raises(DeclarationError, match="there is 1 instant; ask for more"):
+        written(press((0.1, 0.1, 1)), "c.glb")
+    assert not (here / "c.glb").exists()
+
+
+def at_keys(solution, told, array, seconds):
+    """The instants of the keys of a film of so many seconds."""
+    keys = array(told["animations"][0]["samplers"][0]["input"])[:, 0]
+    assert (keys[0], keys[-1]) == (0.0, seconds)
+    times = solution.t[0] + keys / seconds * np.ptp(solution.t)
+    return np.abs(solution.t[:, None] - times).argmin(axis=0)
+
+
+def places_of(solution, body, place):
+    """Where a place of a body is at every instant: from its pose, in the plane or in space."""
+    x, y = place[:2]
+    if body == "ground":
+        return np.broadcast_to(np.resize([*place, 0.0], 3), (solution.t.size, 3))
+    pose = solution.pose(body)
+    if pose.z is not None:
+        base = np.column_stack([pose.x, pose.y, pose.z])
+        return base + np.einsum("j,njk->nk", np.resize([*place, 0.0], 3), pose.axes)
+    angle = 0.0 if pose.angle is None else pose.angle
+    moved_to = pose.x + 1j * pose.y + (x + 1j * y) * np.exp(1j * angle)
+    return np.column_stack([moved_to.real, moved_to.imag, 0 * moved_to.real])
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize("name", ["quick_return", "excavator", "rssr", "delta", "every"])
+def test_bodies_are_where_the_solution_has_them(tmp_path, name):
+    """At every key, by the nodes of a glTF; its top turns what is up to y."""
+    solution = every_kind() if name == "every" else solved(name)
+    told, array = read(written(solution, tmp_path / "a.glb", Film(rate=25, seconds=3.0)))
+    chosen = at_keys(solution, told, array, 3.0)
+    size = max(
+        np.ptp(places_of(solution, body, (0, 0, 0))) for body in solution.description["bodies"]
+    )
+    for joint in solution.description["joints"].values():
+        for end in (joint["child"], joint["parent"]):
+            if end["body"] != "ground":
+                place = (end["x"], end["y"], end.get("z", 0.0))
+                exact = places_of(solution, end["body"], place)[chosen]
+                found = moved(told, array, end["body"])(place)
+                np.testing.assert_allclose(found, exact, rtol=0, atol=1e-5 * size)
+    (top,) = told["scenes"][0]["nodes"]
+    gravity = np.array(solution.description["gravity"])
+    if gravity.size > 2:
+        up = turned(np.array([told["nodes"][top]["rotation"]]), -gravity / np.linalg.norm(gravity))
+        np.testing.assert_allclose(up, [[0.0, 1.0, 0.0]], atol=1e-12)
+    for channel in told["animations"][0]["channels"]:
+        if channel["target"]["path"] == "rotation":
+            turns = array(told["animations"][0]["samplers"][channel["sampler"]]["output"])
+            np.testing.assert_allclose(np.linalg.norm(turns, axis=1), 1.0, atol=1e-6)
+            assert (np.sum(turns[1:] * turns[:-1], axis=1) > 0.0).all()
+
+
+@pytest.mark.parametrize("name", ["excavator", "rssr"])
+def test_arrows_are_forces_at_their_places_to_the_scale_that_is_told(tmp_path, name):
+    """Reactions begin at their joint's point on the child; a moment's arrow is along its axis."""
+    solution = solved(name)
+    film = Film(rate=25, seconds=2.0, forces=True)
+    told, array = read(written(solution, tmp_path / "a.glb", film))
+    chosen = at_keys(solution, told, array, 2.0)
+    extras = {node["name"]: node["extras"] for node in told["nodes"] if "extras" in node}
+    joints, bodies = solution.description["joints"], solution.description["bodies"]
+    size = max(np.ptp(places_of(solution, body, (0, 0, 0))) for body in bodies)
+    assert {one for one in extras if one.startswith("reaction ")} == {
+        f"reaction {j}" for j in joints
+    }
+    for joint, described in joints.items():
+        end, one = described["child"], f"reaction {joint}"
+        found = solution.reaction(joint)
+        parts = [found.fx, found.fy, 0 * found.fx if name == "excavator" else found.fz]
+        force = np.column_stack(parts)[chosen]
+        largest = np.linalg.norm(force, axis=1).max()
+        assert extras[one]["unit"] == "N"
+        assert extras[one]["largest"] == pytest.approx(largest, rel=1e-12)
+        tail, tip = (moved(told, array, one)(place) for place in ((0, 0, 0), (1, 0, 0)))
+        scaled = extras[one]["metres_per_unit"] * force
+        np.testing.assert_allclose(tip - tail, scaled, rtol=0, atol=1e-5 * size)
+        place = (end["x"], end["y"], end.get("z", 0.0))
+        exact = places_of(solution, end["body"], place)[chosen]
+        np.testing.assert_allclose(tail, exact, rtol=0, atol=1e-5 * size)
+    for one in (one for one in extras if one.startswith("effort ")):
+        tail, tip = (moved(told, array, one)(place) for place in ((0, 0, 0), (1, 0, 0)))
+        found = np.linalg.norm(tip - tail, axis=1) / extras[one]["metres_per_unit"]
+        exact = np.abs(solution.effort(one.removeprefix("effort "))[chosen])
+        np.testing.assert_allclose(found, exact, rtol=0, atol=1e-4 * exact.max())

@@ -1,14 +1,15 @@
-"""Numbers without bound: said before anything starts, and refused where they cannot be meant."""
+"""Numbers without bound: said before anything starts, and refused if they cannot be meant or this
+machine has no room.
+"""
 
 import importlib
 import re
 import resource
+from pathlib import Path
 
 import psutil
 import pytest
-import sweeps
 from commands import command
-from internals import plan, points, space, workers
 from mechanisms import slider_crank
 from stepped import iterated
 
@@ -18,13 +19,24 @@ from lagrange_casadi.errors import DeclarationError, SizeError
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 HUGE = "99999999999999999999999"
+
+
 COUNT = r"t: COUNT must be a whole number from 1 to 2\^63 - 1, got "
+
+
 STEPS = (
     r"newton: expected a number of steps, from 1 to 1000 \(after some ten nothing changes\), got "
 )
+
+
 THREADS = "is not in the range 1<=x<=1024"
+
+
 GRID = "--grid l=0.2:0.3:3"
+
+
 FREE = r"GB, and this machine has \S+ GB free"
+
 
 REFUSED = {
     "newton": ("run CASE --newton 1000000000", 2, STEPS + "1000000000"),
@@ -113,58 +125,63 @@ def test_a_number_that_cannot_be_meant_is_one_line(here, limited, capfd, line, s
 def test_python_refuses_them_too(keywords):
     with pytest.raises(DeclarationError, match="expected a "):
         evaluate(slider_crank(), **keywords)
-    with pytest.raises(
-        DeclarationError, match="workers: expected a whole number from 1 to 1024, got 1025"
-    ):
+    with pytest.raises(DeclarationError, match="workers: expected a whole number from 1 to 1024"):
         sweep(slider_crank(), {"l": (0.2, 0.3, 3)}, workers=1025)
-
-
-@pytest.mark.parametrize(
-    "line", [f"table x.h5 --rows {HUGE}", f"best x.h5 --minimise peak:effort:O --count {HUGE}"]
-)
-def test_more_rows_than_there_are_are_all(here, capsys, line):
-    sweep(slider_crank(), {"l": (0.2, 0.3, 25)}, t=(0, 0.08, 5), wanted=["effort"], out="x.h5")
-    assert command(line) == 0
-    assert len(capsys.readouterr().out.splitlines()) == 26
-
-
-def test_points_are_refused_before_they_are_made(monkeypatch):
-    monkeypatch.setattr(space, "memory", lambda: 2e7)
-    assert points((0.0, 1.0, 100)).size == 100
-    with pytest.raises(
-        SizeError,
-        match=r"not enough memory for the points from 0 to 1: 3 x 1 000 000 values are 0\.024 GB",
-    ):
-        points((0.0, 1.0, 10**6))
 
 
 def test_what_takes_long_is_said_before_it_starts(monkeypatch):
     module = importlib.import_module("lagrange_casadi.studies.solving")
     monkeypatch.setattr(module, "_LONG", 1e-9)
-    with pytest.warns(
-        UserWarning, match=r"^1 001 instants of 5 Newton steps each take about \S+ s$"
-    ):
+    says = r"^1 001 instants of 5 Newton steps each take about \S+ s$"
+    with pytest.warns(UserWarning, match=says):
         evaluate(iterated(), t=(0, 1, 1001), newton=5)
     monkeypatch.setattr(module, "_LONG", 60.0)
     evaluate(iterated(), t=(0, 1, 1001), newton=5)
 
 
-def test_so_is_a_sweep_that_takes_long_or_much(monkeypatch, tmp_path):
-    asked = {"t": (0, 1, 9), "wanted": ["effort"], "force": True, "out": tmp_path / "x.h5"}
-    sweep(slider_crank(), {"l": (0.2, 0.3, 30)}, **asked)
-    for name in ("_LONG", "_LARGE"):
-        with monkeypatch.context() as patch:
-            patch.setattr(plan, name, 0)
-            with pytest.warns(
-                UserWarning,
-                match=r"^30 designs take about \S+ s of a core and a file of up to \S+ GB$",
-            ):
-                sweep(slider_crank(), {"l": (0.2, 0.3, 30)}, **asked)
+MEMINFO = (
+    "MemTotal: 64000000 kB\nMemFree: 100000 kB\nMemAvailable: 3200000 kB\nSwapFree: 100000 kB\n"
+)
 
 
-def test_fewer_threads_share_what_memory_holds_but_once(monkeypatch):
-    engine = sweeps.use(monkeypatch)
-    engine.capacity = 10**9
-    monkeypatch.setattr(workers, "memory", lambda: 2.5e9)
-    sweep(sweeps.scene(), {"l": (0.2, 0.3, 500), "r": [0.05, 0.1]}, workers=8)
-    assert len({thread for _, thread in engine.calls}) <= 2
+STAT = "anon 900\ninactive_file 4000000\ntotal_inactive_file 6000000\n"
+
+
+ROOMS = {
+    "3.38": {"/proc/meminfo": MEMINFO},
+    "4.1": {"/proc/meminfo": "MemTotal: 5 kB\n"},
+    "0.504": {  # a container has what its group has left
+        "/proc/meminfo": MEMINFO,
+        "/proc/self/cgroup": "0::/a.slice/b.scope\n",
+        "/sys/fs/cgroup/a.slice/memory.max": "800000000\n",
+        "/sys/fs/cgroup/a.slice/memory.current": "300000000\n",
+        "/sys/fs/cgroup/a.slice/memory.stat": STAT,
+        "/sys/fs/cgroup/a.slice/b.scope/memory.max": "max\n",
+    },
+    "0.206": {  # the older kind of groups, whose path is another one outside
+        "/proc/meminfo": MEMINFO,
+        "/proc/self/cgroup": "4:cpu,cpuacct:/\n3:memory:/docker/0123\n",
+        "/sys/fs/cgroup/memory/memory.limit_in_bytes": "500000000\n",
+        "/sys/fs/cgroup/memory/memory.usage_in_bytes": "300000000\n",
+        "/sys/fs/cgroup/memory/memory.stat": STAT,
+    },
+}
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_free_memory_is_what_the_system_and_its_groups_tell(room, monkeypatch):
+    scene, files, read_text = slider_crank(), ROOMS[room], Path.read_text
+
+    def read(path, *asked, **more):
+        if not str(path).startswith(("/proc", "/sys")):
+            return read_text(path, *asked, **more)
+        if str(path) not in files:
+            raise FileNotFoundError(path)
+        return files[str(path)]
+
+    monkeypatch.setattr(Path, "read_text", read)
+    pages = {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 1_000_000}
+    monkeypatch.setattr("os.sysconf", pages.get)
+    with pytest.raises(SizeError, match=rf"values are \S+ GB, and this machine has {room} GB free"):
+        evaluate(scene, t=(0, 1, 10**9))
+    evaluate(scene, t=(0, 0.08, 3))

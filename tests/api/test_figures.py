@@ -1,27 +1,26 @@
-"""Figures: each spec draws what it says, from the arrays of the solution."""
+"""Figures: each draws what it says, from the arrays of the solution; mechanisms are where their
+poses put them, in the plane and in space.
+"""
+
+import math
 
 import numpy as np
 import pytest
-from internals import (
-    PATH,
+from drawn_scenes import CASES, every_kind, moved
+from reports import solved
+
+from lagrange_casadi import evaluate
+from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.figures import (
     MechanismDrawing,
+    PolarPlots,
+    SectionDiagrams,
     SectionMaps,
     SpanPlot,
     TimePlot,
-    draw_mechanism,
-    dump_specs,
-    figures,
-    parse_specs,
+    default_figures,
+    draw,
 )
-from matplotlib.colors import to_rgb
-from matplotlib.text import Text
-from reports import solved, to_polygon
-
-from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.motion import polynomial
-
-pytestmark = pytest.mark.quick
 
 
 def curves(figure):
@@ -37,15 +36,6 @@ def test_time_plot_applies_the_factor(solution):
     )
     assert figure.axes[0].get_ylabel().endswith("[N]")
     assert figure.get_supxlabel() == "sign of the paper"
-
-
-def test_series_that_are_rounding_are_drawn_as_zero():
-    """A balanced flywheel does not load its flange across, and bearings hold a shaft straight."""
-    solution = solved("v6")
-    for name in ("reaction:flange:fy", "motion:main_fixed:turn_2"):
-        assert np.any(solution.array(name))
-        (curve,) = curves(TimePlot("p", (name,)).draw(solution))
-        assert not curve[:, 1].any()
 
 
 def test_time_plot_of_sections(solution):
@@ -79,21 +69,6 @@ def test_each_unit_has_axes_of_its_own(solution):
     assert len(TimePlot("one", ("reaction:guide:fx", "reaction:guide:fy")).draw(solution).axes) == 1
 
 
-def test_resultants_are_drawn_where_their_reactions_are(solution, slider_crank, tmp_path):
-    spec = TimePlot("size", ("reaction:guide:resultant",))
-    assert [path.name for _, path in figures.draw(solution, [spec], tmp_path) if path] == [
-        "size.png"
-    ]
-    without = evaluate(slider_crank.scene, wanted=["effort"], t=(0, 0.08, 21))
-    assert [path for _, path in figures.draw(without, [spec], tmp_path)] == [None]
-
-
-def test_sections_of_two_links_are_told_apart(solution):
-    figure = TimePlot("two", ("section:rod:axial", "section:crank:axial"), xi=(0.5,)).draw(solution)
-    texts = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert texts == [r"rod axial, $\xi/l$ = 0.5", r"crank axial, $\xi/l$ = 0.5"]
-
-
 def test_span_plot_takes_the_nearest_instant(solution):
     figure = SpanPlot("bending", "section:rod:bending", 0.03004, "bending").draw(solution)
     np.testing.assert_array_equal(curves(figure)[0][:, 1], solution.section("rod").bending[300])
@@ -107,14 +82,6 @@ def test_maps_mark_the_peaks(solution):
     np.testing.assert_array_equal(marks, [(peak.t, peak.xi) for peak in peaks])
 
 
-def test_maps_of_a_grid_finer_than_the_picture_are_thinned(slider_crank):
-    solution = evaluate(
-        slider_crank.scene, t=(0, 0.08, 4001), xi=(0, 1, 1700), wanted=["section:rod"]
-    )
-    figure = SectionMaps("maps", "rod").draw(solution)
-    assert figure.axes[0].collections[0].get_array().shape == (850, 1334)
-
-
 def test_drawing_puts_the_links_where_they_are(solution):
     figure = MechanismDrawing(count=4).draw(solution)
     assert len(figure.axes) == 4
@@ -122,85 +89,6 @@ def test_drawing_puts_the_links_where_they_are(solution):
     np.testing.assert_allclose(lines["crank"], [(0, 0), (0, 0.1)], atol=1e-5)
     np.testing.assert_allclose(lines["rod"], [(0, 0.1), (np.sqrt(0.03), 0)], atol=1e-5)
     np.testing.assert_allclose(lines["slider"], [(np.sqrt(0.03), 0)], atol=1e-5)
-
-
-def test_names_of_a_drawing_hide_neither_each_other_nor_leave_it():
-    """Many joints, of which some are near each other; ten bodies, each of a colour of its own."""
-    described = solved("excavator").description
-    figure = draw_mechanism(solved("excavator"), 4)
-    figure.draw_without_rendering()
-    for axes in figure.axes:
-        # A name alone: the extent of an annotation has its line too, all around it.
-        frame = axes.get_window_extent()
-        boxes = [Text.get_window_extent(text) for text in axes.texts]
-        told = {name for text in axes.texts for name in text.get_text().split(", ")}
-        assert told == {*described["joints"], *described["paths"]}
-        for k, box in enumerate(boxes):
-            assert frame.x0 <= box.x0 <= box.x1 <= frame.x1
-            assert frame.y0 <= box.y0 <= box.y1 <= frame.y1
-            assert not [other for other in boxes[:k] if box.overlaps(other)]
-    assert (
-        len({handle.get_color() for handle in figure.axes[0].get_legend_handles_labels()[0]}) == 10
-    )
-
-
-def strong(axes, label):
-    return next(line for line in axes.get_lines() if line.get_label() == label)
-
-
-def test_postures_of_two_turns_are_drawn_once_and_one_over_the_other():
-    """Two turns of an engine: the second one is the first again.
-
-    The first posture is strong, the others are faint.
-    """
-    solution = solved("engine", 81)
-    figure = draw_mechanism(solution, 4)
-    angles = [np.arctan2(*strong(axes, "crank").get_xydata()[1][::-1]) for axes in figure.axes]
-    np.testing.assert_allclose(np.exp(1j * np.array(angles)), [1j, -1, -1j, 1], atol=1e-9)
-    (axes,) = draw_mechanism(solution, 8, overlay=True).axes
-    cranks = [
-        line for line in axes.get_lines() if line.get_color() == strong(axes, "crank").get_color()
-    ]
-    assert len(cranks) == 8
-    ends = [line.get_xydata()[1] for line in cranks]
-    assert min(np.hypot(*(a - b)) for k, a in enumerate(ends) for b in ends[:k]) > 0.02
-    assert sorted(line.get_alpha() for line in cranks)[-2:] == [pytest.approx(0.2), 1.0]
-    assert axes.get_title().startswith("8 positions from t = 0 s")
-
-
-def test_bodies_with_three_joints_are_plates_and_rotors_are_discs():
-    axes = draw_mechanism(solved("excavator"), 1).axes[0]
-    bucket = next(
-        patch
-        for patch in axes.patches
-        if patch.get_facecolor()[:3] == to_rgb(strong(axes, "bucket").get_color())
-    )
-    assert len(bucket.get_xy()) - 1 == 4  # the teeth are a corner too
-    cam = draw_mechanism(solved("roller_cam"), 1).axes[0]
-    profile, roller = (patch.get_xy()[:-1] for patch in cam.patches)
-    centre = roller.mean(axis=0)
-    assert np.hypot(*(roller - centre).T) == pytest.approx(0.012)
-    assert to_polygon(centre, profile) == pytest.approx(0.012, rel=1e-3)
-
-
-def test_only_declared_points_leave_their_ways():
-    solution = solved("scara")
-    (axes,) = draw_mechanism(solution, 1).axes
-    ways = [line for line in axes.get_lines() if len(line.get_xdata()) == solution.t.size]
-    assert [line.get_color() for line in ways] == [PATH]
-
-
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize("count", [1, 2, 3])
-@pytest.mark.parametrize("name", ["connecting_rod", "engine"])
-def test_titles_are_whole(name, count):
-    figure = draw_mechanism(solved(name), count)
-    figure.draw_without_rendering()
-    boxes = [axes.title.get_window_extent() for axes in figure.axes]
-    for k, box in enumerate(boxes):
-        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
-        assert box.y1 <= figure.bbox.y1
-        assert not any(box.overlaps(other) for other in boxes[:k])
 
 
 def test_axes_have_units_that_people_read_and_si_where_asked():
@@ -223,34 +111,15 @@ def test_axes_have_units_that_people_read_and_si_where_asked():
     assert small.draw(solution).axes[0].get_xlabel() == "x [m]"
 
 
-def test_springs_are_whole_on_a_drawing():
-    """One whose end on the ground is far from everything else."""
-    m = Mechanism("far")
-    bar = m.link("bar", length=1.0, mass=1.0)
-    m.revolute("O", m.ground, bar)
-    m.spring("coil", m.ground.at(-4.0, 3.0), bar.tip, stiffness=1.0, length=1.0)
-    figure = draw_mechanism(
-        evaluate(Scene(m, {"O": polynomial(0, 1)}, t=(0, 1, 5)), backend="vm"), 2
-    )
-    for axes in figure.axes:
-        assert axes.get_xlim()[0] < -4.0
-        assert axes.get_ylim()[1] > 3.0
-
-
-def test_specs_survive_the_file(slider_crank):
-    assert parse_specs(dump_specs(slider_crank.figures)) == slider_crank.figures
-    assert parse_specs("") == ()
-
-
 def test_what_is_not_there_is_not_drawn(slider_crank, tmp_path):
     solution = evaluate(slider_crank.scene, wanted=["effort"], t=(0, 0.08, 21))
-    drawn = list(figures.draw(solution, slider_crank.figures, tmp_path))
+    drawn = list(draw(solution, slider_crank.figures, tmp_path))
     assert [spec.name for spec, path in drawn if path] == ["fig07_torque"]
     assert [path.name for path in tmp_path.iterdir()] == ["fig07_torque.png"]
 
 
 def test_default_figures_cover_the_solution(solution):
-    names = {spec.name for spec in figures.default_figures(solution)}
+    names = {spec.name for spec in default_figures(solution)}
     assert {
         "motion_O",
         "motion_guide",
@@ -262,21 +131,148 @@ def test_default_figures_cover_the_solution(solution):
     } <= names
 
 
-def test_the_same_solution_gives_the_same_bytes(solution, tmp_path):
-    for name in ("one", "two"):
-        (tmp_path / name).mkdir()
-        list(figures.draw(solution, [SpanPlot("x", "section:rod:bending", 0.03)], tmp_path / name))
-    assert (tmp_path / "one" / "x.png").read_bytes() == (tmp_path / "two" / "x.png").read_bytes()
-
-
 def test_what_is_no_spec_is_named(solution, tmp_path):
     with pytest.raises(DeclarationError, match="draw: specs: expected a list, each a TimePlot"):
-        list(figures.draw(solution, ["fig"], tmp_path))
+        list(draw(solution, ["fig"], tmp_path))
     with pytest.raises(UnknownNameError, match=r"unknown part in figure 'x' 'Q'; valid: crank"):
-        list(figures.draw(solution, [TimePlot("x", ("effort:Q",))], tmp_path))
+        list(draw(solution, [TimePlot("x", ("effort:Q",))], tmp_path))
     for specs in ([TimePlot("../x", ("effort:O",))], [TimePlot("x", ("effort:O",))] * 2):
         with pytest.raises(
             DeclarationError, match="expected letters, digits, underscores and hyphens"
         ):
-            list(figures.draw(solution, specs, tmp_path))
+            list(draw(solution, specs, tmp_path))
     assert not list(tmp_path.iterdir())
+
+
+def texts(figure):
+    return [text.get_text().replace("\N{MINUS SIGN}", "-") for text in figure.axes[0].texts]
+
+
+def test_polar_plots_show_the_largest_load():
+    solution = solved("four_bar")
+    figure = PolarPlots("p", ("O", "C")).draw(solution, si=True)
+    written = texts(figure)
+    for joint in ("O", "C"):
+        reaction = solution.reaction(joint)
+        i = int(np.argmax(reaction.resultant))
+        angle = math.degrees(math.atan2(reaction.fy[i], reaction.fx[i]))
+        assert joint in written
+        assert f"{reaction.resultant[i]:.4g} N at {angle:.3g}°" in written
+    curves = [line for line in figure.axes[0].get_lines() if len(line.get_xdata()) == 41]
+    assert len(curves) == 2
+
+
+def lines(axes, label):
+    return [line for line in axes.get_lines() if line.get_label() == label]
+
+
+@pytest.mark.parametrize("case", ["connecting_rod", "excavator", "v_twin"])
+def test_diagrams_have_the_values_of_the_law(case):
+    """Both ends, and what is largest along the link, at the instant of the largest stress or
+    bending moment; each is a number of the picture.
+    """
+    solution = solved(case)
+    link = {"connecting_rod": "rod", "excavator": "boom", "v_twin": "left_rod"}[case]
+    names = f"stress:{link}:von_mises", f"section:{link}:bending"
+    peak = solution.peak(next(name for name in names if name in solution.names()))
+    i = int(np.flatnonzero(solution.t == peak.t)[0])
+    written = texts(SectionDiagrams("d", (link,)).draw(solution, si=True))
+    law = solution.section(link).law
+    for force in ("axial", "shear", "bending"):
+        size = law.bound(force, np.linspace(0.0, 1.0, 4001))
+        largest = solution.extremes(f"section:{link}:{force}")[0][i]
+        for value in (*law.on_grid(force, np.array([0.0, 1.0]))[i], largest):
+            assert f"{0.0 if abs(value) < 1e-9 * size else value:.4g}" in written
+
+
+def test_rounding_is_drawn_as_zero():
+    """Nothing twists a rod between a ball and a universal joint; a balanced flywheel does not load
+    its flange across, and bearings hold a shaft straight.
+    """
+    solution, torsion = solved("spatial_slider_crank"), "section:rod:torsion"
+    assert 0.0 < abs(solution.peak(torsion).value) < 1e-12
+    maps = SectionMaps("maps", "rod").draw(solution)
+    drawn = [np.abs(axes.collections[0].get_array()).max() for axes in maps.axes[:4]]
+    assert drawn[0] > 1.0
+    assert drawn[3] == 0.0
+    assert maps.axes[3].get_title() == "torsional moment: zero everywhere"
+    written = texts(SectionDiagrams("d", ("rod",)).draw(solution))
+    assert written[written.index("$T$ [N m]") + 1] == "0"
+    v6 = solved("v6")
+    for name in ("reaction:flange:fy", "motion:main_fixed:turn_2"):
+        assert np.any(v6.array(name))
+        (curve,) = curves(TimePlot("p", (name,)).draw(v6))
+        assert not curve[:, 1].any()
+
+
+def test_two_turns_of_an_engine_are_drawn_once():
+    """The second turn is the first again."""
+    figure = MechanismDrawing(count=4).draw(solved("engine", 81))
+    ends = [lines(axes, "crank")[0].get_xydata()[1] for axes in figure.axes]
+    angles = np.arctan2([end[1] for end in ends], [end[0] for end in ends])
+    np.testing.assert_allclose(np.exp(1j * angles), [1j, -1, -1j, 1], atol=1e-9)
+
+
+def axes_of_views(azimuth, elevation):
+    """Directions to the right and upward on the page, where y is up, of the four views."""
+    a, e = np.radians([azimuth, elevation])
+    x, y, z = np.array([1.0, 0, 0]), np.array([0, 1.0, 0]), np.array([0, 0, 1.0])
+    level = np.cos(a) * x - np.sin(a) * z
+    toward = np.cos(e) * level + np.sin(e) * y
+    right = np.cross(y, toward) / np.cos(e)
+    return (x, -z), (right, np.cross(toward, right)), (x, y), (-z, y)
+
+
+def test_links_are_where_their_poses_put_them_in_every_view():
+    solution = moved("rssr")
+    pose = solution.pose("coupler")
+    base = np.array([pose.x[0], pose.y[0], pose.z[0]])
+    ends = np.array([base, base + 0.4 * pose.axes[0, 0]])
+    figure = MechanismDrawing().draw(solution)
+    for axes, page in zip(figure.axes, axes_of_views(-60, 25), strict=True):
+        found = lines(axes, "coupler")[0].get_xydata()
+        np.testing.assert_allclose(found, ends @ np.array(page).T, atol=1e-12)
+    assert [axes.get_title() for axes in figure.axes] == [
+        "from above (+y)",
+        "azimuth -60°, elevation 25°, y up",
+        "from the front (+z)",
+        "from the right (+x)",
+    ]
+    at_once = MechanismDrawing(count=1).draw(solution)
+    assert "faint" in figure.get_suptitle()
+    assert "faint" not in at_once.get_suptitle()
+
+
+@pytest.mark.sampled(7)
+@pytest.mark.parametrize("name", [*CASES, "every kind"])
+def test_all_joints_and_paths_of_a_drawing_in_space_are_named(name):
+    solution = every_kind() if name == "every kind" else moved(name)
+    figure = MechanismDrawing().draw(solution)
+    written = [text.get_text().replace("\n", " ") for text in figure.axes[1].texts]
+    told = {name for text in written for name in text.split(", ")}
+    assert told >= {*solution.description["joints"], *solution.description.get("paths", {})}
+    bodies = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert bodies >= {*solution.description["bodies"]} - {"ground"}
+
+
+def test_the_same_solution_gives_the_same_bytes(solution, tmp_path):
+    """Of PNG and SVG: neither clocks nor programs nor chance."""
+    specs = [SpanPlot("x", "section:rod:bending", 0.03), MechanismDrawing()]
+    for svg in (False, True):
+        for name in ("one", "two"):
+            (tmp_path / name).mkdir(exist_ok=True)
+            list(draw(solution, specs, tmp_path / name, svg=svg))
+    for path in (tmp_path / "one").iterdir():
+        content = path.read_bytes()
+        assert content == (tmp_path / "two" / path.name).read_bytes()
+        words = (b"Date", b"<dc:date>", b"Matplotlib", b"Software")
+        assert not any(word in content for word in words)
+
+
+def test_what_was_wanted_is_what_is_drawn(solution, tmp_path):
+    """A pose that is not there is not drawn; run and plot draw the same."""
+    specs = {spec.name: spec for spec in default_figures(solved("v6"))}
+    assert specs["bearings"] == PolarPlots("bearings", ("main_fixed", "main_floating"))
+    assert set(specs["diagrams"].links) == set(solved("v6").links_with_sections)
+    few = [specs["bearings"], specs["diagrams"], MechanismDrawing()]
+    assert all(path for _, path in draw(solved("v6"), few, tmp_path))

@@ -1,4 +1,6 @@
-"""Load cases of links: in equilibrium by the data that they hold, and the same as sections."""
+"""Load cases of links, in equilibrium by the data that they hold and the same as sections; load
+spectra, and loads of bearings.
+"""
 
 import csv
 import dataclasses
@@ -16,14 +18,18 @@ from lagrange_casadi import (
     Mechanism,
     Scene,
     beams,
+    bearing_loads,
     errors,
     evaluate,
     link_load_cases,
     load_case,
     write_load_cases,
+    write_spectrum,
 )
 from lagrange_casadi.cli import main
-from lagrange_casadi.motion import dwell, move, moves, polynomial
+from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 @pytest.fixture(scope="module")
@@ -117,40 +123,6 @@ def test_instants_are_those_that_govern(crank_rod):
     assert [case.t for case in cases] == sorted({case.t for case in cases})
 
 
-@pytest.mark.parametrize(
-    ("name", "link", "moment"),
-    [("sleigh", "cross", "reaction:X:mz"), ("arm6", "link5", "reaction:pitch:moment")],
-)
-def test_what_governs_is_a_quantity_of_the_solution(name, link, moment):
-    """Moments of reactions have another name in a plane than in space."""
-    scene = load_case(name).scene
-    solution = evaluate(scene, wanted=["all"], backend="vm")
-    cases = link_load_cases(solution, link, scene=scene)
-    named = {name: case.t for case in cases for name in case.governs}
-    assert moment in named
-    for name, t in named.items():
-        values, _ = solution.extremes(name)
-        (value,) = values[solution.t == t]
-        assert abs(value) >= abs(solution.peak(name).value) * (1 - 1e-12)
-
-
-def test_what_is_not_known_is_named(crank_rod):
-    with pytest.raises(errors.UnknownNameError, match=r"unknown link 'rood'.*'rod'"):
-        link_load_cases(crank_rod, "rood")
-    with pytest.raises(errors.DeclarationError, match=r"t = 9 s is no instant.*nearest is"):
-        link_load_cases(crank_rod, "rod", [9.0])
-    lean = evaluate(load_case("slider_crank").scene, wanted=["motion", "reaction:A"], backend="vm")
-    with pytest.raises(
-        errors.DeclarationError, match=r"link 'rod' need reaction:B, which.*\['all'\]"
-    ):
-        link_load_cases(lean, "rod")
-    sleigh = evaluate(load_case("sleigh").scene, wanted=["all"], t=(0, 1, 5), backend="vm")
-    with pytest.raises(errors.DeclarationError, match="along which directions blade act"):
-        link_load_cases(sleigh, "body")
-    with pytest.raises(errors.DeclarationError, match="other parameters, bodies or joints"):
-        link_load_cases(sleigh, "body", scene=load_case("four_bar").scene)
-
-
 def test_what_equilibrium_does_not_determine_is_named():
     solution = evaluate(parallelogram(), wanted=["all"], backend="vm")
     part = solution.indeterminate[0].part
@@ -203,112 +175,149 @@ def test_files_hold_the_load_cases(crank_rod, tmp_path):
         write_load_cases(cases, tmp_path / "loads", ["k"])
 
 
-def entries(text):
-    """Bulk data in fields of 16 and of 8 characters: word and fields."""
-    found = []
-    for line in text.splitlines():
-        wide = 16 if "*" in line[:8] else 8
-        fields = [line[k : k + wide].strip() for k in range(8, len(line), wide)]
-        if line[:1] == "$":
-            continue
-        if line[:8].strip(" *"):
-            found.append((line[:8].strip(" *"), []))
-        found[-1][1].extend(float(x) if x else None for x in fields)
-    return found
+@pytest.fixture(scope="module")
+def engine():
+    return evaluate(load_case("connecting_rod").scene, wanted=["all"], t=(0, 0.07, 141))
 
 
-def test_bulk_data_of_nastran_is_in_equilibrium(tmp_path):
-    """The force of RACC is along the angular acceleration that is given, that of A outward."""
-    solution = evaluate(load_case("arm6").scene, wanted=["all"], backend="vm")
-    case = link_load_cases(solution, "link2")[0]
-    write_load_cases([case], tmp_path, ["nas"], {"shoulder": "700"})
-    force, moment, inertia = np.zeros(3), np.zeros(3), []
-    places = {700: case.loads[0].at}
-    assert [load.name for load in case.loads] == [
-        *("reaction:shoulder", "effort:shoulder", "reaction:elbow", "effort:elbow")
-    ]
-    places[1] = case.loads[2].at
-    known = entries((tmp_path / "link2_1.nas").read_text())
-    sets = [fields[0] for word, fields in known if word != "LOAD"]
-    word, combined = known[-1]
-    assert (word, combined[:2]) == ("LOAD", [10.0, 1.0])
-    assert dict(zip(combined[3::2], combined[2::2], strict=True)) == dict.fromkeys(sets, 1.0)
-    for word, fields in known[:-1]:
-        vector = np.array(fields[4:7] if word != "GRAV" else fields[3:6])
-        if word == "GRAV":
-            inertia.append((fields[2] * vector, 0.0 * vector, 0.0 * vector))
-        elif word == "RFORCE":
-            turns = fields[3], (fields[7:9] or [0.0])[-1]
-            inertia.append((0.0 * vector, *(math.tau * turn * vector for turn in turns)))
-        elif word == "FORCE":
-            force += fields[3] * vector
-            arm = np.subtract(places[fields[1]], case.centre)
-            moment += np.cross(arm, fields[3] * vector)
-        else:
-            moment += fields[3] * vector
-    assert len(inertia) == 3
-    gravity, omega, alpha = map(sum, zip(*inertia, strict=True))
-    nodes, weights = np.polynomial.legendre.leggauss(3)
-    largest = max(np.linalg.norm(load.force) for load in case.loads)
-    for node, weight in zip(nodes, weights, strict=True):
-        at = np.array([(1 + node) * case.centre[0], 0.0, 0.0])
-        outward = -np.cross(omega, np.cross(omega, at))
-        push = case.mass * weight / 2 * (gravity + outward + np.cross(alpha, at))
-        force, moment = force + push, moment + np.cross(at - case.centre, push)
-    assert np.abs([force, moment]).max() < 1e-8 * largest
-
-
-def test_nodes_have_names_of_the_mesh(crank_rod, tmp_path):
-    cases = link_load_cases(crank_rod, "rod")[:1]
-    write_load_cases(cases, tmp_path, ["inp", "nas"], {"A": "PIN", "B": 7, "rod": "ALL"})
-    text = (tmp_path / "rod_1.inp").read_text()
-    assert "\n*CLOAD\nPIN, 1, " in text
-    assert "\n7, 1, " in text
-    assert "\nALL, GRAV, " in text
-    assert "$   1: A at 0, 0, 0 m\n$   7: B at" in (tmp_path / "rod_1.nas").read_text()
-    with pytest.raises(errors.UnknownNameError, match=r"unknown load 'C'; valid: A, B, rod"):
-        write_load_cases(cases, tmp_path, ["inp"], {"C": "PIN"})
-    with pytest.raises(errors.DeclarationError, match="format 'beam' needs a link with a beam"):
-        write_load_cases(cases, tmp_path, ["beam"])
+def rows(path):
+    first, *lines = path.read_text().splitlines()
+    assert first.startswith("# ")
+    return [{k: float(x) for k, x in row.items()} for row in csv.DictReader(lines)]
 
 
 @pytest.mark.parametrize(
-    ("nodes", "words"),
+    ("name", "unit"),
     [
-        ({"A": "pin", "B": "PIN"}, "A and B are at several places, but each has the node 'pin'"),
-        ({"A": "b"}, "A and B are at several places, but each has the node 'b'"),
-        ({"A": 7, "B": "7"}, "each has the node '7'; expected a node for each"),
-        ({"A": "PIN, 2"}, "expected names or numbers of nodes, got 'PIN, 2'"),
-        ({"A": ""}, "expected names or numbers of nodes, got ''"),
+        ("reaction:crankpin:fx", "N"),
+        ("section:rod:bending@0.5", "N m"),
+        ("stress:rod@0.25", "Pa"),
     ],
 )
-def test_every_place_needs_a_node_of_its_own(crank_rod, nodes, words, tmp_path):
-    cases = link_load_cases(crank_rod, "rod")[:1]
+def test_classes_hold_the_cycles(engine, name, unit, tmp_path):
+    file = tmp_path / "spectrum.csv"
+    write_spectrum(engine, name, file, classes=0)
+    assert file.read_text().startswith(f"# {name} [{unit}], counted over ")
+    exact = rows(file)
+    write_spectrum(engine, name, file, classes=20)
+    classed = rows(file)
+    total = sum(row["cycles"] for row in exact)
+    assert sum(row["cycles"] for row in classed) == total
+    widest = max(row["range"] for row in exact)
+    for row in exact:
+        assert row["range_low"] == row["range"] == row["range_high"]
+    for row in classed:
+        held = [
+            one
+            for one in exact
+            if row["range_low"] <= one["range"] * (1 + 1e-12)
+            and one["range"] <= row["range_high"] * (1 + 1e-12)
+        ]
+        assert held
+        assert abs(row["range"] - held[0]["range"]) <= widest / 20
+
+
+def test_loads_of_a_bearing_are_those_of_its_turns():
+    """A disc off its axis: the load turns with it; in an arm that swings the speed is its mean."""
+    m = Mechanism("disc")
+    m.set_gravity(0.0, 0.0)
+    disc = m.link("disc", length=0.1, mass=2.0, centre=(0.05, 0.0), inertia=0.01)
+    m.revolute("O", m.ground, disc)
+    turning = evaluate(Scene(m, {"O": polynomial(0, 50.0)}, t=(0, 0.1, 21)))
+    found = bearing_loads(turning, "O")
+    force = 2.0 * 0.05 * 50.0**2
+    assert math.isclose(found.radial, force, rel_tol=1e-12)
+    assert math.isclose(found.largest_radial, force, rel_tol=1e-12)
+    assert math.isclose(found.speed, 50.0 * 60.0 / math.tau, rel_tol=1e-12)
+    assert (found.axial, found.largest_axial) == (0.0, 0.0)
+    swinging = evaluate(Scene(m, {"O": harmonic(0, 0.5, 1.0)}, t=(0, 1.0, 2001)))
+    found = bearing_loads(swinging, "O", 10.0 / 3.0)
+    # Four times 0.5 rad in a second.
+    assert math.isclose(found.speed, 2.0 * 60.0 / math.tau, rel_tol=1e-5)
+    rate = math.tau * 0.5 * np.abs(np.cos(math.tau * swinging.t))
+    across = np.hypot(swinging.reaction("O").fx, swinging.reaction("O").fy)
+    mean = np.sum(across ** (10 / 3) * rate) / np.sum(rate)
+    assert math.isclose(found.radial, mean**0.3, rel_tol=1e-3)
+    with pytest.raises(errors.DeclarationError, match="reaction of joint 'O' was not evaluated"):
+        bearing_loads(
+            evaluate(Scene(m, {"O": polynomial(0, 1)}, t=(0, 1, 3)), wanted=["effort"]), "O"
+        )
+
+
+REFUSED = {
+    "link": (lambda s, _: link_load_cases(s, "rood"), r"unknown link 'rood'.*'rod'"),
+    "instant": (lambda s, _: link_load_cases(s, "rod", [9.0]), "t = 9 s is no instant.*nearest is"),
+    "format": (lambda s, to: write_load_cases(first_of(s), to, ["k"]), "unknown format 'k'; val"),
+    "load": (
+        lambda s, to: write_load_cases(first_of(s), to, ["inp"], {"C": "PIN"}),
+        "unknown load 'C'; valid: A, B, rod",
+    ),
+    "beam": (lambda s, to: write_load_cases(first_of(s), to, ["beam"]), "'beam' needs a link wi"),
+    **{
+        f"nodes {nodes}": (
+            lambda s, to, nodes=nodes: write_load_cases(first_of(s), to, ["inp"], nodes), words
+        )
+        for nodes, words in (
+            (("pin", "PIN"), "A and B are at several places, but each has the node 'pin'"),
+            ((7, "7"), "each has the node '7'; expected a node for each"),
+            (("PIN, 2", 3), "expected names or numbers of nodes, got 'PIN, 2'"),
+            (("", 3), "expected names or numbers of nodes, got ''"),
+        )
+        for nodes in [dict(zip("AB", nodes, strict=True))]
+    },
+    **{
+        name: (lambda s, to, name=name: write_spectrum(s, name, to / "s.csv"), words)
+        for name, words in (
+            ("section:rod:bending", "give a ratio too, as in 'section:rod:bending@0.5'"),
+            ("section:rod:bending@1.5", "expected section:LINK:FORCE@RATIO"),
+            ("effort:O@0.5", "expected section:LINK:FORCE@RATIO"),
+            ("section:rod:twist@0.5", "unknown section force 'twist'; valid: axial, shear, bend"),
+        )
+    },
+}  # fmt: skip
+
+
+def first_of(solution):
+    return link_load_cases(solution, "rod")[:1]
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_is_not_known_is_named(crank_rod, what, tmp_path):
+    asked, words = REFUSED[what]
     with pytest.raises(errors.DeclarationError, match=words):
-        write_load_cases(cases, tmp_path / "loads", ["inp"], nodes)
-    assert not (tmp_path / "loads").exists()
+        asked(crank_rod, tmp_path)
+    assert list(tmp_path.iterdir()) == []
 
 
-def press(material):
-    """A slider-crank whose joints have names of node sets of a model."""
+def test_what_was_not_evaluated_is_named():
+    scene = load_case("slider_crank").scene
+    lean = evaluate(scene, wanted=["motion", "reaction:A"], t=(0, 0.08, 5))
+    with pytest.raises(errors.DeclarationError, match=r"link 'rod' need reaction:B, .*\['all'\]"):
+        link_load_cases(lean, "rod")
+    sleigh = evaluate(load_case("sleigh").scene, wanted=["all"], t=(0, 1, 5))
+    with pytest.raises(errors.DeclarationError, match="along which directions blade act"):
+        link_load_cases(sleigh, "body")
+    with pytest.raises(errors.DeclarationError, match="other parameters, bodies or joints"):
+        link_load_cases(sleigh, "body", scene=scene)
+
+
+def test_node_sets_have_names_of_the_mesh_and_are_told_apart(crank_rod, tmp_path):
+    """CalculiX adds nodes to a set of the same name, be it in capitals or not."""
+    write_load_cases(first_of(crank_rod), tmp_path, ["inp"], {"A": "PIN", "B": 7, "rod": "ALL"})
+    text = (tmp_path / "rod_1.inp").read_text()
+    for words in ("\n*CLOAD\nPIN, 1, ", "\n7, 1, ", "\nALL, GRAV, "):
+        assert words in text
     m = Mechanism("press")
     crank = m.link("crank", length=0.1, mass=1.0)
-    rod = m.link("rod", length=0.4, beam=beams.Beam(beams.rectangle(0.06, 0.03), material))
-    ram = m.point_mass("ram", 15.0)
+    steel = beams.Beam(beams.rectangle(0.06, 0.03), beams.material("S355"))
+    rod, ram = m.link("rod", length=0.4, beam=steel), m.point_mass("ram", 15.0)
     m.revolute("O", m.ground, crank)
     m.revolute("tip", crank.tip, rod)
     m.revolute("Tip", rod.tip, ram)
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     m.force("base", rod.at(0.13, 0.02), x=-3000.0, y=500.0)
-    return Scene(m, {"O": polynomial(0, 30.0)}, t=(0, 0.2, 21), posture={"rod": 1.5})
-
-
-def test_node_sets_of_a_model_are_told_apart(tmp_path):
-    """CalculiX adds nodes to a set of the same name, be it in capitals or not."""
-    solution = evaluate(press(beams.material("S355")), wanted=["all"], backend="vm")
-    cases = link_load_cases(solution, "rod")
-    assert cases == link_load_cases(solution, "rod")
-    write_load_cases(cases[:1], tmp_path, ["beam"])
+    scene = Scene(m, {"O": polynomial(0, 30.0)}, t=(0, 0.2, 21), posture={"rod": 1.5})
+    write_load_cases(first_of(evaluate(scene, wanted=["all"])), tmp_path, ["beam"])
     text = (tmp_path / "rod_1.beam.inp").read_text()
     sets = dict(re.findall(r"^\*NSET, NSET=(\w+)\n(\d+)$", text, re.MULTILINE))
     assert len({name.upper() for name in sets}) == len(sets) == 6
@@ -319,36 +328,7 @@ def test_node_sets_of_a_model_are_told_apart(tmp_path):
     assert abs(x[sets["base"]] - 0.13) < 1e-12
 
 
-CASE = """from test_load_cases import beams, press
-
-
-def scene():
-    return press(beams.Material("spruce", 450.0{}))
-"""
-
-
-@pytest.mark.parametrize(
-    ("moduli", "why"),
-    [
-        ("", "material 'spruce' has no elasticity"),
-        (", elasticity=11e9, shear_modulus=0.7e9", "has Poisson's ratio 6.857 by its moduli"),
-    ],
-)
-def test_the_command_leaves_out_a_model_that_cannot_be_made(moduli, why, tmp_path, capfd):
-    case, out = tmp_path / "press.py", tmp_path / "out"
-    case.write_text(CASE.format(moduli))
-    asked = ["loads", str(case), "--link", "rod", "--out", str(out)]
-    assert main(asked) == 0
-    printed = capfd.readouterr().out
-    assert "format beam is left out" in printed
-    assert why in printed
-    assert {path.suffix for path in out.iterdir()} == {".json", ".csv", ".inp", ".nas"}
-    assert main([*asked, "--format", "beam"]) == 2
-    assert why in capfd.readouterr().err
-
-
-def test_the_command_writes_load_cases(tmp_path, monkeypatch, capfd):
-    monkeypatch.chdir(tmp_path)
+def test_the_command_writes_load_cases(here, capfd):
     asked = ["loads", "slider_crank", "--link", "rod", "--out", "loads"]
     assert main([*asked, "--t", "0:0.08:5", "--every", "--format", "csv"]) == 0
     printed = capfd.readouterr().out
@@ -358,7 +338,7 @@ def test_the_command_writes_load_cases(tmp_path, monkeypatch, capfd):
     assert "unknown link 'rood'" in capfd.readouterr().err
     asked = ["loads", "slider_crank", "--spectrum", "section:rod:bending@0.5", "--bearing", "A"]
     assert main([*asked, "--out", "spectra"]) == 0
-    found = sorted(path.name for path in (tmp_path / "spectra").iterdir())
+    found = sorted(path.name for path in (here / "spectra").iterdir())
     assert found == ["bearings.csv", "section_rod_bending_0.5.csv"]
     assert main(["loads", "slider_crank", "--out", "none"]) == 2
     assert "expected --link, --spectrum or --bearing" in capfd.readouterr().err

@@ -1,4 +1,4 @@
-"""Declarations: what is refused, and in which words."""
+"""Declarations in the plane and in space: what a part stands for, and what is refused."""
 
 import math
 
@@ -6,11 +6,20 @@ import casadi as ca
 import pytest
 from mechanisms import slider_crank
 
-from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, derive
+from lagrange_casadi.errors import (
+    AssemblyError,
+    DeclarationError,
+    LagrangeCasadiError,
+    MobilityError,
+    ParameterError,
+    UnknownNameError,
+)
 from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
+
+Z = (0.0, 0.0, 1.0)
 
 
 @pytest.fixture
@@ -18,74 +27,215 @@ def m():
     return Mechanism("m")
 
 
+def arm(kind=SpatialMechanism, **told):
+    m = kind("m")
+    return m, m.link("a", **{"length": 1.0, "mass": 1.0} | told)
+
+
 def test_a_link_stands_for_its_base_and_the_ground_for_its_origin(m):
-    joint = m.revolute("J", m.ground, m.link("a", length=1, mass=1))
-    assert (joint.parent.x, joint.parent.y, joint.child.x, joint.child.end) == (
-        0.0,
-        0.0,
-        0.0,
-        "base",
-    )
-    assert m.links["a"].tip.x == 1.0
+    link = m.link("a", length=2 * m.parameter("r", 0.5, "m") + 0.1, mass=1)
+    joint = m.revolute("J", m.ground, link)
+    ends = joint.parent.x, joint.parent.y, joint.child.x, joint.child.end
+    assert ends == (0.0, 0.0, 0.0, "base")
+    for values, length in ({}, 1.1), ({"r": 2.0}, 4.1):
+        assert m.number(link.length, m.values(values)) == length
+        assert m.number(link.tip.x, m.values(values)) == length
 
 
-def test_lengths_may_be_expressions(m):
-    r = m.parameter("r", 0.5, "m")
-    link = m.link("a", length=2 * r + 0.1, mass=1)
-    assert m.number(link.length, m.values()) == 1.1
-    assert m.number(link.length, m.values({"r": 2.0})) == 4.1
+def test_turns_in_sequence_are_carried():
+    m, a = arm()
+    joint = m.revolute("J", m.ground, a, turned=[("z", "90 deg"), ("x", "90 deg")])
+    assert joint.turned == ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-@pytest.mark.parametrize(
-    ("says", "declare"),
-    {
-        "link name 'a b' must be": lambda m: m.link("a b", length=1, mass=1),
-        "link name '' must be": lambda m: m.link("", length=1, mass=1),
-        "point mass 'a': the name is taken by a link": lambda m: [
-            m.link("a", length=1, mass=1),
-            m.point_mass("a", 1),
-        ],
-        "link 'ground': the name is taken by the ground": lambda m: m.link(
-            "ground", length=1, mass=1
+def test_a_hard_point_may_be_rounded():
+    """A bar is one though its ends are worked out twice; and moments of inertia are symmetric but
+    for rounding.
+    """
+    m, up = SpatialMechanism("m"), (0.1, 0.2, 0.1 + 0.2)
+    crank = m.link("crank", between=((0, 0, 0), up), mass=1.0)
+    rod = m.link("rod", between=(up, (1.0, 0.1, 0.6)), mass=1.0)
+    slider = m.link("slider", between=((1.0, 0.1, 0.6), (1.1, 0.1, 0.6)), mass=1.0)
+    m.revolute("O", m.ground, crank, at=(0, 0, 0), axis=Z)
+    first = m.spherical("A", crank, rod, at=(0.1, 0.2, 0.3))
+    last = m.spherical("B", rod, slider, at=(1.0, 0.1, 0.2 * 3))
+    assert (up[2] != 0.3, 0.2 * 3 != 0.6) == (True, True)
+    ends = first.parent.end, first.child.end, last.parent.end, last.child.end
+    assert ends == ("tip", "base", "tip", "base")
+    weight = m.at(rod, 0.1 + 0.3 * 0.9, 0.2 - 0.3 * 0.1, 0.3 + 0.3 * 0.3)
+    assert (weight.y, weight.z) == (0.0, 0.0)
+    inertia = ((1, 0.1, 0), (0.1 + 1e-17, 1, 0), (0, 1e-17, 1))
+    body = m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=inertia)
+    assert body.mass.inertia[1] == (0.1, 1.0, 0.0)
+
+
+PLANE = {
+    "link name 'a b' must be": lambda m: m.link("a b", length=1, mass=1),
+    "link name '' must be": lambda m: m.link("", length=1, mass=1),
+    "point mass 'a': the name is taken by a link": lambda m: [
+        m.link("a", length=1, mass=1),
+        m.point_mass("a", 1),
+    ],
+    "link 'ground': the name is taken by the ground": lambda m: m.link("ground", length=1, mass=1),
+    "parameter 'r' is declared twice": lambda m: [m.parameter("r", 1), m.parameter("r", 2)],
+    "link 'a': length: expected a finite number": lambda m: m.link("a", length="long", mass=1),
+    "link 'a': length must be finite": lambda m: m.link("a", length=math.nan, mass=1),
+    "link 'a': length depends on 'r', not a parameter of mechanism 'm'": lambda m: m.link(
+        "a", length=ca.SX.sym("r"), mass=1
+    ),
+    "must be a scalar": lambda m: m.link("a", length=ca.SX.ones(2), mass=1),
+    "joint 'J' joins 'ground' to itself": lambda m: m.revolute("J", m.ground, m.ground.at(1, 2)),
+    "joint 'J': expected a link": lambda m: m.revolute("J", m.ground, "a"),
+    "'a' belongs to another mechanism": lambda m: m.revolute(
+        "J", m.ground, Mechanism("other").link("a", length=1, mass=1)
+    ),
+    r"axis must not be \(0, 0\)": lambda m: m.prismatic(
+        "P", m.ground, m.point_mass("a", 1), axis=(0, 0)
+    ),
+    "'a' is a point mass, which has no direction": lambda m: m.prismatic(
+        "P", m.point_mass("a", 1), m.ground, axis=(1, 0)
+    ),
+    "mechanism name '1st' must be": lambda m: Mechanism("1st"),
+    "has no link and no point mass": lambda m: m.freeze(),
+}
+SPACE = [
+    (
+        lambda m, a: m.revolute("J", m.ground, a, axis=(0, 0, 0)),
+        "joint 'J': axis must not be of length zero",
+    ),
+    (
+        lambda m, a: m.revolute("J", m.ground, a, axis=(0, 1)),
+        r"joint 'J': axis must be three components \(x, y, z\)",
+    ),
+    (
+        lambda m, a: m.revolute("J", m.ground, a, turned=[("w", 1.0)]),
+        "joint 'J': turned= expected rotations about 'x', 'y' or 'z'",
+    ),
+    (
+        lambda m, a: m.revolute("J", m.ground, a, turned=((1, 0, 0), (1, 1, 0))),
+        "turned: its axes must be at right angles",
+    ),
+    (
+        lambda m, a: m.revolute("J", m.ground, a, turned=[("x", "30 grad")]),
+        "or a text such as '350 deg'",
+    ),
+    (
+        lambda m, a: m.universal("J", m.ground, a, axis=(1, 0, 0), second=(1, 1, 0)),
+        "joint 'J': its axes must be at right angles, and are at 45 deg",
+    ),
+    (
+        lambda m, a: m.revolute("J", m.ground, a, at=(0, 0, 0)),
+        "joint 'J': 'a' has no position in the reference posture",
+    ),
+    (lambda m, a: m.revolute("J", a, a.tip), "joint 'J' joins 'a' to itself"),
+    (
+        lambda m, a: m.prismatic("J", m.point_mass("p", 1.0), a, axis=Z),
+        "joint 'J': its parent 'p' is a point mass",
+    ),
+    (
+        lambda m, a: m.link("b", mass=1.0),
+        "link 'b': expected its length, or between=, its two ends",
+    ),
+    (
+        lambda m, a: m.link("b", between=((0, 0, 0), (0, 0, 0)), mass=1.0),
+        "link 'b': expected two different places in between=",
+    ),
+    (
+        lambda m, a: m.link("b", between=((0, 0, 0), (1, 1, 0)), beside=(2, 2, 0), mass=1.0),
+        "link 'b': beside lies along the link",
+    ),
+    (
+        lambda m, a: m.spherical("J", m.ground, a, second=Z),
+        "joint 'J': second= needs axis=, and must be at right angles to it",
+    ),
+    (
+        lambda m, a: m.free("J", m.ground, a, second=Z),
+        "joint 'J': second= needs axis=, and must be at right angles to it",
+    ),
+    (
+        lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0)),
+        "link 'b': expected mass=, centre= and inertia= together",
+    ),
+    (
+        lambda m, a: m.link(
+            "b",
+            length=1.0,
+            mass=1.0,
+            centre=(0, 0, 0),
+            inertia=((1, 0.1, 0), (0, 1, 0), (0, 0, 1)),
         ),
-        "parameter 'r' is declared twice": lambda m: [m.parameter("r", 1), m.parameter("r", 2)],
-        "link 'a': length: expected a finite number": lambda m: m.link("a", length="long", mass=1),
-        "link 'a': length must be finite": lambda m: m.link("a", length=math.nan, mass=1),
-        "link 'a': length depends on 'r', not a parameter of mechanism 'm'": lambda m: m.link(
-            "a", length=ca.SX.sym("r"), mass=1
-        ),
-        "must be a scalar": lambda m: m.link("a", length=ca.SX.ones(2), mass=1),
-        "joint 'J' joins 'ground' to itself": lambda m: m.revolute(
-            "J", m.ground, m.ground.at(1, 2)
-        ),
-        "joint 'J': expected a link": lambda m: m.revolute("J", m.ground, "a"),
-        "'a' belongs to another mechanism": lambda m: m.revolute(
-            "J", m.ground, Mechanism("other").link("a", length=1, mass=1)
-        ),
-        r"axis must not be \(0, 0\)": lambda m: m.prismatic(
-            "P", m.ground, m.point_mass("a", 1), axis=(0, 0)
-        ),
-        "'a' is a point mass, which has no direction": lambda m: m.prismatic(
-            "P", m.point_mass("a", 1), m.ground, axis=(1, 0)
-        ),
-        "mechanism name '1st' must be": lambda m: Mechanism("1st"),
-        "has no link and no point mass": lambda m: m.freeze(),
-    }.items(),
-)
+        r"link 'b': inertia must be symmetric, and entries \(2, 1\) and \(1, 2\) differ",
+    ),
+    (
+        lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=1.0),
+        "link 'b': inertia must be three moments",
+    ),
+    (lambda m, a: m.direction(a), "a link in space has no single angle"),
+    (
+        lambda m, a: m.coordinate(m.cylindrical("J", m.ground, a, axis=Z)),
+        "joint 'J' has no coordinate ''; valid: slide, turn",
+    ),
+    (
+        lambda m, a: m.coordinate(m.revolute("J", m.ground, a), "turn"),
+        "joint 'J' has no coordinate 'turn'",
+    ),
+]
+OTHER = [
+    (
+        SpatialMechanism,
+        lambda m, a: m.prismatic("J", m.ground, a, axis=Z, angle=1.0),
+        "prismatic 'J': .*'angle'; in space it takes",
+    ),
+    (
+        SpatialMechanism,
+        lambda m, a: m.torque("T", a, 5.0),
+        "torque 'T': .*; in space it takes name, point, x, y, z, against",
+    ),
+    (
+        SpatialMechanism,
+        lambda m, a: m.set_gravity((0, 0, -9.81)),
+        "set_gravity: .*; in space it takes x, y, z",
+    ),
+    (
+        Mechanism,
+        lambda m, a: m.revolute("J", m.ground, a, axis=Z),
+        "revolute 'J': .*'axis'; in a plane it takes name, parent, child$",
+    ),
+    (
+        Mechanism,
+        lambda m, a: m.force("F", a, z=1.0),
+        "force 'F': .*'z'; in a plane it takes name, point, x, y, turning",
+    ),
+    (
+        Mechanism,
+        lambda m, a: m.set_gravity(0, 0, -9.81),
+        "set_gravity: .*; in a plane it takes x, y",
+    ),
+    (
+        Mechanism,
+        lambda m, a: m.prismatic("J", m.ground, a, axis=Z),
+        "joint 'J': axis must be two components",
+    ),
+    (
+        Mechanism,
+        lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=1.0),
+        r"link 'b': centre must be two components \(x, y\)",
+    ),
+]
+
+
+@pytest.mark.parametrize(("says", "declare"), PLANE.items())
 def test_what_a_part_refuses(m, declare, says):
     with pytest.raises(DeclarationError, match=says):
         declare(m)
 
 
-def test_a_link_that_hangs_on_nothing_is_named(m):
-    a, b = (m.link(name, length=1, mass=1) for name in "ab")
-    m.link("c", length=1, mass=1)
-    m.revolute("J", m.ground, a)
-    m.revolute("K", b.tip, m.links["c"])
-    with pytest.raises(
-        DeclarationError, match="'b', 'c' are not connected to the ground by any chain of joints"
-    ):
-        m.freeze()
+@pytest.mark.parametrize(
+    ("kind", "declare", "says"), [*((SpatialMechanism, *row) for row in SPACE), *OTHER]
+)
+def test_what_a_part_refuses_in_space_or_as_what_is_for_the_other_kind(kind, declare, says):
+    with pytest.raises(DeclarationError, match=says):
+        declare(*arm(kind))
 
 
 def test_a_mechanism_freezes_in_a_scene(m):
@@ -95,6 +245,7 @@ def test_a_mechanism_freezes_in_a_scene(m):
         lambda: m.point_mass("b", 1),
         lambda: m.parameter("r", 1),
         lambda: m.set_gravity(0, 0),
+        lambda: m.output("late", m.time),
     ):
         with pytest.raises(DeclarationError, match="mechanism 'm' is frozen"):
             change()
@@ -135,16 +286,128 @@ def test_what_the_values_of_parameters_refuse(values, error, says):
 
 def test_ranges(m):
     m.parameter("r", 0.5, "m", low=0.1, high=1.0)
-    m.point_mass("p", 1)
-    with pytest.raises(
-        ParameterError, match=r"parameter 'r' = 2 m is out of its range \[0.1.*, 1\]"
-    ):
-        m.values({"r": 2.0})
     m.parameter("l", 1.0, low=0.0)
-    with pytest.raises(
-        ParameterError,
-        match=r"parameter 'r' = 2 m is out of its range .*; parameter 'l' = -1 is out of",
-    ):
+    m.point_mass("p", 1)
+    says = r"parameter 'r' = 2 m is out of its range \[0.1.*, 1\]; parameter 'l' = -1 is out of"
+    with pytest.raises(ParameterError, match=says):
         m.values({"r": 2.0, "l": -1.0})
     with pytest.raises(ParameterError, match="parameter 's' = 5"):
         m.parameter("s", 5, high=1)
+
+
+@pytest.mark.parametrize(
+    ("inertia", "possible"),
+    [
+        ((1.0, 1.0, 2.1), False),
+        (((1.0, 0.9, 0.0), (0.9, 1.0, 0.0), (0.0, 0.0, 1.0)), False),
+        ((-1.0, 1.0, 1.0), False),
+        ((1.0, 2.0, 3.0), True),  # a plate
+        ((0.0, 1.0, 1.0), True),  # a needle
+        ((0.0, 0.0, 0.0), True),
+    ],
+)
+def test_a_body_has_moments_of_inertia_that_can_be(inertia, possible):
+    m, a = arm(centre=(0.0, 0.0, 0.0), inertia=inertia)
+    m.revolute("J", m.ground, a)
+    if possible:
+        Scene(m, {"J": polynomial(0, 1)})
+    else:
+        with pytest.raises(ParameterError, match="link 'a': impossible moments of inertia"):
+            Scene(m, {"J": polynomial(0, 1)})
+
+
+def islands():
+    m, a = arm(Mechanism)
+    b, c = (m.link(name, length=1, mass=1) for name in "bc")
+    m.revolute("J", m.ground, a)
+    m.revolute("K", b.tip, c)
+    return m, {"J": polynomial(0, 1)}, {}
+
+
+def cylinder(laws):
+    m, a = arm()
+    m.cylindrical("J", m.ground, a, axis=Z)
+    return m, laws, {}
+
+
+def on_bars():
+    m, plate = arm(centre=(0, 0, 0), inertia=(1, 1, 1))
+    crank = m.link("crank", length=0.1, mass=1.0)
+    m.revolute("O", m.ground, crank)
+    for k in range(3):
+        bar = m.link(f"bar{k}", length=0.5, mass=0.1)
+        m.spherical(f"A{k}", crank.tip if k == 0 else m.ground.at(k, 0, 0), bar)
+        m.spherical(f"B{k}", bar.tip, plate.at(0.1 * k, 0.0))
+    return m, {"O": polynomial(0, 1)}, {}
+
+
+def all_driven():
+    m, a = arm()
+    b = m.link("b", length=1.0, mass=1.0)
+    m.cylindrical("A", m.ground, a, axis=Z)
+    m.cylindrical("B", a.tip, b, axis=(1, 0, 0))
+    m.planar("C", m.ground.at(1, 1, 1), b, axis=(0, 1, 0))
+    driven = ("A:slide", "B:slide", "C:slide_1")
+    return m, {name: polynomial(0, 1) for name in driven}, {}
+
+
+def spatial_crank(far, **rod):
+    """A crank and a slider joined by a rod on two balls, which may spin or not reach."""
+    m, crank = arm(length=0.1)
+    rod = m.link("rod", length=0.3, mass=1.0, **rod)
+    m.revolute("O", m.ground, crank, axis=(0, 1, 0))
+    m.spherical("A", crank.tip, rod)
+    m.spherical("B", rod.tip, slider := m.point_mass("slider", 1.0))
+    m.slot("G", m.ground.at(0, far, 0), slider, axis=(1, 0, 0))
+    return m, {"O": polynomial(0, 1)}, {"G:slide": 0.3}
+
+
+@pytest.mark.parametrize(
+    ("made", "error", "says"),
+    [
+        (
+            islands,
+            DeclarationError,
+            "'b', 'c' are not connected to the ground by any chain of joints",
+        ),
+        (
+            lambda: cylinder({"J": polynomial(0, 1)}),
+            LagrangeCasadiError,
+            "motion of joint 'J': expected 2 laws, of J:slide, J:turn",
+        ),
+        (
+            lambda: cylinder({"J:twist": polynomial(0, 1)}),
+            LagrangeCasadiError,
+            "unknown joint, path or body in motion 'J:twist'",
+        ),
+        (
+            lambda: cylinder({"a": [polynomial(0)] * 3}),
+            LagrangeCasadiError,
+            "motion of 'a': in space a point or a pose has no motion of its own",
+        ),
+        (
+            on_bars,
+            DeclarationError,
+            r"'a' is connected by two-force links only; declare a free\(\) joint",
+        ),
+        (
+            all_driven,
+            DeclarationError,
+            "'B': every joint of its loop has a given motion, so A:turn, C:slide_2, C:turn, B:turn",
+        ),
+        (
+            lambda: spatial_crank(0.0, centre=(0, 0, 0), inertia=(1, 1, 1)),
+            MobilityError,
+            r"has 2 degree\(s\) of freedom",
+        ),
+        (
+            lambda: spatial_crank(2.0),
+            AssemblyError,
+            "the loop closed by two-force link 'rod' cannot be closed at the start of the motion",
+        ),
+    ],
+)
+def test_what_a_mechanism_refuses_as_a_whole(made, error, says):
+    m, laws, posture = made()
+    with pytest.raises(error, match=says):
+        derive(Scene(m, laws, posture=posture))

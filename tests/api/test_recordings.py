@@ -1,5 +1,5 @@
-"""Motions from files of controllers: columns, units, smoothing, cycles, and what is refused of
-them.
+"""Motions from files of controllers, and samples that parameters scale: columns, units, smoothing,
+cycles, and what is refused of them.
 """
 
 import math
@@ -8,10 +8,20 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, curve, evaluate
+from lagrange_casadi import Mechanism, Scene, curve, evaluate, prepare, refine
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError, UnknownNameError
-from lagrange_casadi.motion import dwell, move, moves, read_motion, read_samples, samples
+from lagrange_casadi.motion import (
+    dwell,
+    expression,
+    harmonic,
+    move,
+    moves,
+    polynomial,
+    read_motion,
+    read_samples,
+    samples,
+)
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -40,49 +50,6 @@ def write(path, heads, rows, delimiter=",", comma=False):
     text = "\n".join([*([delimiter.join(heads)] if heads else []), *lines])
     path.write_text(text.replace(".", ",") if comma else text)
     return path
-
-
-@pytest.mark.parametrize(
-    ("heads", "delimiter", "comma", "options"),
-    [
-        (["t", "q", "p"], ",", False, {"value": "p", "time": "t"}),
-        (["t", "q", "p"], ";", True, {"value": 3}),
-        (["t", "q", "p"], "\t", False, {"value": "p", "time": 1}),
-        ([], ";", False, {"value": 3}),
-    ],
-)
-def test_columns_are_read_in_their_units(here, heads, delimiter, comma, options):
-    t, angle = np.linspace(0.0, 900.0, 91), 90.0 * np.sin(np.linspace(0.0, 5.0, 91))
-    path = write(
-        here / "axis.csv", heads, np.column_stack([t, 7.0 + 0 * t, angle]), delimiter, comma
-    )
-    law = read_samples(path, unit="deg", time_unit="ms", **options)
-    expected = samples(t / 1000.0, np.radians(np.round(angle, 13)))
-    at = np.linspace(0.0, 0.9, 37)
-    theirs = ca.SX.sym("t")
-    value = ca.Function("samples", [theirs], [expected.graph(theirs)])(at[None]).full().ravel()
-    assert derivatives(law, at)[0] == pytest.approx(value, abs=1e-12)
-
-
-def test_parameters_scale_shift_and_stretch(here):
-    t = np.linspace(0.0, 1.0, 60)
-    path = write(here / "axis.csv", ["t", "x"], np.column_stack([t, 50.0 * t**3]))
-    m = Mechanism("slide")
-    ratio, offset, stretch = (
-        m.parameter("ratio", 1.0),
-        m.parameter("offset", 0.0, "m"),
-        m.parameter("stretch", 1.0),
-    )
-    m.prismatic("X", m.ground, m.point_mass("p", 2.0), axis=(1, 0))
-    law = read_samples(path, unit="mm", ratio=ratio, offset=offset, stretch=stretch)
-    scene = Scene(m, {"X": law}, t=(0, 1, 11))
-    found = evaluate(scene, parameters={"ratio": 3.0, "offset": 0.2, "stretch": 2.0}, t=(0, 2, 21))
-    assert found.motion("X").value == pytest.approx(0.2 + 0.15 * (found.t / 2) ** 3, abs=1e-11)
-    assert found.effort("X") == pytest.approx(2.0 * 0.15 * 6 * found.t / 8, abs=1e-8)
-    with pytest.raises(
-        DeclarationError, match="the argument of its curve is outside the curve's range"
-    ):
-        evaluate(scene, t=(0, 2, 21))
 
 
 @pytest.mark.parametrize("smoothing", [0.001, "estimated"])
@@ -143,107 +110,6 @@ def test_a_cycle_goes_on_smoothly_over_its_seam(here):
 RAMP = [[0.1 * k, 1.0 * k * k] for k in range(8)]
 
 
-@pytest.mark.parametrize(
-    ("rows", "options", "error", "says"),
-    [
-        (RAMP, {"value": "w"}, UnknownNameError, r"axis\.csv: unknown column 'w'; valid: t, q"),
-        (
-            RAMP,
-            {"value": 3},
-            DeclarationError,
-            r"axis\.csv: column 3 is not one of its 2 columns, numbered from 1",
-        ),
-        (
-            RAMP,
-            {"unit": "grad"},
-            UnknownNameError,
-            r"axis\.csv: unknown unit 'grad'.*; valid: rad, deg",
-        ),
-        (
-            RAMP,
-            {"time_unit": "min"},
-            UnknownNameError,
-            r"axis\.csv: unknown time unit 'min'; valid: s, ms, us",
-        ),
-        (
-            RAMP,
-            {"periodic": True},
-            DeclarationError,
-            r"the last value of a periodic motion must be the first, but it is off by 49",
-        ),
-        (
-            RAMP,
-            {"period": 0.5},
-            DeclarationError,
-            r"its rows last 0\.7 s, but the period is 0\.5 s; expected rows of exactly one period",
-        ),
-        (
-            RAMP,
-            {"advance": 1.0},
-            DeclarationError,
-            "advance= needs periodic=True",
-        ),
-        (
-            RAMP,
-            {"smoothing": -1.0},
-            DeclarationError,
-            r"expected the noise \[rad\], a number of at least 0",
-        ),
-        (RAMP, {"smoothing": "auto"}, DeclarationError, "or 'estimated', got 'auto'"),
-        (
-            RAMP,
-            {"smoothing": 1e3},
-            DeclarationError,
-            r"axis\.csv: curve: a smoothing of 1000 leaves only a straight line",
-        ),
-        (
-            RAMP,
-            {"points": 3},
-            DeclarationError,
-            "points: expected a whole number of at least 5, got 3",
-        ),
-        (RAMP[:4], {}, DeclarationError, "expected at least 5 rows of numbers, got 4"),
-        (
-            [*RAMP, [0.7, 1.0]],
-            {},
-            DeclarationError,
-            r"axis\.csv, line 10: times must increase, but 0\.7000000000000 follows 0\.7",
-        ),
-        (
-            [*RAMP, [0.9, math.nan]],
-            {},
-            DeclarationError,
-            r"axis\.csv, line 10: expected a finite number, got 'nan'",
-        ),
-    ],
-)
-def test_misuse_is_named(here, rows, options, error, says):
-    with pytest.raises(error, match=says):
-        read_samples(write(here / "axis.csv", ["t", "q"], rows), **options)
-
-
-@pytest.mark.parametrize("cell", ["nan", "-inf", "1_0", "\u0663", "1.2.3"])
-def test_a_first_row_that_is_no_head_is_not_passed_over(here, cell):
-    with pytest.raises(DeclarationError, match=r"axis\.csv, line 1: expected a finite number, got"):
-        read_samples(write(here / "axis.csv", ["0", cell], RAMP))
-    assert read_samples(write(here / "axis.csv", ["", "0"], RAMP), value=2).description.startswith(
-        f"{len(RAMP)} samples of "
-    )
-
-
-def test_files_that_cannot_be_read(here):
-    with pytest.raises(PathError, match=r"none\.csv: no such file"):
-        read_samples(here / "none.csv")
-    (here / "empty.csv").write_text("# nothing\n\n")
-    with pytest.raises(DeclarationError, match=r"empty\.csv: it has no rows"):
-        read_samples(here / "empty.csv")
-    (here / "short.csv").write_text("t;q\n0;1\n1;2\n# why\n2;\n")
-    with pytest.raises(
-        DeclarationError, match=r"short\.csv, line 5: expected a finite number, got ''"
-    ):
-        read_samples(here / "short.csv")
-
-
 def same(one, other, at):
     """Two laws have the same values, rates and accelerations."""
     for mine, theirs in zip(derivatives(one, at), derivatives(other, at), strict=True):
@@ -251,7 +117,11 @@ def same(one, other, at):
 
 
 TIMES = np.linspace(0.0, 1.2, 61)
+
+
 KNEE, SLIDE, HIP = 40.0 * np.sin(5.0 * TIMES), 0.2 * np.cos(3.0 * TIMES), 20.0 * TIMES**2
+
+
 AT = np.linspace(0.0, 1.2, 29)
 
 
@@ -282,41 +152,6 @@ def test_several_joints_are_read_with_the_units_of_the_file(here, layout):
     same(chosen["right"], curve(TIMES, 2.0 * math.tau * HIP), AT)
 
 
-def test_each_column_is_what_read_samples_makes_of_it(here):
-    rows = np.column_stack([TIMES, KNEE + 0.01 * np.sin(900.0 * TIMES), SLIDE])
-    file = write(here / "two.csv", ["t", "a", "b"], rows)
-    options = {"points": 31, "stretch": 1.5}
-    found = read_motion(
-        file, ["b", "a"], unit={"a": "deg", "b": "m"}, smoothing={"a": 0.01}, **options
-    )
-    assert list(found) == ["b", "a"]
-    one = read_samples(file, value="a", unit="deg", smoothing=0.01, **options)
-    other = read_samples(file, value="b", unit="m", **options)
-    same(found["a"], one, 1.5 * AT)
-    same(found["b"], other, 1.5 * AT)
-
-
-def test_counts_of_an_encoder_are_turns(here):
-    counts = np.round(4096 / 360.0 * KNEE)
-    file = write(here / "encoder.csv", ["t", "motor [counts]"], np.column_stack([TIMES, counts]))
-    (law,) = read_motion(file, counts_per_turn=4096, ratio=0.1).values()
-    same(law, curve(TIMES, 0.1 * math.tau / 4096 * counts), AT)
-
-
-def test_encoders_may_have_other_counts(here):
-    rows = np.column_stack([TIMES, np.round(4096 / 360 * KNEE), np.round(1000 / 360 * HIP)])
-    file = write(here / "encoders.csv", ["t", "a [counts]", "b [counts]"], rows)
-    turns = {"a": 4096, "b": 1000}
-    found = read_motion(file, counts_per_turn=turns)
-    one = read_samples(file, value="b", counts_per_turn=1000)
-    for law, place in ((found["a"], 1), (found["b"], 2), (one, 2)):
-        same(law, curve(TIMES, math.tau / (4096, 1000)[place - 1] * rows[:, place]), AT)
-    with pytest.raises(DeclarationError, match="column b is in counts; expected counts_per_turn="):
-        read_motion(file, counts_per_turn={"a": 4096})
-    with pytest.raises(DeclarationError, match="column a is in deg; expected counts, of which"):
-        read_motion(file, unit={"a": "deg"}, counts_per_turn=turns)
-
-
 def test_units_of_a_file_are_those_of_a_motion_too(here):
     """In the head, whose column is called with it or without it, or in a row below."""
     file = write(here / "axis.csv", ["t [ms]", "q [deg]"], np.column_stack([1e3 * TIMES, KNEE]))
@@ -329,70 +164,191 @@ def test_units_of_a_file_are_those_of_a_motion_too(here):
         read_samples(write(file, ["t", "q", "q"], np.column_stack([TIMES, KNEE, KNEE])), value="q")
 
 
-def test_a_scene_takes_motions_of_several_joints(here):
-    file = write(here / "arm.csv", ["t", "A [deg]", "B"], np.column_stack([TIMES, KNEE, SLIDE]))
-    m = Mechanism("arm")
-    upper, lower = m.link("upper", length=0.4, mass=1.0), m.link("lower", length=0.3, mass=1.0)
-    m.revolute("A", m.ground, upper)
-    m.revolute("B", upper.tip, lower)
-    found = evaluate(Scene(m, read_motion(file), t=(0, 1.2, 61)))
-    assert found.motion("A").value == pytest.approx(np.radians(KNEE), abs=1e-12)
-    assert found.motion("B").value == pytest.approx(SLIDE, abs=1e-12)
+def test_counts_of_encoders_are_turns(here):
+    """And a column is what read_samples makes of it."""
+    rows = np.column_stack([TIMES, np.round(4096 / 360 * KNEE), np.round(1000 / 360 * HIP)])
+    file = write(here / "encoders.csv", ["t", "a [counts]", "b [counts]"], rows)
+    turns, options = {"a": 4096, "b": 1000}, {"ratio": 0.1, "stretch": 1.5}
+    found = read_motion(file, counts_per_turn=turns, **options)
+    one = read_samples(file, value="b", counts_per_turn=1000, **options)
+    for law, place in ((found["a"], 1), (found["b"], 2), (one, 2)):
+        counts = (0, 4096, 1000)[place]
+        same(law, curve(1.5 * TIMES, 0.1 * math.tau / counts * rows[:, place]), 1.5 * AT)
 
 
-def test_a_length_does_not_turn_a_joint(here):
-    file = write(here / "arm.csv", ["t", "A [mm]"], np.column_stack([TIMES, SLIDE]))
-    m = Mechanism("arm")
-    m.revolute("A", m.ground, m.link("upper", length=0.4, mass=1.0))
-    with pytest.raises(
-        DeclarationError, match="motion of 'A': the law is in m, but the coordinate is"
-    ):
-        evaluate(Scene(m, read_motion(file), t=(0, 1.2, 61)))
+RAMP_ROWS = "\n".join(f"{t},{q}" for t, q in RAMP)
 
 
-@pytest.mark.parametrize(
-    ("heads", "options", "says"),
-    [
+REFUSED = {
+    "column": ("t,q", RAMP_ROWS, {"value": "w"}, r"unknown column 'w'; valid: t, q"),
+    "number": ("t,q", RAMP_ROWS, {"value": 3}, "column 3 is not one of its 2 columns, numbered"),
+    "two columns": (
+        "t,q,q", "\n".join(f"{t},{q},{q}" for t, q in RAMP), {"value": "q"},
+        "expected one column 'q', got 2",
+    ),
+    "unit": ("t,q", RAMP_ROWS, {"unit": "grad"}, "unknown unit 'grad'.*; valid: rad, deg"),
+    "unit of the file": ("t,q [yd]", RAMP_ROWS, {}, "unknown unit 'yd'; valid: .*counts"),
+    "time unit": ("t,q", RAMP_ROWS, {"time_unit": "min"}, "unknown time unit 'min'; valid: s"),
+    "time of the file": ("t [h],q", RAMP_ROWS, {}, "unknown time unit 'h'; valid: s, ms, us"),
+    "end": (
+        "t,q", RAMP_ROWS, {"periodic": True},
+        "the last value of a periodic motion must be the first, but it is off by 49",
+    ),
+    "period": (
+        "t,q", RAMP_ROWS, {"period": 0.5},
+        r"its rows last 0\.7 s, but the period is 0\.5 s; expected rows of exactly one period",
+    ),
+    "advance": ("t,q", RAMP_ROWS, {"advance": 1.0}, "advance= needs periodic=True"),
+    "noise": (
+        "t,q", RAMP_ROWS, {"smoothing": -1.0}, r"expected the noise \[rad\], a number of at least 0"
+    ),
+    "auto": ("t,q", RAMP_ROWS, {"smoothing": "auto"}, "or 'estimated', got 'auto'"),
+    "straight": ("t,q", RAMP_ROWS, {"smoothing": 1e3}, "a smoothing of 1000 leaves only a"),
+    "points": ("t,q", RAMP_ROWS, {"points": 3}, "points: expected a whole number of at least 5"),
+    "rows": ("t,q", RAMP_ROWS[: RAMP_ROWS.index("0.4")], {}, "expected at least 5 rows"),
+    "back": ("t,q", RAMP_ROWS + "\n0.7,1", {}, "line 10: times must increase, but 0.7 follows 0.7"),
+    "nan": ("t,q", RAMP_ROWS + "\n0.9,nan", {}, "line 10: expected a finite number, got 'nan'"),
+    **{
+        f"head {cell}": (f"0,{cell}", RAMP_ROWS, {}, "line 1: expected a finite number, got")
+        for cell in ("nan", "-inf", "1_0", "\u0663", "1.2.3")
+    },
+    "empty": ("# nothing", "", {}, "it has no rows"),
+    "short": ("t;q", "0;1\n1;2\n# why\n2;", {}, "line 5: expected a finite number, got ''"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_misuse_is_named(here, what):
+    head, rows, options, says = REFUSED[what]
+    (here / "axis.csv").write_text(f"{head}\n{rows}\n")
+    with pytest.raises((DeclarationError, UnknownNameError), match=rf"axis\.csv.*{says}|^{says}"):
+        read_samples(here / "axis.csv", **options)
+
+
+def test_misuse_of_motions_is_named(here):
+    rows = np.column_stack([TIMES, KNEE])
+    for heads, options, says in (
         (["t", "a [deg]"], {"columns": ["b"]}, "two.csv: unknown column 'b'; valid: t, a"),
-        (["t", "a [yd]"], {}, "two.csv: unknown unit 'yd'; valid: .*counts"),
-        (["t [h]", "a"], {}, "two.csv: unknown time unit 'h'; valid: s, ms, us"),
-        (["t", "a [counts]"], {}, r"two.csv: column a is in counts; expected counts_per_turn="),
-        (["t", "a"], {"unit": {"b": "deg"}}, "two.csv: unknown coordinate of unit= 'b'; valid: a"),
+        (["t", "a"], {"unit": {"b": "deg"}}, "unknown coordinate of unit= 'b'; valid: a"),
+        (["t", "a [counts]"], {}, "two.csv: column a is in counts; expected counts_per_turn="),
+        (
+            ["t", "a [counts]"],
+            {"unit": {"a": "deg"}, "counts_per_turn": {"a": 9}},
+            "column a is in deg; expected counts, of which",
+        ),
         (["t", "a"], {"columns": []}, "two.csv: columns= expected at least one coordinate"),
         ([], {}, "two.csv: the file has no column heads; name the columns with columns="),
-        (["t", "a"], {"smoothing": {"a": -1.0}}, "two.csv, column a: smoothing expected the noise"),
-    ],
-)
-def test_misuse_of_several_columns_is_named(here, heads, options, says):
-    with pytest.raises((DeclarationError, UnknownNameError), match=says):
-        read_motion(write(here / "two.csv", heads, np.column_stack([TIMES, KNEE])), **options)
+        (["t", "a"], {"smoothing": {"a": -1.0}}, "column a: smoothing expected the noise"),
+    ):
+        with pytest.raises((DeclarationError, UnknownNameError), match=says):
+            read_motion(write(here / "two.csv", heads, rows), **options)
+    for name, error, says in (
+        ("walk.sto", DeclarationError, "expected a header that ends in the line 'endhead"),
+        ("none.mot", PathError, r"none\.mot"),
+    ):
+        if name == "walk.sto":
+            write(here / name, ["time", "knee"], rows)
+        with pytest.raises(error, match=says):
+            read_motion(here / name)
 
 
-def test_a_motion_of_opensim_without_its_header_is_refused(here):
-    file = write(here / "walk.sto", ["time", "knee"], np.column_stack([TIMES, KNEE]))
-    with pytest.raises(DeclarationError, match="expected a header that ends in the line 'endhead"):
-        read_motion(file)
-    with pytest.raises(PathError, match=r"none\.mot"):
-        read_motion(here / "none.mot")
+def geared(law, **keywords):
+    """An arm behind a gear, whose motor moves by samples: ``law(ratio, lead, duration)``."""
+    m = Mechanism("geared")
+    told = (
+        m.parameter("ratio", 2.0),
+        m.parameter("lead", 0.0),
+        m.parameter("duration", 1.0, low=0.1),
+    )
+    m.revolute("J", m.ground, m.link("arm", length=0.5, mass=1.0))
+    return Scene(m, {"J": law(*told)}, **{"t": (0, 1, 57)} | keywords)
+
+
+POINTS = np.linspace(0.0, 1.0, 14)
+
+
+ANGLES = 0.4 * np.sin(5 * POINTS) + POINTS**2
+
+
+SCALED = {
+    "vector": lambda r, a, T: samples(POINTS, r * ANGLES),
+    "divided": lambda r, a, T: samples(list(POINTS), [angle / r + a for angle in ANGLES]),
+    "later": lambda r, a, T: samples([T * t for t in POINTS], [-q * r - a for q in ANGLES]),
+    "times": lambda r, a, T: samples(T * POINTS, ANGLES),
+    "polynomial": lambda r, a, T: polynomial(a, r / T, r * a),
+    "harmonic": lambda r, a, T: harmonic(a, r, 1 / T, r * a),
+    "expression": lambda r, a, T: expression(lambda t: r * ca.sin(t / T) + a),
+}
+
+
+@pytest.mark.parametrize("name", SCALED)
+def test_laws_scaled_by_parameters_are_those_of_scaled_numbers(name):
+    """Designs too, whose peaks need the third derivative."""
+    scene, rows = geared(SCALED[name]), [[2.0, 0.0, 1.0], [-0.7, 0.3, 1.5], [3.1, -1.0, 2.0]]
+    prepared = prepare(scene, wanted=["effort"])
+    designs = prepared.designs(rows)
+    for row, value in zip(rows, designs.value[:, 0], strict=True):
+        values = dict(zip(("ratio", "lead", "duration"), row, strict=True))
+        found = evaluate(scene, parameters=values)
+        numbers = evaluate(geared(lambda *_, row=row: SCALED[name](*row)))
+        assert found.certified
+        for quantity in numbers.names():
+            size = np.abs(numbers.array(quantity)).max() or 1.0
+            np.testing.assert_allclose(
+                found.array(quantity), numbers.array(quantity), rtol=0, atol=1e-10 * size
+            )
+        (peak,) = refine(scene, found, ["effort:J"])
+        assert abs(value - peak.value) <= 1e-9 * abs(peak.value)
+
+
+def test_scaled_samples_end_and_are_scaled_together():
+    says = r"motion of joint 'J': .* outside the curve's range at t = 0\.5"
+    with pytest.raises(DeclarationError, match=says):
+        evaluate(geared(SCALED["times"]), parameters={"duration": 0.5})
+    p, q = ca.SX.sym("p"), ca.SX.sym("q")
+    for law, says in (
+        (
+            lambda: samples([0, 1, 2, 3], [0, p, q, p * p]),
+            "values: parameters may only scale",
+        ),
+        (lambda: samples([0, p, 0.5 * p, 2 * p], [0, 1, 2, 3]), "places must increase"),
+        (
+            lambda: evaluate(geared(lambda *_: samples(POINTS, p * ANGLES))),
+            "depends on 'p', not",
+        ),
+    ):
+        with pytest.raises(DeclarationError, match=says):
+            law()
+
+
+def test_a_scene_moves_by_a_recording_scaled_by_parameters(here, capsys):
+    """A length does not turn a joint; info tells what a motion is from."""
+    t = np.linspace(0.0, 1.0, 60)
+    path = write(here / "axis.csv", ["t", "X [mm]"], np.column_stack([t, 50.0 * t**3]))
+    m = Mechanism("slide")
+    names = ("ratio", "offset", "stretch")
+    given = {name: m.parameter(name, float(name != "offset")) for name in names}
+    m.prismatic("X", m.ground, m.point_mass("p", 2.0), axis=(1, 0))
+    scene = Scene(m, {"X": read_samples(path, **given)}, t=(0, 1, 11))
+    found = evaluate(scene, parameters={"ratio": 3.0, "offset": 0.2, "stretch": 2.0}, t=(0, 2, 21))
+    assert found.motion("X").value == pytest.approx(0.2 + 0.15 * (found.t / 2) ** 3, abs=1e-11)
+    assert found.effort("X") == pytest.approx(2.0 * 0.15 * 6 * found.t / 8, abs=1e-8)
+    arm = Mechanism("arm")
+    arm.revolute("X", arm.ground, arm.link("upper", length=0.4, mass=1.0))
+    says = "motion of 'X': the law is in m, but the coordinate is"
+    with pytest.raises(DeclarationError, match=says):
+        evaluate(Scene(arm, read_motion(path), t=(0, 1, 11)))
+    (here / "arm.py").write_text(CASE)
+    assert main(["info", "arm.py"]) == 0
+    assert "  drive J: 60 samples of axis.csv from 0 to 1 s, at most 0 " in capsys.readouterr().out
 
 
 CASE = """
-from pathlib import Path
 from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.motion import read_samples
 
 def scene():
     m = Mechanism("arm")
-    m.revolute("J", m.ground, m.link("a", length=0.6, mass=2.0))
-    return Scene(m, {"J": read_samples(Path(__file__).parent / "axis.csv", unit="deg")}, t=(0, 0.7, 11))
-"""  # noqa: E501
-
-
-def test_info_tells_what_a_motion_is_from(here, capsys):
-    write(here / "axis.csv", ["t", "q"], RAMP)
-    (here / "arm.py").write_text(CASE)
-    assert main(["info", "arm.py"]) == 0
-    assert (
-        "  drive J: 8 samples of axis.csv from 0 to 0.7 s, at most 0 deg from them; from 0 rad"
-        in capsys.readouterr().out
-    )
+    m.prismatic("J", m.ground, m.link("a", length=0.6, mass=2.0), axis=(1, 0))
+    return Scene(m, {"J": read_samples("axis.csv")}, t=(0, 0.7, 11))
+"""

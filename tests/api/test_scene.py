@@ -1,23 +1,37 @@
-"""Scenes: only what is wanted, and what is refused."""
+"""Scenes: only what is wanted is derived; postures choose how loops are closed; what is refused."""
+
+import ast
+import math
+import pickle
+import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from internals import outputs
 from mechanisms import four_bar, slider_crank
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    compile_scene,
+    derive,
+    evaluate,
+    export,
+    load_case,
+    refine,
+    sweep,
+)
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import (
+    AssemblyError,
+    DeclarationError,
+    ParameterError,
+    PostureError,
+    UnknownNameError,
+)
 from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
-
-
-def test_outputs():
-    assert outputs(slider_crank().mechanism) == [
-        "all", "effort", "motion", "reaction:O", "reaction:A", "reaction:B", "reaction:guide",
-            "section:crank", "section:rod",
-        "sensitivity:r", "sensitivity:l", "sensitivity:m1", "sensitivity:m2", "sensitivity:m3",
-    ]  # fmt: skip
 
 
 def groups(program):
@@ -25,117 +39,41 @@ def groups(program):
 
 
 @pytest.mark.parametrize(
-    ("wanted", "expected"),
+    ("wanted", "expected", "same"),
     [
-        (["effort"], {"effort"}),
-        (["motion"], {"motion", "pose"}),
-        (["reaction:guide"], {"reaction"}),
-        (["section:rod"], {"section"}),
-        (["effort", "section:crank"], {"effort", "section"}),
-    ],
-)
-def test_a_graph_holds_what_is_wanted(wanted, expected):
-    assert groups(derive(slider_crank(), wanted)) == expected
-
-
-@pytest.mark.parametrize(
-    ("wanted", "same"),
-    [
-        (["section"], ["section:crank", "section:rod"]),
+        (["effort"], {"effort"}, ["effort"]),
+        (["motion"], {"motion", "pose"}, ["motion"]),
+        (["reaction:guide"], {"reaction"}, ["reaction:guide"]),
+        (["section"], {"section"}, ["section:rod", "section:crank"]),
         (
-            ["reaction", "effort"],
-            ["effort", "reaction:O", "reaction:A", "reaction:B", "reaction:guide"],
+            ["effort", "reaction"],
+            {"effort", "reaction"},
+            ["reaction:O", "reaction:A", "effort", "reaction:B", "reaction:guide"],
         ),
-        (["section", "section:rod"], ["section:rod", "section:crank"]),
+        (["section:rod", "effort"], {"section", "effort"}, ["effort", "section:rod"]),
     ],
 )
-def test_a_kind_is_all_of_that_kind(wanted, same):
-    scene = slider_crank()
-    assert derive(scene, wanted).names == derive(scene, same).names
-
-
-def test_a_kind_of_which_there_is_none_is_refused():
-    with pytest.raises(
-        DeclarationError,
-        match="output 'load': not an output of mechanism 'slider_crank'; valid: all, effort,"
-        " motion",
-    ):
-        derive(slider_crank(), ["effort", "load"])
-    with pytest.raises(
-        DeclarationError,
-        match="not an output of mechanism 'slider_crank', because no link has a beam=; valid: all",
-    ):
-        derive(slider_crank(), ["safety"])
-    with pytest.raises(
-        UnknownNameError, match=r"unknown output 'sections' \(did you mean 'section'\?\)"
-    ):
-        derive(slider_crank(), ["sections"])
+def test_a_graph_holds_what_is_wanted_whatever_the_order(wanted, expected, same):
+    """A kind alone is all of that kind."""
+    program = derive(slider_crank(), wanted)
+    assert groups(program) == expected
+    assert program.columns == derive(slider_crank(), same).columns
 
 
 def test_what_is_not_wanted_costs_nothing():
-    """The effort alone is a graph without a mobility: as many instructions whether or not the links
-    could be cut.
-    """
     scene = four_bar()
-    effort, everything = derive(scene, ["effort"]), derive(scene, ["all"])
-    section = derive(scene, ["effort", "section:b"])
-    count = [sum(program.instructions.values()) for program in (effort, section, everything)]
-    assert count == sorted(count)
-    assert count[0] < 0.7 * count[2]
-    motion = derive(scene, ["motion"])
-    assert sum(motion.instructions.values()) < count[2]
-
-
-def test_instructions_do_not_creep_back():
-    """The paper's mechanism, beside its 42 columns, 8 inputs and few constants: everything, and the
-    effort alone.
-    """
-    counts = [
-        derive(slider_crank(), wanted).instructions["instant"] for wanted in (["all"], ["effort"])
-    ]
-    assert counts[0] <= 183
-    assert counts[1] <= 84
-
-
-def test_the_law_of_a_driven_link_is_its_motion():
-    """Material turns with its link: n2 is the rate squared and f2 less the angular acceleration, to
-    the last bit.
-    """
-    solution = evaluate(slider_crank(), wanted=["motion", "section:crank"])
-    crank = solution.motion("O")
-    law = {name: solution.array(f"section:crank:law:{name}") for name in ("n2", "f2")}
-    np.testing.assert_array_equal(law["n2"], crank.rate**2)
-    np.testing.assert_array_equal(law["f2"], -crank.acceleration)
-
-
-def test_a_single_link_gives_each_output_alone():
-    m = Mechanism("m")
-    m.revolute("J", m.ground, m.link("a", length=1, mass=3))
-    scene = Scene(m, {"J": polynomial(0.3, 1.0)}, t=(0, 1, 3))
-    whole = evaluate(scene)
-    for wanted in ("effort", "reaction:J", "section:a", "motion"):
-        alone = evaluate(scene, wanted=[wanted])
-        for name in alone.series:
-            np.testing.assert_allclose(
-                alone.series[name], whole.series[name], rtol=1e-14, err_msg=name
-            )
-
-
-def test_the_order_of_wanting_does_not_matter():
-    one, two = (
-        derive(slider_crank(), wanted)
-        for wanted in (["section:rod", "effort"], ["effort", "section:rod"])
+    asked = ["effort"], ["effort", "section:b"], ["all"], ["motion"]
+    effort, section, everything, motion = (
+        sum(derive(scene, wanted).instructions.values()) for wanted in asked
     )
-    assert one.columns == two.columns
+    assert effort < 0.7 * everything
+    assert max(effort, motion) < section < everything
 
 
 def test_loops_are_closed_alike_whatever_is_wanted():
-    """A guide carried by a link that is cut, at the cut side: the closed
-    form does not see the cut.
-    """
+    """A guide carried by a link that is cut, at the cut side: the closed form sees no cut."""
     m = Mechanism("m")
-    a = m.link("a", length=0.3, mass=1.0)
-    b = m.link("b", length=1.0, mass=1.0)
+    a, b = m.link("a", length=0.3, mass=1.0), m.link("b", length=1.0, mass=1.0)
     p = m.point_mass("p", 1.0)
     m.revolute("O", m.ground, a)
     m.revolute("Q", m.ground.at(0, -0.5), b)
@@ -143,25 +81,32 @@ def test_loops_are_closed_alike_whatever_is_wanted():
     m.prismatic("P", b.tip, p, axis=(1, 0))
     scene = Scene(m, {"O": polynomial(0.3, 1.0)}, posture={"b": 1.5}, t=(0, 1, 3))
     for wanted in (["effort"], ["section:b"], ["all"]):
-        program = derive(scene, wanted)
-        assert program.newton is None
-        assert "_closure:P" in program.names
+        assert derive(scene, wanted).newton is None
+
+
+VALID = "valid: all, effort, motion, reaction:O, reaction:A, reaction:B, reaction:guide,"
+
+
+VALID += " section:crank, section:rod, sensitivity:r"
 
 
 @pytest.mark.parametrize(
     ("wanted", "error", "says"),
     [
-        (
-            ["torque"],
-            UnknownNameError,
-            "unknown output 'torque'; valid: all, effort, motion, reaction:O",
-        ),
+        (["torque"], UnknownNameError, f"unknown output 'torque'; {VALID}"),
+        (["sections"], UnknownNameError, r"unknown output 'sections' \(did you mean 'section'\?\)"),
+        (["reaction:X"], UnknownNameError, "unknown output 'reaction:X'"),
         (
             ["section:slider"],
             DeclarationError,
-            "'slider' is not a link and has no sections; links: crank, rod",
+            "'slider' is not a link and has no sections; links: c",
         ),
-        (["reaction:X"], UnknownNameError, "unknown output 'reaction:X'"),
+        (["effort", "load"], DeclarationError, f"'load': not an output of mechanism .*; {VALID}"),
+        (
+            ["safety"],
+            DeclarationError,
+            "not an output of .*, because no link has a beam=; valid: all",
+        ),
         ([], DeclarationError, "no output wanted"),
     ],
 )
@@ -172,12 +117,9 @@ def test_outputs_that_cannot_be(wanted, error, says):
 
 def test_a_link_known_by_its_inertia_has_no_section():
     m = Mechanism("m")
-    a = m.link("a", length=1, mass=1, centre=(0.4, 0.1), inertia=0.2)
-    m.revolute("O", m.ground, a)
-    assert "section:a" not in outputs(m)
-    with pytest.raises(
-        DeclarationError, match="link 'a' has sections only if its mass is given along it"
-    ):
+    m.revolute("O", m.ground, m.link("a", length=1, mass=1, centre=(0.4, 0.1), inertia=0.2))
+    says = "link 'a' has sections only if its mass is given along it"
+    with pytest.raises(DeclarationError, match=says):
         Scene(m, {"O": polynomial(0)}, ["section:a"])
 
 
@@ -212,50 +154,263 @@ def test_misuse_is_named(keywords, says):
         Scene(base.mechanism, **({"motion": base.motion, "posture": {"rod": 0.0}} | keywords))
 
 
-def test_grids_include_both_ends():
-    solution = evaluate(slider_crank(), t=(0.0, 2.0, 5), xi=(0.0, 1.0, 3))
-    assert solution.t.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
-    assert solution.xi.tolist() == [0.0, 0.5, 1.0]
-    assert evaluate(slider_crank(), t=(0.3, 0.3, 1)).t.tolist() == [0.3]
-
-
-def test_grids_are_what_their_decimals_say():
+def test_grids_are_what_their_decimals_say_with_both_ends():
     solution = evaluate(slider_crank(), t=(0.0, 0.7, 8), xi=(0.0, 1.0, 101))
     assert solution.t.tolist() == [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]
     assert solution.xi.tolist() == [float(f"{k}e-2") for k in range(101)]
+    assert evaluate(slider_crank(), t=(0.3, 0.3, 1)).t.tolist() == [0.3]
 
 
+def moved(scene, **changes):
+    """A scene at its start."""
+    at = replace(scene, t=(scene.t[0], scene.t[0], 1), wanted=("motion",), **changes)
+    return evaluate(at)
+
+
+def same(one, other):
+    """Two solutions have their links at the same places; a turn more or less is none."""
+    for name in one.description["bodies"]:
+        a, b = one.pose(name), other.pose(name)
+        turn = 0.0 if a.angle is None else math.remainder(a.angle[0] - b.angle[0], math.tau)
+        if max(abs(a.x[0] - b.x[0]), abs(a.y[0] - b.y[0]), abs(turn)) > 1e-9:
+            return False
+    return True
+
+
+def pasted(text):
+    """The postures that a text has."""
+    return [ast.literal_eval(posture) for posture in re.findall(r"posture=(\{[^}]*\})", text)]
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize("joint", ["A", "B", "C"])
+@pytest.mark.parametrize("rocker", [1.5, -1.5])
+def test_a_joints_coordinate_chooses_the_branch(joint, rocker):
+    """Any joint of the loop: on the tree, closing it, at the ground; rough to 20 degrees, and in
+    degrees.
+    """
+    scene = four_bar(rocker=rocker)
+    solution = moved(scene)
+    told = float(solution.motion(joint).value[0])
+    for rough in (told + 0.35, told - 0.35, told + math.tau, f"{math.degrees(told):.1f} deg"):
+        assert same(moved(scene, posture={joint: rough}), solution)
+
+
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
-    ("keywords", "says"),
-    [
-        (
-            {"t": (0, 1, 10**12)},
-            (
-                r"not enough memory for the outputs over time: 2 x 51 x 1 000 000 000 000 values"
-                r" are 8.16e\+05 GB, and this machine has"
-            ),
-        ),
-        (
-            {"xi": (0, 1, 10**12)},
-            r"not enough memory for the points from 0 to 1: 3 x 1 000 000 000 000 values are 2\.4e",
-        ),
-    ],
+    "case", ["four_bar", "six_bar", "andrews_squeezer", "quick_return", "slider_crank", "engine"]
 )
-def test_what_does_not_fit_into_memory_is_refused_before_it_is_tried(keywords, says):
-    with pytest.raises(SizeError, match=says):
-        evaluate(slider_crank(), **keywords)
+def test_what_is_open_is_told_at_once_in_lines_to_paste(case):
+    """It can be sent to another process."""
+    scene = load_case(case).scene
+    with pytest.raises(PostureError) as error:
+        moved(scene, posture={})
+    assert "\n" not in str(error.value)
+    found = [moved(scene, posture=posture) for posture in pasted(str(error.value))]
+    assert len(found) == (2 if len(error.value.assembly_modes) == 1 else 1)
+    assert len(found) == 1 or not same(*found)
+    told = pickle.loads(pickle.dumps(error.value))
+    assert str(told) == str(error.value)
+    assert (told.assembly_modes, told.lacking) == (error.value.assembly_modes, False)
 
 
-@pytest.mark.parametrize(
-    ("keywords", "says"),
-    [
-        ({"backend": "gpu"}, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),
-        ({"backend": None}, "evaluate: backend: expected a text, got None"),
-        ({"threads": True}, "threads: expected a whole number from 1 to 1024, got True"),
-        ({"threads": 0}, "threads: expected a whole number from 1 to 1024, got 0"),
-        ({"threads": 1.5}, "threads: expected a whole number from 1 to 1024, got 1.5"),
-    ],
-)
-def test_a_way_to_run_that_there_is_not_is_named(keywords, says):
+OPEN_POSTURES = {
+    "all loops, though the first way of one closes no other": (
+        "andrews_squeezer", {}, r"'P3' can be .*'P4' can be .*'P6' can be", [{"k2", "k4", "k6"}],
+    ),
+    "what iterations need": (
+        "rrr3", {},
+        r"joint 'foot1', joint 'foot2' have no closed form; .* of lower0, lower1, lower2, platf",
+        [{"lower0", "lower1", "lower2", "platform"}],
+    ),
+    "the rest": (
+        "six_bar", {"rocker": "94 deg"}, "^(?!.*joint 'B')", [{"swing"}, {"swing"}],
+    ),
+    "no rounding": ("screw_lift", {}, r"or posture=\{'thread': '0 deg'\}", [{"thread"}] * 2),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", OPEN_POSTURES)
+def test_what_a_posture_leaves_open(what):
+    case, posture, says, names = OPEN_POSTURES[what]
+    with pytest.raises(PostureError, match=says) as error:
+        moved(load_case(case).scene, posture=posture)
+    assert [set(one) for one in pasted(str(error.value))] == names
+
+
+def test_what_a_posture_may_tell():
+    scene = four_bar()
+    says = "unknown link or joint in posture 'D'; valid: a, b, c, O, A, B, C"
+    with pytest.raises(UnknownNameError, match=says):
+        replace(scene, posture={"D": 1.0})
+    says = r"posture of 'B': 90 rad is 5156\.62 deg, more than two turns"
     with pytest.raises(DeclarationError, match=says):
-        evaluate(slider_crank(), **keywords)
+        replace(scene, posture={"B": 90})
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize(
+    ("case", "many"), [("four_bar", 2), ("six_bar", 4), ("andrews_squeezer", 4), ("excavator", 16)]
+)
+def test_the_command_line_draws_the_ways_to_assemble(here, capfd, case, many):
+    """Each is told with its posture, they differ, and ways that can be built come first."""
+    assert main(["new", "own", "--like", case]) == 0
+    text = (here / "own" / "case.py").read_text()
+    text = re.sub(r"posture=(\{[^}]*\}|\w+)", "posture={}", text)
+    (here / "own" / "case.py").write_text(text)
+    (here / "results").mkdir()
+    capfd.readouterr()
+    assert main(["run", "own/case.py", "--out", "results/run.h5"]) == 2
+    error = capfd.readouterr().err
+    says = rf"results/own_postures.png draws the {many} of these"
+    assert re.match(rf"error: the loops? closed by .* can be assembled in .*; {says}", error)
+    assert [path.name for path in (here / "results").iterdir()] == ["own_postures.png"]
+    assert (here / "results" / "own_postures.png").read_bytes()[:4] == b"\x89PNG"
+    listed = error.split("\n", 1)[1] or error
+    scene = load_case(case).scene
+    ways = [moved(scene, posture=posture) for posture in pasted(listed)]
+    assert len(ways) == many
+    assert not any(same(one, other) for k, one in enumerate(ways) for other in ways[:k])
+    if case == "excavator":
+        names = [f"motion:{name}_cylinder" for name in ("boom", "stick", "bucket")]
+        built = [all(way.array(name)[0] > 0.0 for name in names) for way in ways]
+        assert built == sorted(built, reverse=True)
+
+
+DOUBLE_SLIDER = """
+from lagrange_casadi import Scene, SpatialMechanism
+from lagrange_casadi.motion import polynomial
+
+def scene():
+    m = SpatialMechanism("double_slider")
+    crank = m.link("crank", length=0.08, mass=0.1)
+    turned = ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
+    m.revolute("A", m.ground.at(0.0, 0.1, 0.12), crank, axis=(1.0, 0.0, 0.0), turned=turned)
+    for k, length in enumerate(LENGTHS):
+        rod = m.link(f"rod_{k}", length=length, mass=0.5)
+        slider = m.link(f"slider_{k}", length=0.05, mass=2.0)
+        m.spherical(f"ball_{k}", crank.tip, rod)
+        axes = {"axis": (1.0, 0.0, 0.0), "second": (0.0, 1.0, 0.0)}
+        m.universal(f"cross_{k}", slider, rod.tip, **axes)
+        m.prismatic(f"guide_{k}", m.ground.at(0, 0.02 * k, 0.05 * k), slider, axis=(1, 0, 0))
+    return Scene(m, {"A": polynomial(0.0, 6.0)}, t=(0.0, 1.0, 3))
+"""
+"""A crank that moves sliders along the line about which it turns: each closes in four ways."""
+
+
+@pytest.mark.parametrize(
+    ("lengths", "many", "says"),
+    [("(0.3, 0.34)", 16, "draws the 16 of these"), ("(0.3, 0.34, 0.38)", 4, "draws 4 of")],
+)
+def test_of_many_ways_in_space_some_are_drawn(here, capfd, lengths, many, says):
+    (here / "case.py").write_text(DOUBLE_SLIDER.replace("LENGTHS", lengths))
+    assert main(["run", "case.py"]) == 2
+    error, lines = capfd.readouterr().err.split("\n", 1)
+    assert says in error
+    ways = pasted(lines)
+    angles = [[float(value.split()[0]) for value in way.values()] for way in ways]
+    assert len(ways) == len({way[0] for way in angles}) * (4 if many == 16 else 1) == many
+    if many == 16:  # ways at equal distances, by hand
+        assert sorted({one for one, _ in angles}) == [-131.81, -48.1897, 48.1897, 131.81]
+        assert sorted({other for _, other in angles}) == [-150.0, -30.0, 30.0, 150.0]
+        scene = replace(load_case("case.py").scene, posture=ways[-1], wanted=("motion",))
+        assert evaluate(scene).certified
+
+
+SHORT, LONG = (0.1, 0.05, 0.05), (0.1, 0.35, 0.25)
+
+
+VALUES = dict(zip("pqr", LONG, strict=True))
+
+
+def reaching(lengths, rocker=1.5, **more):
+    """A four-bar whose links reach or do not reach each other."""
+    m = Mechanism("four_bar")
+    each = zip("pqr", lengths, strict=True)
+    sides = [m.parameter(name, size, "m", low=0.0) for name, size in each]
+    a, b, c = (m.link(name, length=l, mass=0.4) for name, l in zip("abc", sides, strict=True))
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    m.revolute("C", m.ground.at(0.3, 0.05), c)
+    return Scene(m, {"O": polynomial(0.2, 6.0)}, posture={"c": rocker}, t=(0.0, 1.0, 101), **more)
+
+
+def assert_equal(one, other):
+    assert set(one.series) == set(other.series)
+    for name, values in one.series.items():
+        np.testing.assert_array_equal(values, other.series[name], err_msg=name)
+
+
+@pytest.mark.sampled(9)
+@pytest.mark.parametrize("rocker", [1.5, -1.5])
+@pytest.mark.parametrize(
+    "options", [{}, {"backend": "vm"}, {"precision": "single"}, {"table": 64}], ids=str
+)
+def test_what_can_be_assembled_is_evaluated(options, rocker):
+    """To the last bit as if these values were the defaults, in the branch of the posture, one
+    design after another.
+    """
+    scene = reaching(SHORT, rocker)
+    for q in (0.35, 0.3, 0.35):
+        found = evaluate(scene, parameters=VALUES | {"q": q}, **options)
+        assert_equal(found, evaluate(reaching((0.1, q, 0.25), rocker), **options))
+        assert np.sign(np.sin(found.pose("c").angle[0])) == np.sign(rocker)
+
+
+def test_defaults_that_serve_are_derived_once():
+    scene = reaching(LONG)
+    program = derive(scene)
+    evaluate(scene, parameters={"q": 0.4})
+    assert derive(scene) is program
+    compiled = compile_scene(scene, ["effort"], parameters={"q": 0.4})
+    assert compiled is compile_scene(scene, ["effort"])
+    with pytest.raises(AssemblyError):
+        compile_scene(reaching(SHORT), ["effort"])
+    compile_scene(reaching(SHORT), ["effort"], parameters=VALUES)
+
+
+def test_it_is_said_with_what_it_was_tried():
+    says = r"at the start of the motion, .*; with the {}parameters p = {}, q = 0\.05, r = 0\.05"
+    for values, words in (({}, ("default ", r"0\.1")), ({"p": 1.0}, ("", "1"))):
+        with pytest.raises(AssemblyError, match=says.format(*words)):
+            evaluate(reaching(SHORT), parameters=values)
+
+
+def test_a_scene_may_say_itself_with_what_it_is_assembled():
+    scene = reaching(SHORT, assembly=VALUES)
+    derive(scene)
+    assert_equal(evaluate(scene, parameters=VALUES), evaluate(reaching(LONG)))
+    with pytest.raises(AssemblyError, match="cannot be closed at t = 0 s"):
+        evaluate(scene)
+    for assembly, error in (
+        ({"z": 1.0}, UnknownNameError),
+        ({"p": -1.0}, ParameterError),
+        ({"p": "x"}, ParameterError),
+        (3, DeclarationError),
+    ):
+        with pytest.raises(error):
+            reaching(LONG, assembly=assembly)
+
+
+def test_everything_else_begins_with_values_that_can_be_assembled(tmp_path):
+    """Sweeps with their first such design, peaks, and exported C."""
+    axes = {"q": (0.05, 0.35, 4), "r": [0.25, 0.3]}
+    one, other = (sweep(reaching(sides), axes, wanted=["effort"]) for sides in (SHORT, LONG))
+    np.testing.assert_array_equal(one["peak:effort:O"], other["peak:effort:O"])
+    np.testing.assert_array_equal(one["status"], other["status"])
+    assert one["status"].min() == 0 < one["status"].max()
+    with pytest.raises(AssemblyError, match="with the default parameters"):
+        sweep(reaching(SHORT), {"q": (0.01, 0.05, 4)}, wanted=["effort"])
+    scenes = reaching(SHORT), reaching(LONG)
+    names = ["effort:O", "section:b:bending"]
+    peaks = [refine(each, evaluate(each, parameters=VALUES), names) for each in scenes]
+    assert peaks[0] == peaks[1]
+    export(scenes[0], tmp_path / "one", parameters=VALUES)
+    export(scenes[1], tmp_path / "other")
+    digest = r"[0-9a-f]{32}|0x[0-9a-f]{8}u"  # of the scene
+    for file in ("four_bar.h", "four_bar.c", "selftest.c"):
+        texts = [(tmp_path / name / file).read_text() for name in ("one", "other")]
+        assert len({re.sub(digest, "", text) for text in texts}) == 1
+    with pytest.raises(AssemblyError, match="with the default parameters"):
+        export(scenes[0], tmp_path / "none")

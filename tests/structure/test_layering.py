@@ -28,8 +28,9 @@ MOST_ANY = 94
 """Parameters and results whose type is ``Any``, as what users give that is yet to be checked."""
 
 PUBLIC = (
-    *("actuators", "beams", "bearings", "case", "cli", "density", "elements", "errors"),
-    *("forward", "motion", "peaks", "version", "studies.optimise", "studies.sweep"),
+    *("actuators", "animation", "beams", "bearings", "case", "cli", "density", "elements"),
+    *("errors", "figures", "forward", "motion", "peaks", "version"),
+    *("studies.optimise", "studies.sweep", "studies.trade"),
 )
 """What users import from, and tests as well."""
 

@@ -1,0 +1,78 @@
+"""A closed form that nobody verified does not close its loop: every way refuses the result."""
+
+import subprocess
+
+import numpy as np
+import pytest
+from internals import DesignEngine, EvaluationMethod, Solution, Status, blocks, loops
+from internals import instants_refusal as refusal
+
+from lagrange_casadi import Mechanism, Scene, evaluate, export
+from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.motion import polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+
+def mistaken(monkeypatch):
+    """A scene whose equations are taken for two circles, which they are not: as a pattern that
+    nobody verified.
+    """
+    monkeypatch.setattr(loops, "_turns", lambda *_: True)
+    monkeypatch.setattr(blocks, "solves", lambda *_: True)
+    m = Mechanism("mistaken")
+    a, b = m.link("a", length=0.6, mass=1.0), m.link("b", length=0.5, mass=1.2)
+    m.revolute("A", m.ground, a)
+    m.revolute("B", a.tip, b)
+    m.prismatic(
+        "S", m.ground.at(0, -1), m.point_mass("s", m.parameter("mass", 1.0, "kg")), axis=(1, 0)
+    )
+    m.constraint("height", m.place(b.tip)[1] - 0.471)
+    m.constraint("middle", m.place(b.at(0.25))[0] - 0.7)
+    return Scene(m, {"S": polynomial(0.0, 0.1)}, t=(0, 1, 41), posture={"a": 0.9, "b": -0.1})
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize(
+    "method",
+    [
+        EvaluationMethod("vm"),
+        EvaluationMethod("c"),
+        EvaluationMethod("lanes"),
+        EvaluationMethod("lanes", precision="single"),
+    ],
+)
+def test_what_does_not_close_a_loop_is_refused(method, monkeypatch, fresh_cache):
+    """By every backend, also where only the effort is wanted, and in sweeps."""
+    scene = mistaken(monkeypatch)
+    told = {"backend": method.backend, "precision": method.precision}
+    for wanted in (["all"], ["effort"]):
+        with pytest.raises(
+            AssemblyError,
+            match=r"of the loop closed by constraint 'middle' does not close it at t = 0 s",
+        ):
+            evaluate(scene, wanted=wanted, **told)
+    outcome = DesignEngine.of(scene, ["effort"], method=method).evaluate(np.ones((2, 1)))
+    assert outcome.status.tolist() == [Status.NOT_CLOSED] * 2
+    assert np.isnan(outcome.value).all()
+
+
+def test_exported_c_refuses_what_does_not_close_a_loop(monkeypatch, fresh_cache, tmp_path):
+    """Made as if nobody looked: evaluation and the certificate would not let it through."""
+    scene = mistaken(monkeypatch)
+    monkeypatch.setattr(refusal, "refusal", lambda *_: None)
+    monkeypatch.setattr(Solution, "failed", {})
+    export(scene, tmp_path / "c")
+    (tmp_path / "c" / "look.c").write_text(
+        '#include <stdio.h>\n#include "mistaken.h"\nint main(void) {\n  mistaken_model model;\n '
+        " mistaken_inputs in;\n  mistaken_outputs out;\n  mistaken_prepare(&model, 0);\n "
+        ' mistaken_motion(&model, 0.0, &in);\n  printf("%s",'
+        " mistaken_message(mistaken_evaluate(&model, &in, &out)));\n  return 0;\n}\n"
+    )
+    subprocess.run(
+        ["cc", "look.c", "mistaken.c", "-lm", "-o", "look"], cwd=tmp_path / "c", check=True
+    )
+    told = subprocess.run(
+        ["./look"], cwd=tmp_path / "c", capture_output=True, text=True, check=True
+    ).stdout
+    assert told == "the solution of a loop does not satisfy its equations"
