@@ -1,6 +1,5 @@
 """The cache folder: whole or not there, within its limit, and safe for many processes at once."""
 
-import errno
 import os
 import subprocess
 import sys
@@ -42,36 +41,6 @@ def test_what_was_used_longest_ago_goes_first(fresh_cache, monkeypatch):
     cache.write(f"{NAMES[6]}.graph", "y" * 2900)
     assert left(fresh_cache) == sorted([NAMES[0], *NAMES[5:7]])
     assert cache.read(f"{NAMES[6]}.graph") == "y" * 2900
-
-
-def test_reading_is_using(fresh_cache, monkeypatch):
-    for name in NAMES[:3]:
-        cache.write(f"{name}.graph", "y" * 1000)
-    for k, name in enumerate(NAMES[:3]):
-        os.utime(fresh_cache / f"{name}.graph", (1e9 + k,) * 2)
-    assert cache.read(f"{NAMES[0]}.graph") == "y" * 1000
-    monkeypatch.setenv(cache.VARIABLE, "2.5k")
-    cache.write(f"{NAMES[3]}.graph", "y" * 100)
-    assert left(fresh_cache) == [NAMES[0], NAMES[3]] or left(fresh_cache) == [
-        NAMES[0],
-        NAMES[2],
-        NAMES[3],
-    ]
-    assert cache.read(f"{NAMES[1]}.graph") is None
-
-
-def test_what_is_larger_than_the_limit_is_kept_alone(fresh_cache, monkeypatch):
-    put(fresh_cache, NAMES[0], 1000, 5)
-    monkeypatch.setenv(cache.VARIABLE, "100")
-    cache.write(f"{NAMES[1]}.graph", "y" * 1000)
-    assert left(fresh_cache) == [NAMES[1]]
-
-
-def test_nothing_is_kept_where_nothing_may_be(fresh_cache, monkeypatch):
-    monkeypatch.setenv(cache.VARIABLE, "0")
-    cache.write(f"{NAMES[1]}.graph", "text")
-    assert not fresh_cache.exists()
-    assert cache.read(f"{NAMES[1]}.graph") is None
 
 
 @pytest.mark.parametrize(
@@ -132,16 +101,6 @@ def test_the_command_shows_what_is_kept(fresh_cache, monkeypatch, capsys):
     )
 
 
-def test_folders_of_who_was_killed_go_in_time(fresh_cache):
-    cache.write(f"{NAMES[0]}.graph", "text")
-    for name, age in (("build-old", 1e6), ("build-new", 60.0)):
-        (fresh_cache / name).mkdir()
-        (fresh_cache / name / "half.so").write_text("half")
-        os.utime(fresh_cache / name, (time.time() - age,) * 2)
-    cache.write(f"{NAMES[1]}.graph", "text")
-    assert left(fresh_cache) == [*NAMES[:2], "build-new"]
-
-
 def test_many_at_once_keep_within_the_limit(fresh_cache, monkeypatch):
     """Some write, some read, some clear: what is read is whole or not there, and nobody fails."""
     monkeypatch.setenv(cache.VARIABLE, "6k")
@@ -184,19 +143,6 @@ def test_processes_share_a_cache_that_holds_too_little(tmp_path):
     assert [(process.communicate(timeout=120)[1], process.returncode) for process in started] == [
         ("", 0)
     ] * 3
-
-
-def test_a_system_that_is_short_of_something_is_asked_again(fresh_cache, monkeypatch):
-    def refused(**_keywords):
-        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
-
-    with monkeypatch.context() as patch:
-        patch.setattr(cache.tempfile, "TemporaryFile", refused)
-        with pytest.warns(
-            UserWarning, match=r"cannot use the cache folder .* now: Too many open files"
-        ):
-            assert cache.folder() is None
-    assert cache.folder() == fresh_cache
 
 
 def owned_by_another(path, monkeypatch):
@@ -259,15 +205,6 @@ def test_a_folder_like_tmp_may_lead_there(fresh_cache, foreign):
     assert cache.read(f"{NAMES[0]}.graph") == "planted"
 
 
-def test_a_group_of_this_users_own_may_write(fresh_cache, monkeypatch):
-    monkeypatch.setattr(cache, "_is_own_group", lambda _: True)
-    fresh_cache.mkdir(parents=True)
-    fresh_cache.chmod(0o775)
-    assert cache.distrusted(fresh_cache) == ""
-    fresh_cache.chmod(0o777)
-    assert cache.distrusted(fresh_cache) == f"others may write into {fresh_cache}"
-
-
 @pytest.mark.parametrize("backend", ["c", "lanes"])
 def test_a_library_that_others_may_write_is_built_again(fresh_cache, backend):
     """A planted one would run, for its digest beside it fits."""
@@ -308,12 +245,3 @@ def test_nothing_is_built_where_others_may_change_it(fresh_cache, tmp_path, monk
         )
         with pytest.raises(PathError, match=why), cache.working_folder():
             pass
-
-
-def test_a_link_of_somebody_else_is_not_followed(fresh_cache, tmp_path, monkeypatch):
-    fresh_cache.mkdir(parents=True)
-    link = tmp_path / "link"
-    link.symlink_to(fresh_cache)
-    assert cache.distrusted(link) == ""
-    owned_by_another(link, monkeypatch)
-    assert cache.distrusted(link) == f"{link} belongs to another user"

@@ -6,15 +6,13 @@ import math
 import re
 import shutil
 import subprocess
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from internals import FLAGS, CycleTable, compiler, cycle_table
-from tables import case, made, some_motion, worst_gap
+from internals import FLAGS, compiler, cycle_table
+from tables import case, made, some_motion
 
 from lagrange_casadi import codegen
-from lagrange_casadi.errors import DeclarationError
 
 
 def read(table, motion, out, compiled, monkeypatch):
@@ -50,27 +48,6 @@ def test_compiled_and_not_give_the_same_bits(name, dtype, monkeypatch):
             assert np.isnan(wide[0][:, n:]).all()
 
 
-def test_instants_one_by_one_take_code_of_their_own(monkeypatch):
-    """As a controller has it: nothing is done for instants that are not there, and the bits are the
-    same.
-    """
-    table, rows = made(case("six_bar"), 64), some_motion(40)
-    both = [np.full((len(table.columns), 40), np.nan) for _ in range(2)]
-    table.evaluate(*rows, both[0])
-    monkeypatch.setattr(cycle_table, "_OPTIONS", ("-DBLOCK=1", "-DPACK=1"))
-    read(table, rows, both[1], True, monkeypatch)
-    assert both[0].tobytes() == both[1].tobytes()
-
-
-def test_where_a_block_is_cut_changes_no_bit():
-    table, rows = made(case("six_bar"), 64), some_motion(301)
-    whole, parts = (np.full((len(table.columns), 301), np.nan) for _ in range(2))
-    table.evaluate(*rows, whole)
-    for start in range(0, 301, 7):
-        table.evaluate(*(row[start : start + 7] for row in rows), parts[:, start : start + 7])
-    assert whole.tobytes() == parts.tobytes()
-
-
 @pytest.mark.parametrize("compiled", [True, False])
 def test_what_is_no_number_gives_none_and_reads_nothing_else(compiled, monkeypatch):
     table = made(case("slider_crank"), 64, ["effort"])
@@ -87,30 +64,6 @@ def test_what_is_no_number_gives_none_and_reads_nothing_else(compiled, monkeypat
     assert np.isnan(out[2, 4])
     assert np.isfinite(out[:, 5]).all()
     assert np.isinf(out[2, 6])
-
-
-def test_rows_of_another_layout_are_filled_too():
-    table, rows = made(case("slider_crank"), 64), some_motion(50)
-    plain = np.full((len(table.columns), 50), np.nan)
-    table.evaluate(*rows, plain)
-    for other in (
-        np.full((50, len(table.columns)), np.nan).T,
-        np.full((len(table.columns), 100), np.nan)[:, ::2],
-    ):
-        table.evaluate(*np.repeat(rows, 2, axis=1)[:, ::2], other)
-        assert np.array_equal(other, plain)
-
-
-def test_single_precision_is_near_and_says_how_near():
-    scene = case("slider_crank")
-    table = made(scene)
-    single = table.single()
-    assert single.nbytes == table.nbytes // 2
-    assert 1e-8 < single.error < 1e-6
-    # At an angle that is exact in single precision, only the table itself rounds.
-    motion = [row.astype(np.float32).astype(float) for row in some_motion(turns=1.0)]
-    assert worst_gap(scene, single, *motion) < 1.5 * single.error
-    assert worst_gap(scene, single, motion[0] + np.float32(32 * math.tau), *motion[1:]) < 1e-4
 
 
 @pytest.mark.skipif(shutil.which("objdump") is None, reason="no objdump to look with")
@@ -158,51 +111,3 @@ def test_the_reader_is_pedantically_clean(real, tmp_path):
     command = [*codegen.find_compiler("c").command, *flags, "-c", source, "-o", tmp_path / "out.o"]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stderr
-
-
-def test_arrays_that_do_not_fit_are_refused():
-    table = made(case("slider_crank"), 64, ["effort"])
-    row = np.zeros(5)
-    with pytest.raises(
-        DeclarationError,
-        match=r"out: expected an array of float64 of shape \(3, 5\), got float64 of \(2, 5\)",
-    ):
-        table.evaluate(row, row, row, np.zeros((2, 5)))
-    with pytest.raises(
-        DeclarationError,
-        match=r"out: expected an array of float64 of shape \(3, 5\), got float32 of \(3, 5\)",
-    ):
-        table.evaluate(row, row, row, np.zeros((3, 5), np.float32))
-    with pytest.raises(
-        DeclarationError, match=r"expected three rows of one length, got \(5,\), \(4,\) and \(5,\)"
-    ):
-        table.evaluate(row, row[:4], row, np.zeros((3, 5)))
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"turns": 0}, "turns: expected at least 1, got 0"),
-        ({"kept": np.ones((4, 2), dtype=bool)}, r"kept: expected the shape \(4, 3\), got \(4, 2\)"),
-        (
-            {"coefficients": np.zeros((12, 4))},
-            r"coefficients: expected at least 13 rows of 4, got \(12, 4\)",
-        ),
-        (
-            {"coefficients": np.zeros((69, 5))},
-            r"coefficients: expected at least 13 rows of 4, got \(69, 5\)",
-        ),
-        (
-            {"coefficients": np.zeros((69, 4), dtype=int)},
-            r"coefficients: expected contiguous rows of float64 or float32, got int64",
-        ),
-        ({"coefficients": np.zeros((4, 69)).T}, r"coefficients: expected contiguous rows"),
-        ({"drift": np.zeros(2)}, r"drift: expected one of each column, 3, got \(2,\)"),
-        ({"peaks": np.zeros(1)}, r"peaks: expected one of each column, 3, got \(1,\)"),
-    ],
-)
-def test_a_table_of_parts_that_do_not_fit_is_refused(change, message):
-    table = made(case("slider_crank"), 64, ["effort"])
-    assert isinstance(table, CycleTable)
-    with pytest.raises(DeclarationError, match=message):
-        replace(table, **change)

@@ -3,8 +3,6 @@ come back.
 """
 
 import hashlib
-import math
-import os
 import pickle
 import subprocess
 import sys
@@ -13,14 +11,13 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from compiled import SCENES
-from internals import Output, Program, Wanted, fingerprint, graph_dumps, graph_loads, sources
-from mechanisms import four_bar, slider_crank
+from internals import Wanted, fingerprint, sources
+from mechanisms import slider_crank
 from outside import doubled
 from places import FOLDERS
 
 import lagrange_casadi
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, codegen, derive, evaluate
+from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.errors import PickleError
 from lagrange_casadi.motion import Motion, expression, harmonic, polynomial, samples
 
@@ -29,43 +26,6 @@ pytestmark = pytest.mark.quick
 
 def name_of(scene):
     return fingerprint(scene, Wanted.of(scene.mechanism, scene.wanted))
-
-
-def test_a_text_keeps_types_and_makes_only_what_its_reader_lists():
-    value = {
-        Output("effort", "O"): (1, -2.5, math.inf, None, True),
-        "inner": [("a",), {}, {"tuple": [1]}, [()]],
-    }
-    text = graph_dumps(value)
-    assert graph_loads(text, (Output,)) == value
-    assert [type(x) for x in graph_loads(text, (Output,))["inner"][2]["tuple"]] == [int]
-    flags = graph_loads(graph_dumps(np.array([True, False])), ())
-    assert flags.dtype == bool
-    assert flags.tolist() == [True, False]
-    with pytest.raises(KeyError, match="Output"):
-        graph_loads(text, ())
-    with pytest.raises(TypeError, match="complex cannot be written"):
-        graph_dumps([1j])
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_a_graph_comes_back_from_its_text_as_it_was(name):
-    program = derive(SCENES[name]())
-    again = pickle.loads(pickle.dumps(program))
-    assert codegen.emit(again) == codegen.emit(program)
-    assert again.dumps() == program.dumps()
-    for field in ("driven", "columns", "loop_angles", "instructions"):
-        assert getattr(again, field) == getattr(program, field)
-    if program.newton:
-        assert (again.newton.guess, again.newton.names, again.newton.joints) == (
-            program.newton.guess,
-            program.newton.names,
-            program.newton.joints,
-        )
-
-
-def test_an_earlier_name_is_that_of_the_same_function():
-    assert lagrange_casadi.derive is lagrange_casadi.compile_scene
 
 
 def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
@@ -129,51 +89,8 @@ def test_every_change_of_a_declaration_has_another_name():
     assert name_of(pendulum()) == names[0]
 
 
-def sleeve(along="slide", apart=False, place=0.0):
-    m = SpatialMechanism("sleeve")
-    rod = (
-        m.link("rod", between=((0, 0, 0), (0.4, place, 0)), mass=1.0)
-        if apart
-        else m.link("rod", length=0.4, mass=1.0)
-    )
-    joint = m.cylindrical("C", m.ground, rod, axis=(1, 0, 0))
-    m.friction("rub", joint, mu=0.2, radius=0.03, length=0.1, along=along)
-    return Scene(m, {"C:slide": polynomial(0, 1.0), "C:turn": polynomial(0, 2.0)}, t=(0, 1, 9))
-
-
-def test_mechanisms_in_space_have_names_too(fresh_cache):
-    """Of links between places too; and friction along another coordinate of the same joint is
-    another.
-    """
-    scenes = [sleeve(), sleeve("turn"), sleeve(apart=True), sleeve(apart=True, place=0.1)]
-    names = [name_of(scene) for scene in scenes]
-    assert None not in names
-    assert len(set(names)) == len(names)
-    assert name_of(sleeve(apart=True)) == names[2]
-    derive(scenes[0])
-    assert [path.stem for path in fresh_cache.glob("*.graph")] == names[:1]
-    again = Program.loads(next(fresh_cache.glob("*.graph")).read_text().partition("\n")[2])
-    assert codegen.emit(again) == codegen.emit(derive(scenes[0]))
-
-
 def test_what_is_asked_of_an_evaluation_has_no_part_in_the_name():
     assert name_of(pendulum(xi=(0, 1, 7), t=(0.0, 1.0, 3))) == name_of(pendulum())
-
-
-@pytest.mark.long
-def test_names_are_the_same_in_every_process(tmp_path):
-    program = (
-        "import sys; sys.path[:0] = {!r}; from test_derive import *; print(name_of(four_bar()),"
-        " name_of(pendulum()))"
-    )
-    program = program.format(FOLDERS)
-    for seed in ("1", "2"):
-        environment = os.environ | {"PYTHONHASHSEED": seed}
-        command = [sys.executable, "-c", program]
-        done = subprocess.run(
-            command, capture_output=True, text=True, check=True, env=environment, cwd=tmp_path
-        )
-        assert done.stdout.split() == [name_of(four_bar()), name_of(pendulum())]
 
 
 def test_what_cannot_be_told_is_not_kept(fresh_cache):

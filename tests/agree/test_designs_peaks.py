@@ -1,7 +1,6 @@
 """Peaks of designs, between the instants and along links, of any shape."""
 
 import math
-from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -18,7 +17,7 @@ from internals import (
 )
 from mechanisms import crank_and_rod, pendulum
 
-from lagrange_casadi import Mechanism, Scene, codegen, evaluate, load_case, motion
+from lagrange_casadi import Mechanism, Scene, codegen, evaluate, motion
 from lagrange_casadi.motion import polynomial
 
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
@@ -116,36 +115,6 @@ def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
     np.testing.assert_allclose(found.xi[told], expected.xi[told], atol=1e-4)
     k = designs.quantities.index("motion:pin")
     assert (np.abs(found.value[told][:4, k : k + 1]) >= largest * (1 - 1e-12)).all()
-
-
-@pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
-def test_what_is_zero_throughout_peaks_at_the_first_instant(backend):
-    """A place that does not move, an acceleration of an even motion: no time is infinite."""
-    designs = DesignEngine.of(
-        pendulum(polynomial(0.1, 1.0), t=(0.5, 2.0, 41), wanted=["motion"]),
-        method=EvaluationMethod(backend),
-    )
-    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)[
-        "motion:pin_acceleration"
-    ]
-    assert (value, t) == (0.0, 0.5)
-
-
-@pytest.mark.long
-def test_a_bar_held_at_rest_has_told_peaks():
-    """Its shear across the weight turns at its base, but for rounding: in C and in the reference
-    the same curve goes on there.
-    """
-    scene = replace(load_case("five_link_suspension").scene, wanted=["section:toe"])
-    p = np.array([list(scene.mechanism.values().values())])
-    engines = [
-        DesignEngine.of(scene, t=(0.0, 1.0, 201), method=EvaluationMethod(backend))
-        for backend in ("vm", "c", "lanes")
-    ]
-    true, *others = [engine.evaluate(p) for engine in engines]
-    for found in (true, *others):
-        assert found.status.tolist() == [Status.OK]
-        np.testing.assert_allclose(found.value, true.value, rtol=1e-11, atol=1e-13)
 
 
 def lift(law, count):

@@ -4,12 +4,10 @@ the neighbours.
 
 import math
 
-import casadi as ca
 import numpy as np
 import pytest
 from internals import DesignEngine, EvaluationMethod, Status
-from mechanisms import press, slider_crank, uneven
-from stepped import pinned
+from mechanisms import press, uneven
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
 
@@ -104,19 +102,6 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(method, monkeypatch)
         assert alone.series.tobytes() == whole.series[[row]].tobytes()
 
 
-def test_what_all_designs_have_in_common_is_made_once():
-    """A motion and bounds without parameters: the instants are the same for all, and equal those of
-    an evaluation.
-    """
-    scene = slider_crank(["effort"], over=("O", 0, TURN, 31))
-    designs = DesignEngine.of(scene)
-    assert designs.times.common
-    assert designs.times.of(np.zeros((5, 5)))[1].shape == (1, 31)
-    np.testing.assert_array_equal(designs.t, evaluate(scene).t)
-    varied = press(over=lambda rpm: ("O", 0, rpm / 100, 5))
-    assert not DesignEngine.of(varied, ["effort"]).times.common
-
-
 def test_a_swing_that_is_looked_for_at_a_time_of_each_designs_own():
     """A motion without parameters, followed from a time that has them: some designs find it on its
     way, others on the next.
@@ -126,22 +111,6 @@ def test_a_swing_that_is_looked_for_at_a_time_of_each_designs_own():
     designs = DesignEngine.of(scene, timing=scene.timing(over=("O", 0.7, 1.3, 9)))
     found = designs.evaluate(np.array([[100.0, 0.5], [600.0, 0.5]]), histories=True)
     np.testing.assert_allclose(found.times[1] - found.times[0], 0.5, atol=1e-14)
-
-
-def test_loops_that_are_iterated_begin_where_the_drive_starts():
-    """Half a turn from where the scene is assembled, on the same branch as one evaluation is."""
-    scene, closed = (
-        press(wanted=["effort", "motion"], pin=pin) for pin in (pinned, Mechanism.revolute)
-    )
-    method = EvaluationMethod("c", newton=6)
-    timing = scene.timing(over=("O", math.pi, 3 * math.pi, 61))
-    designs = DesignEngine.of(scene, method=method, timing=timing)
-    outcome = designs.evaluate(np.array([[600.0, 0.5], [60.0, 0.3]]), histories=True)
-    assert outcome.status.tolist() == [0, 0]
-    for row, values in enumerate(({"rpm": 600.0, "l": 0.5}, {"rpm": 60.0, "l": 0.3})):
-        solution = evaluate(closed, parameters=values, over=("O", math.pi, 3 * math.pi, 61))
-        k = designs.columns.index("pose:ram:y")
-        np.testing.assert_allclose(outcome.series[row, k], solution.pose("ram").y, rtol=1e-9)
 
 
 def test_samples_of_a_motion_end_for_those_designs_alone_that_go_beyond():
@@ -166,19 +135,3 @@ def test_samples_of_a_motion_end_for_those_designs_alone_that_go_beyond():
         0,
         Status.NO_INSTANTS,
     ]
-
-
-def test_a_gear_ratio_in_the_motion_makes_times_of_its_own():
-    """An expression of parameters in the law itself: the same angles at other times."""
-    scene = press(
-        lambda _, w: motion.expression(lambda t: w * t + 0.1 * ca.sin(w * t)),
-        wanted=["motion"],
-        over=("O", 0, TURN, 13),
-    )
-    designs = DesignEngine.of(scene)
-    found = designs.evaluate(np.array([[60.0, 0.5], [6.0, 0.5]]), histories=True)
-    np.testing.assert_allclose(found.times[1], 10 * found.times[0], rtol=1e-14)
-    k = designs.columns.index("motion:O")
-    np.testing.assert_allclose(
-        found.series[:, k], np.tile(np.linspace(0, TURN, 13), (2, 1)), atol=1e-14
-    )

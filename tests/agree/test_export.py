@@ -2,7 +2,6 @@
 same bytes each time.
 """
 
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from compiled import EVALUATED, cc, compilers, present, told
-from conftest import SPATIAL
 from mechanisms import sampled_cam, slider_crank, spline_arm, truss_platform
 from places import FOLDERS
 from stepped import iterated
@@ -95,52 +93,6 @@ def test_the_self_test_passes_under_sanitizers(name, options, tmp_path):
     assert "0 wrong" in ran.stdout
 
 
-@pytest.mark.sampled(33)
-@pytest.mark.parametrize("precision", ["double", "single"])
-@pytest.mark.parametrize("name", SPATIAL)
-def test_mechanisms_in_space_pass_their_self_test(name, precision, tmp_path):
-    assert "0 wrong" in self_tested(load_case(name).scene, precision, tmp_path)
-
-
-def test_a_product_of_two_roundings_is_allowed_for(tmp_path):
-    """In single precision it is as much larger as the square of its roundings: the square of a
-    shaft's rate across its axis.
-    """
-    assert "0 wrong" in self_tested(
-        load_case("cardan_shaft").scene, "single", tmp_path, wanted=["section:tube"]
-    )
-
-
-def test_what_is_left_open_is_no_part_of_the_self_test(tmp_path):
-    assert "0 wrong" in self_tested(
-        load_case("bricard").scene, "single", tmp_path, wanted=["section:link1"]
-    )
-
-
-def self_tested(scene, precision, folder, **options):
-    """What the self-test of an exported folder says."""
-    made = export(scene, folder, precision=precision, **options)
-    assert (
-        cc(
-            ["cc", "-std=c99", "-O1", "-ffp-contract=off"], folder, f"{made.prefix}.c", "selftest.c"
-        ).returncode
-        == 0
-    )
-    return subprocess.run([folder / "program"], capture_output=True, text=True, check=False).stdout
-
-
-def test_the_self_test_passes_under_valgrind(tmp_path):
-    if not present("valgrind"):
-        pytest.skip("needs valgrind")
-    made = export(slider_crank(), tmp_path)
-    assert (
-        cc(["cc", "-std=c99", "-O1", "-g"], tmp_path, f"{made.prefix}.c", "selftest.c").returncode
-        == 0
-    )
-    command = ["valgrind", "-q", "--error-exitcode=9", "--leak-check=full", tmp_path / "program"]
-    assert subprocess.run(command, capture_output=True, check=False).returncode == 0
-
-
 def test_the_self_test_can_fail(tmp_path):
     made = export(slider_crank(), tmp_path)
     source = (tmp_path / "selftest.c").read_text()
@@ -178,24 +130,6 @@ def test_only_prefixed_symbols_are_seen_and_only_libm_is_needed(options, tmp_pat
     functions = {"sin", "cos", "sincos", "atan2", "sqrt", "ceil", "floor", "fmax"}
     suffix = "f" if options.get("precision") == "single" else ""
     assert needed <= {name + suffix for name in functions}
-
-
-def test_a_table_needs_no_sine(tmp_path):
-    made = export(slider_crank(wanted=["effort"]), tmp_path, table=64, precision="single")
-    assert {name for kind, name in symbols(tmp_path, made.prefix) if kind == "U"} <= {
-        "floorf",
-        "_GLOBAL_OFFSET_TABLE_",
-    }
-
-
-def test_nothing_recurs_allocates_or_is_of_another_precision(tmp_path):
-    made = export(slider_crank(), tmp_path, precision="single")
-    text = (tmp_path / f"{made.prefix}.c").read_text()
-    assert not re.search(r"\b(malloc|calloc|realloc|free|alloca)\b", text)
-    assert not re.search(r"\bdouble\b", text)
-    assert not re.search(
-        r"(?<![\w.])\d+\.\d*(e[+-]?\d+)?(?![\w.])", re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-    )
 
 
 UNPREPARED = "status = @_prepare(&model, &parameters);"
@@ -245,13 +179,6 @@ def test_failures_say_so_and_leave_nothing_undefined(tmp_path):
         assert status != 0, statements
         assert says in sentence, statements
         assert np.isnan(value) or statements.endswith(UNPREPARED), statements
-
-
-def test_times_outside_the_samples(tmp_path):
-    times = {"0.0": False, "3.0": False, "-1e-9": True, "3.0000001": True}
-    tried = [f"@_prepare(&model); status = @_motion(&model, {time}, &inputs);" for time in times]
-    found = told(tmp_path, export(spline_arm(), tmp_path), *tried)
-    assert ["outside the samples" in sentence for *_, sentence in found] == [*times.values()]
 
 
 @pytest.mark.parametrize(("beyond", "there"), [(None, None), ("hold", 3.0), ("line", 3.8)])

@@ -24,16 +24,6 @@ def test_the_manifest_knows_all_files(tmp_path):
     assert content["scene"] in (tmp_path / "slider_crank.h").read_text()
 
 
-def test_the_scene_hash_tells_scenes_apart(tmp_path):
-    hashes = set()
-    for number, (options, change) in enumerate(
-        (({}, {}), ({"wanted": ["effort"]}, {}), ({}, {"l": 0.3}), ({"precision": "single"}, {}))
-    ):
-        export(slider_crank(), tmp_path / str(number), parameters=change, **options)
-        hashes.add(json.loads((tmp_path / str(number) / "export.json").read_text())["scene"])
-    assert len(hashes) == 3, "the precision is not the scene's affair"
-
-
 @pytest.mark.parametrize(
     ("options", "low", "high"),
     [({}, 0, 1e-12), ({"precision": "single"}, 1e-9, 1e-4), ({"table": 8}, 1e-3, 1)],
@@ -53,19 +43,6 @@ def test_the_folder_says_how_it_is_evaluated_and_how_exactly(options, low, high,
     assert content["fixed"] == (
         {"r": 0.1, "l": 0.3125, "m1": 0.1, "m2": 0.1, "m3": 0.1} if "table" in options else {}
     )
-
-
-def test_a_coarse_table_is_compared_with_the_mechanism_itself(tmp_path):
-    export(slider_crank(), tmp_path / "exact")
-    export(slider_crank(), tmp_path / "table", table=8)
-    rows = [
-        (tmp_path / kind / "selftest.c")
-        .read_text()
-        .partition("outputs_at[INSTANTS]")[2]
-        .partition("};")[0]
-        for kind in ("exact", "table")
-    ]
-    assert rows[0] == rows[1]
 
 
 def test_examples_of_iterated_loops_go_in_steps_they_can_follow(tmp_path):
@@ -94,32 +71,11 @@ def shown(header, prefix):
     )
 
 
-def test_a_joint_may_be_called_as_a_rest_is(tmp_path):
-    m = Mechanism("two")
-    first, second = m.link("first", length=1, mass=1), m.link("second", length=1, mass=1)
-    m.revolute("O", m.ground, first)
-    m.revolute("O_rest", first.tip, second)
-    scene = Scene(
-        m, {"O": motion.polynomial(0, 1), "O_rest": motion.polynomial(0, 2)}, t=(0, 1, 11)
-    )
-    made = export(scene, tmp_path, precision="single")
-    assert len({member.name for member in made.inputs}) == len(made.inputs) == 8
-    assert {"O_rest", "O_rest_2"} < {member.name for member in made.inputs}
-    assert list(made.mapped.values()) == ["O_rest_2"]
-    assert cc(["cc", "-std=c99"], tmp_path, "two.c", "selftest.c").returncode == 0
-    assert subprocess.run([tmp_path / "program"], check=False, capture_output=True).returncode == 0
-
-
 @pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only"])
 def test_arithmetic_without_nan_is_refused(flag, tmp_path):
     export(slider_crank(), tmp_path)
     result = cc(["cc", "-std=c99", "-O2", flag, "-c"], tmp_path, "slider_crank.c", output="x.o")
     assert "compile without -ffast-math" in result.stderr
-
-
-def test_parameters_become_defaults(tmp_path):
-    export(slider_crank(), tmp_path, parameters={"l": 0.3125})
-    assert "0.3125 /* l */" in (tmp_path / "slider_crank.c").read_text()
 
 
 def test_an_export_goes_over_its_own_files_only(tmp_path):

@@ -6,20 +6,16 @@ import json
 import re
 import shutil
 import subprocess
-from xml.etree import ElementTree
 
-import matplotlib.pyplot as plt
 import pytest
 from compiled import cc, compilers, present
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from internals import label, naming, text
-from matplotlib.cbook import is_math_text
+from internals import naming, text
 from mechanisms import slider_crank
 from stepped import iterated
 
-from lagrange_casadi import Mechanism, Scene, evaluate, export, motion, sweep
-from lagrange_casadi.cli import main
+from lagrange_casadi import Mechanism, Scene, evaluate, export, motion
 from lagrange_casadi.errors import DeclarationError
 
 WICKED = [
@@ -84,19 +80,6 @@ def test_a_name_is_only_ever_shown(tmp_path, wicked):
     assert content["mechanism"] == wicked
     header = (tmp_path / f"{made.prefix}.h").read_text()
     assert header.count("*/") == header.count("/*")
-
-
-@pytest.mark.sampled(13)
-@pytest.mark.parametrize("wicked", WICKED)
-def test_a_unit_is_only_ever_shown(tmp_path, wicked):
-    made = export(arm(wicked), tmp_path, wanted=["effort"])
-    build_and_run(tmp_path, made.prefix)
-    header = (tmp_path / "arm.h").read_text()
-    (struct,) = re.findall(r"typedef struct \{\n([^\n]*)\n\} arm_parameters;", header)
-    assert re.fullmatch(r"  arm_real l; /\* [^\n]* \*/", struct)
-    assert header.count("*/") == header.count("/*")
-    content = json.loads((tmp_path / "export.json").read_text())
-    assert content["parameters"][0]["unit"] == wicked
 
 
 @pytest.mark.sampled(13)
@@ -187,25 +170,6 @@ def test_a_name_that_is_taken_is_another_one(name):
     assert naming.prefix(name) == f"{name}_mechanism"
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "slider_crank",
-        "press",
-        "engine",
-        "interface_2",
-        "Interface",
-        "library",
-        "A",
-        "E1",
-        "B0",
-        "console",
-    ],
-)
-def test_other_names_stay(name):
-    assert naming.prefix(name) == name
-
-
 def test_parameters_and_joints_may_be_called_as_macros_are(tmp_path):
     """Of ISO C's headers, which are all there before the exported header."""
     m = Mechanism("macros")
@@ -263,25 +227,6 @@ def test_what_an_export_defines_is_no_members_name(tmp_path):
     assert all(map(naming.reserved, own)), own
 
 
-def test_links_that_differ_in_capitals_alone(tmp_path):
-    m = Mechanism("two")
-    links = [m.link(name, length=0.5, mass=1.0) for name in ("rod", "Rod", "ROD_2")]
-    m.revolute("A", m.ground, links[0])
-    m.revolute("B", links[0].tip, links[1])
-    m.revolute("C", links[1].tip, links[2])
-    scene = Scene(
-        m, {name: motion.polynomial(0, k + 1) for k, name in enumerate("ABC")}, t=(0, 1, 5)
-    )
-    made = export(scene, tmp_path)
-    assert [link.constant for link in made.links] == [
-        "TWO_LINK_ROD",
-        "TWO_LINK_ROD_2",
-        "TWO_LINK_ROD_2_2",
-    ]
-    assert made.mapped == {"link Rod": "TWO_LINK_ROD_2", "link ROD_2": "TWO_LINK_ROD_2_2"}
-    build_and_run(tmp_path, "two")
-
-
 @pytest.mark.parametrize(
     "wicked", ["two\nlines", "tab\t", "nul\0", "\u202eright", "lone \udcff", "\x1b[31m", "\x85"]
 )
@@ -330,55 +275,3 @@ def test_a_string_of_octave_stays_one(line):
     assert re.sub(r"%%|\\\\", "", text.octave_printed(line)).strip("%\\") == re.sub(
         r"%%|\\\\", "", text.octave_printed(line)
     )
-
-
-def test_a_unit_shows_in_a_figure_as_it_is(tmp_path):
-    """A dollar begins no mathematics."""
-    for unit in ("$", "US$/m$", r"$\frac{", "x_{1}^$"):
-        found = sweep(arm(unit), {"l": (0.2, 0.3, 3)}, wanted=["effort"])
-        figure, axes = plt.subplots()
-        axes.set_xlabel(label(found, "l"))
-        figure.canvas.draw()
-        shown = axes.xaxis.label.get_text()
-        plt.close(figure)
-        assert not is_math_text(shown)
-        assert unit in shown.replace(r"\$", "$")
-
-
-@pytest.mark.long
-def test_units_in_an_fmu(tmp_path):
-    pytest.importorskip("fmpy")
-    import zipfile
-
-    for k, wicked in enumerate(WICKED):
-        export(arm(wicked), tmp_path / str(k), name=wicked, fmu=True, wanted=["effort"])
-        (path,) = (tmp_path / str(k)).glob("*.fmu")
-        with zipfile.ZipFile(path) as archive:
-            root = ElementTree.fromstring(archive.read("modelDescription.xml"))
-            page = archive.read("documentation/index.html").decode()
-        assert root.get("modelName") == wicked
-        assert wicked in [unit.get("name") for unit in root.iter("Unit")]
-        assert "<script>" not in page
-    assert not list(tmp_path.rglob("PWNED"))
-
-
-def test_from_the_command_line(here, capfd):
-    case = here / "case.py"
-    case.write_text(
-        "from lagrange_casadi import Mechanism, Scene, motion\n"
-        "def scene():\n"
-        "    m = Mechanism('arm')\n"
-        "    m.revolute('O', m.ground, m.link('a', length=1, mass=1))\n"
-        "    return Scene(m, {'O': motion.polynomial(0, 1)}, t=(0, 1, 5))\n"
-    )
-    assert main(["export", str(case), "--out", "c", "--name", WICKED[0]]) == 0
-    assert f"name {WICKED[0]} is called x_fopen_PWNED_w_printf in C" in capfd.readouterr().out
-    assert main(["export", str(case), "--out", "d", "--name", "a\nb"]) == 2
-    assert (
-        capfd.readouterr().err
-        == "error: name must be a line of printable characters, got 'a\\nb'\n"
-    )
-    assert sorted(path.name for path in here.iterdir() if path.name != "__pycache__") == [
-        "c",
-        "case.py",
-    ]

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from conftest import CASES, SPATIAL
 from importer import Instance, refusing, robot, signals, simulated, windy
-from internals import ALLOWED, export, find_compiler
+from internals import export, find_compiler
 from machines import called_as_rates, elsewhere
 from mechanisms import sampled_cam
 from mechanisms import slider_crank as free
 
-from lagrange_casadi import derive, errors, evaluate, load_case
+from lagrange_casadi import derive, evaluate, load_case
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 fmi2 = pytest.importorskip("fmpy.fmi2")
@@ -123,24 +123,6 @@ def test_the_motion_of_what_is_guided_is_an_input(unit):
     assert_alike(simulated(path, solution, **poses), solution, outputs(path))
 
 
-@pytest.mark.sampled(17)
-@pytest.mark.parametrize("name", SPATIAL)
-def test_mechanisms_in_space(unit, name):
-    """Drives of all kinds, poses that are given, loops of closed forms and iterated ones; what is
-    zero may be rounding.
-    """
-    scene, path = unit(name)
-    solution = evaluate(scene)
-    assert validate_fmu(str(path)) == []
-    for kind, ahead in (("ModelExchange", 0), ("CoSimulation", 1)):
-        found = simulated(path, solution, kind, ahead=ahead)
-        for told in outputs(path):
-            own = told.replace("/", ":")
-            expected = solution.series[own]
-            gap = np.abs(found[told] - expected)[ahead:].max()
-            assert gap <= WITHIN * np.abs(expected).max() + ALLOWED * solution.errors[own], told
-
-
 CHANGES = {
     "slider_crank": {"r": 0.08, "m3": 0.4},
     "robot": {"shin": 0.29, "mass": 2.0},
@@ -179,17 +161,6 @@ def test_parameters_change_during_a_run(unit, name):
 
 def drive(scene):
     return next(iter(scene.motion))
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("name", "how", "within"),
-    [("robot", {"newton": 4}, 1e-12), ("slider_crank", {"table": 1e-9}, 1e-7)],
-)
-def test_the_other_rungs(unit, name, how, within):
-    scene, path = unit(name, **how)
-    solution = evaluate(scene)
-    assert_alike(simulated(path, solution), solution, outputs(path), within=within)
 
 
 def test_single_precision_keeps_phases(unit):
@@ -275,47 +246,6 @@ def test_an_instant_without_a_result_is_discarded_and_says_why(unit, instances):
     assert it.get("effort/O") == [effort]
 
 
-def test_discards_may_be_left_unlogged(unit, instances):
-    it = instances(unit("slider_crank")[1]).begin(l=0.05, motion__O=1.5)
-    it.fmu.setDebugLogging(False, ["logStatusDiscard"])
-    refusing(fmi2.fmi2Discard, it.get, "effort/O")
-    assert not it.log
-    refusing(fmi2.fmi2Error, it.set, l=-1.0)
-    assert len(it.log) == 1
-    refusing(fmi2.fmi2Error, it.fmu.setDebugLogging, True, ["logEvents"])
-
-
-def test_a_lost_loop_leaves_the_others_where_they_were(unit, instances):
-    it = instances(unit("robot")[1]).begin()
-    before = it.get("motion/knee0", "effort/drive0")
-    (start,) = it.get("motion/drive0")
-    it.set(motion__drive0=start + 3.0)
-    refusing(fmi2.fmi2Discard, it.get, "motion/knee0")
-    it.set(motion__drive0=start)
-    np.testing.assert_allclose(it.get("motion/knee0", "effort/drive0"), before, rtol=1e-12)
-
-
-def test_instances_know_nothing_of_each_other(unit, instances):
-    scene, path = unit("robot")
-    solution = evaluate(scene)
-    one, other = instances(path), instances(path, "CoSimulation")
-    one.begin()
-    other.begin(mass=3.0)
-    heavy = evaluate(scene, parameters={"mass": 3.0})
-    for i in (0, 20, 40, 60):
-        for it, expected in ((one, solution), (other, heavy)):
-            it.set(**motion_at(solution, i))
-            for name in ("motion/foot1", "effort/drive0"):
-                values = expected.series[name.replace("/", ":")]
-                assert it.get(name) == pytest.approx([values[i]], abs=WITHIN * np.abs(values).max())
-
-
-def motion_at(solution, i):
-    """The motion of drives at an instant."""
-    drives = [name for name in solution.series if name.startswith(("motion:O", "motion:drive"))]
-    return {name.replace(":", "__"): float(solution.series[name][i]) for name in drives}
-
-
 def test_a_state_is_kept_and_taken_back(unit, instances):
     """Whole turns and loops included."""
     it = instances(unit("slider_crank")[1]).begin()
@@ -335,51 +265,6 @@ def test_a_state_is_kept_and_taken_back(unit, instances):
     assert it.get("motion/A", "r") == [0.0, 0.1]
 
 
-def test_every_initialization_begins_anew(unit, instances):
-    """What is asked for while inputs are being set leaves no turns behind."""
-    it = instances(unit("slider_crank")[1])
-    it.fmu.setupExperiment()
-    it.fmu.enterInitializationMode()
-    for angle in np.arange(0.0, 9.0, 0.5):
-        it.set(motion__O=float(angle))
-        assert abs(it.get("motion/A")[0]) <= math.pi
-    it.fmu.exitInitializationMode()
-    assert abs(it.get("motion/A")[0]) <= math.pi
-
-
-def test_inputs_that_are_set_after_a_step_count_at_once(unit, instances):
-    scene, path = unit("windy")
-    solution = evaluate(scene)
-    it = instances(path, "CoSimulation").begin(0.3)
-    peak = np.abs(solution.series["effort:O"]).max()
-    for i in range(1, 20):
-        it.fmu.doStep(float(solution.t[i - 1]), float(solution.t[i] - solution.t[i - 1]))
-        table = signals(solution)
-        it.set(
-            **{
-                name.replace("/", "__"): float(table[name][i])
-                for name in ("motion/O", "motion/O_rate", "motion/O_acceleration")
-            }
-        )
-        assert it.get("effort/O", "time") == pytest.approx(
-            [solution.series["effort:O"][i], solution.t[i]], abs=WITHIN * peak
-        )
-    assert it.fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime) == pytest.approx(
-        solution.t[19], abs=1e-15
-    )
-
-
-def test_a_step_without_a_result_is_discarded_and_the_time_stays(unit, instances):
-    it = instances(unit("windy")[1], "CoSimulation").begin(0.3)
-    it.fmu.doStep(0.3, 0.1)
-    it.set(motion__O=math.inf)
-    refusing(fmi2.fmi2Discard, it.fmu.doStep, 0.4, 0.1)
-    assert it.log.pop()[2] == "t = 0.5 s: an input is not finite"
-    assert it.get("time") == [0.4]
-    assert it.fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime) == 0.4
-    assert not it.fmu.getBooleanStatus(fmi2.fmi2Terminated)
-
-
 def test_calls_out_of_order_and_what_is_not_there_are_errors(unit, instances):
     it = instances(unit("slider_crank")[1])
     refusing(fmi2.fmi2Error, it.fmu.newDiscreteStates)
@@ -397,26 +282,6 @@ def test_calls_out_of_order_and_what_is_not_there_are_errors(unit, instances):
     refusing(fmi2.fmi2Error, it.fmu.setString, [0], [""])
     it.fmu.terminate()
     refusing(fmi2.fmi2Error, it.set, motion__O=0.1)
-
-
-def test_a_unit_of_another_description_is_not_made(unit, tmp_path):
-    """With a logger of its own: FMPy's usual one is that of whichever unit was made last, which may
-    be gone.
-    """
-    path = unit("slider_crank")[1]
-    callbacks = fmi2.fmi2CallbackFunctions()
-    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(fmi2.printLogMessage)
-    callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmi2.calloc)
-    callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmi2.free)
-    fmpy.extract(str(path), str(tmp_path))
-    fmu = fmi2.FMU2Model(
-        guid="{other}",
-        unzipDirectory=str(tmp_path),
-        modelIdentifier="slider_crank",
-        instanceName="it",
-    )
-    with pytest.raises(Exception, match="instantiate"):
-        fmu.instantiate(callbacks=callbacks)
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "windy", "free"])
@@ -478,11 +343,3 @@ def test_a_script_compares_a_unit_with_its_golden_vectors(unit, name, by, tmp_pa
         done = subprocess.run([sys.executable, script], cwd=folder, capture_output=True, text=True)
         assert done.stdout.splitlines()[-1] == f"{path.name}: {count} failures", done.stderr
         assert done.returncode == count
-
-
-def test_a_coordinate_that_turns_back_says_no_time(tmp_path):
-    scene = load_case("arm6").scene
-    with pytest.raises(errors.DeclarationError, match="'turn': this coordinate stops or"):
-        export(scene, tmp_path / "a", fmu="turn", wanted=["effort"])
-    with pytest.raises(errors.UnknownNameError, match="unknown coordinate 'twist'; valid: time"):
-        export(scene, tmp_path / "a", fmu="twist", wanted=["effort"])

@@ -2,14 +2,12 @@
 every time.
 """
 
-import math
 import shutil
 import subprocess
 import sys
 import zipfile
 from xml.etree import ElementTree
 
-import numpy as np
 import pytest
 from compiled import fake_compiler
 from conftest import CASES
@@ -17,10 +15,9 @@ from importer import Instance, robot, windy
 from internals import export, find_compiler, fmu
 from mechanisms import slider_crank
 
-from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi import evaluate
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import CompilerError, LagrangeCasadiError, PathError, StoreError
-from lagrange_casadi.motion import polynomial
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 pytestmark = pytest.mark.skipif(
@@ -65,12 +62,6 @@ def test_no_clock_and_no_path(archives):
                 assert entry.date_time == (1980, 1, 1, 0, 0, 0)
                 assert b"/tmp/" not in archive.read(entry)
                 assert b"lagrange_casadi-" not in archive.read(entry)
-
-
-def test_another_scene_is_another_unit(archives, tmp_path):
-    export(slider_crank(), tmp_path / "out", name="slider_crank", parameters={"r": 0.09}, fmu=True)
-    other = described(tmp_path / "out" / "slider_crank.fmu")
-    assert other.get("guid") != described(archives["slider_crank"]).get("guid")
 
 
 @pytest.mark.sampled(7)
@@ -148,22 +139,6 @@ def test_names_units_and_limits(archives):
     }
 
 
-def test_a_unit_that_nobody_knows(tmp_path):
-    m = Mechanism("odd")
-    a = m.link("a", length=m.parameter("a", 0.3, "ell"), mass=m.parameter("time", 0.5, "lb/s m"))
-    m.revolute("O", m.ground, a)
-    m.force("wind", a.tip, x=m.time)
-    export(Scene(m, {"O": polynomial(0, 3)}, ["effort"]), tmp_path / "out", fmu=True)
-    root = described(tmp_path / "out" / "odd.fmu")
-    assert {
-        u.get("name"): [*u] for u in root.iter("Unit") if u.get("name") in ("ell", "lb/s m")
-    } == {"ell": [], "lb/s m": []}
-    # A parameter may have the name that the time has elsewhere.
-    assert [
-        v.get("name") for v in root.iter("ScalarVariable") if v.get("causality") == "independent"
-    ] == ["simulation/time"]
-
-
 @pytest.mark.parametrize("name", ["robot", "windy"])
 def test_nothing_depends_on_more_than_is_said(archives, name, tmp_path):
     """And every dependency is felt by some instant, but for those that only the structure has."""
@@ -196,19 +171,6 @@ def test_nothing_depends_on_more_than_is_said(archives, name, tmp_path):
     if name == "windy":
         assert "time" in directly["effort/O"]
         assert "time" not in directly["pose/b/x"]
-
-
-def test_the_page_has_every_name(archives):
-    with zipfile.ZipFile(archives["windy"]) as archive:
-        page = archive.read("documentation/index.html").decode()
-    ElementTree.fromstring(
-        page.replace("<!DOCTYPE html>", "").replace('<meta charset="utf-8">', "")
-    )
-    assert all(
-        f"<code>{v.get('name')}</code>" in page
-        for v in described(archives["windy"]).iter("ScalarVariable")
-        if v.get("name") != "time"
-    )
 
 
 def test_the_folder_knows_its_unit(tmp_path):
@@ -279,12 +241,3 @@ def test_a_binary_that_does_not_load_is_not_shipped(here, tmp_path_factory, monk
     with pytest.raises(CompilerError, match=r"the library built by .*fake-cc does not load: "):
         export(slider_crank(), here / "out", fmu=True, wanted=["effort"])
     assert not list(here.iterdir())
-
-
-def test_the_command_line(tmp_path, capsys):
-    out = tmp_path / "out"
-    assert main(["export", str(CASES / "slider_crank"), "--out", str(out), "--fmu"]) == 0
-    assert f"wrote {out / 'slider_crank.fmu'}: FMI 2.0" in capsys.readouterr().out
-    result = fmpy.simulate_fmu(str(out / "slider_crank.fmu"), stop_time=0.01, output=["effort/O"])
-    assert np.isfinite(result["effort/O"]).all()
-    assert math.isclose(result["time"][-1], 0.01)

@@ -9,7 +9,6 @@ import pytest
 from mechanisms import slider_crank
 
 from lagrange_casadi import evaluate, load_case
-from lagrange_casadi.errors import DeclarationError
 
 CASES = Path(__file__).parents[2] / "cases"
 CLAIM = 3.0  # what a table claims is what it was seen to miss halfway between its nodes
@@ -47,21 +46,6 @@ def test_a_table_is_right_within_what_it_claims(name, method):
     )
 
 
-def test_an_accuracy_is_kept():
-    scene = slider_crank()
-    exact = evaluate(scene)
-    for accuracy in (1e-4, 1e-8, 1e-11):
-        read = evaluate(scene, table=accuracy)
-        assert (
-            max(
-                gap / peak
-                for name, gap, peak in gaps(exact, read)
-                if peak and name.startswith(("eff", "rea", "sec"))
-            )
-            < accuracy
-        )
-
-
 LATE = ((1e6, {"table": 1e-9}, 1e-9), (3600.0, {"table": 1e-6, "precision": "single"}, 2e-6))
 
 
@@ -81,37 +65,3 @@ def test_angles_count_turns():
         assert gap < 1e-5 * max(1.0, np.max(np.abs(exact.array(name)))), name
     np.testing.assert_allclose(read.motion("A").value, exact.motion("A").value, atol=1e-9)
     np.testing.assert_allclose(read.pose("rod").angle, exact.pose("rod").angle, atol=1e-9)
-
-
-def test_the_bytes_do_not_depend_on_the_threads():
-    one, two = (
-        evaluate(slider_crank(["effort"]), t=(0, 0.08, 70_001), table=64, threads=threads)
-        for threads in (1, 3)
-    )
-    assert one.effort("O").tobytes() == two.effort("O").tobytes()
-
-
-def test_what_cannot_be_tabulated_is_refused_with_the_reason():
-    arm, shaper = (load_case(CASES / name).scene for name in ("arm", "quick_return"))
-    with pytest.raises(
-        DeclarationError,
-        match=(
-            "table: expected one driven joint, whose angle determines all, got 'shoulder', 'elbow',"
-            " 'wrist'"
-        ),
-    ):
-        evaluate(arm, table=64)
-    with pytest.raises(
-        DeclarationError,
-        match=r"table: expected columns quadratic in the rate of joint 'O', but .* 'load:cut:fx'",
-    ):
-        evaluate(shaper, table=64)
-    with pytest.raises(
-        DeclarationError,
-        match=r"table: an accuracy of 1e-09 is not possible; the best is 0\.000.*, with 16384",
-    ):
-        evaluate(load_case(CASES / "engine").scene, table=1e-9)
-
-
-def test_the_rung_is_told():
-    assert evaluate(slider_crank(["effort"]), table=64).provenance.method == "--table 64"

@@ -8,35 +8,14 @@ import subprocess
 import numpy as np
 import pytest
 from compiled import HEADER, SCENES, built, columns, filled
-from internals import DTYPES, PRECISIONS, ROUNDING, EvaluationMethod, backends, library, run
+from internals import DTYPES, PRECISIONS, EvaluationMethod, backends, library, run
 from mechanisms import slider_crank
 
-from lagrange_casadi import codegen, derive, evaluate
+from lagrange_casadi import codegen, derive
 
 pytestmark = pytest.mark.usefixtures("released")
 
 both = pytest.mark.parametrize("precision", PRECISIONS)
-
-
-@pytest.mark.sampled(29)
-@both
-@pytest.mark.parametrize("name", SCENES)
-def test_packs_agree_with_scalar_c(name, precision):
-    scene, ulp = SCENES[name](), 2 * ROUNDING[precision]
-    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 157)
-    p = np.array(list(scene.mechanism.values().values()))
-    packs, scalar = (
-        columns(program, t, language, precision=precision) for language in ("c++", "c")
-    )
-    kinds = [
-        (column.split(":")[0], column.split(":")[-1] if column.count(":") > 1 else "")
-        for column in program.names
-    ]
-    for kind in set(kinds):
-        rows = [i for i, other in enumerate(kinds) if other == kind]
-        # A gap is rounding, of lengths.
-        size = program.extent(p) if kind[0] == "_gap" else np.max(np.abs(scalar[rows]))
-        assert np.max(np.abs(packs[rows] - scalar[rows])) <= 64 * ulp * size
 
 
 @both
@@ -98,12 +77,6 @@ def test_a_tail_that_cannot_be_closed_is_found_in_its_pack(precision):
     assert 0 < reach.sum() < t.size
     assert np.array_equal(status == 0, reach)
     assert np.isfinite(out[:, reach]).all()
-
-
-def test_the_backend_is_named():
-    solution = evaluate(slider_crank(), backend="lanes")
-    assert solution.provenance.backend == "lanes"
-    assert "-march=native" in solution.provenance.flags
 
 
 PROGRAM = r"""

@@ -180,20 +180,6 @@ def test_other_rungs_search_alike(name):
     assert_found(name, OTHERS)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("count", [211, 1500])
-def test_a_hundred_summits(count):
-    """All but as high as each other; of few instants each has at most two."""
-
-    def law(x):
-        return ca.sin(100 * math.pi * x) * (1 + 1e-3 * ca.sin(3.3 * x))
-
-    largest = true(law)
-    for tolerance, value in searched(signal(law, (0.0, 2.0, count))):
-        assert abs(value) == pytest.approx(largest, rel=max(1e-8, tolerance))
-        assert abs(value) >= largest * (1 - tolerance)
-
-
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 8, 9])
 def test_few_instants(count):
@@ -220,39 +206,6 @@ class Counted:
         self.times += t.size
         watched = np.zeros((0, t.size)) if self.watched is None else self.watched(t)[None]
         return Samples(self.law(t)[None], np.full((1, t.size), np.nan), watched)
-
-
-@pytest.mark.parametrize(
-    "law", [np.exp, lambda x: np.exp(-x), lambda x: 1 - 0.3 * x, lambda x: np.sinh(x - 1.5)]
-)
-def test_what_goes_straight_on_to_an_end_needs_no_cuts(law):
-    """It is looked at in the end step, and believed."""
-    times = np.linspace(0.0, 2.0, 51)
-    source = Counted(law)
-    samples, source.times = source.at(times), 0
-    found = peaks(source, Curves((0,), (0,)), times, samples, np.zeros(50, bool))
-    assert abs(found.value[0]) == np.abs(samples.values).max()
-    assert source.times <= 1
-
-
-@pytest.mark.parametrize(
-    ("law", "kind", "at"),
-    [
-        (lambda x: 1 - np.abs(x - 1.013), Kind.SWITCH, 1.013),
-        (lambda x: x * (x < 1.0137), Kind.SWITCH, 1.0137),
-        (lambda x: np.fmod(x + 0.4, 1.0), Kind.STEP, 0.6),
-    ],
-)
-def test_a_known_kink_cuts_a_step_in_two(law, kind, at):
-    """What is watched tells where it is, and little is looked at around it."""
-    times = np.linspace(0.0, 2.0, 51)
-    watches = (Watch(kind, (at,) if kind is Kind.SWITCH else ()),)
-    source = Counted(law, lambda x: x if kind is Kind.SWITCH else x + 0.4)
-    samples, source.times = source.at(times), 0
-    found = peaks(source, Curves((0,), (0,), (), watches), times, samples, np.zeros(50, bool))
-    sides = law(np.array([at, np.nextafter(at, 0), np.nextafter(at, 3), 1.6 - 4e-16]))
-    assert found.value[0] == pytest.approx(sides.max(), rel=1e-12)
-    assert source.times <= 80
 
 
 def local(values, share):

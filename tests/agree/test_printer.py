@@ -17,7 +17,7 @@ from internals import cell, entries, literal, print_functions, printer, written_
 from outside import doubled
 
 from lagrange_casadi import codegen
-from lagrange_casadi.errors import DeclarationError, SizeError
+from lagrange_casadi.errors import DeclarationError
 
 pytestmark = pytest.mark.quick
 
@@ -85,17 +85,6 @@ def test_all_operations_have_the_bits_of_the_virtual_machine(tmp_path):
         assert np.array_equal(np.signbit(found[some]), np.signbit(expected[some])), values
 
 
-def test_truths_are_comparisons():
-    a, b = (ca.SX.sym(name) for name in "ab")
-    truths = ca.vertcat(
-        ca.logic_not(a), ca.logic_and(a, b), ca.logic_or(a, b), ca.if_else(a, b, 2.0)
-    )
-    text = print_functions(
-        {"truths": ca.Function("truths", [a, b], [truths])}, "double", prefix="table"
-    )
-    assert re.search(r"!a\d|a\d+ (&&|\|\|) a\d", text) is None
-
-
 @pytest.mark.parametrize("length", [1, 7, 50])
 def test_a_function_in_parts_is_the_same(length, tmp_path, monkeypatch):
     monkeypatch.setattr(printer, "LENGTH", length)
@@ -140,15 +129,6 @@ def test_a_number_is_read_as_the_same_number(value):
     assert (read == value and math.copysign(1.0, read) == math.copysign(1.0, value)) or math.isnan(
         value
     )
-
-
-def test_numbers_too_large_for_singles_are_refused():
-    x = ca.SX.sym("x")
-    with pytest.raises(
-        SizeError,
-        match=r"the number 1e\+39 is too large for single precision, which ends at 3\.4e\+38",
-    ):
-        print_functions({"f": ca.Function("f", [x], [1e39 * x])}, "single", prefix="table")
 
 
 @pytest.mark.parametrize(

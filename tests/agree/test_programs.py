@@ -2,7 +2,6 @@
 load.
 """
 
-import errno
 import os
 import re
 import shutil
@@ -70,16 +69,6 @@ def test_a_compiler_that_hangs_is_stopped_with_all_it_started(
     all_gone(pid)
 
 
-def test_one_that_does_not_listen_is_stopped_too(tmp_path, fresh_cache, monkeypatch, pid):
-    fake_compiler(
-        tmp_path, monkeypatch, f"{TELLS} trap '' TERM INT HUP; {HANGS.format(pid=pid)}; sleep 1000"
-    )
-    monkeypatch.setenv(compiler.VARIABLE, "0.5")
-    with pytest.raises(CompilerError, match=r"did not end within 0\.5 s"):
-        evaluate(slider_crank(), backend="c")
-    all_gone(pid)
-
-
 def test_a_chosen_compiler_that_hangs_at_its_version_is_an_error(tmp_path, monkeypatch, pid):
     fake_compiler(tmp_path, monkeypatch, HANGS.format(pid=pid))
     monkeypatch.setenv(compiler.VARIABLE, "4")
@@ -103,14 +92,6 @@ def test_another_that_hangs_at_its_version_is_passed_over(tmp_path, monkeypatch,
         found = codegen.find_compiler()
     assert found is None or found.command != ("cc",)
     all_gone(pid)
-
-
-def test_an_ordinary_compiler_may_take_its_time(monkeypatch):
-    monkeypatch.delenv(compiler.VARIABLE, raising=False)
-    assert compiler.limit() == 600
-    for text, seconds in (("30", 30), (" 2.5 ", 2.5), ("inf", 1e6)):
-        monkeypatch.setenv(compiler.VARIABLE, text)
-        assert compiler.limit() == seconds
 
 
 @pytest.mark.parametrize("text", ["soon", "0", "-1", "nan", "1_0"])
@@ -165,13 +146,6 @@ def test_what_is_no_text_is_quoted_all_the_same(tmp_path, here, fresh_cache, mon
     )
 
 
-def test_a_long_complaint_is_cut(tmp_path, fresh_cache, monkeypatch):
-    fake_compiler(tmp_path, monkeypatch, f"{TELLS} printf 'error: %05000d' 0 >&2; exit 1")
-    with pytest.raises(CompilerError) as raised:
-        evaluate(slider_crank(), backend="c")
-    assert len(str(raised.value)) < 1000
-
-
 CROWDED = """
 import os, sys
 from lagrange_casadi.cli import main
@@ -211,19 +185,6 @@ def test_too_few_descriptors_are_not_no_compiler(free):
     assert re.fullmatch(r"(cannot start \S+: Too many open files\n){2}", done.stdout)
 
 
-@pytest.mark.parametrize("number", [errno.EAGAIN, errno.ENOMEM], ids=errno.errorcode.get)
-def test_a_system_without_processes_is_not_no_compiler(monkeypatch, number):
-    def refused(*_arguments, **_keywords):
-        raise OSError(number, os.strerror(number))
-
-    compiler._find_compiler.cache_clear()
-    with monkeypatch.context() as patch:
-        patch.setattr(subprocess, "Popen", refused)
-        with pytest.raises(CompilerError, match=f"cannot start .*: {os.strerror(number)}"):
-            evaluate(slider_crank())
-    assert codegen.find_compiler() is not None
-
-
 def test_a_library_that_does_not_load_is_built_again(fresh_cache):
     """Whole as it is: of another machine, say, that shares the folder."""
     evaluate(slider_crank(), backend="c")
@@ -237,36 +198,6 @@ def test_a_library_that_does_not_load_is_built_again(fresh_cache):
     ):
         evaluate(slider_crank(), backend="c")
     assert library.read_bytes() == whole
-
-
-def test_a_seal_that_cannot_be_read_is_built_again(fresh_cache, monkeypatch):
-    """As another user's, in a folder that is shared."""
-    evaluate(slider_crank(), backend="c")
-    read = Path.read_bytes
-
-    def refused(path):
-        if path.suffix == ".sha256":
-            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
-        return read(path)
-
-    monkeypatch.setattr(Path, "read_bytes", refused)
-    with pytest.warns(
-        UserWarning,
-        match=r"the cached library .*\.so cannot be read \(Permission denied\) and is built again",
-    ):
-        evaluate(slider_crank(), backend="c")
-
-
-@pytest.mark.parametrize("gone", ["so", "sha256"])
-def test_half_of_what_was_kept_is_built_again_in_silence(fresh_cache, recwarn, gone):
-    """Another process made room meanwhile."""
-    first = evaluate(slider_crank(), backend="c")
-    before = sorted(fresh_cache.iterdir())
-    for path in fresh_cache.glob(f"*.{gone}"):
-        path.unlink()
-    assert (evaluate(slider_crank(), backend="c").effort("O") == first.effort("O")).all()
-    assert sorted(fresh_cache.iterdir()) == before
-    assert not recwarn.list
 
 
 def test_what_a_killed_compiler_left_is_not_believed(tmp_path, fresh_cache, monkeypatch):

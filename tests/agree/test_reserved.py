@@ -4,12 +4,9 @@ things.
 
 import numpy as np
 import pytest
-from exported import by_c99, compare, expected, exported, instants, solve
-from internals import Output, check, load
-from internals import runs_save as save
-from machines import called_as_rates
+from internals import Output
 
-from lagrange_casadi import Mechanism, Scene, Sweep, evaluate, refine, sweep
+from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.motion import harmonic, polynomial
 
 PLAIN = {
@@ -84,60 +81,3 @@ def test_what_acts_twice_hides_no_other_load(solutions):
         7.0,
         rtol=1e-14,
     )
-
-
-def test_files_and_peaks_know_them(scenes, solutions, tmp_path):
-    named, _ = solutions
-    save(named, tmp_path / "run.h5")
-    again = load(tmp_path / "run.h5")
-    assert list(again.outputs) == list(named.outputs)
-    assert all(np.array_equal(again.series[name], values) for name, values in named.series.items())
-    assert check(tmp_path / "run.h5") == []
-    names = ["motion:O_rate.coordinate", "section:rod:bending", "effort:law"]
-    assert [peak.name for peak in refine(scenes[0], named, names)] == names
-
-
-def test_sweeps_know_them(scenes, solutions, tmp_path):
-    sweep(
-        scenes[0],
-        {"law_rate": (0.25, 0.35, 3)},
-        out=tmp_path / "s.h5",
-        workers=1,
-        xi=(0.0, 1.0, 5),
-        keep="histories",
-    )
-    swept = Sweep.open(tmp_path / "s.h5")
-    named, _ = solutions
-    np.testing.assert_allclose(
-        swept["history:section:rod:law:n0"][1],
-        named.series["section:rod:law:n0"],
-        rtol=1e-9,
-        atol=1e-9,
-    )
-    np.testing.assert_allclose(
-        swept["history:section:rod:law:n"][1],
-        named.series["section:rod:law:n"],
-        rtol=1e-9,
-        atol=1e-9,
-    )
-
-
-def test_exported_c_knows_them(scenes, tmp_path):
-    made, told = exported(scenes[0], tmp_path / "c")
-    solution = solve(scenes[0], "double")
-    found = by_c99(tmp_path / "c", told, instants(solution.t, "double"))
-    compare(found, expected(scenes[0], told, solution), told, made, solution)
-    assert {"O_rate", "motion_O_rate_coordinate"} <= {
-        member.name for member in (*made.inputs, *made.outputs)
-    }
-
-
-@pytest.mark.parametrize("precision", ["double", "single"])
-def test_exported_c_tells_a_drive_from_the_rate_that_is_called_so(precision, tmp_path):
-    scene = called_as_rates()
-    made, told = exported(scene, tmp_path, precision=precision)
-    solution = solve(scene, precision)
-    found = by_c99(tmp_path, told, instants(solution.t, precision))
-    compare(found, expected(scene, told, solution), told, made, solution)
-    names = [member.name for member in made.inputs if not member.rest_of]
-    assert names[3:] == ["pin_rate_coordinate", "pin_rate_rate", "pin_rate_acceleration"]

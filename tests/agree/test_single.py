@@ -5,7 +5,6 @@ import re
 import shutil
 import subprocess
 
-import numpy as np
 import pytest
 from compiled import HEADER, SCENES, STRICT
 from internals import FLAGS, LANES_PLACE, compensated, plain
@@ -102,18 +101,6 @@ def test_instructions_on_doubles_are_told(language, tmp_path):
     assert functions_of_doubles(path) >= {"atan2", "exp", "erf", "hypot", "pow"}
 
 
-@pytest.mark.parametrize("backend", ["c", "lanes"])
-def test_every_function_in_single(backend):
-    """Within some roundings of the doubles, of the largest term of the sum."""
-    scene = every_function()
-    single, double = (
-        evaluate(scene, backend=backend, precision=p, wanted=["load:t"])
-        for p in ("single", "double")
-    )
-    assert np.isfinite(double.series["load:t:mz"]).all()
-    np.testing.assert_allclose(single.series["load:t:mz"], double.series["load:t:mz"], rtol=1e-5)
-
-
 def loaded(constant):
     m = Mechanism("loaded")
     arm = m.link("arm", length=1, mass=1)
@@ -129,9 +116,3 @@ def test_a_number_too_large_for_single_is_refused():
     ):
         evaluate(loaded(1e39), precision="single")
     assert evaluate(loaded(1e39)).array("load:t:mz")[0] == 4e38
-
-
-@pytest.mark.parametrize("constant", [1e-40, 1e-60, 3.4e38])
-def test_numbers_at_the_ends_of_single(constant):
-    solution = evaluate(loaded(constant), precision="single", wanted=["load:t"])
-    np.testing.assert_allclose(solution.array("load:t:mz"), 1.0 + constant * 0.4, rtol=1e-6)

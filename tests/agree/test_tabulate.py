@@ -5,9 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from exported import by_c99, compare, expected, exported, instants, solve
-from internals import Cycle, tabulate
-from mechanisms import crank_and_rod, four_bar, parallelogram, slider_crank, truss_platform
+from mechanisms import four_bar, parallelogram, slider_crank, truss_platform
 from tables import case, made, some_motion, values, worst_gap
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, motion
@@ -101,12 +99,6 @@ def test_the_error_is_the_one_there_is():
     assert table.error == pytest.approx(max(gaps), rel=0.02)
 
 
-def test_errors_fall_with_the_sixth_power_of_the_distance():
-    scene = case("slider_crank")
-    coarse, fine = made(scene, 64), made(scene, 256)
-    assert 11.5 < math.log2(coarse.error / fine.error) < 12.8
-
-
 def test_kinks_of_a_load_cost_the_order():
     """The engine's gas follows a table, linear between its values: errors fall with the distance
     only.
@@ -159,73 +151,6 @@ def test_after_many_turns_all_is_as_before(turns):
     table = made(scene, 1e-12)
     angle, rate, acceleration = some_motion(turns=1.0)
     assert worst_gap(scene, table, turns * math.tau + angle, rate, acceleration) < 2e-12
-
-
-def test_terms_are_those_that_there_are():
-    table = made(case("slider_crank"), 16, ["effort"])
-    expected = {("effort:O", factor) for factor in ("1", "rate^2", "acceleration")}
-    assert set(table.terms) == expected | {("_closure:guide", "1")}
-    assert table.columns == ("_closure:guide", "_gap:guide", "effort:O")
-    assert table.nbytes == 8 * 4 * (16 + 5)
-    assert not table.drift.any()
-
-
-def test_damping_goes_with_the_rate():
-    def damper(m, parts):
-        m.spring(
-            "damper",
-            m.ground.at(0.2, 0.5),
-            parts["b"].at(0.1),
-            stiffness=300.0,
-            length=0.3,
-            damping=40.0,
-        )
-
-    scene = crank_and_rod({"mass": 0.4}, loads=damper)
-    table = made(scene)
-    assert ("effort:O", "rate") in table.terms
-    assert worst_gap(scene, table, *some_motion()) < 1.1e-9
-
-
-def test_a_load_may_call_a_function_that_is_not_inlined():
-    x = ca.SX.sym("x")
-    called = ca.Function("called", [x], [ca.sin(x) * 3], {"never_inline": True})
-    scene = arm(lambda q, w, t: called(q) * w)
-    assert worst_gap(scene, made(scene), *some_motion()) < 1.1e-9
-
-
-def test_angles_drift_by_what_they_gain():
-    crank = made(drag_link(), 64)
-    gains = dict(zip(crank.columns, crank.drift, strict=True))
-    assert [gains[f"pose:{name}:angle"] for name in "abc"] == [1.0, 1.0, 1.0]
-    assert [gains[f"motion:{name}"] for name in "OABC"] == [1.0, 0.0, 0.0, 1.0]
-    wheels = made(geared(-1 / 3), 64)
-    assert wheels.turns == 3
-    assert wheels.period == 3 * math.tau
-    assert wheels.drift[wheels.columns.index("motion:second")] == -1 / 3
-    assert worst_gap(geared(-1 / 3), wheels, *some_motion()) < 1e-4
-
-
-def test_nodes_are_where_the_motion_goes():
-    """A load that was declared for the angles that the motion passes is another one elsewhere."""
-
-    def load(q, w, t):
-        turned = ca.fmod(q, math.tau)
-        return (turned * (math.tau + turned)) ** 3
-
-    scene = arm(load, motion.polynomial(0.0, -3.0), wanted=["load:load"])
-    table = made(scene, 1024)
-    angle, rate, acceleration = some_motion()
-    assert worst_gap(scene, table, -np.abs(angle), rate, acceleration) < 1e-6
-
-
-def test_what_rounding_alone_makes_is_no_term():
-    """An arm in the plane of no gravity: its torque goes with the acceleration alone."""
-    scene = arm()
-    scene.mechanism.gravity = (0.0, 0.0, 0.0)
-    table = made(scene, 1e-12, ["effort"], rates=(50.0, 0.0))
-    assert table.nodes == 16
-    assert table.terms == (("effort:pin", "acceleration"),)
 
 
 def unreachable():
@@ -357,62 +282,6 @@ def test_an_accuracy_beyond_rounding_is_refused_with_the_best():
         made(case("slider_crank"), 1e-17)
 
 
-def test_tables_are_bounded_in_memory(monkeypatch):
-    monkeypatch.setattr(tabulate, "LARGEST", 8 * 4 * (128 + 5))
-    with pytest.raises(
-        DeclarationError,
-        match=r"an accuracy of 1e-09 is not possible; the best is \S+e-09, with 128 nodes",
-    ):
-        made(case("slider_crank"), wanted=["effort"])
-    with pytest.raises(
-        DeclarationError, match=r"table: 129 nodes take more than 0 MB; expected fewer"
-    ):
-        made(case("slider_crank"), 129, ["effort"])
-    assert made(case("slider_crank"), 128, ["effort"]).nodes == 128
-
-
-@pytest.mark.parametrize("table", [7, 16385, -3, True, 1.0, 0.0, 16.0, math.nan, "16", None])
-def test_what_is_neither_nodes_nor_an_accuracy_is_refused(table):
-    with pytest.raises(
-        DeclarationError,
-        match=(
-            r"table: expected a whole number of nodes from 8 to 16384, or an accuracy between 0"
-            r" and 1"
-        ),
-    ):
-        made(case("slider_crank"), table)
-
-
-@pytest.mark.parametrize("rates", [(1.0,), (-1.0, 2.0), (math.inf, 0.0), ("a", 1.0), 3.0])
-def test_rates_are_two_numbers(rates):
-    with pytest.raises(
-        DeclarationError,
-        match=r"table: expected the largest rate and acceleration, two numbers of at least 0",
-    ):
-        made(case("slider_crank"), 64, rates=rates)
-
-
-def test_each_place_is_evaluated_once(monkeypatch):
-    """The nodes of twice as many are the former ones and the places halfway."""
-    asked = []
-    values_at = Cycle.values
-    monkeypatch.setattr(
-        Cycle,
-        "values",
-        lambda self, nodes, **k: asked.append((nodes, *k)) or values_at(self, nodes, **k),
-    )
-    table = made(case("slider_crank"), 1e-6)
-    assert asked == [(16,), (16, "halfway"), (32, "halfway"), (64, "halfway")]
-    monkeypatch.undo()
-    again = made(case("slider_crank"), 64)
-    np.testing.assert_allclose(
-        table.coefficients,
-        again.coefficients,
-        rtol=0,
-        atol=1e-13 * np.abs(again.coefficients).max(),
-    )
-
-
 def with_a_load(place):
     """A slider-crank whose rod bears a load between its ends."""
     m = Mechanism("loaded")
@@ -441,16 +310,3 @@ def test_a_station_that_stands_still_is_on_no_other_side_of_a_section(place):
     )
     np.testing.assert_array_equal(read.law.loads[0].station, true.law.loads[0].station)
     np.testing.assert_allclose(read.shear, true.shear, rtol=0, atol=1e-9)
-
-
-def test_an_exported_table_knows_it_too(tmp_path):
-    scene = with_a_load(0.2)
-    made, told = exported(scene, tmp_path, table=256)
-    solution = solve(scene, "double", table=256)
-    compare(
-        by_c99(tmp_path, told, instants(solution.t, "double")),
-        expected(scene, told, solution),
-        told,
-        made,
-        solution,
-    )
