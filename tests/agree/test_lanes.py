@@ -7,76 +7,14 @@ import subprocess
 
 import numpy as np
 import pytest
-from compiled import HEADER, SCENES, built, columns, filled
-from internals import DTYPES, PRECISIONS, EvaluationMethod, backends, library, run
-from mechanisms import slider_crank
+from compiled import HEADER
+from internals import PRECISIONS
 
-from lagrange_casadi import codegen, derive
+from lagrange_casadi import codegen
 
 pytestmark = pytest.mark.usefixtures("released")
 
 both = pytest.mark.parametrize("precision", PRECISIONS)
-
-
-@both
-@pytest.mark.sampled(13)
-@pytest.mark.parametrize("name", SCENES)
-def test_a_tail_of_any_length_has_the_same_bits(name, precision):
-    scene = SCENES[name]()
-    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 80)
-    library = built(program, "c++", precision=precision)
-    whole = filled(library, program, t, precision=precision)
-    for n in (*range(1, 19), 63, 64, 65, 72, 79):
-        assert np.array_equal(filled(library, program, t[:n], precision=precision), whole[:, :n])
-
-
-@pytest.mark.sampled(7)
-@both
-@pytest.mark.parametrize("language", ["c", "c++"])
-@pytest.mark.parametrize("name", ["effort_alone", "iterated"])
-def test_the_bytes_do_not_depend_on_the_threads(name, language, precision, monkeypatch):
-    scene = SCENES[name]()
-    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 40_001)
-    one = columns(program, t, language, precision=precision)
-    monkeypatch.setattr(library, "_WORTH_A_THREAD", 0)
-    for threads in (2, 3, 5):
-        assert (
-            columns(program, t, language, threads, precision=precision).tobytes() == one.tobytes()
-        )
-
-
-@both
-@pytest.mark.parametrize("language", ["c", "c++"])
-def test_columns_that_go_past_the_caches_have_the_same_bits(language, precision):
-    """Rows that begin with a line of the cache are streamed where they are large; what lies between
-    them stays.
-    """
-    program, real = derive(slider_crank()), DTYPES[precision]
-    n = (5 << 20) // (len(program.columns) * np.dtype(real).itemsize) + 13
-    library, t = built(program, language, precision=precision), np.linspace(0, 0.08, n)
-    lines = backends.rows(len(program.columns), n + 100, real)
-    lines[...] = np.nan
-    streamed = filled(library, program, t, precision=precision, out=lines[:, :n])
-    plain = filled(
-        library, program, t, precision=precision, out=backends.rows(len(lines), n + 1, real)[:, 1:]
-    )
-    assert streamed.tobytes() == plain.tobytes()
-    assert np.isnan(lines[:, n:]).all()
-
-
-@both
-def test_a_tail_that_cannot_be_closed_is_found_in_its_pack(precision):
-    """Instants beyond the reach of the links have a status; their neighbours in the pack have their
-    numbers.
-    """
-    program, t = derive(slider_crank()), np.linspace(0, 0.08, 21)
-    p = np.array([0.1, 0.1 * np.sin(1.2), 0.1, 0.1, 0.1])
-    table, _ = run(program, t, p, EvaluationMethod("lanes", precision))
-    out, status = table.out, table.status
-    reach = np.abs(np.sin(out[program.names.index("motion:O")])) < np.sin(1.2)
-    assert 0 < reach.sum() < t.size
-    assert np.array_equal(status == 0, reach)
-    assert np.isfinite(out[:, reach]).all()
 
 
 PROGRAM = r"""
