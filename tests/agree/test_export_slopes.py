@@ -2,16 +2,14 @@
 costs where they are not wanted.
 """
 
-import re
 import subprocess
 
 import numpy as np
 import pytest
-from compiled import cc, compilers, present
+from compiled import cc
 from mechanisms import slider_crank, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export
-from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 
 WANTED = ["effort", "section:rod", "sensitivity:l", "sensitivity:m3"]
@@ -123,46 +121,3 @@ def test_it_gives_what_an_evaluation_gives(make, parameters, by, tmp_path):
             )
     assert compared >= 3
     assert np.abs(found[:, :, 1:]).max() > 0.0
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("make", [slider_crank, rotor, truss_platform])
-def test_it_is_clean_and_its_self_test_passes(make, tmp_path):
-    scene = make()
-    made = export(scene, tmp_path, wanted=["all", "sensitivity"])
-    for label, command in compilers():
-        if present(command[0]):
-            sources = [f"{made.prefix}.c"] if "++" in label else [f"{made.prefix}.c", "selftest.c"]
-            for source in sources:
-                result = cc([*command, "-O1", "-c"], tmp_path, source, output="x.o")
-                assert result.returncode == 0, f"{label} {source}: {result.stderr}"
-    assert (
-        cc(
-            ["cc", "-std=c99", "-O1", "-ffp-contract=off"],
-            tmp_path,
-            f"{made.prefix}.c",
-            "selftest.c",
-        ).returncode
-        == 0
-    )
-    ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
-    assert ran.returncode == 0, ran.stdout
-    source = (tmp_path / "selftest.c").read_text()
-    (row,) = re.findall(r"slopes_off\[\d+\] = \{(.*)\};", source)
-    off = [float(word) for word in row.split(",")]
-    place = int(np.argmax(off))
-    first = source.partition("slopes_at[INSTANTS]")[2].partition("{\n  {")[2].partition("}")[0]
-    words = first.split(", ")
-    words[place] = repr(float(words[place]) + 4.0 * off[place])
-    (tmp_path / "selftest.c").write_text(source.replace(first, ", ".join(words)))
-    assert cc(["cc", "-std=c99"], tmp_path, f"{made.prefix}.c", "selftest.c").returncode == 0
-    ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
-    assert ran.returncode == 1
-    assert " by " in ran.stdout
-
-
-@pytest.mark.parametrize("options", [{"precision": "single"}, {"newton": 2}, {"table": 64}])
-def test_arithmetic_that_has_none(options, tmp_path):
-    with pytest.raises(DeclarationError, match="output 'sensitivity' needs double precision"):
-        export(slider_crank(), tmp_path / "a", wanted=WANTED, **options)
-    assert not (tmp_path / "a").exists()
