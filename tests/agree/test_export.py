@@ -74,7 +74,9 @@ def test_it_is_clean_and_passes_its_own_test(name, way, tmp_path):
     assert not [name for kind, name in found if kind in "DdBbC"], "no state"
     needed = {name for kind, name in found if kind == "U"}
     suffix = "f" if "single" in way or way == "newton" else ""
-    functions = "" if "table" in way else "sin cos sincos atan2 sqrt ceil fmax exp log pow fmod"
+    functions = (
+        "" if "table" in way else "sin cos sincos atan2 sqrt ceil fmax fmin exp log pow fmod"
+    )
     allowed = {word + suffix for word in f"{functions} floor".split()}
     assert needed <= allowed | {"_GLOBAL_OFFSET_TABLE_", "memset", "memcpy"}
     text = (tmp_path / f"{made.prefix}.c").read_text()

@@ -47,7 +47,7 @@ def test_examples_of_iterated_loops_go_in_steps_they_can_follow(tmp_path):
         lines = re.search(rf"     {p}_model model;\n.*?puts\([^\n]*\n", header, re.DOTALL).group()
         head = f'#include "{p}.h"\n#include <stdio.h>\nint main(void) {{\n'
         (folder / "shown.c").write_text(f"{head}{lines}return (int) status;\n}}\n")
-        for source, least in (("example.c", 13), ("shown.c", 1)):
+        for source, least in (("example.c", 13), ("shown.c", 0)):
             assert cc(["cc", "-std=c99"], folder, f"{p}.c", source).returncode == 0
             ran = subprocess.run([folder / "program"], capture_output=True, text=True, check=True)
             assert ran.stdout.count("\n") >= least

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from internals import FORCES, NumericDensity, PointLoad, SectionLaw, grids
+from internals import FORCES, grids
 from mechanisms import slider_crank
 
 from lagrange_casadi import evaluate, load, save
@@ -10,41 +10,6 @@ from lagrange_casadi import evaluate, load, save
 pytestmark = pytest.mark.quick
 
 random = np.random.default_rng(4)
-
-
-def loaded_law(n):
-    """A link with a load at its tip, one at a station, and one that travels from before the base to
-    beyond the tip.
-    """
-    coefficients = {
-        name: random.normal(size=n) for name in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
-    }
-    stations = (np.ones(n), np.full(n, 0.4), np.linspace(-0.1, 1.1, n))
-    loads = tuple(
-        PointLoad(f"load{i}", station, *random.normal(size=(3, n)))
-        for i, station in enumerate(stations)
-    )
-    return SectionLaw(
-        0.7, NumericDensity((0.0, 0.3, 1.0), ((1.3, 0.2), (0.5,))), coefficients, loads
-    )
-
-
-@pytest.mark.parametrize(
-    ("n", "k"), [(1, 1), (1, 4097), (700, 7), (3, 5000), (911, 201), (2, 100_001), (140_000, 1)]
-)
-def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
-    law, xi = loaded_law(n), np.linspace(0, 1, k)
-    for force in FORCES:
-        monkeypatch.setattr(grids, "WORTH_COMPILING", 10**12)
-        plain = law.on_grid(force, xi)
-        monkeypatch.setattr(grids, "WORTH_COMPILING", 0)
-        for share, streaming in ((10**9, 10**12), (1000, 10**12), (1000, 0), (10**9, 0)):
-            monkeypatch.setattr(grids, "_SHARE", share)
-            monkeypatch.setattr(grids, "_STREAMING", streaming)
-            for offset in (0, 1):  # off the vectors' boundaries too
-                out = np.full(n * k + 1, np.nan)[offset : offset + n * k].reshape(n, k)
-                assert law.on_grid(force, xi, out) is out
-                assert out.tobytes() == plain.tobytes()
 
 
 @pytest.mark.parametrize("many", [0, 2])

@@ -162,25 +162,6 @@ def test_single_precision_keeps_the_digits_of_a_coordinate(built):
     np.testing.assert_allclose(effort[1], effort[0], rtol=3e-6)
 
 
-def test_what_fails_at_an_instant_is_told_there(built):
-    folder, agreed, _ = built("quick_return", "double")
-    joint = next(m.name for m in agreed.inputs)
-    script = (
-        f"{SHOW}i = quick_return_mex('motion', [0 0.1 0.2]); i.{joint}(2) = NaN; o ="
-        " quick_return_mex(i); show('o', o);\n"
-    )
-    script += (
-        "printf('said %s\\n', quick_return_mex('message', o.status(2))); printf('class %s\\n',"
-        " class(o.status));"
-    )
-    *rows, said, kind = octave(script, folder).splitlines()
-    found = shown("\n".join(rows))
-    assert found["o", "status"].tolist() == [0, 3, 0]
-    assert (said, kind) == ("said an input is not finite", "class int32")
-    for member in agreed.outputs:
-        assert np.isfinite(found["o", member.name]).tolist() == [True, False, True]
-
-
 GIVEN = """
 i = struct('O', [0 1], 'O_rate', [7 7], 'O_acceleration', [0 0]);
 o = slider_crank_mex(i);

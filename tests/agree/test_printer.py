@@ -11,9 +11,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from compiled import cc
-from hypothesis import given
-from hypothesis import strategies as st
-from internals import cell, entries, literal, print_functions, printer, written_out
+from internals import cell, entries, print_functions, printer
 from outside import doubled
 
 from lagrange_casadi import codegen
@@ -122,15 +120,6 @@ def test_tables_have_the_numbers_of_the_virtual_machine(points, tmp_path):
             assert np.array_equal(call(x, y), function(x, y).full().ravel())
 
 
-@given(st.floats(width=64))
-def test_a_number_is_read_as_the_same_number(value):
-    text = literal("double")(value)
-    read = float(text.replace("INFINITY", "inf").replace("NAN", "nan"))
-    assert (read == value and math.copysign(1.0, read) == math.copysign(1.0, value)) or math.isnan(
-        value
-    )
-
-
 @pytest.mark.parametrize(
     ("make", "says"),
     [(ca.erfinv, "it takes OP_ERFINV"), (lambda x: doubled(x), "it calls another one")],
@@ -142,23 +131,3 @@ def test_what_has_no_c_is_named(make, says):
         DeclarationError, match=rf"function 'f' has no C: {says}; evaluate with backend 'vm'"
     ):
         print_functions({"f": ca.Function("f", [x], [make(x)])}, "double", prefix="table")
-
-
-def test_functions_that_are_called_are_written_out():
-    """Of several inputs and outputs, within each other; callbacks and tables remain."""
-    x, y = ca.SX.sym("x", 2), ca.SX.sym("y")
-    inner = ca.Function("inner", [x, y], [x[0] * y, ca.sin(x[1])], {"never_inline": True})
-    outer = ca.Function(
-        "outer", [y], [inner(ca.vertcat(y, 2 * y), y + 1)[1] * y], {"never_inline": True}
-    )
-    a = ca.SX.sym("a")
-    for expression, left in (
-        (outer(a) + inner(ca.vertcat(a, 1), 3.0)[0], 0),
-        (outer(doubled(a)), 1),
-        (outer(entries((1.0, 2.0, 4.0), cell((0.0, 1.0, 2.0, 3.0), a, ends=True))), 2),
-    ):
-        written = written_out(expression)
-        function = ca.Function("f", [a], [written])
-        assert len(function.find_functions(0)) == left
-        for value in (0.3, 1.7):
-            assert float(function(value)) == float(ca.Function("g", [a], [expression])(value))

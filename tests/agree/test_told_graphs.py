@@ -11,58 +11,6 @@ from lagrange_casadi import Mechanism, Scene, beams, evaluate, sweep
 ROUND, BAR = beams.round_bar(0.01), beams.rectangle(0.02, 0.01)
 
 
-def stepped():
-    """A beam held at both ends, one half of which may be of any height."""
-    m = Mechanism("stepped")
-    h = m.parameter("h", 0.05, "m", low=0.0)
-    shape = beams.stepped([0.5], [beams.rectangle(h, 0.02), beams.rectangle(0.04, 0.02)])
-    bar = m.link("bar", length=2.0, beam=made(shape))
-    m.weld("A", m.ground, bar)
-    m.weld("B", m.ground.at(2.0, 0), bar.tip)
-    m.force("push", bar.at(0.6), x=500.0, y=-1000.0)
-    return Scene(m, {}, t=(0, 0, 1), elastic=True)
-
-
-STRENGTH = {"stress:bar": "stress:bar:von_mises", "deflection:bar": "deflection:bar:across"}
-
-
-@pytest.mark.parametrize("strength", [(), pytest.param(tuple(STRENGTH), marks=pytest.mark.long)])
-def test_derivatives_of_what_is_told_by_parameters(strength):
-    """Stiffness has a share in them: against differences of solutions."""
-    scene, step = stepped(), 1e-7
-    wanted = ["reaction:A", "section:bar", *strength]
-    solution = evaluate(scene, wanted=[*wanted, "sensitivity:h"], backend="vm")
-    assert solution.certified
-    ends = [
-        evaluate(scene, wanted=wanted, parameters={"h": 0.05 + way * step}, backend="vm")
-        for way in (1, -1)
-    ]
-    series = [
-        "reaction:A:fx",
-        "reaction:A:fy",
-        "reaction:A:mz",
-        *(STRENGTH[name] for name in strength),
-    ]
-    quantities = set(map(str, solution.sensitivities.quantities))
-    assert quantities == {
-        *series,
-        *(f"section:bar:{force}" for force in ("axial", "shear", "bending")),
-    }
-    for name in series:
-        difference = (ends[0].array(name) - ends[1].array(name)) / (2 * step)
-        assert solution.sensitivities.array(name, "h") == pytest.approx(difference, rel=1e-6)
-    if strength:
-        found = [np.abs(solution.array(name)) for name in STRENGTH.values()]
-        exact = [
-            np.abs(x)
-            for x in (
-                solution.stress("bar").largest("von_mises").value,
-                solution.deflection("bar").largest()[0],
-            )
-        ]
-        np.testing.assert_allclose(found, exact, rtol=1e-9)
-
-
 def shared():
     """A welded beam with a pin at a place that may be moved along it, and beside it a beam of which
     the stiffness is not known.
