@@ -69,10 +69,10 @@ def assert_refined(scene, designs, outcome, row, p, tolerance=1e-11, noise=1e-12
     for joint in {name.split(":")[1] for name in names if name.startswith("reaction:")}:
         reaction = solution.reaction(joint)
         size = np.hypot(reaction.fx, reaction.fy)
-        assert found[f"reaction:{joint}:resultant"][0] >= size.max() * (1 - 1e-14)
-        assert found[f"reaction:{joint}:resultant"][0] <= size.max() * 1.2 or math.isinf(
-            found[f"reaction:{joint}:resultant"][0]
-        )
+        resultant = found[f"reaction:{joint}:resultant"][0]
+        parts = [abs(found[f"reaction:{joint}:{member}"][0]) for member in ("fx", "fy")]
+        assert resultant >= max(size.max() * (1 - 1e-14), *(part * (1 - 1e-11) for part in parts))
+        assert resultant <= math.hypot(*parts) * (1 + 1e-11)
 
 
 def loaded(mechanism, parts):

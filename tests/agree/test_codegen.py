@@ -25,10 +25,8 @@ from compiled import (
 from conftest import CASES
 from design_rows import DENSITIES, loaded
 from internals import (
-    DTYPES,
     FLAGS,
     LANES_PLACE,
-    PRECISIONS,
     EvaluationMethod,
     KeptOutputs,
     backends,
@@ -47,6 +45,7 @@ from lagrange_casadi.errors import SizeError
 
 pytestmark = pytest.mark.usefixtures("released")
 
+PRECISIONS = ("double", "single")
 both = pytest.mark.parametrize("language", ["c", "c++"])
 precise = pytest.mark.parametrize("precision", PRECISIONS)
 WHOLE = SCENES | {
@@ -107,7 +106,7 @@ def test_columns_that_go_past_the_caches_have_the_same_bits(language, precision)
     """Rows that begin with a line of the cache are streamed where they are large; what lies between
     them stays.
     """
-    program, real = derive(slider_crank()), DTYPES[precision]
+    program, real = derive(slider_crank()), {"double": float, "single": np.float32}[precision]
     n = (5 << 20) // (len(program.columns) * np.dtype(real).itemsize) + 13
     library, t = built(program, language, precision=precision), np.linspace(0, 0.08, n)
     lines = backends.rows(len(program.columns), n + 100, real)

@@ -2,10 +2,7 @@
 
 import numpy as np
 import pytest
-from internals import FORCES, grids
-from mechanisms import slider_crank
-
-from lagrange_casadi import evaluate, load, save
+from internals import grids
 
 pytestmark = pytest.mark.quick
 
@@ -50,16 +47,3 @@ def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypat
             )
     expected = np.hypot(*sums) if planes == 2 else sums[0]
     np.testing.assert_allclose(found[0][:n], expected, rtol=0, atol=1e-13)
-
-
-def test_a_file_written_in_blocks_holds_the_whole_grid(tmp_path, monkeypatch):
-    solution = evaluate(slider_crank(), t=(0, 0.08, 203), xi=(0, 1, 17))
-    for chunk, block in ((1 << 20, 1 << 23), (1000, 5000), (40, 40)):
-        monkeypatch.setattr("lagrange_casadi.store.runs._CHUNK_BYTES", chunk)
-        monkeypatch.setattr("lagrange_casadi.store.runs._BLOCK_BYTES", block)
-        save(solution, tmp_path / "x.h5")
-        again = load(tmp_path / "x.h5")
-        for force in FORCES:
-            assert np.array_equal(
-                again.array(f"section:rod:{force}"), solution.array(f"section:rod:{force}")
-            )

@@ -9,15 +9,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from internals import ALLOWED, ROUNDING, export
 
-from lagrange_casadi import evaluate
-from lagrange_casadi.case import load_case
+from lagrange_casadi import evaluate, export, load_case
 
 ABSENT = [tool for tool in ("octave-cli", "mkoctfile", "gcc") if shutil.which(tool) is None]
 pytestmark = pytest.mark.skipif(bool(ABSENT), reason=f"there is no {', '.join(ABSENT)}")
 
 XI = (0.0, 0.3, 1.0)
+ALLOWED = 16.0
+"""Estimates of the error within which other compilers and libraries are."""
+
+ROUNDING = {"double": 2.0**-53, "single": 2.0**-24}
 METHODS = {
     ("slider_crank", "double"): {},
     ("slider_crank", "single"): {"precision": "single"},

@@ -10,8 +10,7 @@ import pytest
 from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from internals import Curves, Kind, Samples, Status, Watch, peaks
-from internals import IntervalsListed as Listed
+from internals import Curves, Samples, Status
 from mechanisms import crank_and_rod, pendulum
 
 from lagrange_casadi import Mechanism, Scene, codegen, evaluate, prepare, refine
@@ -164,71 +163,6 @@ def test_few_instants(count):
     for tolerance, value in searched(signal(law, grid)):
         assert abs(value) == pytest.approx(largest, rel=max(1e-8, tolerance))
         assert abs(value) >= largest * (1 - tolerance)
-
-
-def local(values, share):
-    """The local tops of values, all of them (down to the least) or those down to a share of the
-    largest.
-    """
-    around = np.pad(values, 1, constant_values=-np.inf)
-    tops = np.flatnonzero((values >= around[:-2]) & (values > around[2:]))
-    return tops[values[tops] >= (values.min() if share is None else share * values.max())]
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize("way", [0, 1, -1])
-@pytest.mark.parametrize("language", ["c", "c++", None])
-def test_local_peaks_are_listed(language, way):
-    """Those of sizes, or of values one way, smooth, at a kink, and at the ends; of what is constant
-    the first instant.
-    """
-    find = peaks if language is None else codegen.load_search(codegen.find_compiler(language)).peaks
-    laws = (
-        lambda x: np.sin(9 * x) + 0.4 * x,
-        lambda x: -3 + 0.2 * np.sin(7 * x + 1),
-        lambda x: 1 - np.abs(x - 1.013) + 0.05 * np.sin(11 * x),
-        lambda x: 2.5 + 0 * x,
-    )
-
-    class Source:
-        def at(self, t):
-            values = np.array([law(t) for law in laws])
-            return Samples(values, np.full(values.shape, np.nan), t[None])
-
-    times, fine = np.linspace(0.0, 2.0, 51), np.linspace(0.0, 2.0, 200_001)
-    curves = Curves((0, 1, 2, 3), (0, 1, 2, 3), (), (Watch(Kind.SWITCH, (1.013,)),))
-    found = find(
-        Source(),
-        curves,
-        times,
-        Source().at(times),
-        np.zeros(50, bool),
-        Listed(0.51 if way else 0.3, way),
-    )
-    plain = find(Source(), curves, times, Source().at(times), np.zeros(50, bool))
-    assert found.resolved.all()
-    for k, law in enumerate(laws):
-        sized = way * law(fine) if way else np.abs(law(fine))
-        rows = found.tops[k]
-        rows = rows[~np.isnan(rows[:, 0])]
-        assert (rows[:, 0] == 0).all()
-        rows = rows[np.argsort(rows[:, 1])]
-        np.testing.assert_allclose(rows[:, 3], law(rows[:, 1]), rtol=0, atol=1e-14)
-        assert found.value[k] == pytest.approx(
-            rows[np.argmax(way * rows[:, 3] if way else np.abs(rows[:, 3])), 3], rel=1e-13
-        )
-        if not way:
-            assert found.value[k] == pytest.approx(plain.value[k], rel=1e-13)
-        if k == 3:
-            assert rows[0, 1] == 0.0
-            continue
-        expected = local(sized, None if way else 0.3)
-        low, high = sized.min(), sized.max()
-        # At the very least of the values a peak may be listed or not.
-        expected = expected[sized[expected] > low + 0.05 * (high - low)] if way else expected
-        rows = rows[way * rows[:, 3] > low + 0.05 * (high - low)] if way else rows
-        np.testing.assert_allclose(rows[:, 1], fine[expected], atol=2e-5)
-        np.testing.assert_allclose(rows[:, 3], law(fine[expected]), rtol=1e-8)
 
 
 @pytest.mark.sampled(5)

@@ -83,20 +83,6 @@ def test_all_operations_have_the_bits_of_the_virtual_machine(tmp_path):
         assert np.array_equal(np.signbit(found[some]), np.signbit(expected[some])), values
 
 
-@pytest.mark.parametrize("length", [1, 7, 50])
-def test_a_function_in_parts_is_the_same(length, tmp_path, monkeypatch):
-    monkeypatch.setattr(printer, "LENGTH", length)
-    a, b = ca.SX.sym("a"), ca.SX.sym("b")
-    rows = [a, b]
-    for k in range(40):
-        rows.append(ca.sin(rows[-1]) * rows[k // 2] + 0.1 * k)
-    function = ca.Function("f", [a, b], [ca.vertcat(*rows[::3])])
-    text = print_functions({"made": function}, "double", prefix="table")
-    assert text.count("made_") > 1
-    call = compiled(function, tmp_path)
-    assert np.array_equal(call(0.3, -2.0), function(0.3, -2.0).full().ravel())
-
-
 def looked_up(points):
     x, y = ca.SX.sym("x"), ca.SX.sym("y")
     breaks, numbers = np.linspace(-1.0, 2.0, points), np.sin(np.arange(points - 1) * 1.7)

@@ -6,10 +6,9 @@ import shutil
 from pathlib import Path
 
 import pytest
-from internals import export
 from stack_usage import deepest
 
-from lagrange_casadi.case import load_case
+from lagrange_casadi import export, load_case
 
 CASES = sorted(path.parent.name for path in (Path(__file__).parents[2] / "cases").glob("*/case.py"))
 ITERATED = ("beam_pump", "bricard", "cardan_shaft", "delta", "five_link_suspension", "rrr3")

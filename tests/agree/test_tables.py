@@ -77,7 +77,7 @@ SMOOTH |= {
 METHODS = {
     "accuracy": {"table": 1e-9},
     "interpreted": {"table": 1e-9, "backend": "vm"},
-    "nodes": {"table": 64},
+    "nodes": {"table": 256},
     "single": {"table": 1e-6, "precision": "single"},
 }
 
