@@ -93,10 +93,11 @@ def assert_alike(found, solution, names, rows=slice(None)):
         assert gap <= allowed, f"{name}: {gap:.3g} of {np.abs(expected).max():.3g}"
 
 
-def poses(scene, solution):
+def poses(scene, solution, ahead):
     """The motion of all that is driven, that of a pose that is given too."""
     program, p = derive(scene), list(scene.mechanism.values().values())
-    orders = [program.motion(t, p) for t in solution.t]
+    late = [*solution.t[ahead:], *solution.t[:ahead]]
+    orders = [program.motion(t, p) for t in late]
     return {
         f"motion/{name}{end}": np.array([float(order[k][i]) for order in orders])
         for i, name in enumerate(program.driven)
@@ -116,7 +117,7 @@ def test_it_is_valid_and_gives_the_numbers_of_the_api(unit, name, kind):
     ahead = int(kind == "CoSimulation")
     for changes in [{}, *([CHANGES[name]] if name in CHANGES else [])]:
         solution = evaluate(scene, parameters=changes)
-        given = poses(scene, solution) if name == "excavator" else {}
+        given = poses(scene, solution, ahead) if name == "excavator" else {}
         found = simulated(path, solution, kind, ahead=ahead, start=changes, **given)
         assert_alike(found, solution, variables(path, "output"), slice(ahead, None))
 
