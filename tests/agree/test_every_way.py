@@ -101,7 +101,7 @@ their errors.
 SOUGHT = {
     "cam": ["effort", "output:contact_force"],
     "every_joint_and_load": ["effort", "section:rod", "reaction:S"],
-    "plane": ["effort", "output", "section:rod"],
+    "plane": ["effort", "output", "section:rod", "section:rocker"],
     "space": ["effort", "output", "section:rod"],
 }
 """Peaks of what is sought, where all would take long."""
