@@ -7,7 +7,7 @@ import subprocess
 from importlib import resources
 
 import numpy as np
-from internals import DTYPES, compensated, plain
+from internals import compensated, plain
 from mechanisms import four_bar, slider_crank, spline_arm, truss_platform
 
 from lagrange_casadi import codegen
@@ -37,7 +37,7 @@ def built(program, language, extra=(), precision="double"):
 
 def filled(library, program, t, threads=1, precision="double", out=None):
     """The columns by a library that is built, in ``out`` where given."""
-    p, dtype = program.data.defaults, DTYPES[precision]
+    p, dtype = program.data.defaults, np.dtype("float32" if precision == "single" else float)
     guess = np.array(program.newton.guess if program.newton else (), dtype)
     z, status = np.full((guess.size, t.size), np.nan, dtype), np.full(t.size, -1, dtype=np.int32)
     out = np.empty((len(program.columns), t.size), dtype) if out is None else out

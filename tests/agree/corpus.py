@@ -1,7 +1,7 @@
 """The frozen corpus: all that cases and random mechanisms have at one commit, beside which later
 commits are judged.
 
-``python tests/agree/corpus.py make`` writes a file for each mechanism: its declaration as text, and
+``python tests corpus make`` writes a file for each mechanism: its declaration as text, and
 outputs, peaks, statuses and stated errors, of every fifth mechanism by every way to evaluate.
 ``check`` evaluates the text of one file in five, ``check --whole`` of every file. It prints what
 differs by more than the error that the commit of the corpus stated, and is not in ``allowed.txt``.
@@ -27,15 +27,14 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+import exported
+import numpy as np
+import pasted
+
+import lagrange_casadi as lc
+
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-sys.path += map(str, [HERE.parent, *sorted(HERE.parent.glob("*/"))])  # as pytest does
-
-import exported  # noqa: E402
-import numpy as np  # noqa: E402
-import pasted  # noqa: E402
-
-import lagrange_casadi as lc  # noqa: E402
 
 FROZEN, ALLOWED = HERE / "frozen", HERE / "allowed.txt"
 INSTANTS, RATIOS = 24, (0.0, 1.0, 5)

@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from internals import refine
 
-from lagrange_casadi import density, derive, evaluate
+from lagrange_casadi import density, derive, evaluate, refine
 
 
 def around(scene, count, spread=0.03, seed=0):

@@ -9,17 +9,37 @@ from dataclasses import replace
 
 import casadi as ca
 import numpy as np
+from conftest import PLANAR as PLANAR_CASES
+from conftest import SPATIAL as SPATIAL_CASES
+from elastic_mechanisms import made
 from every_load import every_joint_and_load
 from five_bars import geared_five_bar
 from machines import SCENES as MACHINES
-from mechanisms import DRAG_LINK, sprung
+from machines import called_as_rates
+from mechanisms import (
+    DRAG_LINK,
+    bracket,
+    every_function,
+    sampled_cam,
+    sprung,
+    truss_platform,
+)
 from random_mechanisms import draw
 from spatial_anyhow import anyhow
 from spatial_bridge import declared, plain
 from spatial_mechanisms import FAMILIES
-from stepped import two_rods
+from stepped import iterated, two_rods
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, curve, density, shaking
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    beams,
+    curve,
+    density,
+    load_case,
+    shaking,
+)
 from lagrange_casadi.motion import (
     dwell,
     expression,
@@ -157,6 +177,43 @@ def laws():
     return Scene(m, driven, t=(0.0, 1.0, 57))
 
 
+def namesake(called=lambda name: name):
+    """A slider-crank whose names are those that files and C give to other things; a driven bob is
+    in the middle of its rod, at which two loads act twice.
+    """
+    m = Mechanism("namesake")
+    size = m.parameter(called("law_rate"), 0.3)
+    crank = m.link("crank", length=size, mass=1.0)
+    rod = m.link("rod", length=0.9, mass=2.0)
+    bob = m.link(called("rod_acceleration"), length=0.2, mass=0.5)
+    m.revolute("O", m.ground, crank)
+    m.revolute(called("O_rate"), crank.tip, rod)
+    m.slot("guide", m.ground, rod.tip, axis=(1.0, 0.0))
+    m.revolute(called("law"), rod.at(0.45), bob)
+    m.spring("pull", rod.at(0.2), rod.at(0.7), stiffness=100.0, length=0.1)
+    m.force(called("pull_2"), rod.at(0.5), y=-7.0)
+    motion = {"O": polynomial(0.3, 5.0), called("law"): harmonic(0.0, 0.5, 3.0, 0.0)}
+    return Scene(m, motion, t=(0.0, 1.0, 41), posture={"rod": 0.0}, xi=(0.0, 1.0, 5))
+
+
+def cranks():
+    """Three cranks on one bar, whose forces least strain energy tells; the outer ones may be of any
+    thickness.
+    """
+    m = Mechanism("cranks")
+    d = m.parameter("d", 0.01, "m", low=0.0)
+    bar = m.link("bar", length=1.0, beam=made(beams.rectangle(0.02, 0.01)))
+    for k, place in enumerate((bar.base, bar.at(0.5), bar.tip)):
+        shape = beams.round_bar(d if k else 0.01)
+        crank = m.link(f"c{k}", length=0.2, beam=made(shape))
+        m.revolute(f"G{k}", m.ground.at(0.5 * k, 0.0), crank)
+        m.revolute(f"B{k}", crank.tip, place)
+    posture = {"c0": 1.2, "c1": 1.2, "c2": 1.2, "bar": 0.0}
+    wanted = ["effort", "reaction:B1", "section:bar", "deflection:bar"]
+    law = harmonic(1.2, 0.3, 1.0)
+    return Scene(m, {"G0": law}, wanted, posture=posture, t=(0, 1, 33), elastic=True)
+
+
 def planar(seed):
     """A random mechanism as it is looked at elsewhere, its parameters' values as defaults."""
     drawn = draw(seed)
@@ -181,5 +238,19 @@ DECLARED = {
     "two_rods": two_rods,
     "geared": lambda: geared_five_bar("OABCD", rubs=True),
     "sprung": lambda: sprung("ABC", **DRAG_LINK, count=401),
+    "namesake": namesake,
+    "rates": called_as_rates,
+    "functions": every_function,
+    "cranks": cranks,
+    "truss_platform": truss_platform,
+    "iterated": iterated,
+    "bracket": bracket,
+    "sampled_cam": sampled_cam,
 } | MACHINES
-SCENES = DECLARED | RANDOM
+CASES = {name: lambda name=name: load_case(name).scene for name in [*PLANAR_CASES, *SPATIAL_CASES]}
+# Not where a piston is at rest but for rounding, which alone would tell the way that it rubs.
+CASES["v_twin"] = lambda: replace(load_case("v_twin").scene, t=(1e-4, 0.04, 361))
+SCENES = DECLARED | RANDOM | CASES
+TABLED = ["two_rods", "toggle_press", "cam", "geneva_drive", "random-3", "random-5"]
+TABLED += ["slider_crank", "four_bar", "six_bar", "andrews_squeezer"]
+"""Scenes that a cycle table may have."""

@@ -5,12 +5,12 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-from internals import FORCES
 
 from lagrange_casadi import codegen, evaluate, export
 
 CONSUMERS = Path(__file__).parent / "consumers"
 RATIOS = (0.0, 0.3, 0.5, 1.0)
+FORCES = ("axial", "shear", "bending")
 FEW = 4
 """Units of the last place of the largest value, where the arithmetic is not the same."""
 

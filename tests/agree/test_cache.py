@@ -1,20 +1,28 @@
-"""The cache folder: whole or not there, within its limit, and safe for many processes at once."""
+"""The cache folder: within its limit, safe for many processes at once, and not shared with who may
+not; and graphs that are derived once, named by all that they come from.
+"""
 
-import errno
+import hashlib
 import os
+import pickle
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
+import casadi as ca
+import numpy as np
 import pytest
-import sweeps
-from internals import backends, cache
+from internals import Wanted, cache, fingerprint, sources
+from mechanisms import slider_crank
+from outside import doubled
 from places import FOLDERS
 
-from lagrange_casadi import evaluate
+import lagrange_casadi
+from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import DeclarationError, PathError
+from lagrange_casadi.errors import PathError, PickleError
+from lagrange_casadi.motion import Motion, expression, harmonic, polynomial, samples
 
 NAMES = [f"{k:032x}" for k in range(12)]
 
@@ -44,60 +52,21 @@ def test_what_was_used_longest_ago_goes_first(fresh_cache, monkeypatch):
     assert cache.read(f"{NAMES[6]}.graph") == "y" * 2900
 
 
-def test_reading_is_using(fresh_cache, monkeypatch):
-    for name in NAMES[:3]:
-        cache.write(f"{name}.graph", "y" * 1000)
-    for k, name in enumerate(NAMES[:3]):
-        os.utime(fresh_cache / f"{name}.graph", (1e9 + k,) * 2)
-    assert cache.read(f"{NAMES[0]}.graph") == "y" * 1000
-    monkeypatch.setenv(cache.VARIABLE, "2.5k")
-    cache.write(f"{NAMES[3]}.graph", "y" * 100)
-    assert left(fresh_cache) == [NAMES[0], NAMES[3]] or left(fresh_cache) == [
-        NAMES[0],
-        NAMES[2],
-        NAMES[3],
-    ]
-    assert cache.read(f"{NAMES[1]}.graph") is None
-
-
-def test_what_is_larger_than_the_limit_is_kept_alone(fresh_cache, monkeypatch):
-    put(fresh_cache, NAMES[0], 1000, 5)
-    monkeypatch.setenv(cache.VARIABLE, "100")
-    cache.write(f"{NAMES[1]}.graph", "y" * 1000)
-    assert left(fresh_cache) == [NAMES[1]]
-
-
-def test_nothing_is_kept_where_nothing_may_be(fresh_cache, monkeypatch):
-    monkeypatch.setenv(cache.VARIABLE, "0")
-    cache.write(f"{NAMES[1]}.graph", "text")
-    assert not fresh_cache.exists()
-    assert cache.read(f"{NAMES[1]}.graph") is None
-
-
 @pytest.mark.parametrize(
-    ("text", "size"),
-    [
-        ("", cache.LIMIT),
-        ("12", 12),
-        ("1.5k", 1500),
-        ("200M", 200_000_000),
-        ("2 GB", 2 * 10**9),
-        ("1T", 10**12),
-    ],
+    ("text", "says"), [("12", "1.2e-05"), ("1.5k", "0.0015"), ("2 GB", "2000"), ("1T", "1e+06")]
 )
-def test_the_limit_is_read_as_people_write_it(monkeypatch, text, size):
+def test_the_limit_is_read_as_people_write_it(fresh_cache, monkeypatch, capsys, text, says):
     monkeypatch.setenv(cache.VARIABLE, text)
-    assert cache.limit() == size
+    assert main(["cache"]) == 0
+    assert f"\nlimit: {says} MB, " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("text", ["much", "-1", "1_0", "1e400", "5 apples", "nan", "..", "200m"])
-def test_a_limit_that_is_none_is_refused(monkeypatch, text):
+def test_a_limit_that_is_none_is_refused(fresh_cache, monkeypatch, capsys, text):
     monkeypatch.setenv(cache.VARIABLE, text)
-    with pytest.raises(
-        DeclarationError,
-        match=r"\$LAGRANGE_CASADI_CACHE_SIZE = .*: expected bytes, as in 200000000, 200M or 2G",
-    ):
-        cache.limit()
+    assert main(["cache"]) == 2
+    says = f"error: $LAGRANGE_CASADI_CACHE_SIZE = '{text}': expected bytes, as in 200000000, 200M"
+    assert capsys.readouterr().err.startswith(says)
 
 
 def test_what_is_not_ours_stays(fresh_cache, monkeypatch, capsys):
@@ -125,41 +94,6 @@ def test_the_command_shows_what_is_kept(fresh_cache, monkeypatch, capsys):
     assert capsys.readouterr().out.startswith(
         f"{fresh_cache}: 1 graph, 2 libraries, 1.23 MB in 7 files\nlimit: 3 MB, "
     )
-    monkeypatch.setenv(cache.VARIABLE, "x")
-    assert main(["cache"]) == 2
-    assert capsys.readouterr().err.startswith(
-        "error: $LAGRANGE_CASADI_CACHE_SIZE = 'x': expected bytes"
-    )
-
-
-def test_folders_of_who_was_killed_go_in_time(fresh_cache):
-    cache.write(f"{NAMES[0]}.graph", "text")
-    for name, age in (("build-old", 1e6), ("build-new", 60.0)):
-        (fresh_cache / name).mkdir()
-        (fresh_cache / name / "half.so").write_text("half")
-        os.utime(fresh_cache / name, (time.time() - age,) * 2)
-    cache.write(f"{NAMES[1]}.graph", "text")
-    assert left(fresh_cache) == [*NAMES[:2], "build-new"]
-
-
-def test_many_at_once_keep_within_the_limit(fresh_cache, monkeypatch):
-    """Some write, some read, some clear: what is read is whole or not there, and nobody fails."""
-    monkeypatch.setenv(cache.VARIABLE, "6k")
-
-    def work(k):
-        for turn in range(30):
-            name = f"{NAMES[(k + turn) % len(NAMES)]}.graph"
-            if k % 4 == 3:
-                cache.remove(cache.entries(cache.folder()).values())
-            elif k % 2:
-                assert cache.read(name) in (None, "y" * 1000)
-            else:
-                cache.write(name, "y" * 1000)
-
-    with ThreadPoolExecutor(8) as pool:
-        list(pool.map(work, range(8)))
-    cache.write(f"{NAMES[0]}.graph", "y")
-    assert sum(entry.size for entry in cache.entries(fresh_cache).values()) <= 6000
 
 
 PROGRAM = """
@@ -184,19 +118,6 @@ def test_processes_share_a_cache_that_holds_too_little(tmp_path):
     assert [(process.communicate(timeout=120)[1], process.returncode) for process in started] == [
         ("", 0)
     ] * 3
-
-
-def test_a_system_that_is_short_of_something_is_asked_again(fresh_cache, monkeypatch):
-    def refused(**_keywords):
-        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
-
-    with monkeypatch.context() as patch:
-        patch.setattr(cache.tempfile, "TemporaryFile", refused)
-        with pytest.warns(
-            UserWarning, match=r"cannot use the cache folder .* now: Too many open files"
-        ):
-            assert cache.folder() is None
-    assert cache.folder() == fresh_cache
 
 
 def owned_by_another(path, monkeypatch):
@@ -251,47 +172,6 @@ def test_what_others_may_have_put_there_is_not_read(fresh_cache, foreign, capsys
     assert capsys.readouterr().err.startswith(f"note: {fresh_cache} is not used, because ")
 
 
-@pytest.mark.parametrize(
-    "foreign", [("parent", 0o1777), ("parent", 0o755), ("folder", 0o700)], indirect=True
-)
-def test_a_folder_like_tmp_may_lead_there(fresh_cache, foreign):
-    assert cache.folder() == fresh_cache
-    assert cache.read(f"{NAMES[0]}.graph") == "planted"
-
-
-def test_a_group_of_this_users_own_may_write(fresh_cache, monkeypatch):
-    monkeypatch.setattr(cache, "_is_own_group", lambda _: True)
-    fresh_cache.mkdir(parents=True)
-    fresh_cache.chmod(0o775)
-    assert cache.distrusted(fresh_cache) == ""
-    fresh_cache.chmod(0o777)
-    assert cache.distrusted(fresh_cache) == f"others may write into {fresh_cache}"
-
-
-@pytest.mark.parametrize("backend", ["c", "lanes"])
-def test_a_library_that_others_may_write_is_built_again(fresh_cache, backend):
-    """A planted one would run, for its digest beside it fits."""
-    evaluate(sweeps.scene(), backend=backend, flags="-O0")
-    libraries = list(fresh_cache.glob("*.so"))
-    for library in libraries:
-        library.chmod(0o666)
-    backends._library.cache_clear()
-    with pytest.warns(
-        UserWarning,
-        match=(
-            r"the cached library .*\.so is not trusted \(others may write into .*\.so\) and is"
-            r" built"
-        ),
-    ):
-        evaluate(sweeps.scene(), backend=backend, flags="-O0")
-    assert libraries
-    assert not any(
-        library.stat().st_mode & 0o22
-        for library in libraries
-        if library.name in os.listdir(fresh_cache)
-    )
-
-
 def test_nothing_is_built_where_others_may_change_it(fresh_cache, tmp_path, monkeypatch):
     shared = tmp_path / "shared"
     shared.mkdir()
@@ -310,10 +190,111 @@ def test_nothing_is_built_where_others_may_change_it(fresh_cache, tmp_path, monk
             pass
 
 
-def test_a_link_of_somebody_else_is_not_followed(fresh_cache, tmp_path, monkeypatch):
-    fresh_cache.mkdir(parents=True)
-    link = tmp_path / "link"
-    link.symlink_to(fresh_cache)
-    assert cache.distrusted(link) == ""
-    owned_by_another(link, monkeypatch)
-    assert cache.distrusted(link) == f"{link} belongs to another user"
+def name_of(scene):
+    return fingerprint(scene, Wanted.of(scene.mechanism, scene.wanted))
+
+
+def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
+    first = evaluate(slider_crank(), backend="c")
+    program = (
+        f"import sys; sys.path[:0] = {FOLDERS!r}; from mechanisms import"
+        " slider_crank;"
+        " __import__('importlib').import_module('lagrange_casadi.equations.derive').assemble ="
+        " None; from lagrange_casadi import evaluate; print(evaluate(slider_crank(),"
+        " backend='c').effort('O').tobytes().hex())"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
+    assert bytes.fromhex(done.stdout.strip()) == first.effort("O").tobytes()
+
+
+def pendulum(
+    length=0.5,
+    mass=1.2,
+    gravity=9.81,
+    load=3.0,
+    place=0.2,
+    law=None,
+    name="pendulum",
+    wanted=("all",),
+    **keywords,
+):
+    m = Mechanism(name)
+    m.gravity = (0.0, -gravity, 0.0)
+    k = m.parameter("k", 2.0, "N")
+    arm = m.link("arm", length=length, mass=mass)
+    pin = m.revolute("pin", m.ground, arm)
+    m.force("push", arm.at(place), x=load * k * ca.sin(m.coordinate(pin)))
+    return Scene(m, {"pin": law or polynomial(0.1, 2.0)}, wanted=wanted, **keywords)
+
+
+UP = np.nextafter
+CHANGES = [
+    {"length": UP(0.5, 1)},
+    {"mass": UP(1.2, 2)},
+    {"gravity": UP(9.81, 10)},
+    {"load": UP(3.0, 4)},
+    {"place": UP(0.2, 1)},
+    {"law": polynomial(0.1, UP(2.0, 3))},
+    {"law": harmonic(0.1, 0.2, 0.3)},
+    {"law": expression(lambda t: 0.1 + 2.0 * t * t)},
+    {"law": samples([0, 1, 2, 3], [0, 1, 4, 2])},
+    {"law": samples([0, 1, 2, 3], [0, 1, 4, UP(2.0, 3)])},
+    {"name": "other"},
+    {"wanted": ("effort",)},
+    {"t": (UP(0.0, 1), 1.0, 101)},
+    {"posture": {"arm": 0.3}},
+]
+
+
+def test_every_change_of_a_declaration_has_another_name():
+    names = [name_of(pendulum()), *(name_of(pendulum(**change)) for change in CHANGES)]
+    assert None not in names
+    assert len(set(names)) == len(names)
+    assert name_of(pendulum()) == names[0]
+
+
+def test_what_cannot_be_told_is_not_kept(fresh_cache):
+    scene = pendulum()
+    scene.mechanism.note = object()
+    assert name_of(scene) is None
+    derive(scene)
+    assert not list(fresh_cache.glob("*.graph"))
+
+
+def test_a_damaged_graph_is_derived_again_and_said(fresh_cache):
+    first = evaluate(pendulum())
+    (path,) = fresh_cache.glob("*.graph")
+    whole = path.read_text()
+    path.write_text(whole[:-20])
+    with pytest.warns(UserWarning, match=r"the cached .*\.graph was damaged and is made again"):
+        again = evaluate(pendulum())
+    assert path.read_text() == whole
+    assert np.array_equal(again.effort("pin"), first.effort("pin"))
+
+
+def test_a_motion_by_a_callback_is_not_kept(fresh_cache):
+    scene = pendulum(law=Motion(doubled))
+    assert name_of(scene) is None
+    for _ in range(2):
+        assert (
+            evaluate(scene, backend="vm", wanted=["motion"], certificate=False)
+            .motion("pin")
+            .value[-1]
+            == 2.0
+        )
+    assert not list(fresh_cache.glob("*.graph"))
+    with pytest.raises(
+        PickleError, match=r"the scene of '.*' cannot be pickled: it calls a function"
+    ):
+        pickle.dumps(derive(scene, ["motion"]))
+
+
+def test_the_code_that_derives_is_all_of_the_package():
+    """A change anywhere may derive other graphs: none is believed to be as it was kept."""
+    root = Path(lagrange_casadi.__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        digest.update(f"{path.relative_to(root)}\0".encode() + path.read_bytes())
+    assert sources() == digest.hexdigest()

@@ -1,5 +1,5 @@
-"""Three programs that use an exported folder alone, in C99, C++17 and Python, against the API over
-a cycle.
+"""Programs that use an exported folder alone, in C++17 and Python, against the API over a cycle;
+and on other rungs one in C99, which test_every_way uses for all scenes.
 """
 
 import shutil
@@ -7,7 +7,6 @@ import subprocess
 import sys
 
 import pytest
-from conftest import CASES, PLANAR, SPATIAL
 from exported import (
     CONSUMERS,
     FEW,
@@ -22,46 +21,17 @@ from exported import (
     values,
 )
 from mechanisms import (
-    DRAG_LINK,
-    bracket,
-    sampled_cam,
     slider_crank,
-    spline_arm,
-    sprung,
     truss_platform,
 )
 from stepped import iterated
 
 from lagrange_casadi import export, load_case
 
-
-def cases(names):
-    return {name: (lambda name=name: load_case(CASES / name).scene) for name in names}
-
-
-SCENES = cases(PLANAR) | {
-    "truss_platform": truss_platform,
-    "iterated": iterated,
-    "spline_arm": spline_arm,
-    "sprung": lambda: sprung("AC", **DRAG_LINK),
-    "bracket": bracket,
-    "cam": sampled_cam,
-}
-SCENES |= cases(SPATIAL)
-
-
-@pytest.mark.sampled(37)
-@pytest.mark.parametrize("precision", ["double", "single"])
-@pytest.mark.parametrize("name", SCENES)
-def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
-    scene = SCENES[name]()
-    made, told = exported(scene, tmp_path, precision=precision)
-    solution = solve(scene, precision)
-    found = by_c99(tmp_path, told, instants(solution.t, precision))
-    # Samples are read by cubics here, by recursion there: that moves an angle by two units, and
-    # forces by what follows.
-    apart = {"exact": False, "few": 4 * FEW} if name == "spline_arm" else {}
-    compare(found, expected(scene, told, solution), told, made, solution, **apart)
+SCENES = {
+    name: lambda name=name: load_case(name).scene
+    for name in ("slider_crank", "beam_pump", "quick_return", "rrr3")
+} | {"iterated": iterated, "truss_platform": truss_platform}
 
 
 @pytest.mark.sampled(9)

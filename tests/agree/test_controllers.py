@@ -8,10 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from internals import export, find_compiler
 from structured import blocks
 
-from lagrange_casadi import errors, evaluate, load_case
+from lagrange_casadi import evaluate, export, load_case
 
 MATIEC = Path(os.environ.get("MATIEC") or Path(shutil.which("iec2c") or "none").parent)
 """The folder of matiec's compiler, in which its library is."""
@@ -86,12 +85,7 @@ def test_what_is_no_result_is_not_valid(tmp_path):
     assert unit.out_effort_O == before
 
 
-def test_structured_text_is_of_doubles(tmp_path):
-    with pytest.raises(errors.DeclarationError, match="expected double precision and no table"):
-        written("slider_crank", tmp_path, structured_text=True, precision="single")
-
-
-@pytest.mark.skipif(not shutil.which("g++") or not find_compiler(), reason="needs a C++ compiler")
+@pytest.mark.skipif(not shutil.which("g++"), reason="needs a C++ compiler")
 @pytest.mark.parametrize(
     ("name", "precision"), [("arm6", "double"), ("delta", "double"), ("slider_crank", "single")]
 )
@@ -114,8 +108,3 @@ def test_the_header_for_controllers_passes_its_test(name, precision, tmp_path):
     done = run()
     assert "reflected inertia times acceleration" in done.stdout
     assert done.returncode == 1
-
-
-def test_a_header_without_efforts_is_refused(tmp_path):
-    with pytest.raises(errors.DeclarationError, match="for controllers needs efforts"):
-        written("slider_crank", tmp_path, control=True, wanted=["motion"])

@@ -7,15 +7,14 @@ import math
 import numpy as np
 import pytest
 from conftest import CASES, PLANAR
-from design_rows import alone, around, assert_refined, peaks_of, scales, values
+from design_rows import alone, around, assert_refined
 from internals import (
     DesignEngine,
     EvaluationMethod,
     Status,
     library,
-    refine,
 )
-from mechanisms import four_bar, parallelogram, pendulum, slider_crank
+from mechanisms import four_bar, pendulum, slider_crank
 from parametric import declared
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion
@@ -57,43 +56,6 @@ def test_designs_are_their_own_evaluations(name):
             )
 
 
-@pytest.mark.sampled(9)
-@pytest.mark.parametrize("name", ["slider_crank", "quick_return", "sleigh", "rrr3"])
-def test_all_rungs_agree(name):
-    """Packs, scalar C and NumPy to rounding; single precision as far as it goes; steps of Newton's
-    method where they are enough.
-    """
-    scene = declared(CASES / name)
-    p, grid = around(scene, 9), (*scene.t[:2], INSTANTS)
-    p[1, 0] = math.nan
-    exact = DesignEngine.of(scene, t=grid, method=EvaluationMethod("c"))
-    expected = exact.evaluate(p)
-    methods = [(EvaluationMethod("lanes"), 1e-12), (EvaluationMethod("vm"), 1e-12)]
-    methods += (
-        [(EvaluationMethod("lanes", newton=4), 1e-12)] if exact.program.newton is not None else []
-    )
-    methods += [(EvaluationMethod(backend, "single"), 2e-5) for backend in ("lanes", "c")]
-    for method, tolerance in methods:
-        some = 2 if method.backend == "vm" else 9
-        designs = DesignEngine.of(scene, t=grid, method=method)
-        assert (designs.quantities, designs.provenance.backend) == (
-            exact.quantities,
-            method.backend,
-        )
-        outcome = designs.evaluate(p[:some])
-        assert np.array_equal(outcome.status, expected.status[:some])
-        assert outcome.status[1] == Status.INVALID
-        for row in np.flatnonzero(outcome.status == Status.OK):
-            scale = scales(exact, expected, row)
-            for k, quantity in enumerate(exact.quantities):
-                one, other = abs(outcome.value[row, k]), abs(expected.value[row, k])
-                assert one == other or abs(one - other) <= tolerance * (other + scale[quantity]), (
-                    method,
-                    quantity,
-                )
-            np.testing.assert_allclose(outcome.rms[row], expected.rms[row], rtol=50 * tolerance)
-
-
 @pytest.mark.sampled(11)
 @pytest.mark.parametrize(
     "method",
@@ -121,17 +83,6 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, method, monkey
     for threads in (1, 2, 3, 7):
         other = cut.evaluate(p, threads=threads)
         assert all(getattr(other, f).tobytes() == getattr(whole, f).tobytes() for f in FIELDS)
-
-
-@pytest.mark.parametrize("backend", ["lanes", "c"])
-def test_histories_that_go_past_the_caches_have_the_same_bits(backend):
-    """Many designs together fill lines of the cache that single ones write as they come."""
-    scene = declared(CASES / "slider_crank")
-    designs = DesignEngine.of(scene, t=(*scene.t[:2], 128), method=EvaluationMethod(backend))
-    p = around(scene, 1 + (5 << 20) // (len(designs.columns) * 128 * 8), spread=0.1)
-    whole = designs.evaluate(p, threads=1, histories=True).series
-    for k in range(0, len(p), 29):
-        assert designs.evaluate(p[k : k + 1], histories=True).series.tobytes() == whole[k].tobytes()
 
 
 def bare(designs, p):
@@ -172,30 +123,6 @@ def test_every_value_is_written_or_is_nan(backend):
     assert all(np.isnan(array[2]).all() for name, array in results.items() if name != "status")
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("name", ["slider_crank", "four_bar", "rrr3", "quick_return"])
-def test_histories_are_the_series_of_an_evaluation(name):
-    scene = declared(CASES / name)
-    designs = DesignEngine.of(scene, t=(*scene.t[:2], 41), method=EvaluationMethod("c"))
-    p = around(scene, 2)
-    outcome = designs.evaluate(p, histories=True)
-    assert outcome.series.shape == (2, len(designs.columns), 41)
-    for row in range(2):
-        solution = evaluate(
-            scene,
-            parameters=values(scene, p[row]),
-            t=(*scene.t[:2], 41),
-            backend="c",
-            certificate=False,
-        )
-        assert set(designs.columns) <= set(solution.series)
-        for k, column in enumerate(designs.columns):
-            assert outcome.series[row, k].tobytes() == solution.series[column].tobytes(), column
-    p[:, list(designs.parameters).index("number0")] = math.nan
-    assert np.isnan(designs.evaluate(p, histories=True).series).all()
-    assert designs.evaluate(p).series is None
-
-
 def test_a_speed_that_is_a_parameter_keeps_its_phase():
     """Where parameters set how far a drive turns, its turns are counted in pairs, whatever the
     defaults.
@@ -213,41 +140,6 @@ def test_a_speed_that_is_a_parameter_keeps_its_phase():
         np.testing.assert_allclose(
             outcome.series[row, k], solution.effort("pin"), rtol=0, atol=1e-14 * 3
         )
-
-
-def test_what_is_not_determined_has_no_number():
-    scene = parallelogram(pendulum=True)
-    designs = DesignEngine.of(scene, method=EvaluationMethod("c"))
-    outcome = designs.evaluate(np.zeros((1, 0)))
-    told = {
-        name
-        for name, value in zip(designs.quantities, outcome.value[0], strict=True)
-        if np.isfinite(value)
-    }
-    assert not [
-        name for name in told if name.startswith(("reaction:A", "section:bar", "section:b:axial"))
-    ]
-    assert {
-        "effort:hang",
-        "reaction:hang:resultant",
-        "section:bob:bending",
-        "section:b:bending",
-    } <= told
-    solution = evaluate(scene, backend="c", certificate=False)
-    names = ["effort:O", "effort:hang", "reaction:hang:fx", "section:bob:bending"]
-    found = peaks_of(designs, outcome, 0)
-    for peak in refine(scene, solution, names):
-        assert found[peak.name][0] == pytest.approx(peak.value, rel=1e-11)
-
-
-def test_names_and_units_go_together():
-    designs = DesignEngine.of(slider_crank(), ["reaction:guide", "effort", "section:rod"])
-    assert designs.quantities == (
-        *("effort:O", "reaction:guide:resultant", "reaction:guide:fx", "reaction:guide:fy"),
-        *("section:rod:axial", "section:rod:shear", "section:rod:bending"),
-    )
-    assert designs.units == ("N m", "N", "N", "N", "N", "N", "N m")
-    assert (designs.efforts, designs.parameters) == (("effort:O",), ("r", "l", "m1", "m2", "m3"))
 
 
 def test_misuse_is_named():

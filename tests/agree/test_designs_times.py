@@ -4,14 +4,12 @@ the neighbours.
 
 import math
 
-import casadi as ca
 import numpy as np
 import pytest
-from internals import DesignEngine, EvaluationMethod, Status
-from mechanisms import press, slider_crank, uneven
-from stepped import pinned
+from internals import Status
+from mechanisms import press, uneven
 
-from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
+from lagrange_casadi import Mechanism, Scene, evaluate, motion, prepare, refine
 
 TURN = math.tau
 ASKED = {
@@ -32,20 +30,20 @@ def test_designs_are_their_own_evaluations(asked, law, backend):
     that were asked for.
     """
     scene = press(law, wanted=["effort", "section:rod", "motion"], **ASKED[asked])
-    designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
-    outcome = designs.evaluate(P, histories=True)
+    designs = prepare(scene, backend=backend)
+    outcome = designs.designs(P, histories=True)
     assert outcome.status.tolist() == [FAILS.get(k, Status.OK) for k in range(len(P))]
     for row in np.flatnonzero(outcome.status == Status.OK):
         solution = evaluate(scene, parameters=dict(zip(designs.parameters, P[row], strict=True)))
         np.testing.assert_allclose(outcome.times[row], solution.t, rtol=1e-14, atol=1e-16)
         for k, output in enumerate(designs.outputs):
-            scale = np.abs(solution.outputs[output]).max()
+            scale = np.abs(solution.array(output)).max()
             np.testing.assert_allclose(
                 outcome.series[row, k],
-                solution.outputs[output],
+                solution.array(output),
                 rtol=0,
                 atol=1e-13 * scale,
-                err_msg=str(output),
+                err_msg=output,
             )
         for k, peak in enumerate(refine(scene, solution, designs.quantities)):
             assert outcome.value[row, k] == pytest.approx(peak.value, rel=1e-11, abs=1e-11), (
@@ -70,7 +68,7 @@ def test_means_are_over_the_time_of_a_whole_turn(law):
     """
     scene = press(law, wanted=["effort"], over=("O", 0, TURN, 181))
     p = np.array([[600.0, 0.5], [100.0, 0.4]])
-    outcome = DesignEngine.of(scene).evaluate(p)
+    outcome = prepare(scene).designs(p)
     for row, (rpm, length) in enumerate(p):
         fine = evaluate(scene, t=(0, 60 / rpm, 20001), parameters={"rpm": rpm, "l": length})
         effort = fine.effort("O")
@@ -83,38 +81,19 @@ def test_means_are_over_the_time_of_a_whole_turn(law):
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.parametrize(
-    "method",
-    [EvaluationMethod("lanes"), EvaluationMethod("c", "single")],
-    ids=lambda method: method.options,
-)
-def test_a_row_has_the_same_bytes_whatever_stands_beside_it(method, monkeypatch):
+@pytest.mark.parametrize("method", [{"backend": "lanes"}, {"backend": "c", "precision": "single"}])
+def test_a_row_has_the_same_bytes_whatever_stands_beside_it(method):
     scene = press(uneven, wanted=["effort", "section:rod"], over=("O", 0, TURN, 41))
     p = np.array([[rpm, 0.3 + 0.01 * k] for k, rpm in enumerate(np.linspace(50, 3000, 23))])
-    designs = DesignEngine.of(scene, method=method)
-    whole = designs.evaluate(p, threads=1, histories=True)
-    monkeypatch.setattr("lagrange_casadi.studies.designs.engine._PIECE", 5 * 41)
-    for threads in (1, 3):
-        other = designs.evaluate(p, threads=threads, histories=True)
-        for name in ("status", "value", "t", "xi", "mean", "rms", "series", "over", "times"):
-            assert getattr(whole, name).tobytes() == getattr(other, name).tobytes(), name
+    designs = prepare(scene, **method)
+    whole = designs.designs(p, threads=1, histories=True)
+    other = designs.designs(p, threads=3, histories=True)
+    for name in ("status", "value", "t", "xi", "mean", "rms", "series", "over", "times"):
+        assert getattr(whole, name).tobytes() == getattr(other, name).tobytes(), name
     for row in (0, 7, 22):
-        alone = designs.evaluate(p[[row]], histories=True)
+        alone = designs.designs(p[[row]], histories=True)
         assert alone.value.tobytes() == whole.value[[row]].tobytes()
         assert alone.series.tobytes() == whole.series[[row]].tobytes()
-
-
-def test_what_all_designs_have_in_common_is_made_once():
-    """A motion and bounds without parameters: the instants are the same for all, and equal those of
-    an evaluation.
-    """
-    scene = slider_crank(["effort"], over=("O", 0, TURN, 31))
-    designs = DesignEngine.of(scene)
-    assert designs.times.common
-    assert designs.times.of(np.zeros((5, 5)))[1].shape == (1, 31)
-    np.testing.assert_array_equal(designs.t, evaluate(scene).t)
-    varied = press(over=lambda rpm: ("O", 0, rpm / 100, 5))
-    assert not DesignEngine.of(varied, ["effort"]).times.common
 
 
 def test_a_swing_that_is_looked_for_at_a_time_of_each_designs_own():
@@ -123,25 +102,9 @@ def test_a_swing_that_is_looked_for_at_a_time_of_each_designs_own():
     """
     law = motion.harmonic(1.0, 0.4, 2.0)
     scene = press(lambda *_: law, wanted=["motion"], t=lambda rpm: (rpm / 1000, 2 + rpm / 1000, 2))
-    designs = DesignEngine.of(scene, timing=scene.timing(over=("O", 0.7, 1.3, 9)))
-    found = designs.evaluate(np.array([[100.0, 0.5], [600.0, 0.5]]), histories=True)
+    designs = prepare(scene, over=("O", 0.7, 1.3, 9))
+    found = designs.designs(np.array([[100.0, 0.5], [600.0, 0.5]]), histories=True)
     np.testing.assert_allclose(found.times[1] - found.times[0], 0.5, atol=1e-14)
-
-
-def test_loops_that_are_iterated_begin_where_the_drive_starts():
-    """Half a turn from where the scene is assembled, on the same branch as one evaluation is."""
-    scene, closed = (
-        press(wanted=["effort", "motion"], pin=pin) for pin in (pinned, Mechanism.revolute)
-    )
-    method = EvaluationMethod("c", newton=6)
-    timing = scene.timing(over=("O", math.pi, 3 * math.pi, 61))
-    designs = DesignEngine.of(scene, method=method, timing=timing)
-    outcome = designs.evaluate(np.array([[600.0, 0.5], [60.0, 0.3]]), histories=True)
-    assert outcome.status.tolist() == [0, 0]
-    for row, values in enumerate(({"rpm": 600.0, "l": 0.5}, {"rpm": 60.0, "l": 0.3})):
-        solution = evaluate(closed, parameters=values, over=("O", math.pi, 3 * math.pi, 61))
-        k = designs.columns.index("pose:ram:y")
-        np.testing.assert_allclose(outcome.series[row, k], solution.pose("ram").y, rtol=1e-9)
 
 
 def test_samples_of_a_motion_end_for_those_designs_alone_that_go_beyond():
@@ -153,32 +116,16 @@ def test_samples_of_a_motion_end_for_those_designs_alone_that_go_beyond():
         np.linspace(0, 2, 21), np.linspace(0, 7, 21) + 0.2 * np.sin(np.linspace(0, 7, 21))
     )
     scene = Scene(m, {"O": law}, ["effort"], t=(0, stop, 41))
-    outcome = DesignEngine.of(scene).evaluate(np.array([[0.5], [2.0], [2.1], [1.3]]))
+    outcome = prepare(scene).designs(np.array([[0.5], [2.0], [2.1], [1.3]]))
     assert outcome.status.tolist() == [0, 0, Status.NO_INSTANTS, 0]
     for row, seconds in ((0, 0.5), (1, 2.0), (3, 1.3)):
         solution = evaluate(scene, t=(0, seconds, 41))
         assert abs(outcome.value[row, 0]) == pytest.approx(
             abs(refine(scene, solution, ["effort:O"])[0].value), rel=1e-9
         )
-    over = DesignEngine.of(Scene(m, {"O": law}, ["effort"], over=("O", 0, 6.0 * stop, 41)))
-    assert over.evaluate(np.array([[0.5], [1.0], [1.3]])).status.tolist() == [
+    over = prepare(Scene(m, {"O": law}, ["effort"], over=("O", 0, 6.0 * stop, 41)))
+    assert over.designs(np.array([[0.5], [1.0], [1.3]])).status.tolist() == [
         0,
         0,
         Status.NO_INSTANTS,
     ]
-
-
-def test_a_gear_ratio_in_the_motion_makes_times_of_its_own():
-    """An expression of parameters in the law itself: the same angles at other times."""
-    scene = press(
-        lambda _, w: motion.expression(lambda t: w * t + 0.1 * ca.sin(w * t)),
-        wanted=["motion"],
-        over=("O", 0, TURN, 13),
-    )
-    designs = DesignEngine.of(scene)
-    found = designs.evaluate(np.array([[60.0, 0.5], [6.0, 0.5]]), histories=True)
-    np.testing.assert_allclose(found.times[1], 10 * found.times[0], rtol=1e-14)
-    k = designs.columns.index("motion:O")
-    np.testing.assert_allclose(
-        found.series[:, k], np.tile(np.linspace(0, TURN, 13), (2, 1)), atol=1e-14
-    )

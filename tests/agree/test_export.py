@@ -1,201 +1,101 @@
-"""The exported folder: what it holds, that it is clean C, that it fails loudly, and that it is the
-same bytes each time.
+"""Exported C: clean to every compiler, right by its own test, loud where it fails, the same bytes
+each time, and without a name that C keeps for itself.
 """
 
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from compiled import EVALUATED, cc, compilers, present, told
-from conftest import SPATIAL
+from conftest import CASES, NAMES
 from mechanisms import sampled_cam, slider_crank, spline_arm, truss_platform
 from places import FOLDERS
 from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, export, load_case, motion, table
 
-ARITHMETIC = [
-    {},
-    {"precision": "single"},
-    {"newton": 2, "precision": "single"},
-    {"table": 64},
-    {"table": 64, "precision": "single"},
-]
-ITERATED = {"iterated": iterated, "truss_platform": truss_platform}
-SCENES = {"cam": sampled_cam, "slider_crank": slider_crank, "spline_arm": spline_arm} | ITERATED
-ON = [
-    (name, options)
-    for name in SCENES
-    for options in ARITHMETIC
-    if name in ITERATED or "newton" not in options
-]
-CASES = sorted(path.parent for path in (Path(__file__).parents[2] / "cases").glob("*/case.py"))
+ARITHMETIC = {
+    "double": {},
+    "single": {"precision": "single"},
+    "newton": {"newton": 2, "precision": "single"},
+    "table": {"table": 64},
+    "single table": {"table": 64, "precision": "single"},
+    "slopes": {"wanted": ["all", "sensitivity"]},
+}
+SCENES = {
+    "cam": sampled_cam,
+    "press": slider_crank,
+    "spline_arm": spline_arm,
+    "iterated": iterated,
+    "truss_platform": truss_platform,
+} | {name: lambda name=name: load_case(CASES / name).scene for name in NAMES}
+EXPORTED = [(name, way) for name in SCENES for way in ("double", "single")]
+EXPORTED += [("press", "table"), ("press", "single table"), ("press", "slopes")]
+EXPORTED += [("iterated", "newton"), ("truss_platform", "newton"), ("truss_platform", "slopes")]
+EXPORTED += [("v_twin", "slopes"), ("excavator", "slopes")]
+SANITIZED = ["-O1", "-g", "-ffp-contract=off", "-fsanitize=address,undefined"]
+SANITIZED += ["-fno-sanitize-recover=all"]
 
 
-def keywords():
-    """A mechanism whose names are words that C and C++ keep for themselves."""
-    m = Mechanism("double")
-    l = m.parameter("double", 0.5, "m", low=0.0)
-    arm = m.link("int", length=l, mass=m.parameter("register", 2.0, "kg"))
-    m.revolute("class", m.ground, arm)
-    return Scene(m, {"class": motion.polynomial(0, 2)}, t=(0, 1, 11))
-
-
-# Only one drive that turns has a cycle to be read from a table.
-@pytest.mark.sampled(19)
-@pytest.mark.parametrize(
-    ("name", "options"), [(n, o) for n, o in ON if n == "slider_crank" or "table" not in o], ids=str
-)
-def test_the_source_is_clean(name, options, tmp_path):
-    clean(SCENES[name](), tmp_path, options, compilers())
-
-
-@pytest.mark.sampled(37)
-@pytest.mark.parametrize("options", ARITHMETIC[:2], ids=str)
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_the_source_of_every_case_is_clean(case, options, tmp_path):
-    clean(load_case(case).scene, tmp_path, options, compilers()[:2])
-
-
-def clean(scene, folder, options, commands):
-    made = export(scene, folder, **options)
-    for label, command in commands:
-        if not present(command[0]):
-            continue
-        programs = (
-            [f"{made.prefix}.c"]
-            if "++" in label
-            else [f"{made.prefix}.c", "selftest.c", "example.c"]
-        )
-        for source in programs:
-            result = cc([*command, "-O2", "-c"], folder, source, output="x.o")
-            assert result.returncode == 0, f"{label} {source}: {result.stderr}"
-
-
-@pytest.mark.sampled(13)
-@pytest.mark.parametrize(("name", "options"), [(n, o) for n, o in ON if "table" not in o], ids=str)
-def test_the_self_test_passes_under_sanitizers(name, options, tmp_path):
-    made = export(SCENES[name](), tmp_path, **options)
-    sanitized = [
-        "cc",
-        "-std=c99",
-        "-g",
-        "-fsanitize=address,undefined",
-        "-fno-sanitize-recover=all",
-    ]
-    result = cc(sanitized, tmp_path, f"{made.prefix}.c", "selftest.c")
-    if "cannot find" in result.stderr:
-        pytest.skip("this compiler has no sanitizers' libraries")
-    assert result.returncode == 0, result.stderr
-    ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    assert "0 wrong" in ran.stdout
-
-
-@pytest.mark.sampled(33)
-@pytest.mark.parametrize("precision", ["double", "single"])
-@pytest.mark.parametrize("name", SPATIAL)
-def test_mechanisms_in_space_pass_their_self_test(name, precision, tmp_path):
-    assert "0 wrong" in self_tested(load_case(name).scene, precision, tmp_path)
-
-
-def test_a_product_of_two_roundings_is_allowed_for(tmp_path):
-    """In single precision it is as much larger as the square of its roundings: the square of a
-    shaft's rate across its axis.
-    """
-    assert "0 wrong" in self_tested(
-        load_case("cardan_shaft").scene, "single", tmp_path, wanted=["section:tube"]
-    )
-
-
-def test_what_is_left_open_is_no_part_of_the_self_test(tmp_path):
-    assert "0 wrong" in self_tested(
-        load_case("bricard").scene, "single", tmp_path, wanted=["section:link1"]
-    )
-
-
-def self_tested(scene, precision, folder, **options):
-    """What the self-test of an exported folder says."""
-    made = export(scene, folder, precision=precision, **options)
-    assert (
-        cc(
-            ["cc", "-std=c99", "-O1", "-ffp-contract=off"], folder, f"{made.prefix}.c", "selftest.c"
-        ).returncode
-        == 0
-    )
-    return subprocess.run([folder / "program"], capture_output=True, text=True, check=False).stdout
-
-
-def test_the_self_test_passes_under_valgrind(tmp_path):
-    if not present("valgrind"):
-        pytest.skip("needs valgrind")
-    made = export(slider_crank(), tmp_path)
-    assert (
-        cc(["cc", "-std=c99", "-O1", "-g"], tmp_path, f"{made.prefix}.c", "selftest.c").returncode
-        == 0
-    )
-    command = ["valgrind", "-q", "--error-exitcode=9", "--leak-check=full", tmp_path / "program"]
-    assert subprocess.run(command, capture_output=True, check=False).returncode == 0
-
-
-def test_the_self_test_can_fail(tmp_path):
-    made = export(slider_crank(), tmp_path)
-    source = (tmp_path / "selftest.c").read_text()
-    _, _, rows = source.partition("outputs_at[INSTANTS][OUTPUTS] = {\n  {")
-    first = rows.partition(",")[0]
-    (tmp_path / "selftest.c").write_text(
-        source.replace(rows, rows.replace(first, f"{float(first) + 1e-3!r}", 1))
-    )
-    assert cc(["cc", "-std=c99"], tmp_path, f"{made.prefix}.c", "selftest.c").returncode == 0
-    ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
-    assert ran.returncode == 1
-    assert f"wrong: {made.outputs[0].name} is" in ran.stdout
+def self_test(folder, prefix, *flags):
+    """Whether the self-test of a folder passes, and what it says."""
+    built = cc(["cc", "-std=c99", *flags], folder, f"{prefix}.c", "selftest.c")
+    assert built.returncode == 0, built.stderr
+    ran = subprocess.run([folder / "program"], capture_output=True, text=True, check=False)
+    return ran.returncode == 0, ran.stdout + ran.stderr
 
 
 def symbols(folder, prefix):
     assert cc(["cc", "-std=c99", "-O2", "-c"], folder, f"{prefix}.c", output="x.o").returncode == 0
-    lines = subprocess.run(
-        ["nm", folder / "x.o"], capture_output=True, text=True, check=True
-    ).stdout.splitlines()
-    return [line.split()[-2:] for line in lines]
+    command = ["nm", folder / "x.o"]
+    listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return [line.split()[-2:] for line in listed.splitlines()]
 
 
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize("options", ARITHMETIC, ids=str)
-def test_only_prefixed_symbols_are_seen_and_only_libm_is_needed(options, tmp_path):
-    made = export(truss_platform() if "newton" in options else slider_crank(), tmp_path, **options)
+@pytest.mark.sampled(23)
+@pytest.mark.parametrize(("name", "way"), EXPORTED)
+def test_it_is_clean_and_passes_its_own_test(name, way, tmp_path):
+    """By every compiler, and under sanitizers; only prefixed symbols are seen, nothing is kept
+    between calls, and of libraries only functions of the precision are asked for.
+    """
+    made = export(SCENES[name](), tmp_path, **ARITHMETIC[way])
+    for label, command in compilers():
+        own = [] if "++" in label else ["selftest.c", "example.c"]
+        for source in [f"{made.prefix}.c", *own] if present(command[0]) else []:
+            result = cc([*command, "-O2", "-c"], tmp_path, source, output="x.o")
+            assert result.returncode == 0, f"{label} {source}: {result.stderr}"
+    passes, says = self_test(tmp_path, made.prefix, *SANITIZED)
+    assert passes, says
+    assert "0 wrong" in says
     found = symbols(tmp_path, made.prefix)
     assert all(name.startswith(f"{made.prefix}_") for kind, name in found if kind in "TDRBC")
     assert not [name for kind, name in found if kind in "DdBbC"], "no state"
-    needed = {name for kind, name in found if kind == "U"} - {
-        "_GLOBAL_OFFSET_TABLE_",
-        "memset",
-        "memcpy",
-    }
-    functions = {"sin", "cos", "sincos", "atan2", "sqrt", "ceil", "floor", "fmax"}
-    suffix = "f" if options.get("precision") == "single" else ""
-    assert needed <= {name + suffix for name in functions}
-
-
-def test_a_table_needs_no_sine(tmp_path):
-    made = export(slider_crank(wanted=["effort"]), tmp_path, table=64, precision="single")
-    assert {name for kind, name in symbols(tmp_path, made.prefix) if kind == "U"} <= {
-        "floorf",
-        "_GLOBAL_OFFSET_TABLE_",
-    }
-
-
-def test_nothing_recurs_allocates_or_is_of_another_precision(tmp_path):
-    made = export(slider_crank(), tmp_path, precision="single")
+    needed = {name for kind, name in found if kind == "U"}
+    suffix = "f" if "single" in way or way == "newton" else ""
+    functions = (
+        "" if "table" in way else "sin cos sincos atan2 sqrt ceil fmax fmin exp log pow fmod"
+    )
+    allowed = {word + suffix for word in f"{functions} floor".split()}
+    assert needed <= allowed | {"_GLOBAL_OFFSET_TABLE_", "memset", "memcpy"}
     text = (tmp_path / f"{made.prefix}.c").read_text()
     assert not re.search(r"\b(malloc|calloc|realloc|free|alloca)\b", text)
-    assert not re.search(r"\bdouble\b", text)
-    assert not re.search(
-        r"(?<![\w.])\d+\.\d*(e[+-]?\d+)?(?![\w.])", re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-    )
+    assert not suffix or not re.search(r"\bdouble\b", text)
+
+
+def test_its_own_test_can_fail(tmp_path):
+    """For an output, and for a derivative."""
+    made = export(slider_crank(), tmp_path, wanted=["all", "sensitivity"])
+    source = (tmp_path / "selftest.c").read_text()
+    for head, says in (("outputs_at", f"{made.outputs[0].name} is"), ("slopes_at", " by ")):
+        rows = source.partition(f"{head}[INSTANTS]")[2].partition("{\n  {")[2]
+        first = rows.partition(",")[0]
+        wrong = rows.replace(first, repr(float(first) + 1e-3), 1)
+        (tmp_path / "selftest.c").write_text(source.replace(rows, wrong))
+        passes, said = self_test(tmp_path, made.prefix)
+        assert not passes
+        assert says in said
 
 
 UNPREPARED = "status = @_prepare(&model, &parameters);"
@@ -245,13 +145,6 @@ def test_failures_say_so_and_leave_nothing_undefined(tmp_path):
         assert status != 0, statements
         assert says in sentence, statements
         assert np.isnan(value) or statements.endswith(UNPREPARED), statements
-
-
-def test_times_outside_the_samples(tmp_path):
-    times = {"0.0": False, "3.0": False, "-1e-9": True, "3.0000001": True}
-    tried = [f"@_prepare(&model); status = @_motion(&model, {time}, &inputs);" for time in times]
-    found = told(tmp_path, export(spline_arm(), tmp_path), *tried)
-    assert ["outside the samples" in sentence for *_, sentence in found] == [*times.values()]
 
 
 @pytest.mark.parametrize(("beyond", "there"), [(None, None), ("hold", 3.0), ("line", 3.8)])
@@ -309,7 +202,12 @@ def test_twice_the_same_bytes(tmp_path):
 
 
 def test_names_that_c_keeps_for_itself(tmp_path):
-    made = export(keywords(), tmp_path)
+    """Of a mechanism, a parameter, a link and an input."""
+    m = Mechanism("double")
+    l = m.parameter("double", 0.5, "m", low=0.0)
+    arm = m.link("int", length=l, mass=m.parameter("register", 2.0, "kg"))
+    m.revolute("class", m.ground, arm)
+    made = export(Scene(m, {"class": motion.polynomial(0, 2)}, t=(0, 1, 11)), tmp_path)
     assert made.prefix == "double_mechanism"
     assert made.mapped == {
         "name double": "double_mechanism",
@@ -317,20 +215,52 @@ def test_names_that_c_keeps_for_itself(tmp_path):
         "parameter register": "register_",
         "input class": "class_",
     }
-    for text in (
-        (tmp_path / "README.md").read_text(),
-        (tmp_path / "double_mechanism.h").read_text(),
-    ):
-        assert "parameter register" in text
-        assert "register_" in text
+    for file in ("README.md", "double_mechanism.h"):
+        assert "register_" in (tmp_path / file).read_text()
     for _, command in compilers():
         if present(command[0]):
-            result = subprocess.run(
-                [*command, "-c", tmp_path / "double_mechanism.c", "-o", tmp_path / "x.o"],
-                capture_output=True,
-                text=True,
-                check=False,
-            )
+            result = cc([*command, "-c"], tmp_path, "double_mechanism.c", output="x.o")
             assert result.returncode == 0, result.stderr
-    assert cc(["cc", "-std=c99"], tmp_path, "double_mechanism.c", "selftest.c").returncode == 0
-    subprocess.run([tmp_path / "program"], check=True, capture_output=True)
+    assert self_test(tmp_path, "double_mechanism")[0]
+
+
+def test_parameters_and_joints_may_be_called_as_macros_are(tmp_path):
+    """Of ISO C's headers, which are all there before the exported header."""
+    m = Mechanism("macros")
+    names = [
+        "NULL",
+        "EOF",
+        "M_PI",
+        "INT_MAX",
+        "SEEK_SET",
+        "stdin",
+        "errno",
+        "SIGINT",
+        "DBL_EPSILON",
+        "true",
+        "I",
+        "SEAL",
+        "EDOM",
+    ]
+    parts = [m.parameter(name, 0.1, "m", low=0.0) for name in names]
+    first = m.link("NAN", length=sum(parts), mass=1.0)
+    m.revolute("INFINITY", m.ground, first)
+    m.revolute("RAND_MAX", first.tip, m.link("BUFSIZ", length=0.3, mass=1.0))
+    scene = Scene(
+        m, {"INFINITY": motion.polynomial(0, 1), "RAND_MAX": motion.polynomial(0, 2)}, t=(0, 1, 5)
+    )
+    made = export(scene, tmp_path)
+    assert {f"parameter {name}": f"{name}_" for name in names}.items() <= made.mapped.items()
+    headers = (
+        "assert complex ctype errno fenv float inttypes limits locale math setjmp signal stdarg"
+        " stdbool stddef stdint stdio stdlib"
+    )
+    first = "".join(
+        f"#include <{header}.h>\n"
+        for header in [*headers.split(), "string", "tgmath", "time", "wchar", "wctype"]
+    )
+    for file in ("macros.c", "selftest.c"):
+        (tmp_path / file).write_text(first + (tmp_path / file).read_text())
+    done = cc(["cc", "-std=gnu11"], tmp_path, "macros.c", "selftest.c")
+    assert done.returncode == 0, done.stderr
+    assert subprocess.run([tmp_path / "program"], check=False, capture_output=True).returncode == 0

@@ -1,4 +1,4 @@
-"""The exported folder: what is in it, what it says of itself, and what it goes over."""
+"""The exported folder: what it says of itself, what it goes over, and what is refused."""
 
 import json
 import re
@@ -16,98 +16,41 @@ from lagrange_casadi.errors import DeclarationError, PathError, SizeError, Unkno
 pytestmark = pytest.mark.quick
 
 
-def test_the_manifest_knows_all_files(tmp_path):
-    made = export(slider_crank(), tmp_path)
-    content = json.loads((tmp_path / "export.json").read_text())
-    assert set(content["files"]) | {"export.json"} == {path.name for path in tmp_path.iterdir()}
-    assert [row["path"] for row in content["outputs"]] == [member.path for member in made.outputs]
-    assert content["scene"] in (tmp_path / "slider_crank.h").read_text()
-
-
-def test_the_scene_hash_tells_scenes_apart(tmp_path):
-    hashes = set()
-    for number, (options, change) in enumerate(
-        (({}, {}), ({"wanted": ["effort"]}, {}), ({}, {"l": 0.3}), ({"precision": "single"}, {}))
-    ):
-        export(slider_crank(), tmp_path / str(number), parameters=change, **options)
-        hashes.add(json.loads((tmp_path / str(number) / "export.json").read_text())["scene"])
-    assert len(hashes) == 3, "the precision is not the scene's affair"
-
-
 @pytest.mark.parametrize(
     ("options", "low", "high"),
     [({}, 0, 1e-12), ({"precision": "single"}, 1e-9, 1e-4), ({"table": 8}, 1e-3, 1)],
 )
-def test_the_folder_says_how_it_is_evaluated_and_how_exactly(options, low, high, tmp_path):
-    export(slider_crank(), tmp_path, parameters={"l": 0.3125}, **options)
+def test_the_folder_says_what_it_holds_and_how_exactly(options, low, high, tmp_path):
+    """A table holds numbers of its own; parameters become defaults elsewhere."""
+    made = export(slider_crank(), tmp_path, parameters={"l": 0.3125}, **options)
     content = json.loads((tmp_path / "export.json").read_text())
+    assert set(content["files"]) | {"export.json"} == {path.name for path in tmp_path.iterdir()}
+    assert [row["path"] for row in content["outputs"]] == [member.path for member in made.outputs]
+    assert content["scene"] in (tmp_path / "slider_crank.h").read_text()
     assert low < content["error"]["largest"] < high
-    said = (
-        f"options of the export: {content['options']}. Its outputs are off by about"
-        f" {content['error']['largest']:.0e}"
-    )
+    off = f"Its outputs are off by about {content['error']['largest']:.0e}"
     for file in ("slider_crank.h", "README.md"):
         text = re.sub(r"\s+", " ", (tmp_path / file).read_text())
-        assert said in text
+        assert f"options of the export: {content['options']}. {off}" in text
         assert ("l = 0.3125" in text) is ("table" in options)
-    assert content["fixed"] == (
-        {"r": 0.1, "l": 0.3125, "m1": 0.1, "m2": 0.1, "m3": 0.1} if "table" in options else {}
-    )
-
-
-def test_a_coarse_table_is_compared_with_the_mechanism_itself(tmp_path):
-    export(slider_crank(), tmp_path / "exact")
-    export(slider_crank(), tmp_path / "table", table=8)
-    rows = [
-        (tmp_path / kind / "selftest.c")
-        .read_text()
-        .partition("outputs_at[INSTANTS]")[2]
-        .partition("};")[0]
-        for kind in ("exact", "table")
-    ]
-    assert rows[0] == rows[1]
+    assert content["fixed"].get("l") == (0.3125 if "table" in options else None)
+    if "table" not in options:
+        assert "0.3125" in (tmp_path / "slider_crank.c").read_text()
 
 
 def test_examples_of_iterated_loops_go_in_steps_they_can_follow(tmp_path):
-    for number, (scene, options) in enumerate(
-        ((iterated(), {"newton": 1}), (truss_platform(), {}))
-    ):
-        folder = tmp_path / str(number)
-        made = export(scene, folder, **options)
-        assert cc(["cc", "-std=c99"], folder, f"{made.prefix}.c", "example.c").returncode == 0
-        ran = subprocess.run([folder / "program"], capture_output=True, text=True, check=False)
-        assert ran.returncode == 0, ran.stderr
-        assert ran.stdout.count("\n") == 13
-        (folder / "shown.c").write_text(
-            shown((folder / f"{made.prefix}.h").read_text(), made.prefix)
-        )
-        assert cc(["cc", "-std=c99"], folder, f"{made.prefix}.c", "shown.c").returncode == 0
-        assert subprocess.run([folder / "program"], check=False).returncode == 0
-
-
-def shown(header, prefix):
-    """The header's own example as a program that answers with its last status."""
-    lines = re.search(rf"     {prefix}_model model;\n.*?puts\([^\n]*\n", header, re.DOTALL).group()
-    return (
-        f'#include "{prefix}.h"\n#include <stdio.h>\nint main(void) {{\n{lines}return (int)'
-        " status;\n}\n"
-    )
-
-
-def test_a_joint_may_be_called_as_a_rest_is(tmp_path):
-    m = Mechanism("two")
-    first, second = m.link("first", length=1, mass=1), m.link("second", length=1, mass=1)
-    m.revolute("O", m.ground, first)
-    m.revolute("O_rest", first.tip, second)
-    scene = Scene(
-        m, {"O": motion.polynomial(0, 1), "O_rest": motion.polynomial(0, 2)}, t=(0, 1, 11)
-    )
-    made = export(scene, tmp_path, precision="single")
-    assert len({member.name for member in made.inputs}) == len(made.inputs) == 8
-    assert {"O_rest", "O_rest_2"} < {member.name for member in made.inputs}
-    assert list(made.mapped.values()) == ["O_rest_2"]
-    assert cc(["cc", "-std=c99"], tmp_path, "two.c", "selftest.c").returncode == 0
-    assert subprocess.run([tmp_path / "program"], check=False, capture_output=True).returncode == 0
+    """That of the folder, and that of the header, which answers with its last status."""
+    for scene, options in ((iterated(), {"newton": 1}), (truss_platform(), {})):
+        folder = tmp_path / scene.mechanism.name
+        p = export(scene, folder, **options).prefix
+        header = (folder / f"{p}.h").read_text()
+        lines = re.search(rf"     {p}_model model;\n.*?puts\([^\n]*\n", header, re.DOTALL).group()
+        head = f'#include "{p}.h"\n#include <stdio.h>\nint main(void) {{\n'
+        (folder / "shown.c").write_text(f"{head}{lines}return (int) status;\n}}\n")
+        for source, least in (("example.c", 13), ("shown.c", 0)):
+            assert cc(["cc", "-std=c99"], folder, f"{p}.c", source).returncode == 0
+            ran = subprocess.run([folder / "program"], capture_output=True, text=True, check=True)
+            assert ran.stdout.count("\n") >= least
 
 
 @pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only"])
@@ -117,86 +60,80 @@ def test_arithmetic_without_nan_is_refused(flag, tmp_path):
     assert "compile without -ffast-math" in result.stderr
 
 
-def test_parameters_become_defaults(tmp_path):
-    export(slider_crank(), tmp_path, parameters={"l": 0.3125})
-    assert "0.3125 /* l */" in (tmp_path / "slider_crank.c").read_text()
-
-
 def test_an_export_goes_over_its_own_files_only(tmp_path):
     out = tmp_path / "out"
     export(slider_crank(), out)
     export(slider_crank(), out, precision="single")
     assert "float" in (out / "slider_crank.h").read_text()
-    (out / "notes.txt").write_text("mine")
-    with pytest.raises(PathError, match=r"holds other files, 'notes\.txt' among them"):
-        export(slider_crank(), out)
-    export(slider_crank(), out, force=True)
-    assert (out / "notes.txt").read_text() == "mine"
-    (out / "notes.txt").unlink()
-    (out / "example.c").write_text("int main(void) { return 0; }\n")
-    with pytest.raises(PathError, match=r"an export whose 'example\.c' was changed since"):
-        export(slider_crank(), out)
-    export(slider_crank(), out, force=True)
-    assert "slider_crank" in (out / "example.c").read_text()
-
-
-def test_what_an_earlier_export_alone_had_goes(tmp_path):
-    export(slider_crank(), tmp_path, name="press")
-    (tmp_path / "build").mkdir()
+    for name, text, says in (
+        ("notes.txt", "mine", r"holds other files, 'notes\.txt' among them"),
+        ("example.c", "int main;", r"an export whose 'example\.c' was changed since"),
+    ):
+        (out / name).write_text(text)
+        with pytest.raises(PathError, match=says):
+            export(slider_crank(), out)
+        export(slider_crank(), out, force=True)
+        assert ((out / name).read_text() == text) == (name == "notes.txt")
+        (out / "notes.txt").unlink(missing_ok=True)
     with pytest.raises(PathError, match="holds an export of another name"):
-        export(slider_crank(), tmp_path, name="pump")
-    export(slider_crank(), tmp_path, name="pump", force=True)
-    assert {path.stem for path in tmp_path.glob("*.[ch]")} == {
-        "pump",
-        "pump_mex",
-        "example",
-        "selftest",
-    }
-    assert (tmp_path / "build").is_dir()
-
-
-def test_nothing_of_others_is_touched_even_by_force(tmp_path):
+        export(slider_crank(), out, name="pump")
+    (out / "build").mkdir()
+    export(slider_crank(), out, name="pump", force=True)
+    there = {path.stem for path in out.glob("*.[ch]")}
+    assert there == {"pump", "pump_mex", "example", "selftest"}
+    assert (out / "build").is_dir()
     (tmp_path / "README.md").write_text("mine")
     with pytest.raises(PathError, match=r"'README\.md' there is no file of an export"):
         export(slider_crank(), tmp_path, force=True)
-    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"README.md": "mine"}
+    assert (tmp_path / "README.md").read_text() == "mine"
 
 
-def test_a_table_too_large_for_its_target(tmp_path):
-    with pytest.raises(
-        SizeError,
-        match=r"the table of the cycle takes \d+ bytes of constants, and the limit is 64000",
-    ):
-        export(slider_crank(), tmp_path / "out", table=4096, precision="single")
-    assert not (tmp_path / "out").exists()
-    t = np.linspace(0, 1, 4001)
-    m = Mechanism("arm")
+def sampled():
+    t, m = np.linspace(0, 1, 4001), Mechanism("arm")
     m.revolute("J", m.ground, m.link("a", length=1, mass=1))
-    scene = Scene(m, {"J": motion.samples(t, t**2)}, t=(0, 1, 11))
-    with pytest.raises(
-        SizeError, match=r"what curves and motions by samples look up takes 176004 bytes"
-    ):
-        export(scene, tmp_path / "out", precision="single")
-    export(scene, tmp_path / "out", precision="single", largest=200_000)
+    return Scene(m, {"J": motion.samples(t, t**2)}, t=(0, 1, 11))
 
 
-def test_what_no_drive_moves_is_refused(tmp_path):
+def still():
     m = Mechanism("bracket")
     m.weld("wall", m.ground, m.link("arm", length=1.0, mass=2.0))
-    with pytest.raises(DeclarationError, match="'bracket' has no drive, so C would have no inputs"):
-        export(Scene(m, {}), tmp_path / "out")
-    assert not list(tmp_path.iterdir())
+    return Scene(m, {})
 
 
-def test_mistakes(tmp_path):
-    with pytest.raises(UnknownNameError, match="unknown output 'effrot'"):
-        export(slider_crank(), tmp_path / "out", wanted=["effrot"])
-    with pytest.raises(UnknownNameError, match="unknown parameter 'q'"):
-        export(slider_crank(), tmp_path / "out", parameters={"q": 1.0})
-    with pytest.raises(DeclarationError, match="expected a Scene"):
-        export("slider_crank", tmp_path / "out")
-    with pytest.raises(DeclarationError, match="newton and table exclude each other"):
-        export(slider_crank(), tmp_path / "out", newton=2, table=64)
+SINGLE = {"precision": "single"}
+SLOPES = {"wanted": ["effort", "sensitivity:l"]}
+MISTAKES = [
+    (slider_crank, {"wanted": ["effrot"]}, UnknownNameError, "unknown output 'effrot'"),
+    (slider_crank, {"parameters": {"q": 1.0}}, UnknownNameError, "unknown parameter 'q'"),
+    (lambda: "slider_crank", {}, DeclarationError, "expected a Scene"),
+    (slider_crank, {"newton": 2, "table": 64}, DeclarationError, "exclude each other"),
+    (still, {}, DeclarationError, "'bracket' has no drive, so C would have no inputs"),
+    (slider_crank, {"table": 4096, **SINGLE}, SizeError, r"takes \d+ bytes of constants, and the"),
+    (sampled, SINGLE, SizeError, r"what curves and motions by samples look up takes 176004 bytes"),
+    *(
+        (slider_crank, SLOPES | options, DeclarationError, "'sensitivity' needs double precision")
+        for options in (SINGLE, {"newton": 2}, {"table": 64})
+    ),
+    (slider_crank, {"wanted": ["sensitivity"]}, DeclarationError, "sensitivities need other"),
+    (
+        slider_crank,
+        {"structured_text": True, **SINGLE},
+        DeclarationError,
+        "expected double precision and no table",
+    ),
+    (
+        slider_crank,
+        {"control": True, "wanted": ["motion"]},
+        DeclarationError,
+        "for controllers needs efforts",
+    ),
+]
+
+
+@pytest.mark.parametrize(("make", "options", "error", "says"), MISTAKES)
+def test_what_is_refused_leaves_no_folder(make, options, error, says, tmp_path):
+    with pytest.raises(error, match=says):
+        export(make(), tmp_path / "out", **options)
     with pytest.raises(PathError, match="does not exist"):
         export(slider_crank(), tmp_path / "none" / "out")
     assert not list(tmp_path.iterdir())

@@ -2,19 +2,14 @@
 costs where they are not wanted.
 """
 
-import json
-import re
 import subprocess
 
 import numpy as np
 import pytest
-from casadi import sqrt
-from compiled import cc, compilers, present
+from compiled import cc
 from mechanisms import slider_crank, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export
-from lagrange_casadi.cli import main
-from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 
 WANTED = ["effort", "section:rod", "sensitivity:l", "sensitivity:m3"]
@@ -126,88 +121,3 @@ def test_it_gives_what_an_evaluation_gives(make, parameters, by, tmp_path):
             )
     assert compared >= 3
     assert np.abs(found[:, :, 1:]).max() > 0.0
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("make", [slider_crank, rotor, truss_platform])
-def test_it_is_clean_and_its_self_test_passes(make, tmp_path):
-    scene = make()
-    made = export(scene, tmp_path, wanted=["all", "sensitivity"])
-    for label, command in compilers():
-        if present(command[0]):
-            sources = [f"{made.prefix}.c"] if "++" in label else [f"{made.prefix}.c", "selftest.c"]
-            for source in sources:
-                result = cc([*command, "-O1", "-c"], tmp_path, source, output="x.o")
-                assert result.returncode == 0, f"{label} {source}: {result.stderr}"
-    assert (
-        cc(
-            ["cc", "-std=c99", "-O1", "-ffp-contract=off"],
-            tmp_path,
-            f"{made.prefix}.c",
-            "selftest.c",
-        ).returncode
-        == 0
-    )
-    ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
-    assert ran.returncode == 0, ran.stdout
-    source = (tmp_path / "selftest.c").read_text()
-    (row,) = re.findall(r"slopes_off\[\d+\] = \{(.*)\};", source)
-    off = [float(word) for word in row.split(",")]
-    place = int(np.argmax(off))
-    first = source.partition("slopes_at[INSTANTS]")[2].partition("{\n  {")[2].partition("}")[0]
-    words = first.split(", ")
-    words[place] = repr(float(words[place]) + 4.0 * off[place])
-    (tmp_path / "selftest.c").write_text(source.replace(first, ", ".join(words)))
-    assert cc(["cc", "-std=c99"], tmp_path, f"{made.prefix}.c", "selftest.c").returncode == 0
-    ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
-    assert ran.returncode == 1
-    assert " by " in ran.stdout
-
-
-def test_what_does_not_change_may_be_rounded(tmp_path):
-    """The derivative of l/l is a difference of what is as large as 1/l; compilers round it
-    otherwise.
-    """
-    m = Mechanism("still")
-    l = m.parameter("l", 0.3, "m")
-    m.revolute("O", m.ground, m.link("arm", length=l, mass=1.0))
-    m.output("same", sqrt(l * l * (1.0 + m.time)) / l)
-    export(
-        Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 9)),
-        tmp_path,
-        wanted=["output:same", "sensitivity"],
-    )
-    (off,) = re.findall(r"slopes_off\[1\] = \{(.*)\};", (tmp_path / "selftest.c").read_text())
-    assert 1e-12 / 0.3 < float(off) < 1e-9 / 0.3
-
-
-def test_the_folder_says_what_it_has(tmp_path):
-    made = export(slider_crank(), tmp_path / "a", wanted=WANTED)
-    export(slider_crank(), tmp_path / "b", wanted=WANTED)
-    plain = export(slider_crank(), tmp_path / "plain", wanted=WANTED[:2])
-    assert made == plain
-    for file in sorted(path.name for path in (tmp_path / "a").iterdir()):
-        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
-        assert "ensitivit" not in (tmp_path / "plain" / file).read_text()
-    header = (tmp_path / "a" / "slider_crank.h").read_text()
-    assert "  slider_crank_real l; /* by parameter l, for a unit of it [m] */\n" in header
-    assert "  slider_crank_changes effort_O; /* [N m/m; N m/kg] */\n" in header
-    assert json.loads((tmp_path / "a" / "export.json").read_text())["sensitivities"] == ["l", "m3"]
-    assert "sensitivities.effort_O.l" in (tmp_path / "a" / "README.md").read_text()
-    code = (tmp_path / "a" / "slider_crank.c").read_text()
-    assert "alloc" not in code
-
-
-@pytest.mark.parametrize("options", [{"precision": "single"}, {"newton": 2}, {"table": 64}])
-def test_arithmetic_that_has_none(options, tmp_path):
-    with pytest.raises(DeclarationError, match="output 'sensitivity' needs double precision"):
-        export(slider_crank(), tmp_path / "a", wanted=WANTED, **options)
-    assert not (tmp_path / "a").exists()
-
-
-def test_from_the_command_line(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["export", "slider_crank", "--out", "a", "--want", "effort,sensitivity:r"]) == 0
-    assert "slider_crank_sensitivity(" in (tmp_path / "a" / "slider_crank.h").read_text()
-    assert main(["export", "slider_crank", "--out", "b", "--want", "sensitivity:r"]) == 2
-    assert "sensitivities need other outputs" in capsys.readouterr().err

@@ -1,5 +1,5 @@
 """The exported FMU, imported by FMPy: the numbers of the API, told in the words of the results
-file, and loud where it fails.
+file, loud where it fails, and built of sources that compile elsewhere.
 """
 
 import csv
@@ -8,40 +8,42 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from compiled import fake_compiler, present
 from conftest import CASES, SPATIAL
 from importer import Instance, refusing, robot, signals, simulated, windy
-from internals import ALLOWED, export, find_compiler
 from machines import called_as_rates, elsewhere
-from mechanisms import sampled_cam
-from mechanisms import slider_crank as free
+from mechanisms import sampled_cam, slider_crank
 
-from lagrange_casadi import derive, errors, evaluate, load_case
+from lagrange_casadi import derive, errors, evaluate, export, load_case
+from lagrange_casadi.cli import main
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 fmi2 = pytest.importorskip("fmpy.fmi2")
 validate_fmu = pytest.importorskip("fmpy.validation").validate_fmu
-pytestmark = pytest.mark.skipif(
-    find_compiler() is None, reason="there is no C compiler to build an FMU with"
-)
+pytestmark = pytest.mark.skipif(not present("cc"), reason="there is no C compiler")
 
 WITHIN = 1e-12
-
-
+PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-fPIC"]
 SCENES = {
-    "slider_crank": lambda: load_case(CASES / "slider_crank").scene,
-    "rrr3": lambda: load_case(CASES / "rrr3").scene,
     "robot": robot,
-    "arm": lambda: load_case(CASES / "arm").scene,
     "windy": windy,
-    "free": free,
+    "free": slider_crank,
     "cam": sampled_cam,
     "planetary": elsewhere,
     "rates": called_as_rates,
+} | {
+    name: lambda name=name: load_case(name).scene
+    for name in ("slider_crank", "rrr3", "arm", "excavator", *SPATIAL)
 }
-GUIDED = {name: lambda name=name: load_case(CASES / name).scene for name in ("excavator", *SPATIAL)}
+CHANGES = {
+    "slider_crank": {"r": 0.08, "m3": 0.4},
+    "robot": {"shin": 0.29, "mass": 2.0},
+    "windy": {"gust": 9.0},
+}
 
 
 @pytest.fixture(scope="session")
@@ -53,160 +55,12 @@ def unit(tmp_path_factory):
         key = (name, *sorted(how.items()))
         if key not in made:
             folder = tmp_path_factory.mktemp(name) / "out"
-            scene = (SCENES | GUIDED)[name]()
-            made[key] = (
-                scene,
-                folder / f"{export(scene, folder, name=name, **{'fmu': True, **how}).prefix}.fmu",
-            )
+            scene = SCENES[name]()
+            prefix = export(scene, folder, name=name, **{"fmu": True, **how}).prefix
+            made[key] = (scene, folder / f"{prefix}.fmu")
         return made[key]
 
     return make
-
-
-def outputs(path):
-    return [
-        v.name
-        for v in fmpy.read_model_description(str(path)).modelVariables
-        if v.causality == "output"
-    ]
-
-
-def assert_alike(found, solution, names, rows=slice(None), within=WITHIN):
-    assert names
-    for name in names:
-        expected = solution.series[name.replace("/", ":")]
-        assert found[name].shape == expected.shape
-        gap = np.abs(found[name] - expected)[rows].max()
-        assert gap <= within * np.abs(expected).max(), (
-            f"{name}: {gap:.3g} of {np.abs(expected).max():.3g}"
-        )
-
-
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize("name", SCENES)
-def test_nothing_is_wrong_with_it(unit, name):
-    assert validate_fmu(str(unit(name)[1])) == []
-
-
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize("name", SCENES)
-def test_model_exchange_gives_the_numbers_of_the_api(unit, name):
-    scene, path = unit(name)
-    solution = evaluate(scene)
-    assert_alike(simulated(path, solution), solution, outputs(path))
-
-
-@pytest.mark.sampled(9)
-@pytest.mark.parametrize("name", SCENES)
-def test_co_simulation_gives_the_numbers_of_the_api(unit, name):
-    """What FMPy reads after a step is of the inputs that it set before: they are given one step
-    early.
-    """
-    scene, path = unit(name)
-    solution = evaluate(scene)
-    assert_alike(
-        simulated(path, solution, "CoSimulation", ahead=1), solution, outputs(path), slice(1, None)
-    )
-
-
-def test_the_motion_of_what_is_guided_is_an_input(unit):
-    """The pose of an excavator's bucket: place, direction, and their rates and accelerations."""
-    scene, path = unit("excavator")
-    program, solution = derive(scene), evaluate(scene)
-    orders = [program.motion(t, list(scene.mechanism.values().values())) for t in solution.t]
-    poses = {
-        f"motion/{name}{end}": np.array([float(order[k][i]) for order in orders])
-        for i, name in enumerate(program.driven)
-        for k, end in enumerate(("", "_rate", "_acceleration"))
-    }
-    assert "motion/bucket.angle_rate" in poses
-    assert_alike(simulated(path, solution, **poses), solution, outputs(path))
-
-
-@pytest.mark.sampled(17)
-@pytest.mark.parametrize("name", SPATIAL)
-def test_mechanisms_in_space(unit, name):
-    """Drives of all kinds, poses that are given, loops of closed forms and iterated ones; what is
-    zero may be rounding.
-    """
-    scene, path = unit(name)
-    solution = evaluate(scene)
-    assert validate_fmu(str(path)) == []
-    for kind, ahead in (("ModelExchange", 0), ("CoSimulation", 1)):
-        found = simulated(path, solution, kind, ahead=ahead)
-        for told in outputs(path):
-            own = told.replace("/", ":")
-            expected = solution.series[own]
-            gap = np.abs(found[told] - expected)[ahead:].max()
-            assert gap <= WITHIN * np.abs(expected).max() + ALLOWED * solution.errors[own], told
-
-
-CHANGES = {
-    "slider_crank": {"r": 0.08, "m3": 0.4},
-    "robot": {"shin": 0.29, "mass": 2.0},
-    "windy": {"gust": 9.0},
-}
-
-
-@pytest.mark.parametrize("kind", ["ModelExchange", "CoSimulation"])
-@pytest.mark.parametrize("name", CHANGES)
-def test_parameters_change_between_runs(unit, name, kind):
-    scene, path = unit(name)
-    solution = evaluate(scene, parameters=CHANGES[name])
-    late = kind == "CoSimulation"
-    found = simulated(path, solution, kind, ahead=int(late), start=CHANGES[name])
-    assert_alike(found, solution, outputs(path), slice(int(late), None))
-
-
-@pytest.mark.parametrize("name", CHANGES)
-def test_parameters_change_during_a_run(unit, name):
-    """Loops and angles go on from where they are."""
-    scene, path = unit(name)
-    before, after = evaluate(scene), evaluate(scene, parameters=CHANGES[name])
-    late = np.arange(before.t.size) >= before.t.size // 2
-    defaults = {key: p["value"] for key, p in before.description["parameters"].items()}
-    tuned = {key: np.where(late, value, defaults[key]) for key, value in CHANGES[name].items()}
-    found = simulated(path, before, **tuned)
-    for solution, rows in ((before, ~late), (after, late)):
-        assert_alike(found, solution, outputs(path), rows)
-    assert (
-        np.abs(
-            after.series["effort:" + drive(scene)] - before.series["effort:" + drive(scene)]
-        ).max()
-        > 0
-    )
-
-
-def drive(scene):
-    return next(iter(scene.motion))
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("name", "how", "within"),
-    [("robot", {"newton": 4}, 1e-12), ("slider_crank", {"table": 1e-9}, 1e-7)],
-)
-def test_the_other_rungs(unit, name, how, within):
-    scene, path = unit(name, **how)
-    solution = evaluate(scene)
-    assert_alike(simulated(path, solution), solution, outputs(path), within=within)
-
-
-def test_single_precision_keeps_phases(unit):
-    """After 10^5 turns a single holds an angle to 0.06 rad: the rest comes from the importer's
-    double.
-    """
-    scene, path = unit("slider_crank", precision="single")
-    solution = evaluate(scene)
-    turned = signals(solution)
-    turned["motion/O"] += math.tau * 1e5
-    step = float(solution.t[1] - solution.t[0])
-    found = fmpy.simulate_fmu(
-        str(path), fmi_type="ModelExchange", stop_time=0.08, output_interval=step, input=turned
-    )
-    for name in ("effort/O", "reaction/guide/fy", "motion/guide"):
-        expected = solution.series[name.replace("/", ":")]
-        assert np.abs(found[name] - expected).max() < 2e-5 * np.abs(expected).max(), name
 
 
 @pytest.fixture
@@ -222,230 +76,100 @@ def instances(tmp_path):
         instance.fmu.freeInstance()
 
 
-def test_a_bad_parameter_is_an_error_that_names_it(unit, instances):
-    it = instances(unit("slider_crank")[1]).begin()
-    (effort,) = it.get("effort/O")
-    for value in (-0.1, math.nan, math.inf):
-        refusing(fmi2.fmi2Error, it.set, r=value)
-        status, category, message = it.log.pop()
-        assert (status, category) == (fmi2.fmi2Error, "logStatusError")
-        assert message.startswith(
-            f"r = {value:.9g}: a parameter is not finite, or out of its range"
-        )
-    assert it.get("effort/O", "r") == [effort, 0.1]
-    assert not it.log
+def variables(path, causality):
+    described = fmpy.read_model_description(str(path))
+    return [v.name for v in described.modelVariables if v.causality == causality]
 
 
-def test_parameters_that_make_a_part_impossible_are_an_error(unit, instances):
-    """They have no limits of their own there."""
-    it = instances(unit("free")[1]).begin()
-    (effort,) = it.get("effort/O")
-    it.set(m2=-0.1)
-    for _ in range(2):
-        refusing(fmi2.fmi2Error, it.get, "effort/O")
-    assert [message for _, _, message in it.log] == [
-        (
-            "t = 0 s: a parameter is not finite, or out of its range, or gives a link no length"
-            " or a negative mass"
-        )
-    ]
-    it.set(m2=0.1)
-    assert it.get("effort/O") == [effort]
-    it.fmu.reset()
-    refusing(fmi2.fmi2Error, it.begin, m2=-0.1)
+def assert_alike(found, solution, names, rows=slice(None)):
+    """What is zero may be rounding."""
+    assert names
+    for name in names:
+        own = name.replace("/", ":")
+        expected = solution.series[own]
+        assert found[name].shape == expected.shape
+        gap = np.abs(found[name] - expected)[rows].max()
+        allowed = WITHIN * np.abs(expected).max() + 30 * solution.errors.get(own, 0.0)
+        assert gap <= allowed, f"{name}: {gap:.3g} of {np.abs(expected).max():.3g}"
 
 
-def test_an_instant_without_a_result_is_discarded_and_says_why(unit, instances):
-    it = instances(unit("slider_crank")[1]).begin(l=0.05)
-    (effort,) = it.get("effort/O")
-    it.set(motion__O=1.5)
-    for _ in range(2):
-        refusing(fmi2.fmi2Discard, it.get, "effort/O")
-    assert it.log == [
-        (
-            fmi2.fmi2Discard,
-            "logStatusDiscard",
-            "t = 0 s: a loop cannot be closed: its links do not reach",
-        )
-    ]
-    it.set(motion__O=math.nan)
-    refusing(fmi2.fmi2Discard, it.get, "effort/O")
-    assert it.log.pop()[2] == "t = 0 s: an input is not finite"
-    it.set(motion__O=0.0)
-    assert it.get("effort/O") == [effort]
+def poses(scene, solution, ahead):
+    """The motion of all that is driven, that of a pose that is given too."""
+    program, p = derive(scene), list(scene.mechanism.values().values())
+    late = [*solution.t[ahead:], *solution.t[:ahead]]
+    orders = [program.motion(t, p) for t in late]
+    return {
+        f"motion/{name}{end}": np.array([float(order[k][i]) for order in orders])
+        for i, name in enumerate(program.driven)
+        for k, end in enumerate(("", "_rate", "_acceleration"))
+    }
 
 
-def test_discards_may_be_left_unlogged(unit, instances):
-    it = instances(unit("slider_crank")[1]).begin(l=0.05, motion__O=1.5)
-    it.fmu.setDebugLogging(False, ["logStatusDiscard"])
-    refusing(fmi2.fmi2Discard, it.get, "effort/O")
-    assert not it.log
-    refusing(fmi2.fmi2Error, it.set, l=-1.0)
-    assert len(it.log) == 1
-    refusing(fmi2.fmi2Error, it.fmu.setDebugLogging, True, ["logEvents"])
-
-
-def test_a_lost_loop_leaves_the_others_where_they_were(unit, instances):
-    it = instances(unit("robot")[1]).begin()
-    before = it.get("motion/knee0", "effort/drive0")
-    (start,) = it.get("motion/drive0")
-    it.set(motion__drive0=start + 3.0)
-    refusing(fmi2.fmi2Discard, it.get, "motion/knee0")
-    it.set(motion__drive0=start)
-    np.testing.assert_allclose(it.get("motion/knee0", "effort/drive0"), before, rtol=1e-12)
-
-
-def test_instances_know_nothing_of_each_other(unit, instances):
-    scene, path = unit("robot")
-    solution = evaluate(scene)
-    one, other = instances(path), instances(path, "CoSimulation")
-    one.begin()
-    other.begin(mass=3.0)
-    heavy = evaluate(scene, parameters={"mass": 3.0})
-    for i in (0, 20, 40, 60):
-        for it, expected in ((one, solution), (other, heavy)):
-            it.set(**motion_at(solution, i))
-            for name in ("motion/foot1", "effort/drive0"):
-                values = expected.series[name.replace("/", ":")]
-                assert it.get(name) == pytest.approx([values[i]], abs=WITHIN * np.abs(values).max())
-
-
-def motion_at(solution, i):
-    """The motion of drives at an instant."""
-    drives = [name for name in solution.series if name.startswith(("motion:O", "motion:drive"))]
-    return {name.replace(":", "__"): float(solution.series[name][i]) for name in drives}
-
-
-def test_a_state_is_kept_and_taken_back(unit, instances):
-    """Whole turns and loops included."""
-    it = instances(unit("slider_crank")[1]).begin()
-    for angle in np.arange(0.0, 20.0, 0.5):
-        it.set(motion__O=float(angle))
-        kept_values = it.get("motion/A", "effort/O", "r")
-    assert kept_values[0] < -math.tau
-    state = it.fmu.getFMUstate()
-    for angle in np.arange(20.0, 0.0, -0.5):
-        it.set(motion__O=float(angle), r=0.09)
-        it.get("motion/A")
-    it.fmu.setFMUstate(state)
-    assert it.get("motion/A", "effort/O", "r") == kept_values
-    it.fmu.freeFMUstate(state)
-    it.fmu.reset()
-    it.begin()
-    assert it.get("motion/A", "r") == [0.0, 0.1]
-
-
-def test_every_initialization_begins_anew(unit, instances):
-    """What is asked for while inputs are being set leaves no turns behind."""
-    it = instances(unit("slider_crank")[1])
-    it.fmu.setupExperiment()
-    it.fmu.enterInitializationMode()
-    for angle in np.arange(0.0, 9.0, 0.5):
-        it.set(motion__O=float(angle))
-        assert abs(it.get("motion/A")[0]) <= math.pi
-    it.fmu.exitInitializationMode()
-    assert abs(it.get("motion/A")[0]) <= math.pi
-
-
-def test_inputs_that_are_set_after_a_step_count_at_once(unit, instances):
-    scene, path = unit("windy")
-    solution = evaluate(scene)
-    it = instances(path, "CoSimulation").begin(0.3)
-    peak = np.abs(solution.series["effort:O"]).max()
-    for i in range(1, 20):
-        it.fmu.doStep(float(solution.t[i - 1]), float(solution.t[i] - solution.t[i - 1]))
-        table = signals(solution)
-        it.set(
-            **{
-                name.replace("/", "__"): float(table[name][i])
-                for name in ("motion/O", "motion/O_rate", "motion/O_acceleration")
-            }
-        )
-        assert it.get("effort/O", "time") == pytest.approx(
-            [solution.series["effort:O"][i], solution.t[i]], abs=WITHIN * peak
-        )
-    assert it.fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime) == pytest.approx(
-        solution.t[19], abs=1e-15
-    )
-
-
-def test_a_step_without_a_result_is_discarded_and_the_time_stays(unit, instances):
-    it = instances(unit("windy")[1], "CoSimulation").begin(0.3)
-    it.fmu.doStep(0.3, 0.1)
-    it.set(motion__O=math.inf)
-    refusing(fmi2.fmi2Discard, it.fmu.doStep, 0.4, 0.1)
-    assert it.log.pop()[2] == "t = 0.5 s: an input is not finite"
-    assert it.get("time") == [0.4]
-    assert it.fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime) == 0.4
-    assert not it.fmu.getBooleanStatus(fmi2.fmi2Terminated)
-
-
-def test_calls_out_of_order_and_what_is_not_there_are_errors(unit, instances):
-    it = instances(unit("slider_crank")[1])
-    refusing(fmi2.fmi2Error, it.fmu.newDiscreteStates)
-    refusing(fmi2.fmi2Error, it.fmu.exitInitializationMode)
-    it.begin()
-    refusing(fmi2.fmi2Error, it.fmu.enterInitializationMode)
-    assert [message for _, _, message in it.log] == [
-        "fmi2NewDiscreteStates is called out of order",
-        "fmi2ExitInitializationMode is called out of order",
-        "fmi2EnterInitializationMode is called out of order",
-    ]
-    refusing(fmi2.fmi2Error, it.fmu.getReal, [len(it.of)])
-    refusing(fmi2.fmi2Error, it.fmu.setReal, [it.of["effort/O"]], [1.0])
-    refusing(fmi2.fmi2Error, it.fmu.getInteger, [0])
-    refusing(fmi2.fmi2Error, it.fmu.setString, [0], [""])
-    it.fmu.terminate()
-    refusing(fmi2.fmi2Error, it.set, motion__O=0.1)
-
-
-def test_a_unit_of_another_description_is_not_made(unit, tmp_path):
-    """With a logger of its own: FMPy's usual one is that of whichever unit was made last, which may
-    be gone.
+@pytest.mark.sampled(13)
+@pytest.mark.parametrize("kind", ["ModelExchange", "CoSimulation"])
+@pytest.mark.parametrize("name", SCENES)
+def test_it_is_valid_and_gives_the_numbers_of_the_api(unit, name, kind):
+    """With the defaults and with other parameters. What FMPy reads after a step is of the inputs
+    that it set before: they are given one step early.
     """
-    path = unit("slider_crank")[1]
-    callbacks = fmi2.fmi2CallbackFunctions()
-    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(fmi2.printLogMessage)
-    callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmi2.calloc)
-    callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmi2.free)
-    fmpy.extract(str(path), str(tmp_path))
-    fmu = fmi2.FMU2Model(
-        guid="{other}",
-        unzipDirectory=str(tmp_path),
-        modelIdentifier="slider_crank",
-        instanceName="it",
-    )
-    with pytest.raises(Exception, match="instantiate"):
-        fmu.instantiate(callbacks=callbacks)
+    scene, path = unit(name)
+    assert validate_fmu(str(path)) == []
+    ahead = int(kind == "CoSimulation")
+    for changes in [{}, *([CHANGES[name]] if name in CHANGES else [])]:
+        solution = evaluate(scene, parameters=changes)
+        given = poses(scene, solution, ahead) if name == "excavator" else {}
+        found = simulated(path, solution, kind, ahead=ahead, start=changes, **given)
+        assert_alike(found, solution, variables(path, "output"), slice(ahead, None))
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_parameters_change_during_a_run(unit, name):
+    """Loops and angles go on from where they are."""
+    scene, path = unit(name)
+    before, after = evaluate(scene), evaluate(scene, parameters=CHANGES[name])
+    late = np.arange(before.t.size) >= before.t.size // 2
+    defaults = scene.mechanism.values()
+    tuned = {key: np.where(late, value, defaults[key]) for key, value in CHANGES[name].items()}
+    found = simulated(path, before, **tuned)
+    for solution, rows in ((before, ~late), (after, late)):
+        assert_alike(found, solution, variables(path, "output"), rows)
+
+
+def test_single_precision_keeps_phases(unit):
+    """After 10^5 turns a single holds an angle to 0.06 rad: the rest comes from the importer's
+    double.
+    """
+    scene, path = unit("slider_crank", precision="single")
+    solution = evaluate(scene)
+    turned = signals(solution)
+    turned["motion/O"] += math.tau * 1e5
+    span = {"stop_time": 0.08, "output_interval": float(solution.t[1] - solution.t[0])}
+    found = fmpy.simulate_fmu(str(path), fmi_type="ModelExchange", input=turned, **span)
+    for name in ("effort/O", "reaction/guide/fy", "motion/guide"):
+        expected = solution.series[name.replace("/", ":")]
+        assert np.abs(found[name] - expected).max() < 2e-5 * np.abs(expected).max(), name
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "windy", "free"])
 def test_the_motion_is_inside_by_time(unit, name):
     scene, path = unit(name, fmu="time")
-    solution = evaluate(scene)
-    described = fmpy.read_model_description(str(path))
-    assert [v.name for v in described.modelVariables if v.causality == "input"] == []
+    solution, names = evaluate(scene), variables(path, "output")
+    assert variables(path, "input") == []
+    span = {"start_time": solution.t[0], "stop_time": solution.t[-1]}
+    step = solution.t[1] - solution.t[0]
     found = fmpy.simulate_fmu(
-        str(path),
-        start_time=solution.t[0],
-        stop_time=solution.t[-1],
-        output_interval=solution.t[1] - solution.t[0],
-        fmi_type="ModelExchange",
-        output=outputs(path),
+        str(path), **span, output_interval=step, fmi_type="ModelExchange", output=names
     )
-    assert found["time"].shape == solution.t.shape
-    assert_alike(found, solution, outputs(path))
+    assert_alike(found, solution, names)
 
 
 def test_the_motion_is_inside_by_the_angle_of_a_crank(unit, tmp_path):
     """Rates and accelerations follow from the angle alone, of turns before and after the scene's
-    too.
+    too; a coordinate that turns back says no time.
     """
     scene, path = unit("slider_crank", fmu="O")
-    described = fmpy.read_model_description(str(path))
-    given = [v.name for v in described.modelVariables if v.causality == "input"]
-    assert given == ["motion/O"]
-    names = [name for name in outputs(path) if name.startswith(("effort", "reaction"))]
+    assert variables(path, "input") == ["motion/O"]
+    names = [n for n in variables(path, "output") if n.startswith(("effort", "reaction"))]
     for span in ((0.0, 0.08), (-0.3, -0.1), (1.0, 1.1)):
         solution = evaluate(scene, wanted=["all"], t=(*span, 41))
         table = np.zeros(solution.t.size, [("time", float), ("motion/O", float)])
@@ -455,6 +179,9 @@ def test_the_motion_is_inside_by_the_angle_of_a_crank(unit, tmp_path):
             str(path), **steps, input=table, fmi_type="ModelExchange", output=names
         )
         assert_alike(found, solution, names)
+    for by, says in (("turn", "this coordinate stops or"), ("twist", "unknown coordinate 'twist'")):
+        with pytest.raises(errors.LagrangeCasadiError, match=says):
+            export(load_case("arm6").scene, tmp_path / "a", fmu=by, wanted=["effort"])
 
 
 @pytest.mark.parametrize(
@@ -480,9 +207,194 @@ def test_a_script_compares_a_unit_with_its_golden_vectors(unit, name, by, tmp_pa
         assert done.returncode == count
 
 
-def test_a_coordinate_that_turns_back_says_no_time(tmp_path):
-    scene = load_case("arm6").scene
-    with pytest.raises(errors.DeclarationError, match="'turn': this coordinate stops or"):
-        export(scene, tmp_path / "a", fmu="turn", wanted=["effort"])
-    with pytest.raises(errors.UnknownNameError, match="unknown coordinate 'twist'; valid: time"):
-        export(scene, tmp_path / "a", fmu="twist", wanted=["effort"])
+def test_a_bad_parameter_is_an_error_that_names_it(unit, instances):
+    """That is out of its range, or makes a part impossible; the value before stays."""
+    it = instances(unit("slider_crank")[1]).begin()
+    (effort,) = it.get("effort/O")
+    for value in (-0.1, math.nan, math.inf):
+        refusing(fmi2.fmi2Error, it.set, r=value)
+        status, category, message = it.log.pop()
+        assert (status, category) == (fmi2.fmi2Error, "logStatusError")
+        assert message.startswith(f"r = {value:.9g}: a parameter is not finite, or out of its")
+    assert it.get("effort/O", "r") == [effort, 0.1]
+    free = instances(unit("free")[1]).begin(m2=0.2)
+    free.set(m2=-0.1)
+    refusing(fmi2.fmi2Error, free.get, "effort/O")
+    assert free.log.pop()[2].endswith("or gives a link no length or a negative mass")
+
+
+def test_an_instant_without_a_result_is_discarded_and_says_why(unit, instances):
+    it = instances(unit("slider_crank")[1]).begin(l=0.05)
+    (effort,) = it.get("effort/O")
+    for angle, says in (
+        (1.5, "a loop cannot be closed: its links do not reach"),
+        (math.nan, "an input is not finite"),
+    ):
+        it.set(motion__O=angle)
+        refusing(fmi2.fmi2Discard, it.get, "effort/O")
+        assert it.log.pop() == (fmi2.fmi2Discard, "logStatusDiscard", f"t = 0 s: {says}")
+    it.set(motion__O=0.0)
+    assert it.get("effort/O") == [effort]
+    stepped = instances(unit("windy")[1], "CoSimulation").begin(0.3)
+    stepped.fmu.doStep(0.3, 0.1)
+    stepped.set(motion__O=math.inf)
+    refusing(fmi2.fmi2Discard, stepped.fmu.doStep, 0.4, 0.1)
+    assert stepped.get("time") == [0.4]
+    assert stepped.fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime) == 0.4
+
+
+def test_a_state_is_kept_and_taken_back(unit, instances):
+    """Whole turns and loops included; another instance knows nothing of it."""
+    path = unit("slider_crank")[1]
+    it, other = instances(path).begin(), instances(path).begin()
+    for angle in np.arange(0.0, 20.0, 0.5):
+        it.set(motion__O=float(angle))
+        kept = it.get("motion/A", "effort/O", "r")
+    assert kept[0] < -math.tau
+    state = it.fmu.getFMUstate()
+    for angle in np.arange(20.0, 0.0, -0.5):
+        it.set(motion__O=float(angle), r=0.09)
+        it.get("motion/A")
+    it.fmu.setFMUstate(state)
+    assert it.get("motion/A", "effort/O", "r") == kept
+    assert other.get("motion/A", "r") == [0.0, 0.1]
+    it.fmu.freeFMUstate(state)
+    it.fmu.reset()
+    it.begin()
+    assert it.get("motion/A", "r") == [0.0, 0.1]
+
+
+def test_calls_out_of_order_and_what_is_not_there_are_errors(unit, instances):
+    it = instances(unit("slider_crank")[1])
+    for call, name in (
+        (it.fmu.newDiscreteStates, "NewDiscreteStates"),
+        (it.fmu.exitInitializationMode, "ExitInitializationMode"),
+    ):
+        refusing(fmi2.fmi2Error, call)
+        assert it.log.pop()[2] == f"fmi2{name} is called out of order"
+    it.begin()
+    refusing(fmi2.fmi2Error, it.fmu.enterInitializationMode)
+    refusing(fmi2.fmi2Error, it.fmu.getReal, [len(it.of)])
+    refusing(fmi2.fmi2Error, it.fmu.setReal, [it.of["effort/O"]], [1.0])
+    refusing(fmi2.fmi2Error, it.fmu.getInteger, [0])
+    refusing(fmi2.fmi2Error, it.fmu.setString, [0], [""])
+    it.fmu.terminate()
+    refusing(fmi2.fmi2Error, it.set, motion__O=0.1)
+
+
+@pytest.mark.parametrize("name", ["robot", "windy"])
+def test_nothing_depends_on_more_than_is_said(unit, instances, name):
+    """And every dependency is felt by some instant, but for those that only the structure has."""
+    it = instances(unit(name)[1]).begin(0.3)
+    names = variables(unit(name)[1], "output")
+    unknown = it.description.initialUnknowns
+    said = {u.variable.name: {v.name for v in u.dependencies} for u in unknown}
+    felt, before = {key: set() for key in names}, it.get(*names)
+    for v in it.description.modelVariables:
+        if v.causality in ("parameter", "input"):
+            (value,) = it.get(v.name)
+            it.set(**{v.name: value + 1e-3})
+            changed = it.get(*names)
+            it.set(**{v.name: value})
+            for key, old, new in zip(names, before, changed, strict=True):
+                if abs(new - old) > 1e-9 * abs(old):
+                    felt[key].add(v.name)
+                if v.name not in said[key]:
+                    assert new == pytest.approx(old, rel=1e-12, abs=1e-12), (key, v.name)
+    claimed = sum(len(said[key] - {"time"}) for key in names)
+    assert claimed <= 1.25 * sum(map(len, felt.values()))
+
+
+def test_names_units_and_limits(unit):
+    """As in a file of results, or as they were declared; no clock and no path."""
+    scene, path = unit("windy")
+    solution = evaluate(scene)
+    with zipfile.ZipFile(path) as archive:
+        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+        page = archive.read("documentation/index.html").decode()
+        for entry in archive.infolist():
+            assert entry.date_time == (1980, 1, 1, 0, 0, 0)
+            assert b"/tmp/" not in archive.read(entry)
+    assert root.get("generationDateAndTime") is None
+    told = {v.get("name"): v for v in root.iter("ScalarVariable")}
+    assert {name.replace("/", ":") for name in told} == {*solution.series, "gust", "time"}
+    for name, variable in told.items():
+        assert name == "time" or f"<code>{name}</code>" in page
+        if name not in ("gust", "time"):
+            assert variable.find("Real").get("unit") == solution.unit(name.replace("/", ":"))
+            given = "input" if name.startswith("motion/O") else "output"
+            assert variable.get("causality") == given
+    gust = {"unit": "N", "min": "0.0", "max": "100.0", "start": "4.0"}
+    assert told["gust"].find("Real").attrib == gust
+    for name in ("O", "O_rate", "O_acceleration"):
+        start = float(told[f"motion/{name}"].find("Real").get("start"))
+        assert start == pytest.approx(solution.series[f"motion:{name}"][0], rel=1e-15)
+    units = {one.get("name"): one for one in root.iter("Unit")}
+    assert units["N m"].find("BaseUnit").attrib == {"kg": "1", "m": "2", "s": "-2"}
+    experiment = {"startTime": "0.3", "stopTime": "1.3", "stepSize": "0.01"}
+    assert root.find("DefaultExperiment").attrib == experiment
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize(
+    ("name", "how"),
+    [("robot", {}), ("windy", {"precision": "single"}), ("free", {"table": 1e-6})],
+)
+def test_the_sources_compile_elsewhere(unit, name, how, compiler, tmp_path):
+    if not present(compiler):
+        pytest.skip(f"{compiler} is not installed")
+    with zipfile.ZipFile(unit(name, **how)[1]) as archive:
+        archive.extractall(tmp_path)
+    sources = tmp_path / "sources"
+    root = ElementTree.parse(tmp_path / "modelDescription.xml")
+    listed = {file.get("name") for file in root.iter("File")}
+    assert listed == {path.name for path in sources.glob("*.c")}
+    own = [f"-DFMI2_FUNCTION_PREFIX={name}_", "-c", f"{name}_fmi2.c", "-o", "unit.o"]
+    for words in (["-shared", *sorted(listed), "-o", "unit.so", "-lm"], own):
+        subprocess.run([compiler, *PEDANTIC, "-O1", *words], cwd=sources, check=True)
+    assert f"{name}_fmi2GetReal".encode() in (sources / "unit.o").read_bytes()
+
+
+def test_the_folder_knows_its_unit(tmp_path):
+    """Which has the same bytes every time."""
+    scene, out = slider_crank(), tmp_path / "out"
+    path, made = out / "slider_crank.fmu", []
+    for _ in range(2):
+        export(scene, out, fmu=True)
+        made.append(path.read_bytes())
+    assert made[0] == made[1]
+    path.write_bytes(made[0] + b" ")
+    with pytest.raises(errors.PathError, match=r"'slider_crank\.fmu' was changed since"):
+        export(scene, out, fmu=True)
+    export(scene, out, fmu=True, force=True)
+    export(scene, out)
+    assert not path.exists(), "a unit of an earlier export would be taken for one of this"
+    path.write_bytes(b"mine")
+    with pytest.raises(errors.PathError, match="no file of an export"):
+        export(scene, out, fmu=True, force=True)
+    assert path.read_bytes() == b"mine"
+
+
+BUILDS = (
+    'test "$1" = --version && exit 0; while [ $# -gt 0 ]; do [ "$1" = -o ] && out=$2; shift; done; '
+)
+OTHER = "echo 'const char* fmi2GetVersion(void) {{ return \"3.0\"; }}' | {cc} -shared -fPIC"
+OTHER += " -xc - -o $out"
+
+
+@pytest.mark.parametrize("builds", ["echo nothing > $out", OTHER])
+def test_a_binary_that_does_not_load_is_not_shipped(here, tmp_path_factory, monkeypatch, builds):
+    script = BUILDS + builds.format(cc=shutil.which("cc"))
+    fake_compiler(tmp_path_factory.mktemp("fake"), monkeypatch, script)
+    with pytest.raises(errors.CompilerError, match=r"built by .*fake-cc does not load: "):
+        export(slider_crank(), here / "out", fmu=True, wanted=["effort"])
+    assert not list(here.iterdir())
+
+
+def test_what_is_missing_is_said_before_anything_is_written(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "fmpy", None)
+    with pytest.raises(errors.LagrangeCasadiError, match="needs FMPy; install it with"):
+        export(slider_crank(), tmp_path / "out", fmu=True)
+    assert main(["export", str(CASES / "arm"), "--out", str(tmp_path / "out"), "--fmu"]) == 2
+    assert not list(tmp_path.iterdir())

@@ -7,103 +7,14 @@ import subprocess
 
 import numpy as np
 import pytest
-from compiled import HEADER, SCENES, built, columns, filled
-from internals import DTYPES, PRECISIONS, ROUNDING, EvaluationMethod, backends, library, run
-from mechanisms import slider_crank
+from compiled import HEADER
+from internals import PRECISIONS
 
-from lagrange_casadi import codegen, derive, evaluate
+from lagrange_casadi import codegen
 
 pytestmark = pytest.mark.usefixtures("released")
 
 both = pytest.mark.parametrize("precision", PRECISIONS)
-
-
-@pytest.mark.sampled(29)
-@both
-@pytest.mark.parametrize("name", SCENES)
-def test_packs_agree_with_scalar_c(name, precision):
-    scene, ulp = SCENES[name](), 2 * ROUNDING[precision]
-    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 157)
-    p = np.array(list(scene.mechanism.values().values()))
-    packs, scalar = (
-        columns(program, t, language, precision=precision) for language in ("c++", "c")
-    )
-    kinds = [
-        (column.split(":")[0], column.split(":")[-1] if column.count(":") > 1 else "")
-        for column in program.names
-    ]
-    for kind in set(kinds):
-        rows = [i for i, other in enumerate(kinds) if other == kind]
-        # A gap is rounding, of lengths.
-        size = program.extent(p) if kind[0] == "_gap" else np.max(np.abs(scalar[rows]))
-        assert np.max(np.abs(packs[rows] - scalar[rows])) <= 64 * ulp * size
-
-
-@both
-@pytest.mark.sampled(13)
-@pytest.mark.parametrize("name", SCENES)
-def test_a_tail_of_any_length_has_the_same_bits(name, precision):
-    scene = SCENES[name]()
-    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 80)
-    library = built(program, "c++", precision=precision)
-    whole = filled(library, program, t, precision=precision)
-    for n in (*range(1, 19), 63, 64, 65, 72, 79):
-        assert np.array_equal(filled(library, program, t[:n], precision=precision), whole[:, :n])
-
-
-@pytest.mark.sampled(7)
-@both
-@pytest.mark.parametrize("language", ["c", "c++"])
-@pytest.mark.parametrize("name", ["effort_alone", "iterated"])
-def test_the_bytes_do_not_depend_on_the_threads(name, language, precision, monkeypatch):
-    scene = SCENES[name]()
-    program, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 40_001)
-    one = columns(program, t, language, precision=precision)
-    monkeypatch.setattr(library, "_WORTH_A_THREAD", 0)
-    for threads in (2, 3, 5):
-        assert (
-            columns(program, t, language, threads, precision=precision).tobytes() == one.tobytes()
-        )
-
-
-@both
-@pytest.mark.parametrize("language", ["c", "c++"])
-def test_columns_that_go_past_the_caches_have_the_same_bits(language, precision):
-    """Rows that begin with a line of the cache are streamed where they are large; what lies between
-    them stays.
-    """
-    program, real = derive(slider_crank()), DTYPES[precision]
-    n = (5 << 20) // (len(program.columns) * np.dtype(real).itemsize) + 13
-    library, t = built(program, language, precision=precision), np.linspace(0, 0.08, n)
-    lines = backends.rows(len(program.columns), n + 100, real)
-    lines[...] = np.nan
-    streamed = filled(library, program, t, precision=precision, out=lines[:, :n])
-    plain = filled(
-        library, program, t, precision=precision, out=backends.rows(len(lines), n + 1, real)[:, 1:]
-    )
-    assert streamed.tobytes() == plain.tobytes()
-    assert np.isnan(lines[:, n:]).all()
-
-
-@both
-def test_a_tail_that_cannot_be_closed_is_found_in_its_pack(precision):
-    """Instants beyond the reach of the links have a status; their neighbours in the pack have their
-    numbers.
-    """
-    program, t = derive(slider_crank()), np.linspace(0, 0.08, 21)
-    p = np.array([0.1, 0.1 * np.sin(1.2), 0.1, 0.1, 0.1])
-    table, _ = run(program, t, p, EvaluationMethod("lanes", precision))
-    out, status = table.out, table.status
-    reach = np.abs(np.sin(out[program.names.index("motion:O")])) < np.sin(1.2)
-    assert 0 < reach.sum() < t.size
-    assert np.array_equal(status == 0, reach)
-    assert np.isfinite(out[:, reach]).all()
-
-
-def test_the_backend_is_named():
-    solution = evaluate(slider_crank(), backend="lanes")
-    assert solution.provenance.backend == "lanes"
-    assert "-march=native" in solution.provenance.flags
 
 
 PROGRAM = r"""

@@ -205,30 +205,3 @@ def test_nothing_along_a_loaded_link_is_beyond_what_the_law_finds(table):
             assert abs(abs(law.extreme(force)[1][0]) - abs(found[2, 0])) <= 1e-12 * size, force
             there = np.stack([law.at(force, places.T, side)[0] for side in ("tip", "base")])
             assert np.abs(there - found[:, 0]).min(axis=0).max() <= 1e-12 * size, force
-
-
-def test_curves_keep_their_places_where_the_shear_turns_at_the_base(tmp_path):
-    """But for rounding, which must not tell which zero of the shear comes first."""
-    generator, laws = np.random.default_rng(3), []
-    for _ in range(LINKS):
-        bent = {
-            f"f{axis}{k}": np.array([x])
-            for axis in "yz"
-            for k, x in ((0, -0.2), (1, 1e-15 * generator.normal()), (2, 1.0))
-        }
-        coefficients = {name: np.zeros(1) for name in SPACE.law} | bent
-        laws.append(SectionLaw(0.7, NumericDensity((0.0, 1.0), ((1.3,),)), coefficients))
-    (tmp_path / "curves.c").write_text(program(laws))
-    result = cc(["cc", "-std=c99", "-Wno-unused-function"], tmp_path, "curves.c")
-    assert result.returncode == 0, result.stderr
-    told = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=True).stdout
-    for law, line in zip(laws, told.splitlines(), strict=True):
-        own = np.array([values for force in SPACE.forces for values in law.curves(force)[1][0]])
-        assert (
-            np.abs(np.array(line.split(), float)[: own.size] - own).max()
-            <= 1e-13 * np.abs(own).max()
-        )
-
-
-def test_planar_links_need_none_of_it():
-    assert turning([Along(tuple(range(7)), (), (0.0, 1.0), 1)]) == ""

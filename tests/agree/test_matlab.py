@@ -9,15 +9,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from internals import ALLOWED, ROUNDING, export
 
-from lagrange_casadi import evaluate
-from lagrange_casadi.case import load_case
+from lagrange_casadi import evaluate, export, load_case
 
 ABSENT = [tool for tool in ("octave-cli", "mkoctfile", "gcc") if shutil.which(tool) is None]
 pytestmark = pytest.mark.skipif(bool(ABSENT), reason=f"there is no {', '.join(ABSENT)}")
 
 XI = (0.0, 0.3, 1.0)
+ALLOWED = 16.0
+"""Estimates of the error within which other compilers and libraries are."""
+
+ROUNDING = {"double": 2.0**-53, "single": 2.0**-24}
 METHODS = {
     ("slider_crank", "double"): {},
     ("slider_crank", "single"): {"precision": "single"},
@@ -127,16 +129,6 @@ def test_every_output_over_a_cycle(name, method, built):
             ), (link.name, force)
 
 
-@pytest.mark.sampled(9)
-@pytest.mark.parametrize(("name", "method"), METHODS)
-def test_the_example_runs(name, method, built):
-    folder, agreed, _ = built(name, method)
-    lines = octave("mex_example", folder).splitlines()
-    assert lines[0].split()[:2] == ["time", "[s]"]
-    assert len(lines) == 14 + bool(agreed.links) + bool(agreed.settings)
-    assert np.isfinite([[float(word) for word in line.split()] for line in lines[1:14]]).all()
-
-
 def test_parameters_change_what_they_should(built):
     """As the API has it; and what is not named has its default."""
     folder, _, scene = built("slider_crank", "double")
@@ -170,39 +162,6 @@ def test_single_precision_keeps_the_digits_of_a_coordinate(built):
     )
     effort = shown(octave(f"{script}show('o', slider_crank_mex(i));", folder))["o", "effort_O"]
     np.testing.assert_allclose(effort[1], effort[0], rtol=3e-6)
-
-
-def test_what_fails_at_an_instant_is_told_there(built):
-    folder, agreed, _ = built("quick_return", "double")
-    joint = next(m.name for m in agreed.inputs)
-    script = (
-        f"{SHOW}i = quick_return_mex('motion', [0 0.1 0.2]); i.{joint}(2) = NaN; o ="
-        " quick_return_mex(i); show('o', o);\n"
-    )
-    script += (
-        "printf('said %s\\n', quick_return_mex('message', o.status(2))); printf('class %s\\n',"
-        " class(o.status));"
-    )
-    *rows, said, kind = octave(script, folder).splitlines()
-    found = shown("\n".join(rows))
-    assert found["o", "status"].tolist() == [0, 3, 0]
-    assert (said, kind) == ("said an input is not finite", "class int32")
-    for member in agreed.outputs:
-        assert np.isfinite(found["o", member.name]).tolist() == [True, False, True]
-
-
-def test_no_instants_are_no_mistake(built):
-    folder, _, _ = built("slider_crank", "double")
-    script = (
-        "o = slider_crank_mex(slider_crank_mex('motion', [])); f = slider_crank_mex('section', o,"
-        " 'rod', [0 1]);\n"
-    )
-    assert octave(f"{script}printf('%d ', size(o.effort_O), size(f.shear))", folder).split() == [
-        "0",
-        "0",
-        "0",
-        "2",
-    ]
 
 
 GIVEN = """
@@ -275,20 +234,6 @@ def test_misuse_is_told_in_one_sentence(built):
         assert line.startswith("slider_crank_mex: "), (call, line)
         assert expected.lower() in line.lower(), (call, line)
         assert line.endswith("."), (call, line)
-
-
-def test_a_mechanism_without_links_or_parameters_says_so(built):
-    folder, agreed, _ = built("andrews_squeezer", "single")
-    assert not agreed.links
-    assert not agreed.settings
-    call = "andrews_squeezer_mex"
-    script = f"i = {call}('motion', 0); o = {call}(i, struct());\n"
-    for wrong in (f"{call}('section', o, 'K1', 0)", f"{call}(i, struct('m1', 1))"):
-        script += f"try\n {wrong};\ncatch e\n disp(e.message);\nend\n"
-    assert octave(script, folder).splitlines() == [
-        "andrews_squeezer_mex: there is no link with sections.",
-        "andrews_squeezer_mex: parameters have no member 'm1'; valid: none.",
-    ]
 
 
 @pytest.mark.sampled(6)

@@ -1,5 +1,5 @@
-"""The search for peaks between instants, on signals of every kind: by CasADi's virtual machine, in
-C, and in both precisions.
+"""Peaks between instants, on signals and mechanisms of every kind, in C, by NumPy, and in both
+precisions: none is short of many more instants, and those that cannot be told are not told.
 """
 
 import math
@@ -7,37 +7,25 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from internals import (
-    Curves,
-    DesignEngine,
-    EvaluationMethod,
-    Kind,
-    Samples,
-    Status,
-    Watch,
-    peaks,
-    refine,
-)
-from internals import IntervalsListed as Listed
-from mechanisms import pendulum
+from internals import Curves, Samples, Status
+from mechanisms import crank_and_rod, pendulum
 
-from lagrange_casadi import codegen, evaluate, motion
+from lagrange_casadi import Mechanism, Scene, codegen, evaluate, prepare, refine
+from lagrange_casadi.motion import polynomial
 
 STEP = 0.04
 GRID = (0.0, 2.0, 51)
 NAME = "load:push:fx"
-METHODS = [(EvaluationMethod("lanes"), 1e-11), (EvaluationMethod("vm"), 1e-11)]
-OTHERS = [
-    (EvaluationMethod("c"), 1e-11),
-    *((EvaluationMethod(backend, "single"), 4e-6) for backend in ("lanes", "c")),
-]
+RUNGS = [({"backend": backend}, 1e-11) for backend in ("lanes", "vm", "c")]
+RUNGS += [({"backend": backend, "precision": "single"}, 4e-6) for backend in ("lanes", "c")]
 
 
 def signal(law, grid=GRID):
     """A scene of which one quantity is a function of time."""
-    return pendulum(motion.polynomial(0.0, 1.0), load=law, t=grid, wanted=["load:push"])
+    return pendulum(polynomial(0.0, 1.0), load=law, t=grid, wanted=["load:push"])
 
 
 def true(law, grid=GRID, places=()):
@@ -50,7 +38,7 @@ def true(law, grid=GRID, places=()):
     return np.nanmax(values[np.isfinite(values)])
 
 
-def searched(scene, methods=METHODS):
+def searched(scene, rungs=RUNGS[:2]):
     """What each way says of the one quantity: its tolerance, and its value, NaN where it is not
     told.
     """
@@ -58,14 +46,9 @@ def searched(scene, methods=METHODS):
     (peak,) = refine(scene, solution, [NAME])
     assert not abs(peak.value) < abs(solution.peak(NAME).value)
     yield 1e-11, peak.value
-    yield from by_designs(scene, methods)
-
-
-def by_designs(scene, methods=METHODS):
-    """What sweeps say of it."""
-    for method, tolerance in methods:
-        designs = DesignEngine.of(scene, method=method)
-        outcome = designs.evaluate(np.zeros((1, 0)))
+    for rung, tolerance in rungs:
+        designs = prepare(scene, **rung)
+        outcome = designs.designs([[]])
         value = outcome.value[0, designs.quantities.index(NAME)]
         assert (outcome.status[0] == Status.PEAK_NOT_TOLD) == math.isnan(value)
         yield tolerance, value
@@ -156,50 +139,21 @@ SIGNALS = {
 }
 
 
-def assert_found(name, methods):
-    law, places = SIGNALS[name]
-    largest = true(law, places=places)
-    for tolerance, value in searched(signal(law), methods):
-        assert abs(value) >= largest * (1 - tolerance)
-        assert abs(value) <= largest * (1 + max(1e-6, tolerance))
-
-
 @pytest.mark.sampled(21)
 @pytest.mark.parametrize("name", SIGNALS)
 def test_the_largest_is_found(name):
-    assert_found(name, METHODS)
-
-
-@pytest.mark.sampled(7)
-@pytest.mark.parametrize(
-    "name",
-    ["in the first interval", "a spike of a tenth of a step", "a kink", "a jump", "a plateau"],
-)
-def test_other_rungs_search_alike(name):
     """Singles come in other packs: a jump between the lanes of one must be seen too."""
-    assert_found(name, OTHERS)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("count", [211, 1500])
-def test_a_hundred_summits(count):
-    """All but as high as each other; of few instants each has at most two."""
-
-    def law(x):
-        return ca.sin(100 * math.pi * x) * (1 + 1e-3 * ca.sin(3.3 * x))
-
-    largest = true(law)
-    for tolerance, value in searched(signal(law, (0.0, 2.0, count))):
-        assert abs(value) == pytest.approx(largest, rel=max(1e-8, tolerance))
+    law, places = SIGNALS[name]
+    largest = true(law, places=places)
+    for tolerance, value in searched(signal(law), RUNGS):
         assert abs(value) >= largest * (1 - tolerance)
+        assert abs(value) <= largest * (1 + max(1e-6, tolerance))
 
 
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 8, 9])
 def test_few_instants(count):
-    """However few the instants are, the peak is that of all times between
-    the first and the last.
-    """
+    """The peak is that of all times between the first and the last instant."""
 
     def law(x):
         return ca.sin(3 * x) + 0.3 * ca.cos(8 * x)
@@ -208,134 +162,7 @@ def test_few_instants(count):
     largest = true(law, grid)
     for tolerance, value in searched(signal(law, grid)):
         assert abs(value) == pytest.approx(largest, rel=max(1e-8, tolerance))
-
-
-class Counted:
-    """A function of time, what of it is watched, and how often it was asked for."""
-
-    def __init__(self, law, watched=None):
-        self.law, self.watched, self.times = law, watched, 0
-
-    def at(self, t):
-        self.times += t.size
-        watched = np.zeros((0, t.size)) if self.watched is None else self.watched(t)[None]
-        return Samples(self.law(t)[None], np.full((1, t.size), np.nan), watched)
-
-
-@pytest.mark.parametrize(
-    "law", [np.exp, lambda x: np.exp(-x), lambda x: 1 - 0.3 * x, lambda x: np.sinh(x - 1.5)]
-)
-def test_what_goes_straight_on_to_an_end_needs_no_cuts(law):
-    """It is looked at in the end step, and believed."""
-    times = np.linspace(0.0, 2.0, 51)
-    source = Counted(law)
-    samples, source.times = source.at(times), 0
-    found = peaks(source, Curves((0,), (0,)), times, samples, np.zeros(50, bool))
-    assert abs(found.value[0]) == np.abs(samples.values).max()
-    assert source.times <= 1
-
-
-@pytest.mark.parametrize(
-    ("law", "kind", "at"),
-    [
-        (lambda x: 1 - np.abs(x - 1.013), Kind.SWITCH, 1.013),
-        (lambda x: x * (x < 1.0137), Kind.SWITCH, 1.0137),
-        (lambda x: np.fmod(x + 0.4, 1.0), Kind.STEP, 0.6),
-    ],
-)
-def test_a_known_kink_cuts_a_step_in_two(law, kind, at):
-    """What is watched tells where it is, and little is looked at around it."""
-    times = np.linspace(0.0, 2.0, 51)
-    watches = (Watch(kind, (at,) if kind is Kind.SWITCH else ()),)
-    source = Counted(law, lambda x: x if kind is Kind.SWITCH else x + 0.4)
-    samples, source.times = source.at(times), 0
-    found = peaks(source, Curves((0,), (0,), (), watches), times, samples, np.zeros(50, bool))
-    sides = law(np.array([at, np.nextafter(at, 0), np.nextafter(at, 3), 1.6 - 4e-16]))
-    assert found.value[0] == pytest.approx(sides.max(), rel=1e-12)
-    assert source.times <= 80
-
-
-def local(values, share):
-    """The local tops of values, all of them (down to the least) or those down to a share of the
-    largest.
-    """
-    around = np.pad(values, 1, constant_values=-np.inf)
-    tops = np.flatnonzero((values >= around[:-2]) & (values > around[2:]))
-    return tops[values[tops] >= (values.min() if share is None else share * values.max())]
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize("way", [0, 1, -1])
-@pytest.mark.parametrize("language", ["c", "c++", None])
-def test_local_peaks_are_listed(language, way):
-    """Those of sizes, or of values one way, smooth, at a kink, and at the ends; of what is constant
-    the first instant.
-    """
-    find = peaks if language is None else codegen.load_search(codegen.find_compiler(language)).peaks
-    laws = (
-        lambda x: np.sin(9 * x) + 0.4 * x,
-        lambda x: -3 + 0.2 * np.sin(7 * x + 1),
-        lambda x: 1 - np.abs(x - 1.013) + 0.05 * np.sin(11 * x),
-        lambda x: 2.5 + 0 * x,
-    )
-
-    class Source:
-        def at(self, t):
-            values = np.array([law(t) for law in laws])
-            return Samples(values, np.full(values.shape, np.nan), t[None])
-
-    times, fine = np.linspace(0.0, 2.0, 51), np.linspace(0.0, 2.0, 200_001)
-    curves = Curves((0, 1, 2, 3), (0, 1, 2, 3), (), (Watch(Kind.SWITCH, (1.013,)),))
-    found = find(
-        Source(),
-        curves,
-        times,
-        Source().at(times),
-        np.zeros(50, bool),
-        Listed(0.51 if way else 0.3, way),
-    )
-    plain = find(Source(), curves, times, Source().at(times), np.zeros(50, bool))
-    assert found.resolved.all()
-    for k, law in enumerate(laws):
-        sized = way * law(fine) if way else np.abs(law(fine))
-        rows = found.tops[k]
-        rows = rows[~np.isnan(rows[:, 0])]
-        assert (rows[:, 0] == 0).all()
-        rows = rows[np.argsort(rows[:, 1])]
-        np.testing.assert_allclose(rows[:, 3], law(rows[:, 1]), rtol=0, atol=1e-14)
-        assert found.value[k] == pytest.approx(
-            rows[np.argmax(way * rows[:, 3] if way else np.abs(rows[:, 3])), 3], rel=1e-13
-        )
-        if not way:
-            assert found.value[k] == pytest.approx(plain.value[k], rel=1e-13)
-        if k == 3:
-            assert rows[0, 1] == 0.0
-            continue
-        expected = local(sized, None if way else 0.3)
-        low, high = sized.min(), sized.max()
-        # At the very least of the values a peak may be listed or not.
-        expected = expected[sized[expected] > low + 0.05 * (high - low)] if way else expected
-        rows = rows[way * rows[:, 3] > low + 0.05 * (high - low)] if way else rows
-        np.testing.assert_allclose(rows[:, 1], fine[expected], atol=2e-5)
-        np.testing.assert_allclose(rows[:, 3], law(fine[expected]), rtol=1e-8)
-
-
-def test_what_touches_zero_by_rounding_opens_few_steps():
-    """As the slope of a cam's lift where its cycle begins anew: its sign is that of its rounding,
-    at all times that are near.
-    """
-
-    def slope(t):
-        return (t - 1.0137) ** 3 + 6e-30 * np.sin(1e16 * t)
-
-    source = Counted(lambda t: np.cos(t) + np.abs(slope(t)), slope)
-    times = np.linspace(0.0, 2.0, 51)
-    watches = (Watch(Kind.SWITCH, (0.0, 1e-30)),)
-    found = peaks(
-        source, Curves((0,), (0,), (), watches), times, source.at(times), np.zeros(50, bool)
-    )
-    assert found.resolved.all()
-    assert source.times < 1000
+        assert abs(value) >= largest * (1 - tolerance)
 
 
 @pytest.mark.sampled(5)
@@ -363,12 +190,12 @@ def test_what_takes_too_many_times_is_not_told():
     """Of 200 000 teeth each is a little larger than the one before; that of the instants must not
     pass for the peak.
     """
-    law = lambda x: ca.fmod(x, 1e-5) * (1 + x)  # noqa: E731
-    scene = signal(law)
+    scene = signal(lambda x: ca.fmod(x, 1e-5) * (1 + x))
     (peak,) = refine(scene, evaluate(scene, backend="vm", certificate=False), [NAME])
     assert math.isnan(peak.value)
     assert 0 < peak.least < 3e-5
-    assert all(math.isnan(value) for _, value in by_designs(scene))
+    found = prepare(scene, backend="lanes").designs([[]])
+    assert found.status.tolist() == [Status.PEAK_NOT_TOLD]
 
 
 @settings(max_examples=8, deadline=None)
@@ -398,3 +225,160 @@ def test_any_signal(waves, hump, count):
     largest = true(law, places=[place])
     assert abs(peak.value) >= largest * (1 - 1e-11) - 1e-13
     assert abs(peak.value) <= largest * (1 + 1e-3) + 1e-13
+
+
+@pytest.mark.sampled(9)
+@pytest.mark.parametrize("matter", DENSITIES)
+def test_any_density_and_any_station(matter):
+    """Along the link exact: nothing on a fine grid is larger, and the peaks are those of the
+    section law; packs find the same.
+    """
+    scene = crank_and_rod(DENSITIES[matter](), loads=loaded)
+    grid, wanted = (0.3, 2.3, 61), ["section:b", "reaction:A"]
+    p = np.array([[0.2], [0.1], [0.35], [0.0], [0.31], [0.36]])
+    designs, packs = (
+        prepare(scene, wanted=wanted, t=grid, backend=backend) for backend in ("c", "lanes")
+    )
+    outcome, other = designs.designs(p), packs.designs(p)
+    assert outcome.status.tolist() == other.status.tolist() == [0] * 5 + [Status.IMPOSSIBLE]
+    np.testing.assert_allclose(other.value, outcome.value, rtol=1e-11, atol=1e-11)
+    for row in range(5):
+        assert_refined(scene, designs, outcome, row, p[row])
+        found = peaks_of(designs, outcome, row)
+        for name in ("section:b:axial", "section:b:shear", "section:b:bending"):
+            value, t, xi = found[name]
+            there = alone(scene, p[row], (t, t, 1), xi=(0, 1, 4001))
+            assert abs(value) >= np.abs(there.array(name)).max() * (1 - 1e-13)
+            law = there.section("b").law
+            sides = [
+                float(law.at(name.split(":")[2], np.array([[xi]]), side)[0, 0])
+                for side in ("tip", "base")
+            ]
+            assert min(abs(value - side) for side in sides) <= 1e-11 * abs(value)
+
+
+@pytest.mark.parametrize("backend", ["lanes", "vm"])
+def test_of_peaks_as_large_the_first_is_told(backend):
+    """Else rounding would choose between tops and troughs of many turns, and their sign; and
+    what is zero throughout peaks at the first instant.
+    """
+    scene = pendulum(polynomial(0.1, 3.0), t=(0, 6.0, 91), wanted=["effort", "motion"])
+    designs = prepare(scene, backend=backend)
+    found = peaks_of(designs, designs.designs([[]]), 0)
+    value, t, _ = found["effort:pin"]
+    assert value == pytest.approx(-1.2 * 9.81 * 0.25, rel=1e-12)
+    assert t == pytest.approx((math.pi - 0.1) / 3.0, abs=1e-6)
+    assert found["motion:pin_acceleration"][:2] == (0.0, 0.0)
+
+
+def test_what_an_evaluation_raises_ends_the_search():
+    """An interrupt too: it passes through C as a number."""
+
+    class Broken:
+        def at(self, t):
+            raise KeyboardInterrupt
+
+    t = np.linspace(0.0, 1.0, 21)
+    samples = Samples(np.sin(9 * t)[None], np.full((1, 21), np.nan), np.zeros((0, 21)))
+    search = codegen.load_search(codegen.find_compiler("c"))
+    with pytest.raises(KeyboardInterrupt):
+        search.peaks(Broken(), Curves((0,), (0,)), t, samples, np.ones(20, bool))
+
+
+def crank_rocker(lengths, ground, start, count):
+    """One turn of a crank, from an angle on."""
+    m = Mechanism("crank_rocker")
+    a, b, c = (
+        m.link(name, length=l, mass=mass)
+        for name, l, mass in zip("abc", lengths, (0.5, 0.7, 0.6), strict=True)
+    )
+    m.revolute("O", m.ground, a)
+    m.revolute("P", m.ground.at(ground, 0), c)
+    m.revolute("Q", a.tip, b)
+    m.revolute("R", b.tip, c.tip)
+    return Scene(
+        m,
+        {"O": polynomial(start, 8.0)},
+        posture={"a": start, "b": 0.3, "c": 2.5},
+        t=(0, math.tau / 8, count),
+    )
+
+
+def slider_crank(ratio, count):
+    """One turn of a crank, so long beside its rod, from beside a dead centre's quarter on."""
+    m = Mechanism("slider_crank")
+    crank = m.link("crank", length=ratio * 0.3, mass=0.5)
+    rod = m.link("rod", length=0.3, mass=0.7)
+    slide = m.point_mass("slide", 1.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, slide)
+    m.prismatic("guide", m.ground, slide, axis=(1, 0))
+    return Scene(
+        m,
+        {"O": polynomial(0.3, 10.0)},
+        posture={"crank": 0.3, "rod": -0.1},
+        t=(0, math.tau / 10, count),
+    )
+
+
+def folding(shortage, start):
+    """A crank-rocker that all but folds: its ground is shorter by so much than that at which it
+    would.
+    """
+    return lambda count: crank_rocker(
+        (0.1, 0.3, 0.25), (0.3 + 0.25 - 0.1) * (1 - shortage), start, count
+    )
+
+
+MACHINES = {
+    "begins near folding": folding(1e-2, math.pi),
+    "begins beside folding": folding(1e-3, math.pi - 0.03),
+    "all but folds": folding(1e-4, 0.0),
+    "a rod all but as long as the crank": lambda count: slider_crank(0.9999, count),
+    "one yet shorter": lambda count: slider_crank(0.99997, count),
+}
+
+
+def drawn(seed):
+    """A crank-rocker that may all but fold."""
+    random = np.random.default_rng(seed)
+    others = np.sort(random.uniform(0.3, 0.5, 3))
+    reach = (others[0] + others[1] - others[2]) * (1 - 10 ** random.uniform(-4, -1))
+    lengths = (min(random.uniform(0.1, 0.3), reach), *random.permutation(others))
+    start = random.uniform(0, math.tau)
+    return lambda count: crank_rocker(lengths[:3], lengths[3], start, count)
+
+
+MACHINES |= {f"drawn {seed}": drawn(seed) for seed in range(4)}
+
+
+@pytest.mark.sampled(9)
+@pytest.mark.parametrize("name", MACHINES)
+def test_no_peak_is_short_where_instants_say_little(name):
+    """Against 100 001 instants; of conditions near a dead centre `refine` and C sum in other
+    orders.
+    """
+    dense = evaluate(MACHINES[name](100_001), certificate=False)
+    for count in (51, 101):
+        scene = MACHINES[name](count)
+        wanted = ["effort", "reaction", "section"]
+        solution = evaluate(scene, wanted=wanted, certificate=False)
+        names = [each for each in solution.names() if each.startswith(tuple(wanted))]
+        scale = {}
+        for each in names:
+            size, unit = abs(dense.peak(each).value), dense.unit(each)
+            scale[unit] = max(scale.get(unit, 0.0), size)
+        found = {peak.name: abs(peak.value) for peak in refine(scene, solution, names)}
+        for backend in ("lanes", "vm"):
+            designs = prepare(scene, wanted=wanted, backend=backend)
+            outcome = designs.designs([[]])
+            assert outcome.status.tolist() == [0]
+            by_designs = peaks_of(designs, outcome, 0)
+            for each in names:
+                least, size = abs(dense.peak(each).value), scale[dense.unit(each)]
+                least -= 1e-11 * (least + size)
+                value = abs(by_designs[each][0])
+                assert found[each] >= least, each
+                assert value >= least, (each, backend)
+                assert abs(value - found[each]) <= 1e-9 * size, (each, backend)

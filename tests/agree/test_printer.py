@@ -11,13 +11,11 @@ import casadi as ca
 import numpy as np
 import pytest
 from compiled import cc
-from hypothesis import given
-from hypothesis import strategies as st
-from internals import cell, entries, literal, print_functions, printer, written_out
+from internals import cell, entries, print_functions, printer
 from outside import doubled
 
 from lagrange_casadi import codegen
-from lagrange_casadi.errors import DeclarationError, SizeError
+from lagrange_casadi.errors import DeclarationError
 
 pytestmark = pytest.mark.quick
 
@@ -85,31 +83,6 @@ def test_all_operations_have_the_bits_of_the_virtual_machine(tmp_path):
         assert np.array_equal(np.signbit(found[some]), np.signbit(expected[some])), values
 
 
-def test_truths_are_comparisons():
-    a, b = (ca.SX.sym(name) for name in "ab")
-    truths = ca.vertcat(
-        ca.logic_not(a), ca.logic_and(a, b), ca.logic_or(a, b), ca.if_else(a, b, 2.0)
-    )
-    text = print_functions(
-        {"truths": ca.Function("truths", [a, b], [truths])}, "double", prefix="table"
-    )
-    assert re.search(r"!a\d|a\d+ (&&|\|\|) a\d", text) is None
-
-
-@pytest.mark.parametrize("length", [1, 7, 50])
-def test_a_function_in_parts_is_the_same(length, tmp_path, monkeypatch):
-    monkeypatch.setattr(printer, "LENGTH", length)
-    a, b = ca.SX.sym("a"), ca.SX.sym("b")
-    rows = [a, b]
-    for k in range(40):
-        rows.append(ca.sin(rows[-1]) * rows[k // 2] + 0.1 * k)
-    function = ca.Function("f", [a, b], [ca.vertcat(*rows[::3])])
-    text = print_functions({"made": function}, "double", prefix="table")
-    assert text.count("made_") > 1
-    call = compiled(function, tmp_path)
-    assert np.array_equal(call(0.3, -2.0), function(0.3, -2.0).full().ravel())
-
-
 def looked_up(points):
     x, y = ca.SX.sym("x"), ca.SX.sym("y")
     breaks, numbers = np.linspace(-1.0, 2.0, points), np.sin(np.arange(points - 1) * 1.7)
@@ -133,24 +106,6 @@ def test_tables_have_the_numbers_of_the_virtual_machine(points, tmp_path):
             assert np.array_equal(call(x, y), function(x, y).full().ravel())
 
 
-@given(st.floats(width=64))
-def test_a_number_is_read_as_the_same_number(value):
-    text = literal("double")(value)
-    read = float(text.replace("INFINITY", "inf").replace("NAN", "nan"))
-    assert (read == value and math.copysign(1.0, read) == math.copysign(1.0, value)) or math.isnan(
-        value
-    )
-
-
-def test_numbers_too_large_for_singles_are_refused():
-    x = ca.SX.sym("x")
-    with pytest.raises(
-        SizeError,
-        match=r"the number 1e\+39 is too large for single precision, which ends at 3\.4e\+38",
-    ):
-        print_functions({"f": ca.Function("f", [x], [1e39 * x])}, "single", prefix="table")
-
-
 @pytest.mark.parametrize(
     ("make", "says"),
     [(ca.erfinv, "it takes OP_ERFINV"), (lambda x: doubled(x), "it calls another one")],
@@ -162,23 +117,3 @@ def test_what_has_no_c_is_named(make, says):
         DeclarationError, match=rf"function 'f' has no C: {says}; evaluate with backend 'vm'"
     ):
         print_functions({"f": ca.Function("f", [x], [make(x)])}, "double", prefix="table")
-
-
-def test_functions_that_are_called_are_written_out():
-    """Of several inputs and outputs, within each other; callbacks and tables remain."""
-    x, y = ca.SX.sym("x", 2), ca.SX.sym("y")
-    inner = ca.Function("inner", [x, y], [x[0] * y, ca.sin(x[1])], {"never_inline": True})
-    outer = ca.Function(
-        "outer", [y], [inner(ca.vertcat(y, 2 * y), y + 1)[1] * y], {"never_inline": True}
-    )
-    a = ca.SX.sym("a")
-    for expression, left in (
-        (outer(a) + inner(ca.vertcat(a, 1), 3.0)[0], 0),
-        (outer(doubled(a)), 1),
-        (outer(entries((1.0, 2.0, 4.0), cell((0.0, 1.0, 2.0, 3.0), a, ends=True))), 2),
-    ):
-        written = written_out(expression)
-        function = ca.Function("f", [a], [written])
-        assert len(function.find_functions(0)) == left
-        for value in (0.3, 1.7):
-            assert float(function(value)) == float(ca.Function("g", [a], [expression])(value))

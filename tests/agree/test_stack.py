@@ -6,10 +6,9 @@ import shutil
 from pathlib import Path
 
 import pytest
-from internals import export, stack
 from stack_usage import deepest
 
-from lagrange_casadi.case import load_case
+from lagrange_casadi import export, load_case
 
 CASES = sorted(path.parent.name for path in (Path(__file__).parents[2] / "cases").glob("*/case.py"))
 ITERATED = ("beam_pump", "bricard", "cardan_shaft", "delta", "five_link_suspension", "rrr3")
@@ -80,27 +79,3 @@ def test_the_statement_is_of_use(tmp_path):
         < 2 * deepest(("gcc", "-O0", *FLAGS), source, tmp_path)
         < 16_384
     )
-
-
-SOURCE = """
-static double inner(const double* x, int n) {
-  double row[4][3], sum = 0;
-  return sum + row[0][0] + x[n];
-}
-static double aside(double x) { return x; }
-double outer(const double* x) {
-  double y[10], z;
-  z = inner(x, 3) + aside(x[0]);
-  return z + y[0];
-}
-"""
-
-
-def test_the_bound_is_the_deepest_path():
-    frame = stack.deepest("double leaf(double x) {\n  return x;\n}\n")
-    assert stack.deepest(SOURCE) == 2 * frame + 8 * (11 + 13)
-
-
-def test_recursion_has_no_bound():
-    with pytest.raises(ValueError, match="inner calls itself"):
-        stack.deepest(SOURCE.replace("x[n]", "outer(x)"))

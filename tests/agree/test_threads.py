@@ -1,32 +1,19 @@
 """Many threads of a program at once give, to the byte, what one gives."""
 
-import io
 import json
 import os
 import subprocess
 import sys
-import tempfile
 import threading
-import warnings
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
-import casadi as ca
 import numpy as np
-import packer
 import pytest
 import spying
 import threaded
 from internals import (
-    Film,
-    Peaks,
-    TimePlot,
-    draw_sweep,
     in_threads,
-    pictures,
-    write_animation,
 )
-from matplotlib import rcParams
 from places import FOLDERS, TESTS
 from stepped import pinned
 
@@ -35,7 +22,6 @@ from lagrange_casadi import (
     Scene,
     evaluate,
     export,
-    holding,
     optimise,
     prepare,
     refine,
@@ -69,30 +55,6 @@ def test_many_threads_give_the_bytes_of_one(tmp_path):
     assert len(set(alone)) > threaded.JOBS / 2
     assert jobs(threaded.JOBS, tmp_path / "cold", tmp_path / "another") == alone
     assert jobs(threaded.JOBS, tmp_path / "warm", tmp_path / "another") == alone
-
-
-def test_no_switch_of_casadis_is_turned(fresh_cache):
-    """Whoever builds expressions meanwhile, of whatever else, has them simplified as ever."""
-    x, lost, over = ca.SX.sym("x"), [], threading.Event()
-
-    def build():
-        while not over.is_set():
-            if (
-                not ca.GlobalOptions.getSimplificationOnTheFly()
-                or not ca.is_equal((x + 1) - 1, x)
-                or not (0 * x).is_zero()
-            ):
-                lost.append(1)
-
-    building = threading.Thread(target=build)
-    building.start()
-    try:
-        for precision in ("single", "double"):
-            evaluate(threaded.press(0), precision=precision, certificate=False)
-    finally:
-        over.set()
-        building.join()
-    assert not lost
 
 
 @pytest.mark.parametrize("times", [100, pytest.param(5000, marks=pytest.mark.long)])
@@ -178,15 +140,6 @@ def test_expressions_are_made_by_one_thread_at_a_time(way, fresh_cache, monkeypa
     assert not unlocked
 
 
-def test_at_rest_too(fresh_cache, monkeypatch):
-    with symbolic:
-        scene = packer.scene(0.21)
-    unlocked = spying.spied(monkeypatch)
-    solution = evaluate(scene)
-    assert holding(scene, solution)
-    assert not unlocked
-
-
 RODS = [0.5 + 0.01 * k for k in range(6)]
 THREADS = 4
 TIMES = np.linspace(0.0, 1.0, 9)
@@ -268,16 +221,6 @@ def test_a_prepared_scene_answers_each_thread(asked, way):
     )
 
 
-def test_a_thread_finds_its_own_answer_again():
-    f = prepare(threaded.SHARED, t=(0.0, 1.0, 9), wanted=["effort"])
-    own = f(l=0.5)["effort:O"]
-    kept = own.copy()
-    with ThreadPoolExecutor(1) as pool:
-        other = pool.submit(lambda: f(l=0.6)["effort:O"]).result()
-    assert not np.shares_memory(own, other)
-    np.testing.assert_array_equal(own, kept)
-
-
 @pytest.mark.parametrize(
     "method",
     [{}, {"backend": "vm"}, {"newton": 3}, {"precision": "single"}, {"table": 32}],
@@ -295,65 +238,6 @@ def test_one_scene_is_evaluated_by_many_threads(method):
         )
 
     assert not hammered(asked, RODS[:3], 1)
-
-
-def test_many_threads_draw_the_pictures_of_one(tmp_path):
-    """And leave matplotlib, and what is warned of, as they were."""
-    plain = evaluate(threaded.SHARED, t=(0.0, 1.0, 9), wanted=["effort", "motion"])
-    swept = sweep(
-        threaded.SHARED,
-        {"l": (0.5, 0.6, 3)},
-        t=(0.0, 1.0, 9),
-        wanted=["effort"],
-        flags="-O0",
-        out=tmp_path / "x.h5",
-    )
-    spec, line = TimePlot("effort", ("effort:O",)), Peaks("line", ("peak:effort:O",), ("l",))
-    settings, filters = dict(rcParams), list(warnings.filters)
-
-    def drawn(kind):
-        file = io.BytesIO()
-        if kind == "svg":
-            pictures.save(spec.draw(plain), file, ".svg")
-        elif kind == "sweep":
-            with tempfile.TemporaryDirectory(dir=tmp_path) as folder:
-                return [path.read_bytes() for path, _ in draw_sweep(swept, [line], Path(folder))]
-        else:
-            write_animation(
-                plain,
-                path := tmp_path / f"{threading.get_ident()}.gif",
-                Film(width=80, rate=1.0, seconds=1.0),
-            )
-            return path.read_bytes()
-        return file.getvalue()
-
-    assert not hammered(drawn, ["svg", "sweep", "gif"], 1)
-    assert dict(rcParams) == settings
-    assert warnings.filters == filters
-
-
-def test_each_piece_of_shared_work_is_done_once_or_its_error_is_raised():
-    done, main = [], threading.get_ident()
-    for _ in range(50):
-        done.clear()
-        in_threads(lambda i: done.append((i, threading.get_ident())), range(100), 3)
-        assert sorted(i for i, _ in done) == list(range(100))
-    barrier, others = threading.Barrier(3, timeout=60), set()
-
-    def meet(_):
-        barrier.wait()
-        others.add(threading.get_ident())
-
-    in_threads(meet, range(3), 3)
-    assert len(others) == 3
-    assert main in others
-
-    def fail(i):
-        barrier.wait()
-        raise ValueError(i)
-
-    with pytest.raises(ValueError, match=r"[012]"):
-        in_threads(fail, range(300), 3)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork")
