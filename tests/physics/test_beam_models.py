@@ -1,7 +1,8 @@
 """Models of beams that load cases are written as, in CalculiX itself."""
 
+from __future__ import annotations
+
 import re
-import shutil
 import subprocess
 
 import numpy as np
@@ -19,22 +20,34 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.motion import harmonic, polynomial
 
-pytestmark = [
-    pytest.mark.usefixtures("interpreted"),
-    pytest.mark.skipif(not shutil.which("ccx"), reason="needs CalculiX"),
-]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 FORCES, MOMENTS = ("axial", "shear_y", "shear_z"), ("torsion", "bending_y", "bending_z")
+
+
 PLANAR = ("axial", "shear", "", "", "", "bending")
+
+
 STEEL = beams.material("S355")
+
+
 SPRING = 1e7
+
+
 SUPPORTS = [(node, k) for node, ks in (("BASE", (1, 2, 3)), ("TIP", (2, 3))) for k in ks]
 """Springs in place of the supports of a model: what they bear is their length, with all digits."""
 
+
 _, GAUSS = np.polynomial.legendre.leggauss(3)
+
+
 ROOT = np.sqrt(0.6)
+
+
 # The order of 27 points of an element: along x, then z downwards, then y.
 Y, Z, _ = (a.ravel() for a in np.meshgrid([-1, 0, 1], [1, 0, -1], [0, 0, 0], indexing="ij"))
+
+
 WEIGHTS = np.einsum("i,j,k->ijk", GAUSS, GAUSS, GAUSS).ravel() / 8
 
 

@@ -1,10 +1,13 @@
-"""Pins and bearings against textbooks, closed forms, and the reactions of a mechanism."""
+"""Pins and bearings against textbooks, closed forms and the reactions of a mechanism; shafts in
+two bearings and rods in two bushes against statics by hand.
+"""
+
+from __future__ import annotations
 
 import math
 
 import numpy as np
 import pytest
-from commands import command
 
 from lagrange_casadi import (
     Mechanism,
@@ -15,12 +18,16 @@ from lagrange_casadi import (
     evaluate,
     load,
     save,
-    sweep,
 )
-from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi.elements import two_bearings, two_bushes
+from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
+from lagrange_casadi.motion import harmonic, polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 STEEL = beams.material("C45+QT")
+
+
 SPEED = 40.0
 
 
@@ -108,11 +115,6 @@ def test_factors_follow_from_the_reaction(solution):
     assert found.not_evaluated == ()
 
 
-def test_a_file_tells_the_same_again(solution, tmp_path):
-    save(solution, tmp_path / "a.h5")
-    assert load(tmp_path / "a.h5").safety("O") == solution.safety("O")
-
-
 def test_in_space_the_force_along_the_pin_is_axial():
     m = SpatialMechanism("rotor")
     disc = m.link("disc", length=0.2, mass=2.0)
@@ -158,39 +160,182 @@ def test_parts_that_cannot_be(part, told):
         rotor(part())
 
 
-def test_of_each_kind_one():
-    with pytest.raises(DeclarationError, match="the joint already has a rolling part"):
-        rotor(bearings.Rolling(1e3, 1.0), bearings.Rolling(2e3, 1.0))
-
-
-def test_a_slide_has_no_pin():
-    m = Mechanism("m")
-    joint = m.prismatic("P", m.ground, m.point_mass("a", 1.0), axis=(1, 0))
-    with pytest.raises(DeclarationError, match="got a prismatic one"):
-        bearings.fit(m, joint, bearings.Rolling(1e3, 1.0))
-
-
-def test_a_sweep_tells_no_pins():
-    with pytest.raises(
-        DeclarationError, match="output 'safety:O': sweeps have no strength of pins and bearings"
-    ):
-        sweep(rotor(bearings.Rolling(1e3, 1.0)), {"r": [0.05]}, wanted=["safety:O"])
-
-
-CASE = """
-from lagrange_casadi import Mechanism, Scene, bearings
-from lagrange_casadi.motion import polynomial
-def scene():
+@pytest.fixture(scope="module")
+def turning():
     m = Mechanism("rotor")
     disc = m.link("disc", length=0.2, mass=2.0, centre=(0.05, 0.0), inertia=0.01)
-    bearings.fit(m, m.revolute("O", m.ground, disc), bearings.Rolling(1e3, hours=20.0))
-    return Scene(m, {"O": polynomial(0.0, 40.0)}, t=(0.0, 0.157, 21))
-"""
+    m.revolute("O", m.ground, disc)
+    return evaluate(Scene(m, {"O": polynomial(0.0, 100.0)}, t=(0, math.pi / 50, 201)))
 
 
-def test_run_tells_what_governs(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "case.py").write_text(CASE)
-    assert command("run case.py --no-figures --no-certificate --backend vm --want safety") == 0
-    assert "  O   " in (out := capsys.readouterr().out)
-    assert "life of bearing governs" in out
+@pytest.mark.quick
+def test_the_smallest_bearing_that_lives_long_enough(turning):
+    every = bearings.deep_groove()
+    best = bearings.select_bearing(turning, "O", every, hours=20e3, bore=0.015)
+    force = np.hypot(turning.reaction("O").fx, turning.reaction("O").fy)
+    cubic = (force[:-1] ** 3).mean() ** (1 / 3)
+
+    def lives(bearing):
+        long = bearings.rated_hours(bearing.dynamic, cubic, 100 * 60 / math.tau) >= 20e3
+        return long and bearing.static >= force.max()
+
+    assert lives(best)
+    assert best.bore >= 0.015
+    assert not any(lives(one) for one in every if one.bore >= 0.015 and one.outer < best.outer)
+    with pytest.raises(
+        NoDesignError, match="no bearing has a life of 1e\\+12 h; the strongest, '6320'"
+    ):
+        bearings.select_bearing(turning, "O", every, hours=1e12)
+    with pytest.raises(NoDesignError, match="no bearing has a bore of 200 mm or more"):
+        bearings.select_bearing(turning, "O", every, hours=1.0, bore=0.2)
+    with pytest.raises(UnknownNameError, match="unknown joint 'main'; valid: O"):
+        bearings.select_bearing(turning, "main", every, hours=1.0)
+    with pytest.raises(DeclarationError, match="select_bearing: bearings: expected at least one"):
+        bearings.select_bearing(turning, "O", [], hours=1.0)
+
+
+GRAVITY = 9.81
+
+
+def near(found, told, size):
+    """Compare with a number by hand, beside the largest force."""
+    assert np.abs(found - told).max() < 1e-11 * size
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("values", [{}, {"b": 0.31, "L": 0.55}])
+def test_a_shaft_with_a_pulley_out_of_balance(values):
+    """A pulley of 3 kg, its centre e off the axis, speeds up beyond the floating bearing; a belt
+    pulls, and a thrust acts. Moments about the fixed bearing give the load of the floating one.
+    """
+    m = SpatialMechanism("shaft")
+    b, length = m.parameter("b", 0.3, "m", low=0.1), m.parameter("L", 0.4, "m", low=0.2)
+    beam = beams.Beam(beams.round_bar(0.03), beams.material("C45+QT"))
+    shaft = m.link("shaft", length=length, beam=beam)
+    e, mass = 0.004, 3.0
+    pulley = m.link("pulley", length=0.05, mass=mass, centre=(0, e, 0), inertia=(6e-3, 3e-3, 3e-3))
+    m.weld("key", shaft.tip, pulley)
+    m.force("belt", pulley, y=500.0)
+    m.force("thrust", pulley, x=-80.0)
+    pair = two_bearings(m, "main", m.ground, shaft.at(0.05), shaft.at(b))
+    assert pair.coordinate == "main_fixed:turn_1"
+    speeding = {pair.coordinate: polynomial(0.3, 100.0, 400.0)}
+    parts = bearings.Rolling(2e4, hours=1e3), bearings.Rolling(3e4, hours=1e3)
+    for joint, part in zip((pair.fixed, pair.floating), parts, strict=True):
+        bearings.fit(m, joint, part)
+    solution = evaluate(Scene(m, speeding, t=(0, 0.1, 41)), parameters=values)
+    assert solution.certified
+    assert not solution.undetermined
+    at, far = values.get("b", 0.3), values.get("L", 0.4)
+    t, density = solution.t, 7850.0 * math.pi / 4 * 0.03**2
+    angle, rate, gain = 0.3 + 100 * t + 400 * t**2, 100.0 + 800.0 * t, 800.0
+    # What acts on shaft and pulley but for the bearings, less what accelerates them.
+    out_y = 500.0 - mass * e * (-(rate**2) * np.cos(angle) - gain * np.sin(angle))
+    out_z = -mass * GRAVITY - mass * e * (-(rate**2) * np.sin(angle) + gain * np.cos(angle))
+    weight = -density * far * GRAVITY
+    d = at - 0.05
+    second = (
+        -out_y * (far - 0.05) / d,
+        -(out_z * (far - 0.05) + weight * (far / 2 - 0.05)) / d,
+    )
+    first = (-out_y - second[0], -out_z - weight - second[1])
+    size = max(np.abs(x).max() for x in (*first, *second))
+    for name, (y, z) in {"main_fixed": first, "main_floating": second}.items():
+        near(solution.reaction(name).fy, y, size)
+        near(solution.reaction(name).fz, z, size)
+    near(solution.reaction("main_fixed").fx, 80.0, size)
+    near(solution.reaction("main_floating").fx, 0.0, size)
+    # Between the bearings the shaft bends as a beam on two supports does.
+    found = solution.section("shaft")
+    beyond = far - at
+    bent_y = out_y * beyond
+    bent_z = out_z * beyond - density * GRAVITY * beyond**2 / 2
+    told = np.hypot(bent_y, bent_z).max()
+    assert found.bending.max() <= told * (1 + 1e-12)
+    assert solution.peak("section:shaft:bending").value == pytest.approx(told, rel=1e-9)
+    # The floating bearing turns as the fixed one does.
+    weights = np.r_[0.5, np.ones(39), 0.5] * rate
+    cubic = (np.hypot(*second) ** 3 @ weights / weights.sum()) ** (1 / 3)
+    mean = float(weights.sum() / 40) * 60 / math.tau
+    hours = bearings.rated_hours(3e4, cubic, mean)
+    assert solution.safety("main_floating").against("life of bearing") == pytest.approx(
+        (hours / 1e3) ** (1 / 3), rel=1e-9
+    )
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("space", [False, True])
+@pytest.mark.parametrize("values", [{}, {"d": 0.25}])
+def test_a_rod_in_two_bushes(space, values, tmp_path):
+    """A rod of 4 kg slides to and fro in bushes that stand, a force at its tip: its weight and the
+    force move along between the bushes, whose loads follow by moments about the first.
+    """
+    m = (SpatialMechanism if space else Mechanism)("rod")
+    if space:
+        m.set_gravity(0.0, -GRAVITY, 0.0)
+    d = m.parameter("d", 0.2, "m", low=0.1)
+    rod = m.link("rod", length=0.8, mass=4.0)
+    first = (0.1, 0.05, 0.0)[: 3 if space else 2]
+    bushes = m.ground.at(*first), m.ground.at(first[0] + d, *first[1:])
+    pair = two_bushes(m, "guide", rod, *bushes)
+    m.force("tool", rod.tip, x=-70.0, y=-120.0)
+    bush = bearings.Plain(0.02, 0.03, pressure=5e6, speed=2.0)
+    for joint in (pair.first, pair.second):
+        bearings.fit(m, joint, bush)
+    sliding = {pair.coordinate: harmonic(0.25, 0.1, 9.0)}
+    solution = evaluate(Scene(m, sliding, t=(0, 1, 41)), parameters=values)
+    assert solution.certified
+    assert not solution.undetermined
+    place = solution.motion("guide_first").value
+    gap, weight = values.get("d", 0.2), 4.0 * GRAVITY
+    second = (weight * (0.4 - place) + 120.0 * (0.8 - place)) / gap
+    size = np.abs(second).max()
+    # The rod presses on the bushes.
+    near(solution.reaction("guide_second").fy, -second, size)
+    near(solution.reaction("guide_first").fy, second - weight - 120.0, size)
+    assert np.abs(solution.reaction("guide_first").fx).max() < 1e-11 * size
+    # The effort acts along the coordinate, which counts from the rod to the bush.
+    near(
+        solution.effort("guide_first"),
+        4.0 * solution.motion("guide_first").acceleration - 70.0,
+        size,
+    )
+    free = 0.8 - place - gap
+    told = 120.0 * free + weight / 0.8 * free**2 / 2
+    assert abs(solution.peak("section:rod:bending").value) == pytest.approx(told.max(), rel=1e-4)
+    for name, push in (("guide_first", second - weight - 120.0), ("guide_second", second)):
+        found = solution.safety(name)
+        assert found.against("pressure") == pytest.approx(5e6 * 6e-4 / np.abs(push).max(), rel=1e-9)
+        assert found.against("speed") == pytest.approx(
+            2.0 / np.abs(solution.motion("guide_first").rate).max(), rel=1e-9
+        )
+    save(solution, tmp_path / "rod.h5")
+    again = load(tmp_path / "rod.h5")
+    assert again.safety("guide_second") == solution.safety("guide_second")
+
+
+@pytest.mark.quick
+def test_what_cannot_be():
+    m = Mechanism("odd")
+    rod, other = m.link("rod", length=0.5, mass=1.0), m.link("other", length=0.5, mass=1.0)
+    with pytest.raises(
+        DeclarationError, match=r"bearings 'a': expected two places along the shaft"
+    ):
+        two_bearings(m, "a", m.ground, rod.at(0.1), rod.at(0.1))
+    with pytest.raises(DeclarationError, match=r"bearings 'a': .* on two bodies; expected apart="):
+        two_bearings(m, "a", m.ground, rod.at(0.1), other)
+    for apart in (-1, 0.0, m.parameter("span", -1.0, "m")):
+        with pytest.raises(DeclarationError, match=r"bearings 'a': apart must be positive, got"):
+            two_bearings(m, "a", m.ground, rod.at(0.1), other, apart=apart)
+    with pytest.raises(DeclarationError, match=r"bushes 'a': expected two places of one body"):
+        two_bushes(m, "a", rod, m.ground, other.tip)
+    with pytest.raises(DeclarationError, match=r"bushes 'a': both are at one place of 'ground'"):
+        two_bushes(m, "a", rod, m.ground, m.ground)
+    side = two_bearings(m, "c", m.ground, other, other.at(0.1))
+    with pytest.raises(DeclarationError, match="its shaft lies in the plane"):
+        bearings.fit(m, side.floating, bearings.Rolling(1e3, hours=1.0))
+    with pytest.raises(DeclarationError, match="a rod in a plane cannot turn"):
+        two_bushes(m, "a", rod, m.ground, m.ground.at(1, 0), turns=True)
+    pair = two_bushes(m, "b", rod, m.ground, m.ground.at(1, 0))
+    with pytest.raises(DeclarationError, match="got a prismatic one; it takes a plain bearing"):
+        bearings.fit(m, pair.first, bearings.Rolling(1e3, hours=1.0))

@@ -1,6 +1,8 @@
-"""Cylindrical cams: forces of closed forms, on bodies cut free; the groove that the roller leaves;
+"""Cylindrical cams: forces of closed forms on bodies cut free, the groove that the roller leaves,
 and what is refused.
 """
+
+from __future__ import annotations
 
 import math
 
@@ -8,7 +10,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
+from lagrange_casadi import Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import cylindrical_cam
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import dwell, move, moves, polynomial
@@ -314,19 +316,9 @@ def test_misuse_is_named(options, says):
         broken(**options)
 
 
-def test_planes_have_disc_cams():
-    m = Mechanism("flat")
-    drum, cart = m.link("drum", length=0.1, mass=1.0), m.point_mass("cart", 1.0)
-    main = m.revolute("main", m.ground, drum)
-    lead = m.prismatic("lead", m.ground, cart, axis=(1, 0))
-    with pytest.raises(
-        DeclarationError,
-        match="expected a revolute joint whose parent is the ground, in space, got 'main'",
-    ):
-        cylindrical_cam(m, "cam", main, lead, lambda x: 0.0 * x)
-
-
 ROLLER, WIDTH, YOUNG, POISSON = 0.01, 0.012, 180e9, 0.28
+
+
 HERTZ = {"roller": ROLLER, "width": WIDTH, "elastic": (YOUNG, POISSON)}
 
 
@@ -353,28 +345,6 @@ def test_the_pressure_of_hertz_on_the_flank_that_is_touched():
         flank = 1.0 / (np.sign(force) * curvature) + ROLLER
         radius = 1.0 / (1.0 / ROLLER - 1.0 / flank)
     assert solution.output("cam_hertz") == pytest.approx(pressed(force, radius), rel=1e-9)
-
-
-def test_the_bend_of_a_swinging_arms_groove_is_that_of_its_points():
-    """Across the roller, by three neighbours of the path in the drum's axes, as seen along the
-    roller's axis.
-    """
-    cam, scene = swinging()
-    count, values = 14400, [*scene.mechanism.values().values()]
-    path, rows = cam.groove(count=count), [cam.design.bend, *cam.design.normal]
-    told = ca.Function(
-        "told", [cam.design.angle, scene.mechanism.symbols], [ca.vertcat(*map(ca.SX, rows))]
-    )
-    for k in range(400, count, count // 12):
-        angle = math.tau * k / count
-        bend, *normal = told(angle, values).full().ravel()
-        before, here, after = (
-            rotation([("x", math.degrees(angle))]) @ path[(k + j) % count] for j in (-1, 0, 1)
-        )
-        way, change = (after - before) / 2, after - 2 * here + before
-        assert bend == pytest.approx(
-            change @ normal / (way[0] ** 2 + way[1] ** 2), rel=1e-4, abs=1e-3
-        )
 
 
 def test_a_groove_that_the_roller_would_cut_is_refused_by_name():

@@ -1,6 +1,8 @@
-"""Deflections of links: against closed forms of Euler and Bernoulli with Timoshenko's shear, fine
-sums, and a frame solver.
+"""Deflections of links, and of the tool that they carry: closed forms of Euler and Bernoulli with
+Timoshenko's shear, fine sums, and a frame solver.
 """
+
+from __future__ import annotations
 
 import math
 
@@ -8,17 +10,22 @@ import frames
 import numpy as np
 import pytest
 import strong
-from commands import command
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, tool_deflection
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 STEEL = beams.material("S235")
+
+
 E, G = STEEL.elasticity, STEEL.shear_modulus
+
+
 LENGTH = 2.0
+
+
 SHAPES = [
     beams.rectangle(0.05, 0.02),
     beams.i_section(0.1, 0.055, 0.004, 0.006),
@@ -108,18 +115,6 @@ def test_the_deepest_place_beside_the_middle():
     dense = found.grid("across", np.linspace(0, 1, 20001))[0]
     assert abs(found.peak().value) == pytest.approx(np.abs(dense).max(), rel=1e-9)
     assert abs(found.peak().value) >= np.abs(dense).max() * (1 - 1e-14)
-
-
-def test_a_tapered_link_by_fine_sums():
-    shape = beams.tapered(beams.rectangle(0.06, 0.02), beams.rectangle(0.02, 0.03))
-    found = cantilever(shape, y=-100.0).deflection("arm")
-    n = 400_000
-    s = (np.arange(n) + 0.5) / n
-    h, w = 0.06 - 0.04 * s, 0.02 + 0.01 * s
-    arm, ds = LENGTH * (1 - s), LENGTH / n
-    bent = np.sum(-100.0 * arm**2 / (E * w * h**3 / 12)) * ds
-    sheared = np.sum(-100.0 / (G * w * h * 10 * 1.3 / (12 + 11 * 0.3))) * ds
-    assert found.tip["across"] == pytest.approx(bent + sheared, rel=1e-9)
 
 
 def test_a_wedge_in_closed_form():
@@ -252,16 +247,6 @@ def test_a_rod_that_moves_by_fine_sums():
     np.testing.assert_allclose(found.at("across", places[:, None])[:, 0], values, rtol=1e-12)
 
 
-def test_the_command_line_tells_it(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    line = "run connecting_rod --want deflection:rod --over main=90deg:810deg:41"
-    assert command(f"{line} --no-figures --backend vm --no-certificate") == 0
-    said = capsys.readouterr().out
-    assert "deflection:rod" in said
-    assert "from the line between its ends" in said
-    assert "first bending frequency" in said
-
-
 def test_what_has_no_meaning_is_one_line():
     plain = cantilever(SHAPES[0], y=-1.0)
     with pytest.raises(UnknownNameError, match="unknown deflection 'bending'"):
@@ -298,3 +283,90 @@ def test_what_has_no_meaning_is_one_line():
         match="material 'paper' has no elasticity, which output 'deflection:bar' needs",
     ):
         Scene(mute, {}, wanted=["deflection:bar"], t=(0, 0, 1))
+
+
+STEEL_OF_TOOL = strong.STEEL
+
+
+def sections_of(m):
+    found = {}
+    for name, link in m.links.items():
+        p = link.beam.course.cells[0][0].properties()
+        found[name] = (
+            p,
+            link.beam.material.elasticity,
+            link.beam.material.shear_modulus,
+            link.beam.material.density * p.area,
+        )
+    return found
+
+
+def test_two_arms_on_a_line_by_hand():
+    """A load at the tip of two links without mass, their drives locked: what bends each, and how
+    the first turns the second.
+    """
+    m = Mechanism("arms")
+    light = STEEL_OF_TOOL.but(density=1e-9)
+    a, b, force = 0.5, 0.4, -60.0
+    upper = m.link("upper", length=a, beam=beams.Beam(beams.rectangle(0.03, 0.01), light))
+    fore = m.link("fore", length=b, beam=beams.Beam(beams.rectangle(0.02, 0.01), light))
+    m.revolute("shoulder", m.ground, upper)
+    m.revolute("elbow", upper.tip, fore)
+    m.force("load", fore.tip, y=force)
+    found = tool_deflection(
+        Scene(m, {"shoulder": polynomial(0.0), "elbow": polynomial(0.0)}, t=(0, 0, 1)), fore.tip
+    )
+    e, ga = (
+        STEEL_OF_TOOL.elasticity,
+        STEEL_OF_TOOL.shear_modulus * 0.01 * 10 * 1.3 / (12 + 11 * 0.3),
+    )
+    first, second = e * 0.01 * 0.03**3 / 12, e * 0.01 * 0.02**3 / 12
+    sag = force * (a**3 / 3 + a**2 * b / 2) / first + force * a / (0.03 * ga)
+    turn = force * (a**2 / 2 + a * b) / first
+    own = force * b**3 / (3 * second) + force * b / (0.02 * ga)
+    assert found.by_link["upper"][0][1] == pytest.approx(sag + turn * b, rel=1e-8)
+    assert found.by_link["fore"][0][1] == pytest.approx(own, rel=1e-8)
+    assert found.moved[0][1] == pytest.approx(sag + turn * b + own, rel=1e-8)
+
+
+def test_an_over_constrained_loop_in_space():
+    """A four-bar of pins in space at rest, loaded aside: a place of its coupler moves as a frame's
+    does.
+    """
+    m = SpatialMechanism("four_bar")
+    a = m.link("a", length=0.1, beam=beams.Beam(beams.rectangle(0.03, 0.012), STEEL_OF_TOOL))
+    b = m.link("b", length=0.3, beam=beams.Beam(beams.rectangle(0.02, 0.01), STEEL_OF_TOOL))
+    c = m.link("c", length=0.25, beam=beams.Beam(beams.tube(0.02, 0.003), STEEL_OF_TOOL))
+    axis = (0, 0, 1)
+    m.revolute("O", m.ground, a, axis=axis)
+    m.revolute("A", a.tip, b, axis=axis)
+    m.revolute("B", b.tip, c.tip, axis=axis)
+    m.revolute("C", m.ground.at(0.3, 0, 0), c, axis=axis)
+    m.force("side", b.at(0.15), x=20.0, y=-300.0, z=100.0)
+    scene = Scene(
+        m, {"O": polynomial(0.2)}, posture={"A": 0.5, "C": 1.5}, t=(0, 0, 1), elastic=True
+    )
+    found = tool_deflection(scene, b.at(0.15))
+    solution = evaluate(scene)
+    _, moved = frames.of_solution(
+        solution, 0, sections_of(m), [("b", 0.15, (20.0, -300.0, 100.0), (0, 0, 0))]
+    )
+    assert found.moved[0] == pytest.approx(moved["b", 0.15][:3], rel=1e-7)
+
+
+def test_a_tool_that_has_no_meaning_is_one_line():
+    scene = strong.press(beams.rectangle(0.012, 0.006))
+    with pytest.raises(
+        DeclarationError, match="tool_deflection: expected a point of the mechanism, got 'ram'"
+    ):
+        tool_deflection(scene, "ram")
+    with pytest.raises(
+        DeclarationError,
+        match="tool_deflection: the point is on 'ground', expected a moving body of 'press'",
+    ):
+        tool_deflection(scene, scene.mechanism.ground.at(0.0, 0.0))
+    m = Mechanism("bare")
+    bar = m.link("bar", length=1.0, mass=1.0)
+    m.revolute("O", m.ground, bar)
+    with pytest.raises(DeclarationError, match="tool_deflection: no link has a beam"):
+        tool_deflection(Scene(m, {"O": polynomial(0.0)}, t=(0, 0, 1)), bar.tip)

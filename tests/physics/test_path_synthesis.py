@@ -2,6 +2,8 @@
 Krishnamurty (1997) asked.
 """
 
+from __future__ import annotations
+
 import cmath
 import math
 
@@ -15,10 +17,15 @@ from lagrange_casadi.motion import polynomial
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 X = (0.5, 0.4, 0.3, 0.2, 0.1, 0.05, 0.02, 0.0, 0.0, 0.03, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.6)
+
+
 Y = (1.1, 1.1, 1.1, 1.0, 0.9, 0.75, 0.6, 0.5, 0.4, 0.3, 0.25, 0.2, 0.3, 0.4, 0.5, 0.7, 0.9, 1.0)
 """The points, 20 degrees of the crank apart."""
 
+
 PLACES = ("along", "aside", "x", "y", "x_rocker", "y_rocker", "start")
+
+
 BOUNDS = dict.fromkeys(("crank", "coupler", "rocker"), (0.05, 6.0)) | dict.fromkeys(
     PLACES, (-6.0, 6.0)
 )

@@ -1,10 +1,12 @@
 """Mechanisms with more equations than unknowns, and structures that do not move."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
 import pytest
-from internals import DesignEngine, EvaluationMethod, Status, check_sweep
+from internals import check_sweep
 from mechanisms import parallelogram
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sweep, tolerances
@@ -29,65 +31,12 @@ def test_reactions_that_are_not_unique_are_named():
     np.testing.assert_allclose(solution.effort("O"), torque, atol=1e-12)
 
 
-def test_single_precision_closes_what_is_too_many():
-    """Near no dead centre its last corrections are rounding, and not the slow convergence that they
-    look like.
-    """
-    exact, single = (
-        evaluate(parallelogram(), precision=precision) for precision in ("double", "single")
-    )
-    np.testing.assert_allclose(
-        single.effort("O"), exact.effort("O"), atol=1e-5 * np.max(np.abs(exact.effort("O")))
-    )
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize(
-    "scene", [parallelogram(), load_case("bricard").scene], ids=["plane", "space"]
-)
-def test_steps_that_are_counted_leave_equations_that_are_too_many_as_little_closed_as_others(scene):
-    """Two steps give what closed loops do; one is worth less, and says so.
-
-    What does not fit by more is refused all the same.
-    """
-    t = (0.0, 1.0, 401)
-    exact = evaluate(scene, wanted=["effort"], t=t)
-    (effort,) = exact.names()
-    size = np.abs(exact.array(effort)).max()
-    for steps, near in ((1, 1e-3), (2, 1e-7)):
-        found = evaluate(scene, wanted=["effort"], t=t, newton=steps)
-        assert np.abs(found.array(effort) - exact.array(effort)).max() <= min(
-            near * size, 2 * found.errors[effort]
-        )
-        designs = DesignEngine.of(scene, ["effort"], t, method=EvaluationMethod("c", newton=steps))
-        assert designs.evaluate(
-            np.array([list(scene.mechanism.values().values())])
-        ).status.tolist() == [Status.OK]
-
-
 @pytest.mark.parametrize("steps", [1, 5])
 def test_counted_steps_do_not_hide_a_misfit(steps):
     with pytest.raises(
         (MobilityError, AssemblyError), match=r"0 degree\(s\) of freedom|do not fit"
     ):
         evaluate(parallelogram(third=1.02), newton=steps)
-
-
-def test_a_unique_reaction_stays_where_others_are_not():
-    """A pendulum hung on the parallelogram's bar has a reaction of its own."""
-    solution = evaluate(parallelogram(pendulum=True))
-    assert np.isfinite(solution.reaction("hang").fx).all()
-    assert np.isfinite(solution.section("bob").bending).all()
-    assert np.isfinite(solution.effort("hang")).all()
-    assert np.isnan(solution.reaction("C").fy).all()
-    assert "section:bar:C:n" in solution.undetermined
-
-
-def test_an_over_constrained_mechanism_that_does_not_fit_is_refused():
-    with pytest.raises(
-        (MobilityError, AssemblyError), match=r"0 degree\(s\) of freedom|do not fit"
-    ):
-        evaluate(parallelogram(third=1.02))
 
 
 def test_two_guides_share_a_load():
@@ -119,26 +68,6 @@ def test_a_static_structure_needs_no_drive():
     )
     assert solution.reaction("wall").mz[0] == pytest.approx(10 * 2 + 3 * 9.81 * 1)
     assert solution.reaction("wall").fy[0] == pytest.approx(10 + 3 * 9.81)
-
-
-def test_two_gears_between_the_same_wheels_share_their_couple():
-    """Each one's multiplier is open; what they do together, and so every reaction and the drive, is
-    not.
-    """
-
-    def wheels(*meshes):
-        m = Mechanism("wheels")
-        a, b = m.link("a", length=0.2, mass=1.0), m.link("b", length=0.3, mass=2.0)
-        joints = m.revolute("A", m.ground, a), m.revolute("B", m.ground.at(1, 0), b)
-        for name in meshes:
-            m.gear(name, *joints, ratio=-2.0)
-        return evaluate(Scene(m, {"A": polynomial(0.1, 2.0)}, posture={"b": -0.2}, t=(0, 1, 5)))
-
-    one, two = wheels("left"), wheels("left", "right")
-    assert set(two.undetermined) == {"multiplier:left", "multiplier:right"}
-    np.testing.assert_allclose(two.effort("A"), one.effort("A"), rtol=1e-12)
-    np.testing.assert_allclose(two.reaction("B").fy, one.reaction("B").fy, rtol=1e-12)
-    np.testing.assert_allclose(two.section("b").bending, one.section("b").bending, atol=1e-12)
 
 
 def test_a_weld_that_misses_by_half_a_turn_does_not_fit():
@@ -243,31 +172,6 @@ def test_what_is_unique_is_not_withheld():
         assert np.isnan(section.axial).all()
         assert f"section:{link}:shear" in solution.errors
         assert f"section:{link}:axial" not in solution.errors
-
-
-def test_a_sweep_decides_for_each_design():
-    """The same columns for all designs; where one is open for a design there is no number, and the
-    file says that this may be.
-    """
-    scene = three_cranks()
-    for method in (
-        EvaluationMethod("vm"),
-        EvaluationMethod("c"),
-        EvaluationMethod("lanes"),
-        EvaluationMethod("c", precision="single"),
-    ):
-        designs = DesignEngine.of(scene, method=method)
-        outcome = designs.evaluate(np.array([[math.pi / 2], [1.0]]))
-        assert np.all(outcome.status == 0)
-        found = dict(zip(designs.quantities, outcome.value.T, strict=True))
-        both, one = (evaluate(scene, parameters={"angle": angle}) for angle in (1.0, math.pi / 2))
-        for name, (upright, leaning) in found.items():
-            if name.count(":") > 1 or name.startswith("effort"):
-                assert np.isfinite(upright) == one.determined(name), (method, name)
-                assert np.isfinite(leaning) == both.determined(name), (method, name)
-        assert any(
-            np.isfinite(upright) and np.isnan(leaning) for upright, leaning in found.values()
-        )
 
 
 @pytest.mark.xfail(reason="what is open is decided for all places along a link together")

@@ -1,5 +1,7 @@
 """Shaking force and moment: beside what the ground's joints bear, and the classics of balancing."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -9,8 +11,6 @@ from conftest import CASES
 from lagrange_casadi import (
     Mechanism,
     Scene,
-    SpatialMechanism,
-    density,
     evaluate,
     load_case,
     optimise,
@@ -18,6 +18,8 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def weightless(name, about=()):
@@ -77,35 +79,6 @@ def test_without_weight_and_loads_it_is_what_the_ground_bears(name):
             np.testing.assert_allclose(
                 solution.output(f"shaking_m{x}"), -moment[k], rtol=0, atol=1e-12 * size
             )
-
-
-def test_of_slices_with_rotary_inertia():
-    """Each effort of a ball is the moment about its turn's axis, the opposite of the shaking
-    moment's there.
-    """
-    m = SpatialMechanism("thick")
-    m.set_gravity(0, 0, 0)
-    slices = {"yy": density.polynomial(0.02, 0.03), "zz": 0.05, "yz": 0.004}
-    bar = m.link("bar", length=0.8, density=density.thick(density.polynomial(3.0, 1.0), **slices))
-    m.spherical("O", m.ground, bar)
-    shaking(m)
-    laws = [polynomial(0.1, 2.0, 1.5), polynomial(0.2, -3.0), polynomial(0.3, 1.0, -2.0)]
-    solution = evaluate(Scene(m, {"O": laws}, t=(0, 0.3, 5)), backend="vm", certificate=False)
-    a, b = (solution.series[f"motion:O:turn_{k}"] for k in (1, 2))
-    axes = (
-        np.array([1 + 0 * a, 0 * a, 0 * a]),
-        np.array([0 * a, np.cos(a), np.sin(a)]),
-        np.array([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)]),
-    )
-    moment = np.array([solution.output(f"shaking_m{x}") for x in "xyz"])
-    for k, axis in enumerate(axes):
-        told = -(moment * axis).sum(axis=0)
-        np.testing.assert_allclose(
-            told,
-            solution.series[f"effort:O:turn_{k + 1}"],
-            rtol=0,
-            atol=1e-12 * np.abs(moment).max(),
-        )
 
 
 def test_about_another_point():
