@@ -150,36 +150,6 @@ def test_a_flat_follower_is_pressed_beside_its_line():
     assert solution.output("cam_hertz") == pytest.approx(hertz, rel=1e-11)
 
 
-@pytest.mark.parametrize("kind", ["swinging roller", "swinging flat", "swinging flat -"])
-def test_a_swinging_follower_bears_what_free_bodies_say(kind):
-    """The pin's reaction and the contact balance the arm, by its poses alone; where the contact is,
-    the profile tells.
-    """
-    cam, scene = machine(kind)
-    solution = evaluate(scene, over=("main", 0, "350 deg", 36))
-    profile, lead, pose = cam.profile(count=36), solution.motion("lead"), solution.pose("arm")
-    turn = solution.motion("main").value
-    c, s = np.cos(turn), np.sin(turn)
-    contact = np.stack(
-        [0.01 + c * profile.x - s * profile.y, -0.02 + s * profile.x + c * profile.y]
-    )
-    along = np.stack([np.cos(pose.angle), np.sin(pose.angle)])
-    pull = np.stack([-along[1], along[0]]) * lead.acceleration - along * lead.rate**2
-    side = -1 if kind.endswith("-") else 1
-    # What the contact must give: momentum less weight and the pin's reaction.
-    push = (
-        MASS * 0.06 * pull
-        + np.array([[0.0], [MASS * 9.81]])
-        - np.stack([solution.reaction("lead").fx, solution.reaction("lead").fy])
-    )
-    assert np.hypot(*push) == pytest.approx(solution.output("cam_force"), rel=1e-10)
-    arm = contact - np.stack([pose.x, pose.y])
-    turned = arm[0] * push[1] - arm[1] * push[0] - MASS * 9.81 * 0.06 * along[0] - side * 20.0
-    assert turned == pytest.approx(
-        MASS * 0.12**2 / 3 * lead.acceleration, abs=1e-9 * np.abs(turned).max() + 1e-9
-    )
-
-
 def test_profiles_are_written_for_workshops(here):
     cam, _ = machine("roller")
     profile = cam.profile(count=180)
@@ -204,19 +174,6 @@ def test_profiles_are_written_for_workshops(here):
     before = (here / "cam.dxf").read_bytes()
     profile.save_dxf("cam.dxf")
     assert (here / "cam.dxf").read_bytes() == before
-
-
-def test_a_profile_that_cuts_itself_is_told_and_not_written(here):
-    cam, _ = machine("flat")
-    profile = cam.profile({"base": 0.01})
-    assert profile.undercut.any()
-    assert (profile.radius[profile.undercut] <= 0.0).all()
-    with pytest.raises(
-        LagrangeCasadiError,
-        match=r"cam 'cam': its profile is undercut at .* deg of the cam, .*; no profile has",
-    ):
-        profile.save_csv("cam.csv")
-    assert not list(here.iterdir())
 
 
 def test_without_ezdxf_one_line_tells_how_to_get_it(monkeypatch):

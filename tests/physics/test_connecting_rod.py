@@ -8,7 +8,6 @@ import math
 
 import numpy as np
 import pytest
-from internals import Member
 
 from lagrange_casadi import evaluate, load_case
 
@@ -37,7 +36,7 @@ def even(scene):
 
 
 def test_the_cross_section_of_11_t_t(even):
-    p = Member.of(even, "rod").cross.properties(0, 0.5)
+    p = even.stress("rod").member.cross.properties(0, 0.5)
     assert p.area == pytest.approx(11 * T**2, rel=1e-12)
     assert p.iz == pytest.approx(419 / 12 * T**4, rel=1e-12)
     assert p.iy == pytest.approx(131 / 12 * T**4, rel=1e-12)

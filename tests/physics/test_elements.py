@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from internals import area_of
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import bent_bar, cylinder, plate
@@ -25,38 +24,27 @@ pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
     st.tuples(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0)),
     st.booleans(),
 )
-def test_polygons_are_their_triangles(radii, turn, middle, backwards):
+def test_plates_are_their_triangles(radii, turn, middle, backwards):
     """Against triangles from a point inside: the area of each, its centre, and A/36 (a^2 + b^2 +
     c^2) by Steiner's rule.
     """
-    count = len(radii)
-    ring = [
-        (
-            middle[0] + r * math.cos(turn + math.tau * k / count),
-            middle[1] + r * math.sin(turn + math.tau * k / count),
-        )
-        for k, r in enumerate(radii)
-    ]
-    inside = np.array(middle)
-    triangles = [np.array([inside, ring[k], ring[(k + 1) % count]]) for k in range(count)]
-    areas = [
-        abs((t[1] - t[0])[0] * (t[2] - t[0])[1] - (t[1] - t[0])[1] * (t[2] - t[0])[0]) / 2
-        for t in triangles
-    ]
-    centre = sum(a * t.mean(axis=0) for a, t in zip(areas, triangles, strict=True)) / sum(areas)
-    own = [
-        a / 36 * sum(np.sum((t[i] - t[i - 1]) ** 2) for i in range(3))
-        for a, t in zip(areas, triangles, strict=True)
-    ]
-    second = sum(
-        o + a * np.sum((t.mean(axis=0) - centre) ** 2)
-        for o, a, t in zip(own, areas, triangles, strict=True)
-    )
-    area, x, y, found = area_of(ring[::-1] if backwards else ring)
-    assert abs(area) == pytest.approx(sum(areas), rel=1e-10)
-    assert (area < 0) == backwards
-    assert (x, y) == pytest.approx(tuple(centre), abs=1e-10)
-    assert found == pytest.approx(second / sum(areas), rel=1e-9)
+    angles = turn + math.tau * np.arange(len(radii)) / len(radii)
+    rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    ring = np.array(middle) + np.array(radii)[:, None] * rays
+    area, moment, second = 0.0, 0.0, 0.0
+    for k in range(len(ring)):
+        t = np.array([middle, ring[k - 1], ring[k]])
+        a = np.linalg.det(np.column_stack([t, np.ones(3)])) / 2
+        own = a / 36 * sum(np.sum((t[i] - t[i - 1]) ** 2) for i in range(3))
+        area, moment = area + a, moment + a * t.mean(axis=0)
+        second += own + a * np.sum((t.mean(axis=0) - middle) ** 2)
+    corners = [tuple(map(float, corner)) for corner in (ring[::-1] if backwards else ring)]
+    m = Mechanism("m")
+    plate(m, "p", corners, per_area=2.0)
+    made = m.links["p"].mass
+    assert made.mass == pytest.approx(2.0 * area, rel=1e-9)
+    inertia = second - area * np.sum((moment / area - middle) ** 2)
+    assert made.inertia == pytest.approx(2.0 * inertia, rel=1e-7)
 
 
 def swung(make, values=None):

@@ -5,7 +5,6 @@ Modelica library, and against energies that share nothing with the package.
 from __future__ import annotations
 
 import math
-import re
 
 import casadi as ca
 import numpy as np
@@ -147,36 +146,6 @@ def test_a_flywheel_holds_a_fluctuation_by_elliptic_integrals(fluctuation, speed
     assert found.energy == pytest.approx(2.0 * torque, rel=1e-9)
     assert found.textbook == pytest.approx(2.0 * torque / (fluctuation * speed**2), rel=1e-9)
     assert found.textbook == pytest.approx(whole, rel=fluctuation)
-
-
-@pytest.mark.parametrize("wheel", [False, True])
-def test_a_motor_that_is_too_weak_stalls_where_its_energy_ends(wheel):
-    """The message says where and when: I w^2/2 is then used up, by a run of two states."""
-    motor = forward.dc_motor(4.0, 40.0)
-    load = forward.expression(lambda t, x, w: 5.0 + 8.0 * ca.sin(x))
-    options = {"drive": motor, "load": load, "start": (0.3, 20.0)}
-    with pytest.raises(LagrangeCasadiError, match="stalls, because it loses speed") as caught:
-        flywheel(rotor(), **options) if wheel else free(rotor(), steady=True, **options)
-    pattern = (
-        r"from (\S+) rad/s at O = 0.3 rad it comes to rest at (\S+) rad, after (\S+) s; there the"
-        r" drive gives 4 N m, and (\S+) N m resist; expected a drive with more torque, more inertia"
-    )
-    speed, angle, time, resisting = map(float, re.search(pattern, str(caught.value)).groups())
-    assert resisting == pytest.approx(5.0 + 8.0 * math.sin(angle), rel=1e-4)
-    if wheel:
-        return
-
-    def rates(_t, y):
-        return [y[1], (4.0 * (1.0 - y[1] / 40.0) - 5.0 - 8.0 * math.sin(y[0])) / 0.5]
-
-    def rest(_t, y):
-        return y[1]
-
-    rest.terminal = True
-    run = solve_ivp(rates, (0.0, 9.0), (0.3, speed), "DOP853", events=rest, rtol=1e-10, atol=1e-10)
-    # It nearly gets over the load, so the six digits of its speed count a hundred times.
-    assert run.t[-1] == pytest.approx(time, rel=1e-3)
-    assert run.y[0, -1] == pytest.approx(angle, rel=1e-4)
 
 
 def test_a_punch_slows_a_motor_as_a_textbook_prints():

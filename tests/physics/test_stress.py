@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 import strong
-from internals import KINDS
 
 from lagrange_casadi import beams, evaluate
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
@@ -26,6 +25,10 @@ SHAPES = {
     "stepped": beams.stepped([0.5], [beams.tube(0.04, 0.003), beams.tube(0.03, 0.003)]),
     "leaning": beams.polygon([(0.0, 0.0), (0.03, 0.005), (0.035, 0.03), (0.01, 0.02)]),
 }
+
+KINDS = {"normal": (1, 0), "shear": (0, 1), "von_mises": (1, 3), "tresca": (1, 4)}
+"""Weights of the squares of normal and shear stress.
+"""
 
 
 @pytest.fixture(scope="module")
