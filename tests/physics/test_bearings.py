@@ -203,67 +203,6 @@ def near(found, told, size):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("values", [{}, {"b": 0.31, "L": 0.55}])
-def test_a_shaft_with_a_pulley_out_of_balance(values):
-    """A pulley of 3 kg, its centre e off the axis, speeds up beyond the floating bearing; a belt
-    pulls, and a thrust acts. Moments about the fixed bearing give the load of the floating one.
-    """
-    m = SpatialMechanism("shaft")
-    b, length = m.parameter("b", 0.3, "m", low=0.1), m.parameter("L", 0.4, "m", low=0.2)
-    beam = beams.Beam(beams.round_bar(0.03), beams.material("C45+QT"))
-    shaft = m.link("shaft", length=length, beam=beam)
-    e, mass = 0.004, 3.0
-    pulley = m.link("pulley", length=0.05, mass=mass, centre=(0, e, 0), inertia=(6e-3, 3e-3, 3e-3))
-    m.weld("key", shaft.tip, pulley)
-    m.force("belt", pulley, y=500.0)
-    m.force("thrust", pulley, x=-80.0)
-    pair = two_bearings(m, "main", m.ground, shaft.at(0.05), shaft.at(b))
-    assert pair.coordinate == "main_fixed:turn_1"
-    speeding = {pair.coordinate: polynomial(0.3, 100.0, 400.0)}
-    parts = bearings.Rolling(2e4, hours=1e3), bearings.Rolling(3e4, hours=1e3)
-    for joint, part in zip((pair.fixed, pair.floating), parts, strict=True):
-        bearings.fit(m, joint, part)
-    solution = evaluate(Scene(m, speeding, t=(0, 0.1, 41)), parameters=values)
-    assert solution.certified
-    assert not solution.undetermined
-    at, far = values.get("b", 0.3), values.get("L", 0.4)
-    t, density = solution.t, 7850.0 * math.pi / 4 * 0.03**2
-    angle, rate, gain = 0.3 + 100 * t + 400 * t**2, 100.0 + 800.0 * t, 800.0
-    # What acts on shaft and pulley but for the bearings, less what accelerates them.
-    out_y = 500.0 - mass * e * (-(rate**2) * np.cos(angle) - gain * np.sin(angle))
-    out_z = -mass * GRAVITY - mass * e * (-(rate**2) * np.sin(angle) + gain * np.cos(angle))
-    weight = -density * far * GRAVITY
-    d = at - 0.05
-    second = (
-        -out_y * (far - 0.05) / d,
-        -(out_z * (far - 0.05) + weight * (far / 2 - 0.05)) / d,
-    )
-    first = (-out_y - second[0], -out_z - weight - second[1])
-    size = max(np.abs(x).max() for x in (*first, *second))
-    for name, (y, z) in {"main_fixed": first, "main_floating": second}.items():
-        near(solution.reaction(name).fy, y, size)
-        near(solution.reaction(name).fz, z, size)
-    near(solution.reaction("main_fixed").fx, 80.0, size)
-    near(solution.reaction("main_floating").fx, 0.0, size)
-    # Between the bearings the shaft bends as a beam on two supports does.
-    found = solution.section("shaft")
-    beyond = far - at
-    bent_y = out_y * beyond
-    bent_z = out_z * beyond - density * GRAVITY * beyond**2 / 2
-    told = np.hypot(bent_y, bent_z).max()
-    assert found.bending.max() <= told * (1 + 1e-12)
-    assert solution.peak("section:shaft:bending").value == pytest.approx(told, rel=1e-9)
-    # The floating bearing turns as the fixed one does.
-    weights = np.r_[0.5, np.ones(39), 0.5] * rate
-    cubic = (np.hypot(*second) ** 3 @ weights / weights.sum()) ** (1 / 3)
-    mean = float(weights.sum() / 40) * 60 / math.tau
-    hours = bearings.rated_hours(3e4, cubic, mean)
-    assert solution.safety("main_floating").against("life of bearing") == pytest.approx(
-        (hours / 1e3) ** (1 / 3), rel=1e-9
-    )
-
-
-@pytest.mark.quick
 @pytest.mark.parametrize("space", [False, True])
 @pytest.mark.parametrize("values", [{}, {"d": 0.25}])
 def test_a_rod_in_two_bushes(space, values, tmp_path):
@@ -314,28 +253,53 @@ def test_a_rod_in_two_bushes(space, values, tmp_path):
     assert again.safety("guide_second") == solution.safety("guide_second")
 
 
-@pytest.mark.quick
-def test_what_cannot_be():
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (
+            lambda m, rod, other: two_bearings(m, "a", m.ground, rod.at(0.1), rod.at(0.1)),
+            "bearings 'a': expected two places along the shaft",
+        ),
+        (
+            lambda m, rod, other: two_bearings(m, "a", m.ground, rod.at(0.1), other),
+            "bearings 'a': .* on two bodies; expected apart=",
+        ),
+        (
+            lambda m, rod, other: two_bearings(m, "a", m.ground, rod.at(0.1), other, apart=-1),
+            "bearings 'a': apart must be positive, got",
+        ),
+        (
+            lambda m, rod, other: two_bushes(m, "a", rod, m.ground, other.tip),
+            "bushes 'a': expected two places of one body",
+        ),
+        (
+            lambda m, rod, other: two_bushes(m, "a", rod, m.ground, m.ground),
+            "bushes 'a': both are at one place of 'ground'",
+        ),
+        (
+            lambda m, rod, other: two_bushes(m, "a", rod, m.ground, m.ground.at(1, 0), turns=True),
+            "a rod in a plane cannot turn",
+        ),
+        (
+            lambda m, rod, other: bearings.fit(
+                m,
+                two_bearings(m, "c", m.ground, other, other.at(0.1)).floating,
+                bearings.Rolling(1e3, hours=1.0),
+            ),
+            "its shaft lies in the plane",
+        ),
+        (
+            lambda m, rod, other: bearings.fit(
+                m,
+                two_bushes(m, "b", rod, m.ground, m.ground.at(1, 0)).first,
+                bearings.Rolling(1e3, hours=1.0),
+            ),
+            "got a prismatic one; it takes a plain bearing",
+        ),
+    ],
+)
+def test_what_cannot_be(make, says):
     m = Mechanism("odd")
-    rod, other = m.link("rod", length=0.5, mass=1.0), m.link("other", length=0.5, mass=1.0)
-    with pytest.raises(
-        DeclarationError, match=r"bearings 'a': expected two places along the shaft"
-    ):
-        two_bearings(m, "a", m.ground, rod.at(0.1), rod.at(0.1))
-    with pytest.raises(DeclarationError, match=r"bearings 'a': .* on two bodies; expected apart="):
-        two_bearings(m, "a", m.ground, rod.at(0.1), other)
-    for apart in (-1, 0.0, m.parameter("span", -1.0, "m")):
-        with pytest.raises(DeclarationError, match=r"bearings 'a': apart must be positive, got"):
-            two_bearings(m, "a", m.ground, rod.at(0.1), other, apart=apart)
-    with pytest.raises(DeclarationError, match=r"bushes 'a': expected two places of one body"):
-        two_bushes(m, "a", rod, m.ground, other.tip)
-    with pytest.raises(DeclarationError, match=r"bushes 'a': both are at one place of 'ground'"):
-        two_bushes(m, "a", rod, m.ground, m.ground)
-    side = two_bearings(m, "c", m.ground, other, other.at(0.1))
-    with pytest.raises(DeclarationError, match="its shaft lies in the plane"):
-        bearings.fit(m, side.floating, bearings.Rolling(1e3, hours=1.0))
-    with pytest.raises(DeclarationError, match="a rod in a plane cannot turn"):
-        two_bushes(m, "a", rod, m.ground, m.ground.at(1, 0), turns=True)
-    pair = two_bushes(m, "b", rod, m.ground, m.ground.at(1, 0))
-    with pytest.raises(DeclarationError, match="got a prismatic one; it takes a plain bearing"):
-        bearings.fit(m, pair.first, bearings.Rolling(1e3, hours=1.0))
+    links = [m.link(name, length=0.5, mass=1.0) for name in ("rod", "other")]
+    with pytest.raises(DeclarationError, match=says):
+        make(m, *links)

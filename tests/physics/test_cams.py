@@ -205,7 +205,7 @@ def broken(**options):
         "point": None,
     } | options
     if given["point"] == "other":
-        given["point"] = m._load_point("x", other)
+        given["point"] = other
     if given["follower"] == "main":
         given["cam"] = lead
         given["follower"] = main

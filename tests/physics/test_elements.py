@@ -246,20 +246,3 @@ def test_a_cylinder_bears_what_virtual_work_says():
     assert solution.output("ram_power") == pytest.approx(
         force * solution.motion("ram").rate, rel=1e-12
     )
-
-
-def test_a_cylinder_that_does_not_drive_bears_no_force():
-    """Another joint lifts the boom; the oil goes to and fro, under the back pressure alone."""
-    back = 4e5
-    made, driven = hoist(back_pressure=back)
-    solution = evaluate(
-        Scene(driven.mechanism, driven.motion, t=driven.t, posture=driven.posture, drives=["foot"])
-    )
-    assert solution.certified
-    pressures = solution.output("ram_cap_pressure"), solution.output("ram_rod_pressure")
-    assert np.all(pressures[0] == back)
-    assert pressures[1] == pytest.approx(back * made.cap_area / made.rod_area, rel=1e-12)
-    assert solution.output("ram_flow") == pytest.approx(
-        made.cap_area * solution.motion("ram").rate, rel=1e-12
-    )
-    assert np.all(solution.output("ram_power") == 0.0)

@@ -91,18 +91,6 @@ def test_a_weight_beside_a_guide_presses_on_its_blocks_and_on_what_keeps_it_from
     assert solution.series["friction:rub:loss"] == pytest.approx(0.1 * pressed * 0.4, rel=1e-12)
 
 
-def test_a_bead_on_a_wire_bears_no_moment():
-    m = SpatialMechanism("bead")
-    wire = m.prismatic("X", m.ground, m.point_mass("ball", MASS), axis=(1, 0, 0))
-    m.friction("rub", wire, mu=0.2, viscous=3.0)
-    m.force("side", m.bodies["ball"], y=30.0)
-    solution = evaluate(Scene(m, {"X": polynomial(0.0, -0.5)}, t=(0, 1, 3)))
-    assert solution.certified
-    assert solution.effort("X") == pytest.approx(
-        -0.2 * math.hypot(MASS * G, 30.0) - 3.0 * 0.5, rel=1e-12
-    )
-
-
 def sleeve(turn, slide, **options):
     m = SpatialMechanism("sleeve")
     rod = m.link("rod", length=0.4, mass=MASS, centre=(0.0, 0.0, 0.0), inertia=(0.02, 0.1, 0.1))
@@ -130,25 +118,6 @@ def test_a_sleeve_rubs_against_the_way_its_surface_slides(rate, speed):
     )
     lost = solution.series["friction:sliding:loss"] + solution.series["friction:turning:loss"]
     assert lost == pytest.approx(weight * whole, rel=1e-12)
-
-
-def test_a_sleeve_that_goes_to_and_fro_and_turns_has_no_jump():
-    """Where the slide turns back while the rod turns, friction along it passes through zero
-    smoothly; and viscous parts add up.
-    """
-    scene = sleeve(
-        polynomial(0.0, 8.0), harmonic(0.0, 0.05, 1.0), static=0.3, stribeck=0.1, viscous=0.7
-    )
-    solution = evaluate(scene)
-    assert solution.certified
-    v, w = solution.motion("C:slide").rate, 0.03 * solution.motion("C:turn").rate
-    whole = np.hypot(v, w)
-    mu = 0.2 + 0.1 * np.exp(-((whole / 0.1) ** 2))
-    assert solution.series["friction:sliding:along"] == pytest.approx(
-        -mu * MASS * G * v / whole - 0.7 * v, rel=1e-11, abs=1e-11
-    )
-    expected = -mu * MASS * G * 0.03 * w / whole - 0.7 * w / 0.03
-    assert solution.series["friction:turning:along"] == pytest.approx(expected, rel=1e-11)
 
 
 def test_at_rest_both_are_open_and_where_both_turn_back_they_go_on():
@@ -252,22 +221,6 @@ def test_where_equilibrium_leaves_bearings_open_so_is_their_friction():
         * RADIUS
         * abs(math.tan(phi - angle) + math.tan(angle)),
         rel=1e-11,
-    )
-
-
-@pytest.mark.parametrize("arm", [0.0, 0.02, 0.3])
-def test_two_bearings_of_a_shaft_that_carries_a_wheel_beside_them(arm):
-    """By statics the bearings bear W (1/2 + arm/length) and W (1/2 - arm/length)."""
-    m = SpatialMechanism("overhung")
-    shaft = m.link("shaft", length=0.4, mass=0.0)
-    O = m.revolute("O", m.ground, shaft, axis=(1, 0, 0))
-    m.weld("hub", shaft.at(arm), m.point_mass("wheel", 12.0))
-    m.friction("bearings", O, mu=0.05, radius=0.015, length=0.1)
-    solution = evaluate(Scene(m, {"O": polynomial(0, 20.0)}, t=(0, 0.1, 5)))
-    assert solution.certified
-    share = abs(0.5 + arm / 0.1) + abs(0.5 - arm / 0.1)
-    assert solution.effort("O") == pytest.approx(
-        0.05 * 0.015 * 12.0 * G_OF_FRICTION_SPACE * share, rel=1e-11
     )
 
 

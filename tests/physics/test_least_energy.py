@@ -20,21 +20,15 @@ from elastic_mechanisms import (
     sections_of,
     three_cranks,
 )
-from hypothesis import given, reject, settings
-from hypothesis import strategies as st
 
 from lagrange_casadi import (
     Mechanism,
     Scene,
-    SpatialMechanism,
     beams,
     evaluate,
 )
 from lagrange_casadi.errors import (
-    AssemblyError,
     DeclarationError,
-    MobilityError,
-    PostureError,
     UnknownNameError,
 )
 from lagrange_casadi.motion import polynomial
@@ -112,82 +106,6 @@ def test_a_planar_four_bar_of_spatial_pins_that_moves():
     agrees(solution, i, reactions, 1e-6)
     assert solution.certified
     assert not solution.undetermined
-
-
-KINDS = ["weld", "weld", "revolute"]
-
-
-LINKS = st.lists(
-    st.tuples(st.floats(0.3, 1.5), st.floats(-1.2, 1.2), st.sampled_from(KINDS)),
-    min_size=1,
-    max_size=4,
-)
-
-
-FORCES = st.lists(
-    st.tuples(st.floats(0.1, 0.9), st.floats(-1e3, 1e3), st.floats(-1e3, 1e3)),
-    min_size=1,
-    max_size=2,
-)
-
-
-SHAPES = [
-    beams.rectangle(0.05, 0.02),
-    beams.tube(0.05, 0.004),
-    beams.i_section(0.08, 0.04, 0.004, 0.006),
-    beams.round_bar(0.03),
-]
-
-
-@settings(max_examples=4)
-@given(LINKS, st.sampled_from(["weld", "revolute"]), FORCES, st.integers(0, 3), st.booleans())
-def test_any_chain_between_two_walls(parts, last, forces, odd, space):
-    """Links end to end, welded or pinned, bent any way, of any cross-section, loaded anywhere: all
-    reactions are a frame's.
-    """
-    m = (SpatialMechanism if space else Mechanism)("chain")
-    near = None
-    at = np.zeros(2)
-    before = 0.0
-    loads = []
-    posture = {}
-    pins = 0
-    axis = {"axis": (0, 0, 1)} if space else {}
-
-    def weld(name, place, child, turn):
-        m.weld(name, place, child, **({"turned": [("z", turn)]} if space else {"angle": turn}))
-
-    for k, (length, direction, kind) in enumerate(parts):
-        link = m.link(f"l{k}", length=length, beam=made(SHAPES[(k + odd) % 4]))
-        place = m.ground if near is None else near.tip
-        # With more pins it would move, or be on the verge of it.
-        if kind == "revolute" and pins < 2:
-            pins += 1
-            m.revolute(f"J{k}", place, link, **axis)
-        else:
-            weld(f"J{k}", place, link, direction - before)
-        posture[f"J{k}" if space else f"l{k}"] = direction - before if space else direction
-        near, before = link, direction
-        at = at + length * np.array([math.cos(direction), math.sin(direction)])
-        if k < len(forces):
-            share, x, y = forces[k]
-            aside = {"z": x / 2} if space else {}
-            m.force(f"F{k}", link.at(share * length), x=x, y=y, **aside)
-            loads.append((f"l{k}", share * length, (x, y, aside.get("z", 0.0)), (0, 0, 0)))
-    end = m.ground.at(*map(float, at), *([0.0] if space else []))
-    if last == "weld":
-        weld("end", end, near.tip, before)
-    else:
-        m.revolute("end", end, near.tip, **axis)
-        posture |= {"end": before} if space else {}
-    posture = {name: rough for name, rough in posture.items() if not space or name in m.coordinates}
-    try:
-        solution = evaluate(Scene(m, {}, t=(0, 0, 1), posture=posture, elastic=True))
-    except (AssemblyError, PostureError, MobilityError):
-        reject()  # pins on one line, or nearly
-    assert not solution.undetermined
-    sections = sections_of(**{name: link.beam for name, link in m.links.items()})
-    agrees(solution, 0, frames.of_solution(solution, 0, sections, loads)[0], 1e-6)
 
 
 def test_a_link_without_a_beam_leaves_open_what_goes_through_it_and_is_named():

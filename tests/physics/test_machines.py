@@ -37,39 +37,6 @@ def along(values, at):
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(at)))
 
 
-def test_gas_gives_its_work_to_the_crank():
-    """Indicated work is mean torque times angle: by the closed form of a piston's place, at every
-    instant and over two turns.
-    """
-    scene = shown("V-twin")["scene"]
-    fired, idle = (
-        evaluate(scene, parameters={"throttle": x}, over=("main", "45 deg", "765 deg", 7201))
-        for x in (1.0, 0.0)
-    )
-    angle = fired.motion("main").value
-    pressure = by_hand(
-        np.linspace(0.0, 2 * TAU, 19),
-        np.array([1e5 * bar for bar in shown("V-twin")["bars"]]),
-        True,
-    )
-    torque = 0.0
-    for lean, top in ((3 * QUARTER, 11 * QUARTER), (QUARTER, QUARTER)):
-        turned = angle - lean
-        slope = (
-            -0.05
-            * np.sin(turned)
-            * (1 + 0.05 * np.cos(turned) / np.sqrt(0.16**2 - (0.05 * np.sin(turned)) ** 2))
-        )
-        torque += math.pi / 4 * 0.08**2 * np.array([pressure(x)[0] for x in angle - top]) * slope
-    assert (
-        np.abs(fired.effort("main") - idle.effort("main") - torque).max()
-        < 1e-12 * np.abs(fired.effort("main")).max()
-    )
-    indicated = along(torque, angle)
-    assert 2 * TAU * fired.statistics("effort:main").mean == pytest.approx(indicated, rel=1e-9)
-    assert indicated < -100.0
-
-
 def test_a_lift_at_rest_is_held_by_the_slope_of_its_potential():
     """The ram's force is dV/dq: of the load, the links and the ram itself, by the angle of the
     links alone.
@@ -83,14 +50,6 @@ def test_a_lift_at_rest_is_held_by_the_slope_of_its_potential():
     lifted = (3 * 5000.0 + 12.0 * g * 2 * (0.5 + 1.5 + 2.5)) * 1.2 * math.cos(turn)
     own = g * ((4.0 - 3.0) * 0.15 * leaning + 3.0 * s * math.cos(turn))
     assert found.effort("ram")[0] == pytest.approx((lifted + own) / dq, rel=1e-13)
-
-
-def test_a_press_gives_the_power_of_its_work():
-    scene = shown("Toggle press")["scene"]
-    pressed, idle = evaluate(scene), evaluate(scene, parameters={"work": 0.0})
-    power = (pressed.effort("main") - idle.effort("main")) * pressed.motion("main").rate
-    done = 80e3 * pressed.motion("way").rate
-    assert np.abs(power - done).max() < 1e-12 * np.abs(done).max()
 
 
 def test_a_wheel_of_four_slots_moves_by_its_closed_form():

@@ -113,9 +113,7 @@ def assert_same(scene, pieces, gravity, first=0):
     )
     for (k, ratio), forces in chain.sections(found).items():
         law = solution.section(f"link{k + first}").law
-        own = np.array(
-            [law.at(force, np.full((q.shape[1], 1), ratio))[:, 0] for force in FORCES]
-        )
+        own = np.array([law.at(force, np.full((q.shape[1], 1), ratio))[:, 0] for force in FORCES])
         assert np.abs(own - forces).max() <= 1e-12 * size, (k, ratio)
 
 

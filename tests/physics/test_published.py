@@ -113,34 +113,6 @@ def test_marghitu_slider_crank():
 REACTIONS = ("reaction:A", "reaction:B", "reaction:guide")
 
 
-def test_one_rotating_rod():
-    """Closed form: N = rho (l^2 - xi^2)/2 theta'^2 - rho (l - xi) g sin(theta); T = m l^2/3 theta''
-    + m g l/2 cos(theta).
-    """
-    mass, l, g = 2.5, 0.8, 9.81
-    m = Mechanism("rod")
-    m.revolute("hinge", m.ground, m.link("arm", length=l, mass=mass))
-    solution = evaluate(
-        Scene(m, {"hinge": polynomial(0.3, 4.0, -6.0)}, t=(0, 1.3, 50), xi=(0, 1, 21))
-    )
-    t = solution.t
-    angle, rate, acceleration = 0.3 + 4 * t - 6 * t**2, 4 - 12 * t, -12.0
-    np.testing.assert_allclose(
-        solution.effort("hinge"),
-        mass * l**2 / 3 * acceleration + mass * g * l / 2 * np.cos(angle),
-        atol=1e-13,
-        rtol=1e-13,
-    )
-    rho, xi = mass / l, l * solution.xi
-    tension = (
-        rho * (l**2 - xi**2) / 2 * rate[:, None] ** 2 - rho * (l - xi) * g * np.sin(angle)[:, None]
-    )
-    assert_within(solution.section("arm").axial, tension)
-    assert np.all(solution.section("arm").bending[:, -1] == 0.0)
-    assert np.all(solution.section("arm").shear[:, -1] == 0.0)
-    assert np.all(solution.section("arm").axial[:, -1] == 0.0)
-
-
 G = 9.81
 
 

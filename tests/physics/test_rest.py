@@ -32,7 +32,7 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.actuators import duty_of
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.motion import dwell, expression, harmonic, move, moves, polynomial
+from lagrange_casadi.motion import dwell, expression, move, moves, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -165,20 +165,6 @@ def test_at_rest_friction_is_open_and_all_else_is_not(options, tmp_path):
     assert load(tmp_path / "rest.h5").resting.tolist() == resting.tolist()
 
 
-def test_smoothed_friction_passes_through_rest():
-    m = Mechanism("smooth")
-    arm = m.link("arm", length=0.3, mass=1.0)
-    m.friction("rub", m.revolute("O", m.ground, arm), mu=0.1, radius=0.02, smooth=0.5)
-    scene = Scene(m, {"O": expression(start_and_stop)}, t=(0, 1, 41))
-    solution = evaluate(scene)
-    assert solution.certified
-    rate = solution.motion("O").rate
-    size = 0.1 * 0.02 * np.hypot(solution.reaction("O").fx, solution.reaction("O").fy)
-    assert solution.series["friction:rub:along"] == pytest.approx(
-        -np.tanh(rate / 0.5) * size, abs=1e-15
-    )
-
-
 def test_peaks_beside_a_reversal_are_found():
     """The largest effort of a cycle is just before the friction turns round, between two
     instants.
@@ -192,24 +178,6 @@ def test_peaks_beside_a_reversal_are_found():
         sampled = abs(dense.peak(peak.name).value)
         assert sampled * (1 - 1e-12) <= abs(peak.value) <= sampled * (1 + 1e-3), peak
         assert swept[peak.name] == pytest.approx(peak.value, rel=1e-7), peak
-
-
-def test_where_the_drive_itself_turns_back_the_sign_is_that_of_its_acceleration():
-    """Its rate is then some rounding beside zero, of either sign, and so are all others."""
-    m = Mechanism("swing")
-    m.set_gravity(0, 0)
-    arm = m.link("arm", length=0.5, mass=2.0)
-    m.friction("rub", m.revolute("O", m.ground, arm), mu=0.1, radius=0.02)
-    m.force("pull", arm.base, x=100.0)
-    top = 0.25 - 0.4 / math.tau
-    solution = evaluate(
-        Scene(m, {"O": harmonic(0.3, 1.0, 1.0, 0.4)}, t=(top, top + 8.0, 17)), backend="vm"
-    )
-    assert solution.certified
-    assert np.abs(solution.motion("O").rate).max() < 1e-12
-    found = solution.series["friction:rub:along"]
-    assert np.sign(found).tolist() == np.sign(-solution.motion("O").acceleration).tolist()
-    assert np.abs(found).min() > 0.1
 
 
 DRAWN = 3000

@@ -175,11 +175,9 @@ def test_mistakes():
         shaking(m)
     arm = m.link("arm", length=0.3, mass=1.0)
     m.revolute("O", m.ground, arm)
-    with pytest.raises(DeclarationError, match="expected a place \\(x, y\\) for about"):
+    with pytest.raises(DeclarationError, match=r"expected a place \(x, y\) for about"):
         shaking(m, about=(1.0, 2.0, 3.0))
     shaking(m)
     m.weld("held", arm.tip, m.point_mass("late", 1.0))
-    with pytest.raises(
-        DeclarationError, match="body 'late' was declared after it; call shaking after all bodies"
-    ):
+    with pytest.raises(DeclarationError, match="call shaking after all bodies"):
         Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 5))

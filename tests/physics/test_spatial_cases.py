@@ -12,7 +12,6 @@ import casadi as ca
 import numpy as np
 import pytest
 from conftest import CASES
-from spatial_reference import Entry
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case
 from lagrange_casadi.motion import harmonic, polynomial
@@ -38,65 +37,6 @@ def vector(found, group, part, members="xyz"):
 def along(found, link):
     """The direction of a link's axis, by instant."""
     return vector(found, "pose", link, ("xx", "xy", "xz"))
-
-
-REFERENCES = {
-    "rssr": ("rssr", (0.0, 0.6, 61), {"drive": "O"}),
-    "spatial_slider_crank": ("spatial_slider_crank_slender", (0.25, 1.0, 76), {"drive": "A"}),
-    "stewart_gough": ("stewart_6ups", (0.0, 0.95, 96), {f"leg{k}": f"P{k}" for k in range(6)}),
-}
-
-
-@pytest.mark.parametrize("name", REFERENCES)
-def test_the_reference_numbers(name):
-    """Efforts, reactions, and of sections what does not depend on the axes of the cross-section."""
-    entry, t, drives = REFERENCES[name]
-    scene, data = scene_of(name), Entry(entry).data
-    if name == "rssr":
-        scene = dataclasses.replace(scene, motion={"O": polynomial(0.4, 10, 3)})
-    found = vm(scene, t=t, xi=(0, 1, 5))
-    largest = {"N": 0.0, "N m": 0.0}
-    gaps = {"N": [], "N m": []}
-
-    def compare(unit, told, own):
-        largest[unit] = max(largest[unit], abs(told))
-        gaps[unit].append(abs(told - own))
-
-    for instant in data["instants"]:
-        (i,) = np.flatnonzero(np.abs(found.t - float(instant["t"])) < 1e-12)
-        for drive, joint in drives.items():
-            compare(
-                found.unit(f"effort:{joint}"),
-                float(instant["efforts"][drive]),
-                found.effort(joint)[i],
-            )
-        for joint, told in instant["reactions"].items():
-            own = scene.mechanism.joints[joint]
-            sign = 1 if own.child.body.name == data["mechanism"]["joints"][joint]["child"] else -1
-            for unit, word, kind in (("N", "force", "f"), ("N m", "moment", "m")):
-                for axis, value in zip("xyz", told[word], strict=True):
-                    if f"reaction:{joint}:{kind}{axis}" in found.series:
-                        compare(
-                            unit,
-                            sign * float(value),
-                            found.series[f"reaction:{joint}:{kind}{axis}"][i],
-                        )
-                    else:
-                        assert float(value) == 0.0
-        for link, rows in instant["sections"].items():
-            if f"section:{link}" not in {name.rpartition(":")[0] for name in found.names()}:
-                continue
-            section = found.section(link)
-            for row in rows:
-                k = round(4 * float(row["xi"]))
-                axial, y, z, torsion, about_y, about_z = map(float, row["local"])
-                compare("N", axial, section.axial[i, k])
-                compare("N", math.hypot(y, z), section.shear[i, k])
-                compare("N m", torsion, section.torsion[i, k])
-                compare("N m", math.hypot(about_y, about_z), section.bending[i, k])
-    for unit, row in gaps.items():
-        assert len(row) > 10
-        assert max(row) < 1e-12 * largest[unit], unit
 
 
 def test_the_benchmarks_slider_at_its_start():

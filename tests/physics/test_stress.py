@@ -204,18 +204,19 @@ def test_notches_take_their_factors():
     )
 
 
-def test_what_has_no_stress(solutions, robots):
-    with pytest.raises(UnknownNameError, match="unknown kind of stress 'von'"):
-        solutions["even"].stress("rod").peak("von")
-    with pytest.raises(
-        DeclarationError,
-        match="link 'crank' has no beam=; links with a beam: rod",
-    ):
-        solutions["even"].stress("crank")
-    with pytest.raises(
-        DeclarationError,
-        match="link 'upper' carries torsion, and there is no formula for a polygon; use beams",
-    ):
-        evaluate(strong.robot(SHAPES["leaning"]), certificate=False).stress("upper")
-    with pytest.raises(DeclarationError, match="were not evaluated; add section:rod"):
-        evaluate(strong.press(I), wanted=["effort"], certificate=False).stress("rod")
+@pytest.mark.parametrize(
+    ("ask", "says"),
+    [
+        (lambda: strong.press(I), ("rod", "von", "unknown kind of stress 'von'")),
+        (lambda: strong.press(I), ("crank", "von_mises", "has no beam=; links with a beam: rod")),
+        (
+            lambda: strong.robot(SHAPES["leaning"]),
+            ("upper", "von_mises", "carries torsion, and there is no formula for a polygon; use b"),
+        ),
+    ],
+)
+def test_what_has_no_stress(ask, says):
+    link, kind, words = says
+    solution = evaluate(ask(), t=(0, 0.2, 5), certificate=False)
+    with pytest.raises((DeclarationError, UnknownNameError), match=words):
+        solution.stress(link).peak(kind)

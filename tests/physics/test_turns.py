@@ -234,13 +234,6 @@ def test_many_turns_keep_their_phase(precision):
     np.testing.assert_allclose(other, one, rtol=0, atol=1e-5 if precision == "single" else 1e-8)
 
 
-def test_an_angle_starts_within_half_a_turn_however_far_the_drive_has_turned():
-    near, far = (sprung("AC", law=polynomial(start, 9.0)) for start in (0.5, 0.5 + 20 * math.pi))
-    for name in ("load:coil_A:mz", "load:coil_C:mz", "effort:O"):
-        one, other = (evaluate(scene).series[name] for scene in (near, far))
-        np.testing.assert_allclose(other, one, rtol=0, atol=1e-11)
-
-
 def test_what_does_not_tell_turns_apart_is_left_within_one():
     """Under a sine whole turns make no difference: no rule is sought, and nothing is held to it."""
     for see, counts in (
