@@ -116,29 +116,6 @@ def test_a_wedge_in_closed_form():
     )
 
 
-def test_a_tube_in_space_is_twisted_stretched_and_bent():
-    """T l/GIt, N l/EA, M l/EI and M l^2/2EI, about both axes."""
-    m = SpatialMechanism("tube")
-    m.set_gravity(0.0, 0.0, 0.0)
-    arm = m.link("arm", length=LENGTH, beam=beams.Beam(SHAPES[2], STEEL))
-    m.weld("wall", m.ground, arm)
-    m.force("pull", arm.tip, x=3e3)
-    m.torque("couple", arm.tip, x=20.0, y=30.0, z=-40.0)
-    found = evaluate(Scene(m, {}, t=(0, 0, 1))).deflection("arm").tip
-    outer, inner = 0.02, 0.017
-    i = math.pi / 4 * (outer**4 - inner**4)
-    bent = {"turn_y": 30.0, "turn_z": -40.0}
-    assert found["twist"] == pytest.approx(20.0 * LENGTH / (G * 2 * i), rel=1e-12)
-    assert found["along"] == pytest.approx(
-        3e3 * LENGTH / (E * math.pi * (outer**2 - inner**2)), rel=1e-12
-    )
-    assert {name: found[name][0] for name in bent} == pytest.approx(
-        {k: v * LENGTH / (E * i) for k, v in bent.items()}, rel=1e-12
-    )
-    assert found["across_y"] == pytest.approx(-40.0 * LENGTH**2 / (2 * E * i), rel=1e-12)
-    assert found["across_z"] == pytest.approx(-30.0 * LENGTH**2 / (2 * E * i), rel=1e-12)
-
-
 def test_in_space_it_is_a_frame_s():
     """Bent both ways, pulled and twisted."""
     m, shape = SpatialMechanism("arm"), beams.rectangle(0.03, 0.05)

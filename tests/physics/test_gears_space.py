@@ -6,11 +6,10 @@ from __future__ import annotations
 
 import math
 
-import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
+from lagrange_casadi import Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import belt, gears
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
@@ -228,55 +227,6 @@ def test_a_worm_drives_its_wheel(mu, hand):
             back = (cosine - mu / math.tan(lead)) / (cosine + mu * math.tan(lead))
             assert given / taken == pytest.approx(np.full(3, back), rel=1e-9)
         assert given - taken == pytest.approx(solution.output("mesh_loss"), rel=1e-9, abs=1e-9)
-
-
-@pytest.mark.quick
-def test_a_wheel_rolls_round_a_circle_on_a_plane():
-    """It goes where it points and turns as it goes; what drives it along x has the rest of its
-    weight's way to overcome.
-
-    With e where it points and n to its left: M a = F x + mu e + lambda n, and what spins the wheel
-    is -r mu.
-    """
-    m, radius, circle, mass, spin = SpatialMechanism("unicycle"), 0.2, 1.5, 7.0, 0.05
-    stage, saddle = (
-        m.link(name, length=0.1, mass=0.0, centre=(0, 0, 0), inertia=(0, 0, 0))
-        for name in ("stage", "saddle")
-    )
-    fork = m.link("fork", length=0.1, mass=4.0, centre=(0, 0, 0), inertia=(0.1, 0.1, 0.1))
-    wheel = m.link("wheel", length=radius, mass=3.0, centre=(0, 0, 0), inertia=(0.03, spin, 0.03))
-    x = m.prismatic("x", m.ground.at(0, 0, radius), stage, axis=(1, 0, 0))
-    y = m.prismatic("y", stage, saddle, axis=(0, 1, 0))
-    yaw = m.revolute("yaw", saddle, fork, axis=(0, 0, 1))
-    shaft = m.revolute("shaft", fork, wheel, axis=(0, 1, 0))
-    c, s = ca.cos(m.coordinate(yaw)), ca.sin(m.coordinate(yaw))
-    m.nonholonomic(
-        "rolling", c * m.rate(x) + s * m.rate(y) - radius * m.rate(shaft), replaces=shaft
-    )
-    m.nonholonomic("no_slip", c * m.rate(y) - s * m.rate(x), replaces=y)
-
-    def angle(t):
-        return 0.2 + 0.8 * t + 0.3 * t**2
-
-    laws = {
-        "x": motion.expression(lambda t: circle * ca.sin(angle(t))),
-        "y": motion.expression(lambda t: -circle * ca.cos(angle(t))),
-        "yaw": motion.expression(angle),
-        "shaft": motion.expression(lambda t: circle / radius * angle(t)),
-    }
-    found = evaluate(Scene(m, laws, t=(0.0, 0.9, 10)))
-    assert found.certified
-    t, turn = found.t, 0.6
-    going = 0.8 + 0.6 * t
-    mu = -spin * (circle * turn / radius) / radius
-    push = (mass * circle * turn - mu) / np.cos(angle(t))
-    assert found.effort("x") == pytest.approx(push, abs=1e-11)
-    assert found.effort("yaw") == pytest.approx(np.full(t.size, (0.1 + 0.03) * turn), abs=1e-11)
-    assert found.series["multiplier:rolling"] == pytest.approx(np.full(t.size, mu), abs=1e-11)
-    assert found.series["multiplier:no_slip"] == pytest.approx(
-        mass * circle * going**2 + push * np.sin(angle(t)), abs=1e-11
-    )
-    assert {"effort:y", "effort:shaft"}.isdisjoint(found.series)
 
 
 @pytest.mark.quick

@@ -32,7 +32,6 @@ from lagrange_casadi import (
     read_measurements,
 )
 from lagrange_casadi.errors import UnknownNameError
-from lagrange_casadi.motion import expression
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -54,21 +53,6 @@ def test_base_parameters_of_a_planar_arm_are_those_of_the_textbook():
     assert not result.unexcited
     assert np.isinf([result.errors[name] for name in ("m2", "h1", "J1")]).all()
     assert max(result.comparison.relative.values()) < 1e-12
-
-
-def test_what_the_motion_does_not_tell_is_said():
-    """With the second joint at rest its links are one; other motions would tell them apart."""
-    scene = two_links()
-    still = Scene(
-        scene.mechanism,
-        dict(scene.motion) | {"B": expression(lambda t: 0.8 + 0.0 * t)},
-        t=(0, 3, 301),
-    )
-    result = identify(still, record(still, ARM, "effort:A"))
-    assert len(result.base) < 4
-    assert len(result.base) + len(result.unexcited) == 4
-    other = identify(scene, record(scene, ARM, "effort:A"))
-    assert not other.unexcited
 
 
 @pytest.mark.parametrize(

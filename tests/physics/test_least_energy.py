@@ -203,20 +203,6 @@ def test_a_panel_with_both_diagonals(width, height, load, printed, known):
     np.testing.assert_allclose(list(found.values()), n[1] + redundant * n[0], atol=1e-7 * load)
 
 
-def test_what_equilibrium_determines_is_what_it_was():
-    m, solution = moving()
-    plain = evaluate(
-        Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9))
-    )
-    for output, values in plain.outputs.items():
-        if output not in plain.indeterminate:
-            np.testing.assert_array_equal(values, solution.outputs[output])
-    assert plain.indeterminate == solution.elasticity.completed
-    assert all(
-        name in solution.errors for name in plain.undetermined if name.startswith("reaction")
-    )
-
-
 @pytest.mark.parametrize(
     ("elastic", "error", "message"),
     [

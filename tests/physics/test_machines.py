@@ -10,24 +10,8 @@ import numpy as np
 import pytest
 from conftest import CASES
 from machines import shown
-from splines import by_hand
 
 from lagrange_casadi import evaluate, load_case
-
-
-def gas(top, lean, name):
-    """The pressure by a spline made another way."""
-    bars = shown("V-twin")["bars"]
-    pressure = by_hand(
-        np.linspace(0.0, 4 * math.pi, 19), np.array([1e5 * bar for bar in bars]), True
-    )
-
-    def push(place):
-        size = -math.pi / 4 * 0.08**2 * pressure(place(("crank", 0, 0))[2].v - top)[0]
-        return [((f"{name}_piston", 0, 0), size * math.cos(lean), size * math.sin(lean), 0)]
-
-    return push
-
 
 QUARTER, TAU = math.pi / 4, 2 * math.pi
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mechanisms import parallelogram
 
-from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sweep, tolerances
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare
 from lagrange_casadi.errors import AssemblyError, MobilityError
 from lagrange_casadi.motion import polynomial
 
@@ -50,23 +50,6 @@ def test_two_guides_share_a_load():
         f"reaction:{g}:{k}" for g in ("G1", "G2") for k in ("fy", "mz")
     }
     assert np.all(solution.reaction("G2").fx == 0.0)
-
-
-def test_a_static_structure_needs_no_drive():
-    """A cantilever: closed form of a textbook."""
-    m = Mechanism("cantilever")
-    beam = m.link("beam", length=2.0, mass=3.0)
-    m.weld("wall", m.ground, beam)
-    m.force("tip", beam.tip, y=-10.0)
-    solution = evaluate(Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5)))
-    xi = 2.0 * solution.xi
-    np.testing.assert_allclose(
-        solution.section("beam").bending[0],
-        -10 * (2 - xi) - 3 / 2 * 9.81 * (2 - xi) ** 2 / 2,
-        rtol=1e-14,
-    )
-    assert solution.reaction("wall").mz[0] == pytest.approx(10 * 2 + 3 * 9.81 * 1)
-    assert solution.reaction("wall").fy[0] == pytest.approx(10 + 3 * 9.81)
 
 
 def test_a_weld_that_misses_by_half_a_turn_does_not_fit():

@@ -213,31 +213,6 @@ def test_a_parabola_on_a_simple_beam(mass):
 
 
 @pytest.mark.quick
-def test_the_middle_third():
-    """Of q on the middle third: supports of q l/6, and 5 q l^2/72 at the middle; straight before
-    and after.
-    """
-    q, l = 7.0, SPAN
-
-    def shear(u):
-        return -q * l * (1 / 6 - np.clip(u - 1 / 3, 0, 1 / 3))
-
-    def bending(u):
-        return (
-            q
-            * l**2
-            * (u / 6 - np.maximum(u - 1 / 3, 0) ** 2 / 2 + np.maximum(u - 2 / 3, 0) ** 2 / 2)
-        )
-
-    solution = supported(y=-q, between=(l / 3, 2 * l / 3))
-    looks_like(solution, shear, bending, q * l)
-    assert solution.peak("section:beam:bending").value == pytest.approx(
-        5 * q * l**2 / 72, rel=1e-14
-    )
-    assert abs(solution.peak("section:beam:shear").value) == pytest.approx(q * l / 6, rel=1e-14)
-
-
-@pytest.mark.quick
 def test_a_load_that_changes_sign_turns_a_moment_twice():
     """From -q to q: q l^2/6 u (1 - u)(1 - 2u), whose summits of either sign are as large."""
     q, l = 9.0, SPAN

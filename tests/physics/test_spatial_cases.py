@@ -4,7 +4,6 @@ worked out here.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import runpy
 
@@ -14,7 +13,7 @@ import pytest
 from conftest import CASES
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.motion import harmonic
 
 G = 9.81
 
@@ -64,61 +63,6 @@ def test_a_shaft_out_of_phase_pulsates():
     fast = vm(scene_of("cardan_shaft"), parameters=parameters, wanted=["effort"]).effort("bearing")
     assert np.mean(fast[:-1]) == pytest.approx(80.0, abs=1e-11)
     assert np.ptp(fast) > 4 * np.ptp(slow.effort("bearing"))
-
-
-def test_an_arm_at_rest_holds_the_weights_beyond_each_joint():
-    scene = scene_of("arm6")
-    angles = dict(zip(scene.motion, (0.4, 0.9, -1.3, 0.7, 1.1, -0.5), strict=True))
-    found = vm(
-        dataclasses.replace(
-            scene, motion={joint: polynomial(angle) for joint, angle in angles.items()}
-        ),
-        t=(0, 0, 1),
-    )
-    constants = runpy.run_path(str(CASES / "arm6" / "case.py"))
-    place = [vector(found, "pose", f"link{k}")[0] for k in range(1, 7)]
-    centres = [
-        place[k] + length / 2 * along(found, f"link{k + 1}")[0]
-        for k, length in enumerate(constants["LENGTHS"])
-    ]
-    R = vector(found, "pose", "tool", [f"{a}{b}" for a in "xyz" for b in "xyz"])[0].reshape(3, 3)
-    centres.append(vector(found, "pose", "tool")[0] + np.array([0.05, 0.01, 0.0]) @ R)
-    masses = (*constants["MASSES"], 5.0)
-    axes = [UP, *(vector(found, "pose", f"link{k}", ("zx", "zy", "zz"))[0] for k in (1, 2))]
-    axes += [
-        along(found, "link3")[0],
-        vector(found, "pose", "link4", ("zx", "zy", "zz"))[0],
-        along(found, "link5")[0],
-    ]
-    for k, joint in enumerate(angles):
-        beyond = sum(
-            np.cross(c - place[k], m * G * UP) for c, m in zip(centres[k:], masses[k:], strict=True)
-        )
-        assert found.effort(joint)[0] == pytest.approx(axes[k] @ beyond, abs=1e-12 * 200), joint
-
-
-def test_a_delta_at_rest_holds_its_weights():
-    """In the middle each motor's effort is a third of the rise of the weights' energy with the
-    arms' angle.
-    """
-    scene = scene_of("delta")
-    laws = {f"tool:slide_{k}": polynomial(place) for k, place in ((1, 0.0), (2, 0.0), (3, -0.62))}
-    found = vm(dataclasses.replace(scene, motion=laws), t=(0, 0, 1), wanted=["effort", "motion"])
-    upper = 0.3
-    angle = found.motion("motor0").value[0]
-    masses = {"arm": 0.4, "bar": 0.12, "platform": 0.5}
-    out, down = 0.2 + upper * math.cos(angle) - 0.06, -0.62 + upper * math.sin(angle)
-    assert math.hypot(out, down) == pytest.approx(0.65, abs=1e-14)
-    # out^2 + down^2 stays what it is.
-    knee = -upper * math.cos(angle)
-    platform = (out * upper * math.sin(angle) - down * upper * math.cos(angle)) / down
-    rise = (
-        3 * masses["arm"] * knee / 2
-        + 6 * masses["bar"] * (knee + platform) / 2
-        + masses["platform"] * platform
-    )
-    for k in range(3):
-        assert found.effort(f"motor{k}")[0] == pytest.approx(G * rise / 3, abs=1e-12)
 
 
 def test_a_suspension_at_rest():

@@ -155,14 +155,6 @@ def test_a_result_says_that_rigid_links_are_not_enough(tmp_path):
     assert load(tmp_path / "fast.h5").notes == fast.notes
 
 
-def test_a_span_of_two_swings_has_the_second_harmonic():
-    frequency = natural()
-    scene = shaken(0.2 * frequency)
-    found = vibration(evaluate(scene, t=(0, 2 / (0.2 * frequency), 65), certificate=False), "bar")
-    assert found.harmonic == 2
-    assert found.excess == pytest.approx(0.04 / 0.96, rel=1e-4)
-
-
 def test_what_is_no_cycle_is_told():
     scene = shaken(10.0)
     half = vibration(evaluate(scene, t=(0.0, 0.03, 65), certificate=False), "bar")
