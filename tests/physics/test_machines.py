@@ -11,7 +11,8 @@ import pytest
 from conftest import CASES
 from machines import shown
 
-from lagrange_casadi import evaluate, load_case
+from lagrange_casadi import Scene, evaluate, load_case
+from lagrange_casadi.motion import dwell, move, moves
 
 QUARTER, TAU = math.pi / 4, 2 * math.pi
 
@@ -238,3 +239,89 @@ def test_power_and_momentum(module, values):
         for name in ("main_fixed", "main_floating", *walls)
     ]
     assert np.abs(sum(every) - told).max() < 1e-10 * np.abs(every).max()
+
+
+@pytest.mark.parametrize(
+    "values", [{}, {"lift": 0.015, "base": 0.06, "stiffness": 20e3, "speed": 40.0}]
+)
+def test_the_contact_of_a_roller_cam_is_that_of_closed_forms(values):
+    """Norton's pressure angle; the spring, the weight and inertia over its cosine; their moment on
+    the shaft.
+    """
+    solution = evaluate(load_case(CASES / "roller_cam").scene, parameters=values)
+    assert solution.certified
+    given = {"base": 0.045, "stiffness": 12e3, "speed": 60.0, "lift": 0.02} | values
+    motion = solution.motion("guide")
+    least, place = np.sqrt((given["base"] + 0.012) ** 2 - 0.006**2), motion.value - 0.05
+    assert np.ptp(motion.value) == pytest.approx(given["lift"], rel=1e-3)
+    assert place.min() == pytest.approx(least, rel=1e-12)
+    pushed = 0.5 * (motion.acceleration + 9.81) + 300.0 + given["stiffness"] * (place - least)
+    tangent = (motion.rate / given["speed"] - 0.006) / place
+    force = solution.output("contact_force")
+    assert force == pytest.approx(pushed * np.hypot(1.0, tangent), rel=1e-10)
+    assert solution.output("contact_pressure_angle") == pytest.approx(
+        np.arctan(np.abs(tangent)), abs=1e-11
+    )
+    assert solution.reaction("guide").fx == pytest.approx(
+        pushed * tangent, rel=0, abs=1e-10 * pushed.max()
+    )
+    assert solution.effort("shaft") == pytest.approx(
+        pushed * motion.rate / given["speed"], rel=0, abs=1e-11 * pushed.max()
+    )
+    assert force.min() > 0.0
+
+
+@pytest.mark.parametrize("values", [{}, {"mu": 0.05, "payload": 300.0}, {"lead": 0.012, "mu": 0.2}])
+def test_the_motor_of_a_screw_lift_lifts_the_weight_and_the_friction(values):
+    """W r tan(angle +- phi) with the inertia of table and spindle; the efficiency of the way up;
+    and work of the whole cycle.
+    """
+    solution = evaluate(load_case(CASES / "screw_lift").scene, parameters=values)
+    assert solution.certified
+    told = {"mu": 0.12, "payload": 800.0, "lead": 0.006} | values
+    angle, phi = math.atan(told["lead"] / (2 * math.pi) / 0.0135), math.atan(told["mu"])
+    motion, table = solution.motion("motor"), solution.motion("guide")
+    weight = 9.81 * (told["payload"] + 60.0) + 60.0 * table.acceleration
+    up = table.rate > 0.0
+    thread = weight * 0.0135 * np.where(up, math.tan(angle + phi), math.tan(angle - phi))
+    # The spindle turns backward on the way up.
+    assert solution.effort("motor") == pytest.approx(6e-4 * motion.acceleration - thread, rel=1e-11)
+    assert table.value == pytest.approx(-motion.value * told["lead"] / (2 * math.pi), abs=1e-13)
+    lifted, given = weight * table.rate, -thread * motion.rate
+    assert (lifted / given)[up] == pytest.approx(
+        np.full(up.sum(), math.tan(angle) / math.tan(angle + phi)), rel=1e-11
+    )
+    assert solution.output("lifting_power") == pytest.approx(lifted, rel=1e-11)
+    # Where it locks itself, it must be driven down.
+    assert (given[~up] > 0.0).all() == (phi > angle)
+    lost = solution.series["friction:flanks:loss"]
+    assert given - lifted == pytest.approx(lost, rel=1e-10, abs=1e-10)
+    assert (lost > 0.0).all()
+
+
+def test_the_file_of_a_scara_is_as_good_as_the_moves_that_it_was_made_from():
+    scene = load_case(CASES / "scara").scene
+
+    def played(start, end):
+        out = move(f"{end} deg", time=0.47, law="s_curve")
+        back = move(f"{start} deg", time=0.43, law="s_curve")
+        return moves(
+            [dwell(0.08), out, dwell(0.12), back, dwell(0.1)], start=f"{start} deg", cyclic=True
+        )
+
+    exact = Scene(
+        scene.mechanism,
+        {"shoulder": played(10, 95), "motor": played(70, 160)},
+        t=scene.t,
+        posture=scene.posture,
+    )
+    found, expected = evaluate(scene, parameters={"pace": 1.0}), evaluate(exact)
+    for joint in ("shoulder", "motor"):
+        assert (
+            np.degrees(np.abs(found.motion(joint).value - expected.motion(joint).value)).max()
+            < 0.002
+        )
+        gap = found.effort(joint) - expected.effort(joint)
+        size = np.abs(expected.effort(joint)).max()
+        assert np.abs(gap).max() < 0.03 * size
+        assert np.sqrt(np.mean(gap**2)) < 0.006 * size
