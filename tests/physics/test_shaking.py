@@ -11,6 +11,8 @@ from conftest import CASES
 from lagrange_casadi import (
     Mechanism,
     Scene,
+    SpatialMechanism,
+    density,
     evaluate,
     load_case,
     optimise,
@@ -181,3 +183,32 @@ def test_a_counterweight_trades_one_direction_for_the_other():
     assert found.values["weight"] == pytest.approx(30 / per_kilogram, rel=1e-6)
     assert found.objective == pytest.approx(2.0 * per_kilogram - 30, rel=1e-6)
     assert found.limits[0].multiplier == pytest.approx(1.0, rel=1e-5)
+
+
+def test_of_slices_with_rotary_inertia():
+    """Each effort of a ball is the moment about its turn's axis, the opposite of the shaking
+    moment's there.
+    """
+    m = SpatialMechanism("thick")
+    m.set_gravity(0, 0, 0)
+    slices = {"yy": density.polynomial(0.02, 0.03), "zz": 0.05, "yz": 0.004}
+    bar = m.link("bar", length=0.8, density=density.thick(density.polynomial(3.0, 1.0), **slices))
+    m.spherical("O", m.ground, bar)
+    shaking(m)
+    laws = [polynomial(0.1, 2.0, 1.5), polynomial(0.2, -3.0), polynomial(0.3, 1.0, -2.0)]
+    solution = evaluate(Scene(m, {"O": laws}, t=(0, 0.3, 5)), backend="vm", certificate=False)
+    a, b = (solution.series[f"motion:O:turn_{k}"] for k in (1, 2))
+    axes = (
+        np.array([1 + 0 * a, 0 * a, 0 * a]),
+        np.array([0 * a, np.cos(a), np.sin(a)]),
+        np.array([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)]),
+    )
+    moment = np.array([solution.output(f"shaking_m{x}") for x in "xyz"])
+    for k, axis in enumerate(axes):
+        told = -(moment * axis).sum(axis=0)
+        np.testing.assert_allclose(
+            told,
+            solution.series[f"effort:O:turn_{k + 1}"],
+            rtol=0,
+            atol=1e-12 * np.abs(moment).max(),
+        )
