@@ -133,6 +133,20 @@ def test_full_ones_are_their_integrals(kind):
 
 
 @pytest.mark.parametrize(
+    ("kind", "flanges"), [("i_section", 2), ("c_section", 2), ("t_section", 1)]
+)
+def test_thin_open_walls_twist_as_textbooks_say(kind, flanges):
+    """Timoshenko, Strength of Materials II: the sum of l t^3/3 over the walls; of a box Bredt's
+    4 A^2 t/l.
+    """
+    t = 1e-4
+    found = getattr(beams, kind)(H, B, t, t).properties().torsion
+    assert found == pytest.approx((H + flanges * B) * t**3 / 3, rel=1e-2)
+    box = beams.box(H + t, B + t, t, t).properties().torsion
+    assert box == pytest.approx(4 * (H * B) ** 2 / (2 * (H + B) / t), rel=1e-2)
+
+
+@pytest.mark.parametrize(
     ("ratio", "constant", "modulus"),
     # Timoshenko and Goodier, Theory of Elasticity, table of art. 109: k1 and k2.
     [
