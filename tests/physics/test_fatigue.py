@@ -22,19 +22,11 @@ from lagrange_casadi import (
     codegen,
     evaluate,
     export,
+    strength,
     table,
 )
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.strength import (
-    CRITERIA,
-    critical_plane,
-    cycles,
-    factor,
-    plane_factor,
-    rainflow,
-    reversed_amplitude,
-)
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -93,27 +85,27 @@ def test_out_of_phase_is_not_in_phase(phase, size):
     assert solution.safety("bar").against("fatigue") == pytest.approx(2.76 / size, rel=1e-4)
 
 
-@pytest.mark.parametrize("criterion", CRITERIA)
+@pytest.mark.parametrize("criterion", strength.CRITERIA)
 @given(st.floats(1e5, 5e8), st.floats(-5e8, 3e8))
 def test_at_its_factor_a_load_is_worth_the_endurance_limit(criterion, amplitude, mean):
     """A mean in compression counts as none; one that is too much alone leaves no life."""
-    n = float(factor(amplitude, mean, BAR, criterion))
-    worth = reversed_amplitude(n * amplitude, n * mean, BAR, criterion)
+    n = float(strength.factor(amplitude, mean, BAR, criterion))
+    worth = strength.reversed_amplitude(n * amplitude, n * mean, BAR, criterion)
     assert worth == pytest.approx(BAR.endurance, rel=1e-9)
     if mean <= 0.0:
         assert n == pytest.approx(BAR.endurance / amplitude, rel=1e-12)
-    assert cycles(reversed_amplitude(1e6, 900e6, BAR, criterion), BAR) == 0.0
+    assert strength.cycles(strength.reversed_amplitude(1e6, 900e6, BAR, criterion), BAR) == 0.0
 
 
 def test_lives_are_on_the_line_and_endless_below_it():
-    assert cycles(0.9 * 551e6, BAR) == pytest.approx(1e3)
-    assert cycles(276e6 * (1 + 1e-9), BAR) == pytest.approx(1e6, rel=1e-6)
-    assert cycles(276e6, BAR) == cycles(0.0, BAR.but(endless=False)) == np.inf
+    assert strength.cycles(0.9 * 551e6, BAR) == pytest.approx(1e3)
+    assert strength.cycles(276e6 * (1 + 1e-9), BAR) == pytest.approx(1e6, rel=1e-6)
+    assert strength.cycles(276e6, BAR) == strength.cycles(0.0, BAR.but(endless=False)) == np.inf
     slope = 3 / math.log10(0.9 * 551 / 276)
-    assert cycles(138e6, BAR.but(endless=False)) == pytest.approx(1e6 * 2**slope)
+    assert strength.cycles(138e6, BAR.but(endless=False)) == pytest.approx(1e6 * 2**slope)
     morrow = (
-        factor(1e8, 1e8, BAR, "morrow"),
-        factor(1e8, 1e8, BAR.but(fatigue_strength=1e9), "morrow"),
+        strength.factor(1e8, 1e8, BAR, "morrow"),
+        strength.factor(1e8, 1e8, BAR.but(fatigue_strength=1e9), "morrow"),
     )
     assert morrow == pytest.approx((1 / (1 / 2.76 + 100 / 896), 1 / (1 / 2.76 + 0.1)))
 
@@ -128,7 +120,7 @@ PUBLISHED = [(3, -0.5, 0.5, 0, 1), (4, -1.0, 0.5, 1, 2), (4, 1.0, 1.0, 4, 5), (8
 
 
 def test_the_example_of_the_standard():
-    assert [tuple(swing) for swing in rainflow(FIGURE_6)] == PUBLISHED
+    assert [tuple(swing) for swing in strength.rainflow(FIGURE_6)] == PUBLISHED
 
 
 @given(st.lists(st.integers(-9, 9), min_size=1, max_size=40), st.integers(0, 40))
@@ -136,12 +128,12 @@ def test_every_reversal_is_used_once_wherever_a_repeating_history_begins(history
     """The sizes of all swings add up to half of the way that the history goes up and down."""
     way, last = float(np.abs(np.diff(history)).sum()), abs(history[0] - history[-1])
     for repeating, told in ((False, way), (True, way + last)):
-        swings = rainflow(history, repeating=repeating)
+        swings = strength.rainflow(history, repeating=repeating)
         assert sum(s.size * s.times for s in swings) == pytest.approx(told / 2)
         for swing in swings:
             a, b = history[swing.first], history[swing.last]
             assert (swing.size, swing.mean) == (abs(a - b), (a + b) / 2)
-    turned = rainflow(np.roll(history, shift), repeating=True)
+    turned = strength.rainflow(np.roll(history, shift), repeating=True)
     assert sorted(s.size for s in turned) == sorted(s.size for s in swings)
 
 
@@ -151,14 +143,14 @@ def test_a_public_library_counts_the_same_and_a_life_is_miners_sum_of_it():
     for count in (200, 9, 17):
         history = draw.normal(size=count) * 120.0
         expected = [tuple(map(float, cycle)) for cycle in library.extract_cycles(history)]
-        found = np.array([tuple(swing) for swing in rainflow(history)])
+        found = np.array([tuple(swing) for swing in strength.rainflow(history)])
         np.testing.assert_allclose(found, np.array(expected), rtol=0, atol=1e-11)
         # From its largest value and back to it, a history that repeats has no half cycle but two
         # of its largest swing.
         closed = np.roll(history, -int(np.argmax(history)))
         swings = library.extract_cycles([*closed, closed[0]])
         told = sum(
-            times / cycles(reversed_amplitude(5e5 * size, 1e6 * mean, worn), worn)
+            times / strength.cycles(strength.reversed_amplitude(5e5 * size, 1e6 * mean, worn), worn)
             for size, mean, times, *_ in swings
         )
         at = np.linspace(0.0, 1.0, count + 1)
@@ -188,12 +180,12 @@ def test_a_bar_in_tension_with_a_mean(amplitude, mean):
     """On a plane at an angle it is a sin(2u)/2 + k (a + m) cos(u)^2, at most (k (a + m) + hypot(a,
     k (a + m)))/2; a fully reversed tension is worth the endurance limit.
     """
-    found = critical_plane(history(mean + amplitude * np.cos(TURN)))
+    found = strength.critical_plane(history(mean + amplitude * np.cos(TURN)))
     largest = SHARE * (amplitude + mean)
     told = (largest + math.hypot(amplitude, largest)) / 2
     assert found.value() == pytest.approx(1e6 * told, rel=1e-8)
-    plane = critical_plane(history(138.0 * np.cos(TURN)))
-    assert plane_factor(plane, BAR) == pytest.approx(2.0, rel=1e-9)
+    plane = strength.critical_plane(history(138.0 * np.cos(TURN)))
+    assert strength.plane_factor(plane, BAR) == pytest.approx(2.0, rel=1e-9)
     assert math.tan(2 * plane.angle) == pytest.approx(1 / SHARE, rel=1e-3)
 
 
@@ -203,10 +195,14 @@ def test_normal_and_shear_stress_in_phase_and_a_quarter_turn_out_of_it(along):
     shear stress points. Out of phase, shear stress of half the normal one has the same amplitude on
     all planes that are turned about the third direction: the plane is the cross-section.
     """
-    found = critical_plane(history(100 * np.cos(TURN), *(70 * c * np.cos(TURN) for c in along)))
+    found = strength.critical_plane(
+        history(100 * np.cos(TURN), *(70 * c * np.cos(TURN) for c in along))
+    )
     told = SHARE * 50.0 + math.hypot(50.0, 70.0) * math.hypot(1.0, SHARE)
     assert found.value() == pytest.approx(1e6 * told, rel=1e-6)
-    found = critical_plane(history(100 * np.cos(TURN), *(50 * c * np.sin(TURN) for c in along)))
+    found = strength.critical_plane(
+        history(100 * np.cos(TURN), *(50 * c * np.sin(TURN) for c in along))
+    )
     assert found.value() == pytest.approx(1e6 * (50.0 + SHARE * 100.0), rel=1e-6)
     assert found.angle == pytest.approx(0.0, abs=1e-3)
 
@@ -220,7 +216,7 @@ def test_any_amplitudes_out_of_phase_against_all_planes_one_by_one(share):
         across = normal * c * c + 2 * shear * c * s
         around = -normal * c * s + shear * (c * c - s * s)
         best = max(best, np.ptp(around) / 2 + share * max(across.max(), 0.0))
-    found = critical_plane(history(normal, shear), share)
+    found = strength.critical_plane(history(normal, shear), share)
     assert found.value(share) == pytest.approx(1e6 * best, rel=1e-5)
 
 
@@ -233,7 +229,7 @@ def test_a_link_is_judged_by_its_worst_plane():
     told = solution.safety("rod", criterion="findley").against("fatigue")
     places = np.linspace(0.0, 1.0, 81)
     factors = [
-        plane_factor(critical_plane(rows), steel)
+        strength.plane_factor(strength.critical_plane(rows), steel)
         for place in places
         for rows in np.moveaxis(stress.at(place), 1, 0)
     ]
@@ -244,17 +240,19 @@ def test_a_link_is_judged_by_its_worst_plane():
     ("ask", "error", "says"),
     [
         (
-            lambda: factor(1.0, 0.0, beams.material("EN AW-6082-T6")),
+            lambda: strength.factor(1.0, 0.0, beams.material("EN AW-6082-T6")),
             DeclarationError,
             "'EN AW-6082-T6' has no endurance, which fatigue by goodman needs",
         ),
         (
-            lambda: factor(1.0, 0.0, beams.Material("x", 1.0, endurance=1.0), "soderberg"),
+            lambda: strength.factor(1.0, 0.0, beams.Material("x", 1.0, endurance=1.0), "soderberg"),
             DeclarationError,
             "'x' has no yield_strength, which fatigue by soderberg needs",
         ),
         (
-            lambda: plane_factor(critical_plane(history(1.0)), BAR.but(endurance=None)),
+            lambda: strength.plane_factor(
+                strength.critical_plane(history(1.0)), BAR.but(endurance=None)
+            ),
             DeclarationError,
             "has no endurance, which fatigue by findley needs",
         ),
@@ -264,7 +262,7 @@ def test_a_link_is_judged_by_its_worst_plane():
             "unknown fatigue criterion 'find'.*goodman, gerber, soderberg, morrow, findley",
         ),
         (
-            lambda: rainflow([1.0, math.nan]),
+            lambda: strength.rainflow([1.0, math.nan]),
             DeclarationError,
             "expected a row of finite numbers",
         ),
@@ -334,10 +332,12 @@ def count(tmp_path_factory):
 
 def damage(history, material):
     """Miner's sum over the swings of a whole history that has not ended."""
-    swings = rainflow(history) if len(history) else []
-    sizes = reversed_amplitude([s.size / 2 for s in swings], [s.mean for s in swings], material)
+    swings = strength.rainflow(history) if len(history) else []
+    sizes = strength.reversed_amplitude(
+        [s.size / 2 for s in swings], [s.mean for s in swings], material
+    )
     with np.errstate(divide="ignore"):
-        return float(np.sum(np.array([s.times for s in swings]) / cycles(sizes, material)))
+        return float(np.sum(np.array([s.times for s in swings]) / strength.cycles(sizes, material)))
 
 
 def histories(rng):
