@@ -46,7 +46,6 @@ from lagrange_casadi.base.threads import in_threads
 from lagrange_casadi.base.units import angle, typed
 from lagrange_casadi.base.units import number as units_number
 from lagrange_casadi.base.vocabulary import PRECISIONS
-from lagrange_casadi.beams.beam import beam_from_numbers, beam_to_numbers
 from lagrange_casadi.beams.profiles import Profile, read_profiles
 from lagrange_casadi.cli.report import Row as ReportRow
 from lagrange_casadi.cli.report import Rows as ReportRows
@@ -67,29 +66,25 @@ from lagrange_casadi.codegen.reduction import CALL as DESIGNS_CALL
 from lagrange_casadi.codegen.search import CALL as SEARCH_CALL
 from lagrange_casadi.codegen.search import CURVES, interface
 from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
-from lagrange_casadi.declare import laws, motion
+from lagrange_casadi.declare import laws
 from lagrange_casadi.declare.declared import Declared
 from lagrange_casadi.declare.density import Density, NumericDensity
 from lagrange_casadi.declare.description import (
     coordinates_of,
     describe,
     drives_of,
-    kinds_of_described,
     motions_of,
     shape_of,
 )
 from lagrange_casadi.declare.directions import Reference
-from lagrange_casadi.declare.end_conditions import ENDS, effective_lengths
 from lagrange_casadi.declare.ends import beyond_ends, share_beyond
 from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.declare.joints import Axis, Joint
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.laws import Laws
-from lagrange_casadi.declare.limits import END
 from lagrange_casadi.declare.measures import Measure, Measures
 from lagrange_casadi.declare.meshes import Mesh, Transmission, Wrench
 from lagrange_casadi.declare.motion import Scaled
-from lagrange_casadi.declare.motion_inverse import Missed, MotionInverse
 from lagrange_casadi.declare.parts import (
     Constraint,
     Force,
@@ -106,37 +101,20 @@ from lagrange_casadi.declare.parts import (
     Torque,
 )
 from lagrange_casadi.declare.parts import Row as NonHolonomicRow
-from lagrange_casadi.declare.polynomials import lowest, powers
-from lagrange_casadi.declare.rest_laws import (
-    LAWS,
-    Limits,
-    rest_law,
-    s_curve,
-    s_curve_within,
-    trapezoid,
-    trapezoid_within,
-)
-from lagrange_casadi.declare.revolutions import note
 from lagrange_casadi.declare.scene import Wanted, outputs
 from lagrange_casadi.declare.spatial import reference_posture
 from lagrange_casadi.declare.stated import Stated
 from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.declare.wanted_names import by_parameters, others
-from lagrange_casadi.elastic.bending_modes import closed as bending_modes_closed
-from lagrange_casadi.elastic.bending_modes import first_mode
 from lagrange_casadi.elastic.compliance import Compliance, nodes
 from lagrange_casadi.elastic.deflection import deflection
 from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
-from lagrange_casadi.elements.plate import area_of
 from lagrange_casadi.elements.profile_lift import read_profile
 from lagrange_casadi.equations import assembly, blocks, friction, loops, mobility
 from lagrange_casadi.equations import derive as equations_derive
 from lagrange_casadi.equations.assembly import assemble
 from lagrange_casadi.equations.blocks import solving_order
-from lagrange_casadi.equations.buckling import Column as BucklingColumn
-from lagrange_casadi.equations.buckling import critical_stress
-from lagrange_casadi.equations.buckling import used as buckling_used
 from lagrange_casadi.equations.derive import derive as derive_derive
 from lagrange_casadi.equations.fingerprint import fingerprint, sources
 from lagrange_casadi.equations.integrability import Course, no_rates
@@ -146,15 +124,11 @@ from lagrange_casadi.equations.model_data import template
 from lagrange_casadi.equations.multibody import Turned, motion_along
 from lagrange_casadi.equations.program import Program
 from lagrange_casadi.equations.reciprocals import differentiable, share_reciprocals
-from lagrange_casadi.equations.released_loops import rank_of
-from lagrange_casadi.equations.revolutions import depends_on_turns
-from lagrange_casadi.equations.section_function import SIDES, SectionInputs, section
 from lagrange_casadi.equations.spherical import axes_of as spherical_axes_of
 from lagrange_casadi.equations.spherical import quaternion_of
 from lagrange_casadi.equations.stress import KINDS
 from lagrange_casadi.equations.tree import span
 from lagrange_casadi.exports import export, fmu
-from lagrange_casadi.exports.fatigue import counter
 from lagrange_casadi.exports.folder import MANIFEST as FOLDER_MANIFEST
 from lagrange_casadi.exports.units import BASE, base_unit
 from lagrange_casadi.figures import figures
@@ -192,14 +166,12 @@ from lagrange_casadi.instants.derivatives import derivatives
 from lagrange_casadi.instants.determinacy import determinate
 from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.instants.grids import GRID, LARGEST
-from lagrange_casadi.instants.laws import law_of, made_of
 from lagrange_casadi.instants.loads import DistributedLoad, SpatialPointLoad
 from lagrange_casadi.instants.ordering import ordered, vanishes
 from lagrange_casadi.instants.refusal import refusal as refusal_refusal
 from lagrange_casadi.instants.section_law import PointLoad, SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution
 from lagrange_casadi.instants.statistics import Statistics
-from lagrange_casadi.instants.views import Section
 from lagrange_casadi.methods import METHODS as METHODS_METHODS
 from lagrange_casadi.peak_search import search
 from lagrange_casadi.peak_search.between import highest, passed, passed_or_touched, unresolved
@@ -218,7 +190,6 @@ from lagrange_casadi.report.contents import contents
 from lagrange_casadi.report.live import Live
 from lagrange_casadi.report.of_sweep import is_of
 from lagrange_casadi.report.page import COMPARISON_SCRIPTS, LIVE_SCRIPTS, SCRIPTS, SWEEP_SCRIPTS
-from lagrange_casadi.report.sections import section_entries
 from lagrange_casadi.report.still import still
 from lagrange_casadi.sensitivity.jacobian import total
 from lagrange_casadi.sensitivity.peaks import PeakKind
@@ -255,26 +226,20 @@ from lagrange_casadi.store.runs import save as runs_save
 from lagrange_casadi.store.scales import LARGE, Scales
 from lagrange_casadi.store.untrusted import check_shape, reported_as
 from lagrange_casadi.store.untrusted import parsed as untrusted_parsed
-from lagrange_casadi.strength import critical_plane, plane_factor
-from lagrange_casadi.strength.critical_plane import DUCTILE, FINDLEY, plane_score
+from lagrange_casadi.strength.critical_plane import FINDLEY
 from lagrange_casadi.strength.fatigue import (
     CRITERIA,
     Histories,
-    _farthest,
     cycles,
     factor,
     lacking,
     loaded,
-    reversed_amplitude,
     use_score,
 )
 from lagrange_casadi.strength.fatigue import used as fatigue_used
 from lagrange_casadi.strength.member import Member
-from lagrange_casadi.strength.rainflow import rainflow, reversals
-from lagrange_casadi.strength.safety import as_column
-from lagrange_casadi.strength.stress import maxima
+from lagrange_casadi.strength.rainflow import rainflow
 from lagrange_casadi.strength.worst import LinkHistories
-from lagrange_casadi.studies.designs.energy import DriveEnergy
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
 from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of
@@ -324,7 +289,6 @@ from lagrange_casadi.studies.sweep.columns import Column as ColumnsColumn
 from lagrange_casadi.studies.sweep.columns import Task
 from lagrange_casadi.studies.sweep.default_figures import default_plots
 from lagrange_casadi.studies.sweep.listing import Listed as ListingListed
-from lagrange_casadi.studies.sweep.notes import resting_note, turning_note
 from lagrange_casadi.studies.sweep.parts import Folder
 from lagrange_casadi.studies.sweep.plan import Plan, difference
 from lagrange_casadi.studies.sweep.plots import Along as PlotsAlong

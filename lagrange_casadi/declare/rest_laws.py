@@ -165,7 +165,8 @@ def trapezoid_within(displacement: Expression, limits: Limits) -> RestLaw:
     assert limits.acceleration is not None
     size = ca.fabs(ca.SX(displacement))
     top = ca.fmin(ca.SX(limits.speed), ca.sqrt(limits.acceleration * size))
-    return trapezoid(plain((top / limits.acceleration) / (size / top + top / limits.acceleration)))
+    ramp = top / limits.acceleration
+    return trapezoid(plain(ca.fmin(ramp / (size / top + ramp), 0.5)))
 
 
 def _seven(first: Expression, second: Expression, third: Expression) -> RestLaw:

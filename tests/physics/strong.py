@@ -1,7 +1,5 @@
 """Mechanisms whose links are made of something."""
 
-from internals import Profile
-
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams
 from lagrange_casadi.motion import harmonic, polynomial
 
@@ -74,7 +72,7 @@ def slider(endurance=None):
     return Scene(m, {"O": polynomial(0, 30.0)}, t=(0, 0.2094395, 65), posture={"rod": 1.5})
 
 
-BARS = [Profile(f"bar {d}", {"diameter": d / 1000}) for d in (14, 8, 12, 10, 18, 16, 22, 20)]
+BARS = [beams.Profile(f"bar {d}", {"diameter": d / 1000}) for d in (14, 8, 12, 10, 18, 16, 22, 20)]
 
 
 def arms(push=-60.0, shared=False):

@@ -1,19 +1,30 @@
-"""Motors and cylinders: means and energies of closed forms, what a catalogue names, and what is
-refused.
+"""Motors: means and energies of closed forms, what a catalogue names, the case of a servo press,
+and what is refused.
 """
 
+from __future__ import annotations
+
+import itertools
 import math
 
+import casadi as ca
 import numpy as np
 import pytest
+from conftest import CASES
 
-from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.actuators import Motor, assess, duty_of, plot_duty, read_motors, select
-from lagrange_casadi.elements import cylinder
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case, optimise, sweep
+from lagrange_casadi.actuators import (
+    Motor,
+    duty_of,
+    inertia_at,
+    plot_duty,
+    read_motors,
+    select,
+)
 from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
 from lagrange_casadi.motion import harmonic, move, moves, polynomial, trapezoid
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 INERTIA = 2.0 * 0.6**2 / 3
 
@@ -25,6 +36,7 @@ def turned(law, t):
     return evaluate(Scene(m, {"J": law}, t=t), wanted=["effort", "motion"])
 
 
+@pytest.mark.quick
 def test_a_harmonic_swing_has_the_means_of_its_closed_form():
     """Torque and speed are sines: what is given in a swing comes back, A^2 w^2 J/2 each quarter."""
     size, hertz, ratio, rotor = 0.4, 1.5, 8.0, 2e-4
@@ -43,6 +55,7 @@ def test_a_harmonic_swing_has_the_means_of_its_closed_form():
     assert duty.peak_power == pytest.approx(torque * ratio * size * omega / 2, rel=1e-6)
 
 
+@pytest.mark.quick
 def test_a_gearbox_loses_either_way():
     """Speeding up by a trapezoid the motor gives more than the load takes; slowing down it gets
     back less.
@@ -61,6 +74,8 @@ def test_a_gearbox_loses_either_way():
 
 
 HEADS = "name,stall_torque,rated_torque,rated_speed,peak_torque,max_speed,inertia"
+
+
 ROWS = [
     "small,0.6,0.5,3000,1.8,5000,1e-5",
     "middle,1.6,1.3,3000,4.8,5000,4e-5",
@@ -73,53 +88,7 @@ def catalogue(folder, rows=ROWS, heads=HEADS):
     return read_motors(folder / "motors.csv")
 
 
-def test_the_smallest_motor_that_serves_is_named(here):
-    solution = turned(harmonic(0.0, 0.8, 2.0), (0, 0.5, 401))
-    motors = catalogue(here, ROWS[::-1])
-
-    def asked(ratio, inertia):
-        return duty_of(solution, "J", ratio=ratio, inertia=inertia, efficiency=0.9)
-
-    choice = select(motors, asked, ratios=(5, 10, 20))
-    # Every motor with every ratio, by hand.
-    serving = []
-    for motor in motors:
-        for ratio in (5, 10, 20):
-            duty = asked(ratio, motor.inertia)
-            lasting = motor.stall_torque - (
-                motor.stall_torque - motor.rated_torque
-            ) * duty.mean_speed / (3000 * math.pi / 30)
-            limits = (
-                duty.rms_torque / lasting,
-                duty.peak_torque / motor.peak_torque,
-                duty.peak_speed / motor.max_speed,
-            )
-            if max(limits) <= 1.0:
-                serving.append((motor.rated_power, limits[0], motor.name, ratio, limits))
-    _, _, name, ratio, limits = min(serving)
-    assert (choice.motor.name, choice.ratio) == (name, ratio)
-    assert (choice.heat, choice.torque, choice.speed) == pytest.approx(limits, rel=1e-12)
-    assert name == "middle"
-    assert len(choice.refused) == 1
-    assert choice.refused[0].startswith("small: ")
-    plot_duty(choice.duty, here / "duty.png", choice.motor)
-    assert (here / "duty.png").stat().st_size > 5000
-
-
-def test_a_rotor_may_be_without_inertia(here):
-    """As that of a catalogue that does not tell it: it counts as none, and there is no ratio of
-    inertias.
-    """
-    (motor,) = catalogue(here, ["light,1,0.5,3000,2,4000,0"])
-    assert motor.inertia == 0.0
-    duty = duty_of(
-        turned(harmonic(0.0, 0.8, 0.1), (0, 10, 101)), "J", ratio=40, inertia=motor.inertia
-    )
-    with pytest.raises(DeclarationError, match="expected the inertia reflected to the drive"):
-        assert duty.inertia_ratio
-    assert assess(motor, duty).heat > 0.0
-
-
+@pytest.mark.quick
 def test_where_no_motor_serves_the_nearest_is_named(here):
     solution = turned(harmonic(0.0, 0.8, 6.0), (0, 1 / 6.0, 401))
     with pytest.raises(
@@ -135,6 +104,7 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
         )
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("rows", "heads", "says"),
     [
@@ -194,142 +164,175 @@ def test_a_bad_line_of_a_catalogue_is_told(here, rows, heads, says):
         catalogue(here, rows, heads)
 
 
-def test_misuse_is_named(here):
-    solution = turned(polynomial(0.0, 1.0), (0, 1, 3))
-    for options, says in (
-        ({"ratio": 0.0}, "ratio must be a finite number other than 0"),
-        ({"efficiency": 1.2}, "efficiency must be above 0 and at most 1"),
-        ({"inertia": -1.0}, "inertia must be a finite number that is not negative"),
-    ):
-        with pytest.raises(DeclarationError, match=says):
-            duty_of(solution, "J", **options)
-    with pytest.raises(UnknownNameError, match="unknown drive 'K'; valid: J"):
-        duty_of(solution, "K")
-    with pytest.raises(DeclarationError, match="two instants or more"):
-        duty_of(turned(polynomial(0.0, 1.0), (0, 0, 1)), "J")
-    with pytest.raises(PathError, match="no such file"):
-        read_motors(here / "none.csv")
-    with pytest.raises(DeclarationError, match=r"expected a name that ends in \.png"):
-        plot_duty(duty_of(solution, "J"), here / "duty.txt")
-    with pytest.raises(DeclarationError, match="expected motors, and ratios"):
-        select([], lambda ratio, inertia: duty_of(solution, "J"))
+@pytest.mark.parametrize(
+    ("ask", "error", "says"),
+    [
+        (lambda s: duty_of(s, "J", ratio=0.0), DeclarationError, "ratio must be a finite number o"),
+        (lambda s: duty_of(s, "J", efficiency=1.2), DeclarationError, "above 0 and at most 1"),
+        (
+            lambda s: duty_of(s, "J", inertia=-1.0),
+            DeclarationError,
+            "finite number that is not neg",
+        ),
+        (lambda s: duty_of(s, "K"), UnknownNameError, "unknown drive 'K'; valid: J"),
+        (lambda s: duty_of(s.during(slice(1)), "J"), DeclarationError, "two instants or more"),
+        (lambda s: read_motors("none.csv"), PathError, "no such file"),
+        (lambda s: plot_duty(duty_of(s, "J"), "duty.txt"), DeclarationError, r"ends in \.png"),
+        (lambda s: select([], duty_of), DeclarationError, "expected motors, and ratios"),
+    ],
+)
+def test_misuse_is_named(ask, error, says):
+    with pytest.raises(error, match=says):
+        ask(turned(polynomial(0.0, 1.0), (0, 1, 3)))
+
+
+def test_a_motor_lasts_at_less_torque_the_faster_it_turns():
     motor = Motor("m", 2.0, 1.0, 300.0, 5.0, 500.0, 0.0)
-    assert motor.continuous_torque(np.array([0.0, 300.0, -300.0, 600.0, 900.0])).tolist() == [
-        2.0,
-        1.0,
-        1.0,
-        0.0,
-        0.0,
-    ]
+    found = motor.continuous_torque(np.array([0.0, 300.0, -300.0, 600.0, 900.0]))
+    assert found.tolist() == [2.0, 1.0, 1.0, 0.0, 0.0]
 
 
-def hoist(**options):
-    """A boom that a cylinder lifts."""
-    m = Mechanism("hoist")
-    load = m.parameter("load", 800.0, "kg")
-    boom = m.link("boom", length=3.0, mass=150.0)
-    m.revolute("foot", m.ground, boom)
-    m.weld("grip", boom.tip, m.point_mass("weight", load))
-    made = cylinder(
-        m,
-        "ram",
-        m.ground.at(1.0, -0.2),
-        boom.at(1.5, 0.1),
-        closed=0.5,
-        bore=0.1,
-        rod=0.06,
-        **options,
-    )
-    lifting = moves([move("60 deg", time=3.0)], start="10 deg")
-    return made, Scene(m, {"foot": lifting}, t=(0, 3, 301), posture={"ram": 0.2}, drives=["ram"])
+HEIGHTS, SHARES = np.array([0, 5, 15, 30, 39, 40]) / 1000, (0.55, 0.7, 0.95, 1.0, 0.6, 0.0)
 
 
-def test_a_cylinder_bears_what_virtual_work_says():
-    """The force times the speed of the pins' distance is the load's power; pressures balance the
-    force on both areas.
+R, L = 0.08, 0.6
+
+
+@pytest.fixture(scope="module")
+def servo_press():
+    return load_case(CASES / "servo_press").scene
+
+
+def stroke(t, strokes=30.0, slowing=0.5, drawing=250e3):
+    """The crank's angle from the top, its rate and acceleration; the effort that it takes; and its
+    inertia.
     """
-    back = 4e5
-    made, scene = hoist(back_pressure=back, barrel_mass=0.0, rod_mass=0.0)
-    solution = evaluate(scene)
+    turn = strokes * math.pi / 30
+    x = math.pi / 2 + turn * t + slowing * np.sin(turn * t)
+    rate, change = turn * (1 + slowing * np.cos(turn * t)), -slowing * turn**2 * np.sin(turn * t)
+    s, c = np.sin(x), np.cos(x)
+    root = np.sqrt(L**2 - (R * c) ** 2)
+    height = R + L + R * s - root
+    slope = R * c - R**2 * c * s / root
+    # Of the rod, both ends' velocities for a unit rate of the crank: (-r s, r c) and (0, slope).
+    rod = 80.0 / 3 * (R**2 + R * c * slope + slope**2)
+
+    def inertia(angle):
+        c, s = np.cos(angle), np.sin(angle)
+        down = R * c - R**2 * c * s / np.sqrt(L**2 - (R * c) ** 2)
+        return 6.0 + 90.0 * 0.02**2 + 80.0 / 3 * (R**2 + R * c * down + down**2) + 400.0 * down**2
+
+    whole, step = inertia(x), 1e-5
+    assert whole == pytest.approx(6.036 + rod + 400.0 * slope**2)
+    bend = (
+        inertia(x - 2 * step)
+        - 8 * inertia(x - step)
+        + 8 * inertia(x + step)
+        - inertia(x + 2 * step)
+    ) / (12 * step)
+    force = drawing * np.interp(height, HEIGHTS, SHARES) * (slope < 0)
+    weights = 9.81 * (90.0 * 0.02 * c + 80.0 * (R * c + slope) / 2)  # the ram's is carried
+    return x, rate, height, whole * change + bend * rate**2 / 2 - force * slope + weights, whole
+
+
+@pytest.mark.parametrize("values", [{}, {"strokes": 18.0, "slowing": 0.7, "drawing": 400e3}])
+def test_the_cranks_effort_is_that_of_virtual_work(servo_press, values):
+    solution = evaluate(servo_press, parameters=values)
     assert solution.certified
-    angle = solution.motion("foot")
-    c, s = np.cos(angle.value), np.sin(angle.value)
-    front = np.stack([1.5 * c - 0.1 * s - 1.0, 1.5 * s + 0.1 * c + 0.2])
-    reach = np.hypot(*front)
-    assert solution.motion("ram").value == pytest.approx(reach - 0.5, rel=1e-12)
-    inertia = 150.0 * 9.0 / 3 + 800.0 * 9.0
-    moment = inertia * angle.acceleration + 9.81 * c * (150.0 * 1.5 + 800.0 * 3.0)
-    arm = (-front[0] * (1.5 * s + 0.1 * c) + front[1] * (1.5 * c - 0.1 * s)) / reach
-    force = solution.effort("ram")
-    assert force == pytest.approx(moment / arm, rel=1e-10)
-    cap, ring = math.pi / 4 * 0.1**2, math.pi / 4 * (0.1**2 - 0.06**2)
-    pressures = solution.output("ram_cap_pressure"), solution.output("ram_rod_pressure")
-    assert pressures[0] * cap - pressures[1] * ring == pytest.approx(force, rel=1e-12)
-    assert np.minimum(*pressures) == pytest.approx(back, rel=1e-12)
-    assert (made.cap_area, made.rod_area) == pytest.approx((cap, ring))
-    assert solution.output("ram_flow") == pytest.approx(
-        cap * solution.motion("ram").rate, rel=1e-12
+    angle, rate, height, effort, inertia = stroke(solution.t, **values)
+    assert solution.motion("main").value == pytest.approx(angle, rel=1e-13)
+    assert solution.output("height") == pytest.approx(height, abs=1e-13)
+    assert solution.effort("main") == pytest.approx(effort, rel=0, abs=1e-9 * effort.max())
+    assert solution.output("power") == pytest.approx(
+        effort * rate, rel=0, abs=1e-9 * (effort * rate).max()
     )
-    assert solution.output("ram_power") == pytest.approx(
-        force * solution.motion("ram").rate, rel=1e-12
-    )
+    assert inertia_at(servo_press, "main", parameters=values) == pytest.approx(inertia, rel=1e-12)
 
 
-def test_a_cylinder_that_does_not_drive_bears_no_force():
-    """Another joint lifts the boom; the oil goes to and fro, under the back pressure alone."""
-    back = 4e5
-    made, driven = hoist(back_pressure=back)
-    solution = evaluate(
-        Scene(driven.mechanism, driven.motion, t=driven.t, posture=driven.posture, drives=["foot"])
+def test_the_motor_is_the_one_that_closed_forms_name(servo_press):
+    """Every motor with every ratio, from the virtual work of the crank."""
+    solution = evaluate(servo_press, wanted=["effort", "motion"])
+    t, ratios, serving = solution.t, (20, 30, 40, 50), {}
+    _, rate, _, effort, _ = stroke(t)
+    change = -0.5 * math.pi**2 * np.sin(math.pi * t)
+    motors = read_motors(CASES / "servo_press" / "motors.csv")
+    for motor, ratio in itertools.product(motors, ratios):
+        torque = effort / ratio * np.where(effort > 0, 1 / 0.95, 0.95)
+        torque, speed = torque + motor.inertia * ratio * change, ratio * rate
+        mean, at = np.trapezoid(speed, t) / 2, [0, motor.rated_speed]
+        lasting = np.interp(mean, at, [motor.stall_torque, motor.rated_torque])
+        ends = [motor.knee_speed, motor.max_speed], [motor.peak_torque, motor.end_torque]
+        # Half an hour of winding against 2 s of cycle: the mean of the losses is what warms.
+        heat = math.sqrt(np.trapezoid(torque**2, t) / 2) / lasting
+        most = (abs(torque) / np.interp(speed, *ends)).max(), speed.max() / motor.max_speed
+        if max(heat, *most) <= 1.0:
+            serving[motor.rated_power, heat] = (motor.name, ratio, most)
+    name, ratio, most = serving[min(serving)]
+    choice = select(
+        motors,
+        lambda n, inertia: duty_of(solution, "main", ratio=n, inertia=inertia, efficiency=0.95),
+        ratios=ratios,
     )
-    assert solution.certified
-    pressures = solution.output("ram_cap_pressure"), solution.output("ram_rod_pressure")
-    assert np.all(pressures[0] == back)
-    assert pressures[1] == pytest.approx(back * made.cap_area / made.rod_area, rel=1e-12)
-    assert solution.output("ram_flow") == pytest.approx(
-        made.cap_area * solution.motion("ram").rate, rel=1e-12
-    )
-    assert np.all(solution.output("ram_power") == 0.0)
+    assert (choice.motor.name, choice.ratio) == (name, ratio) == ("S 180", 50)
+    assert (choice.torque, choice.speed) == pytest.approx(most, rel=1e-6)
+    assert choice.heat == pytest.approx(min(serving)[1], rel=2e-3)
+    assert [why.partition(":")[0] for why in choice.refused] == ["S 40", "S 70", "S 110"]
 
 
-def test_a_cylinder_that_pulls_works_on_its_rod_side():
-    """The boom is lifted from above, so the rod pulls."""
-    m = Mechanism("hung")
-    boom = m.link("boom", length=3.0, mass=150.0)
-    m.revolute("foot", m.ground, boom)
-    cylinder(
-        m,
-        "ram",
-        m.ground.at(0.3, 2.5),
-        boom.at(2.0),
-        closed=0.8,
-        bore=0.1,
-        rod=0.06,
-        back_pressure=1e5,
+TERM = "fluctuation:effort:O"
+
+
+def uneven_rotor(motion=None, t=None):
+    """A disc against a torque with a third harmonic."""
+    m = Mechanism("rotor")
+    m.set_gravity(0.0, 0.0)
+    third = m.parameter("third", 0.5, "N*m")
+    speed = m.parameter("speed", 10.0, "rad/s")
+    disc = m.link("disc", length=0.2, mass=3.0, centre=(0.0, 0.0), inertia=0.5)
+    angle = m.coordinate(m.revolute("O", m.ground, disc))
+    m.torque("load", disc, -(2.0 + 6.0 * ca.sin(angle) + third * ca.sin(3.0 * angle)))
+    turn = polynomial(0.3, speed) if motion is None else motion
+    return Scene(m, {"O": turn}, t=t or (0.0, math.tau / speed, 41), wanted=["effort"])
+
+
+def test_a_sweep_keeps_the_fluctuation_of_energy():
+    """The energy is 6 cos(x) + third/3 cos(3 x), which at third = -3 turns at 30 deg."""
+    found = sweep(
+        uneven_rotor(), {"third": [0.0, 0.5, -3.0], "speed": [5.0, -8.0]}, fluctuation=True
     )
-    scene = Scene(
-        m, {"foot": harmonic(0.0, 0.2, 0.2)}, t=(0, 5, 51), posture={"ram": 1.0}, drives=["ram"]
+    exact = np.array([12.0, 12.0 + 1.0 / 3.0, 6.0 * math.sqrt(3.0)])
+    assert np.abs(found[TERM][:, 0] / exact - 1.0).max() < 1e-9
+    assert np.isnan(found[TERM][:, 1]).all()  # a turn backwards ends before it begins
+    assert found.columns[TERM].unit == "J"
+
+
+def test_a_third_harmonic_is_chosen_that_evens_the_energy():
+    """The least of max |cos(x) + q cos(3 x)| is sqrt(3)/2, at q = -1/6."""
+    options = {"over": {"third": (-6.0, 4.0)}, "starts": 1, "screen": 4}
+    found = optimise(uneven_rotor(), minimise=TERM, **options)
+    assert found.converged
+    assert found.objective == pytest.approx(6.0 * math.sqrt(3.0), rel=1e-9)
+    assert found.values["third"] == pytest.approx(-3.0, abs=1e-6)
+    # For a smaller third the energy turns at its ends alone: it is 12 + 2/3 third.
+    other = optimise(
+        uneven_rotor(), minimise="peak:effort:O", subject_to=[f"{TERM} <= 11"], **options
     )
-    solution = evaluate(scene)
-    assert (solution.effort("ram") < 0.0).all()
-    cap, ring = math.pi / 4 * 0.1**2, math.pi / 4 * (0.1**2 - 0.06**2)
-    assert solution.output("ram_rod_pressure") == pytest.approx(
-        (1e5 * cap - solution.effort("ram")) / ring, rel=1e-12
-    )
-    assert solution.output("ram_cap_pressure") == pytest.approx(1e5, rel=1e-12)
+    assert other.converged
+    assert other.values["third"] == pytest.approx(-1.5, abs=1e-6)
+    assert other.limits[0].multiplier == pytest.approx(1.5, rel=1e-6)
 
 
 @pytest.mark.parametrize(
-    ("options", "says"),
+    ("ask", "says"),
     [
-        (
-            {"bore": 0.05, "rod": 0.06},
-            "cylinder 'ram': its rod must be thinner than its bore, got 0.06 m in 0.05 m",
-        )
+        ({"minimise": "fluctuation:reaction:O:fx"}, "a fluctuation of energy is that of an effort"),
+        ({"minimise": "fluctuation:effort:P"}, "effort of a joint whose motion is given"),
+        ({"subject_to": [f"{TERM} >= 1"]}, "can be limited from above only"),
     ],
 )
-def test_cylinders_that_cannot_be(options, says):
-    m = Mechanism("m")
-    link = m.link("link", length=1.0, mass=1.0)
-    with pytest.raises(DeclarationError, match=says):
-        cylinder(m, "ram", m.ground, link.tip, closed=0.5, **options)
+def test_what_has_no_fluctuation_is_refused(ask, says):
+    with pytest.raises((DeclarationError, UnknownNameError), match=says):
+        optimise(uneven_rotor(), **{"minimise": "third", "over": {"third": (0.0, 1.0)}, **ask})
+    swung = uneven_rotor(harmonic(0.0, 0.3, 1.0), t=(0.0, 1.0, 41))
+    with pytest.raises(DeclarationError, match="joint 'O' ends where it began"):
+        sweep(swung, {"third": [1.0]}, fluctuation=True)

@@ -1,26 +1,34 @@
-"""Pins and bearings against textbooks, closed forms, and the reactions of a mechanism."""
+"""Pins and bearings against textbooks, closed forms and the reactions of a mechanism; shafts in
+two bearings and rods in two bushes against statics by hand.
+"""
+
+from __future__ import annotations
 
 import math
 
 import numpy as np
 import pytest
-from commands import command
 
 from lagrange_casadi import (
     Mechanism,
     Scene,
     SpatialMechanism,
     beams,
+    bearing_loads,
     bearings,
     evaluate,
     load,
     save,
-    sweep,
 )
-from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi.elements import two_bearings, two_bushes
+from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
+from lagrange_casadi.motion import harmonic, polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 STEEL = beams.material("C45+QT")
+
+
 SPEED = 40.0
 
 
@@ -108,11 +116,6 @@ def test_factors_follow_from_the_reaction(solution):
     assert found.not_evaluated == ()
 
 
-def test_a_file_tells_the_same_again(solution, tmp_path):
-    save(solution, tmp_path / "a.h5")
-    assert load(tmp_path / "a.h5").safety("O") == solution.safety("O")
-
-
 def test_in_space_the_force_along_the_pin_is_axial():
     m = SpatialMechanism("rotor")
     disc = m.link("disc", length=0.2, mass=2.0)
@@ -158,39 +161,152 @@ def test_parts_that_cannot_be(part, told):
         rotor(part())
 
 
-def test_of_each_kind_one():
-    with pytest.raises(DeclarationError, match="the joint already has a rolling part"):
-        rotor(bearings.Rolling(1e3, 1.0), bearings.Rolling(2e3, 1.0))
-
-
-def test_a_slide_has_no_pin():
-    m = Mechanism("m")
-    joint = m.prismatic("P", m.ground, m.point_mass("a", 1.0), axis=(1, 0))
-    with pytest.raises(DeclarationError, match="got a prismatic one"):
-        bearings.fit(m, joint, bearings.Rolling(1e3, 1.0))
-
-
-def test_a_sweep_tells_no_pins():
-    with pytest.raises(
-        DeclarationError, match="output 'safety:O': sweeps have no strength of pins and bearings"
-    ):
-        sweep(rotor(bearings.Rolling(1e3, 1.0)), {"r": [0.05]}, wanted=["safety:O"])
-
-
-CASE = """
-from lagrange_casadi import Mechanism, Scene, bearings
-from lagrange_casadi.motion import polynomial
-def scene():
+@pytest.fixture(scope="module")
+def turning():
+    """A rotor that speeds up."""
     m = Mechanism("rotor")
     disc = m.link("disc", length=0.2, mass=2.0, centre=(0.05, 0.0), inertia=0.01)
-    bearings.fit(m, m.revolute("O", m.ground, disc), bearings.Rolling(1e3, hours=20.0))
-    return Scene(m, {"O": polynomial(0.0, 40.0)}, t=(0.0, 0.157, 21))
-"""
+    m.revolute("O", m.ground, disc)
+    return evaluate(Scene(m, {"O": polynomial(0.0, 20.0, 100.0)}, t=(0, 0.5, 401)))
 
 
-def test_run_tells_what_governs(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "case.py").write_text(CASE)
-    assert command("run case.py --no-figures --no-certificate --backend vm --want safety") == 0
-    assert "  O   " in (out := capsys.readouterr().out)
-    assert "life of bearing governs" in out
+@pytest.mark.quick
+def test_the_smallest_bearing_that_lives_long_enough(turning):
+    every = bearings.deep_groove()
+    best = bearings.select_bearing(turning, "O", every, hours=20e3, bore=0.015)
+    force = np.hypot(turning.reaction("O").fx, turning.reaction("O").fy)
+    weights = np.r_[0.5, np.ones(399), 0.5]
+    turned = weights * turning.motion("O").rate
+    cubic = (force**3 @ turned / turned.sum()) ** (1 / 3)
+    rpm = float(turned.sum() / 400) * 60 / math.tau
+    found = bearing_loads(turning, "O")
+    assert (found.radial, found.speed) == pytest.approx((cubic, rpm), rel=1e-9)
+
+    def lives(bearing):
+        long = bearings.rated_hours(bearing.dynamic, cubic, rpm) >= 20e3
+        return long and bearing.static >= force.max()
+
+    assert lives(best)
+    assert best.bore >= 0.015
+    assert not any(lives(one) for one in every if one.bore >= 0.015 and one.outer < best.outer)
+    with pytest.raises(
+        NoDesignError, match="no bearing has a life of 1e\\+12 h; the strongest, '6320'"
+    ):
+        bearings.select_bearing(turning, "O", every, hours=1e12)
+    with pytest.raises(NoDesignError, match="no bearing has a bore of 200 mm or more"):
+        bearings.select_bearing(turning, "O", every, hours=1.0, bore=0.2)
+    with pytest.raises(UnknownNameError, match="unknown joint 'main'; valid: O"):
+        bearings.select_bearing(turning, "main", every, hours=1.0)
+    with pytest.raises(DeclarationError, match="select_bearing: bearings: expected at least one"):
+        bearings.select_bearing(turning, "O", [], hours=1.0)
+
+
+GRAVITY = 9.81
+
+
+def near(found, told, size):
+    """Compare with a number by hand, beside the largest force."""
+    assert np.abs(found - told).max() < 1e-11 * size
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("space", [False, True])
+@pytest.mark.parametrize("values", [{}, {"d": 0.25}])
+def test_a_rod_in_two_bushes(space, values, tmp_path):
+    """A rod of 4 kg slides to and fro in bushes that stand, a force at its tip: its weight and the
+    force move along between the bushes, whose loads follow by moments about the first.
+    """
+    m = (SpatialMechanism if space else Mechanism)("rod")
+    if space:
+        m.set_gravity(0.0, -GRAVITY, 0.0)
+    d = m.parameter("d", 0.2, "m", low=0.1)
+    rod = m.link("rod", length=0.8, mass=4.0)
+    first = (0.1, 0.05, 0.0)[: 3 if space else 2]
+    bushes = m.ground.at(*first), m.ground.at(first[0] + d, *first[1:])
+    pair = two_bushes(m, "guide", rod, *bushes)
+    m.force("tool", rod.tip, x=-70.0, y=-120.0)
+    bush = bearings.Plain(0.02, 0.03, pressure=5e6, speed=2.0)
+    for joint in (pair.first, pair.second):
+        bearings.fit(m, joint, bush)
+    sliding = {pair.coordinate: harmonic(0.25, 0.1, 9.0)}
+    solution = evaluate(Scene(m, sliding, t=(0, 1, 41)), parameters=values)
+    assert solution.certified
+    assert not solution.undetermined
+    place = solution.motion("guide_first").value
+    gap, weight = values.get("d", 0.2), 4.0 * GRAVITY
+    second = (weight * (0.4 - place) + 120.0 * (0.8 - place)) / gap
+    size = np.abs(second).max()
+    # The rod presses on the bushes.
+    near(solution.reaction("guide_second").fy, -second, size)
+    near(solution.reaction("guide_first").fy, second - weight - 120.0, size)
+    assert np.abs(solution.reaction("guide_first").fx).max() < 1e-11 * size
+    # The effort acts along the coordinate, which counts from the rod to the bush.
+    near(
+        solution.effort("guide_first"),
+        4.0 * solution.motion("guide_first").acceleration - 70.0,
+        size,
+    )
+    free = 0.8 - place - gap
+    told = 120.0 * free + weight / 0.8 * free**2 / 2
+    assert abs(solution.peak("section:rod:bending").value) == pytest.approx(told.max(), rel=1e-4)
+    for name, push in (("guide_first", second - weight - 120.0), ("guide_second", second)):
+        found = solution.safety(name)
+        assert found.against("pressure") == pytest.approx(5e6 * 6e-4 / np.abs(push).max(), rel=1e-9)
+        assert found.against("speed") == pytest.approx(
+            2.0 / np.abs(solution.motion("guide_first").rate).max(), rel=1e-9
+        )
+    save(solution, tmp_path / "rod.h5")
+    again = load(tmp_path / "rod.h5")
+    assert again.safety("guide_second") == solution.safety("guide_second")
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (
+            lambda m, rod, other: two_bearings(m, "a", m.ground, rod.at(0.1), rod.at(0.1)),
+            "bearings 'a': expected two places along the shaft",
+        ),
+        (
+            lambda m, rod, other: two_bearings(m, "a", m.ground, rod.at(0.1), other),
+            "bearings 'a': .* on two bodies; expected apart=",
+        ),
+        (
+            lambda m, rod, other: two_bearings(m, "a", m.ground, rod.at(0.1), other, apart=-1),
+            "bearings 'a': apart must be positive, got",
+        ),
+        (
+            lambda m, rod, other: two_bushes(m, "a", rod, m.ground, other.tip),
+            "bushes 'a': expected two places of one body",
+        ),
+        (
+            lambda m, rod, other: two_bushes(m, "a", rod, m.ground, m.ground),
+            "bushes 'a': both are at one place of 'ground'",
+        ),
+        (
+            lambda m, rod, other: two_bushes(m, "a", rod, m.ground, m.ground.at(1, 0), turns=True),
+            "a rod in a plane cannot turn",
+        ),
+        (
+            lambda m, rod, other: bearings.fit(
+                m,
+                two_bearings(m, "c", m.ground, other, other.at(0.1)).floating,
+                bearings.Rolling(1e3, hours=1.0),
+            ),
+            "its shaft lies in the plane",
+        ),
+        (
+            lambda m, rod, other: bearings.fit(
+                m,
+                two_bushes(m, "b", rod, m.ground, m.ground.at(1, 0)).first,
+                bearings.Rolling(1e3, hours=1.0),
+            ),
+            "got a prismatic one; it takes a plain bearing",
+        ),
+    ],
+)
+def test_what_cannot_be(make, says):
+    m = Mechanism("odd")
+    links = [m.link(name, length=0.5, mass=1.0) for name in ("rod", "other")]
+    with pytest.raises(DeclarationError, match=says):
+        make(m, *links)

@@ -1,17 +1,14 @@
-"""Columns against closed forms, a beam-column worked out by its differential equation, and the
-joints of small mechanisms.
+"""Columns against Euler's and Johnson's closed forms, the interaction with bending, and how joints
+hold the ends of links.
 """
+
+from __future__ import annotations
 
 import math
 
 import numpy as np
 import pytest
 import strong
-from hypothesis import given
-from hypothesis import strategies as st
-from internals import BucklingColumn as Column
-from internals import Member, critical_stress, describe, effective_lengths
-from internals import buckling_used as used
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
 from lagrange_casadi.errors import DeclarationError
@@ -19,208 +16,142 @@ from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
-E, SY = 210e9, 490e6
+E, YIELD, LENGTH = 210e9, 490e6, 0.4
+
+PUSH = 2e3
 
 
-def column(member, effective):
-    return Column.of(member.cross, member.law.length, effective)
+def buckles(shape, moment=0.0, push=PUSH, columns=None):
+    """Return the factor against buckling of a bar on a pin and a slide, pressed along its axis and
+    bent evenly.
+    """
+    m = Mechanism("strut")
+    m.set_gravity(0.0, 0.0)
+    bar = m.link("bar", length=LENGTH, beam=beams.Beam(shape, strong.STEEL, columns=columns))
+    foot = m.point_mass("foot", 0.0)
+    m.revolute("A", m.ground, bar)
+    m.prismatic("slide", m.ground.at(LENGTH, 0.0), foot, axis=(1, 0))
+    m.revolute("B", bar.tip, foot)
+    m.force("push", foot, x=-push)
+    m.torque("one", bar.base, moment)
+    m.torque("other", bar.tip, -moment)
+    scene = Scene(m, {}, t=(0.0, 0.0, 1), posture={"bar": 0.0, "slide": 0.0})
+    return evaluate(scene, certificate=False).safety("bar").against("buckling")
 
 
-def load_factor(compression, moments, of):
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return 1.0 / used(of, compression, moments)
+def critical(height, width, effective=1.0):
+    """Return the critical and Euler's load, by the slenderness in the plane."""
+    area, slender = height * width, effective * LENGTH / (height / math.sqrt(12))
+    euler = math.pi**2 * E / slender**2
+    johnson = YIELD * (1 - YIELD * slender**2 / (4 * math.pi**2 * E))
+    return area * (euler if euler < YIELD / 2 else johnson), area * euler
 
 
-def test_eulers_curve_and_johnsons_parabola_touch_at_half_the_strength():
-    border = math.sqrt(2 * math.pi**2 * E / SY)
-    assert critical_stress(border, E, SY) == pytest.approx(SY / 2)
-    step = 1e-6 * border
-    slopes = [
-        (critical_stress(border + s * step, E, SY) - critical_stress(border, E, SY)) / (s * step)
-        for s in (1, -1)
-    ]
-    assert slopes[0] == pytest.approx(slopes[1], rel=1e-5)
-    assert critical_stress(0.0, E, SY) == SY
-    assert critical_stress(3 * border, E, SY) == pytest.approx(SY / 18)
-
-
-def rod_of(shape, columns=None):
-    solution = evaluate(strong.press(shape, columns=columns), certificate=False)
-    return solution, Member.of(solution, "rod")
-
-
-def test_a_slender_rod_bears_eulers_load():
-    solution, member = rod_of(beams.rectangle(0.008, 0.02))
-    found = column(member, effective_lengths(solution.description, "rod"))
-    assert found.effective == (1.0, 0.5)
-    assert found.critical[0] == pytest.approx(math.pi**2 * E * (0.02 * 0.008**3 / 12) / 0.4**2)
-    assert found.slenderness[0] == pytest.approx(0.4 / (0.008 / math.sqrt(12)))
-    assert found.critical[1] == pytest.approx(
-        0.008 * 0.02 * float(critical_stress(0.2 / (0.02 / math.sqrt(12)), E, SY))
-    )
-
-
-def test_of_what_leans_the_weakest_axis_counts():
-    """A flat bar turned by 30 degrees in its cross-section: its own least second moment."""
-    corners = np.array([(0.015, 0.003), (-0.015, 0.003), (-0.015, -0.003), (0.015, -0.003)])
-    c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
-    turned = corners @ np.array([[c, s], [-s, c]])
-    _, member = rod_of(
-        beams.polygon([tuple(map(float, corner)) for corner in turned]), columns=(1.0, 1.0)
-    )
-    assert column(member, (1.0, 1.0)).euler[0] == pytest.approx(
-        math.pi**2 * E * (0.03 * 0.006**3 / 12) / 0.16
-    )
-
-
-def test_of_a_taper_the_thinnest_counts():
-    _, taper = rod_of(beams.tapered(beams.rectangle(0.02, 0.01), beams.rectangle(0.01, 0.01)))
-    _, even = rod_of(beams.rectangle(0.01, 0.01))
-    assert column(taper, (1.0, 0.5)).critical == pytest.approx(column(even, (1.0, 0.5)).critical)
-
-
-EVEN = Column((1.0, 1.0), (60.0, 60.0), (2e5, 2e5), (1e5, 1e5), (1e3, 1e3))
-
-
-@given(st.floats(1.0, 1e6), st.floats(0.0, 1e4))
-def test_the_factor_is_the_root_of_the_interaction(compression, moment):
-    """In one plane it is a root of a n e n^2 - (a + m + e) n + 1 = 0."""
-    a, m, e = compression / 1e5, moment / 1e3, compression / 2e5
-    found = load_factor(np.array([compression]), (np.array([moment]), np.zeros(1)), EVEN)[0]
+@pytest.mark.parametrize("moment", [0.0, 5.0, -40.0])
+@pytest.mark.parametrize("sizes", [(0.006, 0.02), (0.008, 0.02), (0.02, 0.05)])
+def test_a_strut_bears_the_root_of_the_interaction(sizes, moment):
+    """Slender ones bear Euler's load, stout ones Johnson's; with bending the factor n is a root of
+    a e n^2 - (a + m + e) n + 1 = 0.
+    """
+    (load, euler), (height, width) = critical(*sizes), sizes
+    a, e, m = PUSH / load, PUSH / euler, abs(moment) / (YIELD * width * height**2 / 6)
     b = a + m + e
-    assert found == pytest.approx(2.0 / (b + math.sqrt(b * b - 4 * a * e)), rel=1e-9)
+    told = 2.0 / (b + math.sqrt(b * b - 4 * a * e))
+    assert buckles(beams.rectangle(*sizes), moment) == pytest.approx(told, rel=1e-9)
+    assert buckles(beams.rectangle(*sizes), moment, -PUSH) == math.inf
 
 
-def test_without_compression_nothing_buckles():
-    assert load_factor(np.array([-5.0, 0.0]), (np.ones(2), np.ones(2)), EVEN).tolist() == [
-        math.inf,
-        math.inf,
-    ]
+def test_the_weakest_axis_and_the_thinnest_place_count():
+    """Of a flat bar that is turned in its cross-section by 30 degrees: its least second moment."""
+    c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+    corners = np.array([(0.015, 0.003), (-0.015, 0.003), (-0.015, -0.003), (0.015, -0.003)])
+    turned = [tuple(map(float, corner)) for corner in corners @ np.array([[c, s], [-s, c]])]
+    least = math.pi**2 * E * (0.03 * 0.006**3 / 12) / LENGTH**2
+    found = buckles(beams.polygon(turned), columns=(1.0, 1.0))
+    assert found == pytest.approx(least / PUSH, rel=1e-9)
+    taper = beams.tapered(beams.rectangle(0.02, 0.01), beams.rectangle(0.01, 0.01))
+    assert buckles(taper) == pytest.approx(buckles(beams.rectangle(0.01, 0.01)), rel=1e-9)
 
 
-def test_bending_about_both_axes_is_worse():
-    both, one = (
-        load_factor(np.array([1e4]), (np.array([300.0]), np.array([my])), EVEN)[0]
-        for my in (300.0, 0.0)
-    )
-    assert both < one
-    assert 1e4 * both / 1e5 + 2 * 300 * both / 1e3 / (1 - both * 1e4 / 2e5) == pytest.approx(1.0)
-
-
-def test_a_beam_column_by_its_differential_equation():
-    """E I v'' + N v = -M, pinned, even moment: the outermost fibre yields at M sec(pi/2
-    sqrt(N/N_e)); the interaction with Euler's load and the yield load in its place is on the safe
-    side of that, by little."""
-    area, second, height, length = 4e-4, 2e-8, 0.02, 0.5
-    euler = math.pi**2 * E * second / length**2
-    yields = area * SY
-    bends = SY * second / (height / 2)
-    of = Column((1.0, 1.0), (0.0, 0.0), (euler, euler), (yields, yields), (bends, bends))
-    n, m = 2e4, 40.0
-    found = load_factor(np.array([n]), (np.array([m]), np.zeros(1)), of)[0]
-    low, high = 0.0, euler / n
-    for _ in range(80):
-        middle = (low + high) / 2
-        secant = 1 / math.cos(math.pi / 2 * math.sqrt(middle * n / euler))
-        low, high = (
-            (middle, high)
-            if middle * n / yields + middle * m * secant / bends <= 1.0
-            else (low, middle)
-        )
-    assert low == pytest.approx(found, rel=0.06)
-    assert found >= low * 0.99
-
-
-def described(build):
-    m = Mechanism("m")
-    arm = m.link("arm", length=0.4, mass=1.0)
-    driven = build(m, arm)
-    return describe(m, m.values(), driven)
-
-
-def elbow(m, arm):
-    other = m.link("other", length=0.3, mass=1.0)
+def driven(m, arm, axis):
+    """A crank whose rod ends on a slide."""
+    rod, foot = m.link("rod", length=0.5, mass=1.0), m.point_mass("foot", 1.0)
     m.revolute("O", m.ground, arm)
-    m.revolute("A", arm.tip, other)
-    return ["A"]
-
-
-def driven(m, arm):
-    elbow(m, arm)
+    m.revolute("A", arm.tip, rod)
+    m.revolute("B", rod.tip, foot)
+    m.prismatic("guide", m.ground.at(0.0, -0.3), foot, axis=(1, 0))
     return ["O"]
 
 
-def free(m, arm):
-    m.revolute("O", m.ground, arm)
+def free(m, arm, axis):
+    m.revolute("O", m.ground, arm, **axis)
     m.weld("lump", arm.tip, m.point_mass("mass", 1.0))
     return ["O"]
 
 
-def clamped(m, arm):
+def clamped(m, arm, axis):
     m.prismatic("O", m.ground, arm, axis=(1, 0))
     m.weld("A", arm.tip, m.link("other", length=0.3, mass=1.0))
     return ["O"]
 
 
-def to_a_piston(m, arm):
-    piston = m.point_mass("piston", 1.0)
-    m.prismatic("O", m.ground, arm, axis=(1, 0))
-    m.revolute("pin", arm.tip, piston)
-    m.prismatic("bore", m.ground, piston, axis=(0, 1))
-    return ["bore"]
+def swung(m, arm, axis):
+    m.revolute("O", m.ground, arm, **axis)
+    m.spherical("A", arm.tip, m.link("other", length=0.3, mass=1.0))
+    return ["O", "A:turn_1", "A:turn_2", "A:turn_3"]
 
 
+@pytest.mark.parametrize("sizes", [(0.006, 0.02), (0.02, 0.006)])
 @pytest.mark.parametrize(
-    ("build", "lengths"),
+    ("kind", "build", "columns"),
     [
-        (driven, (2.0, 0.5)),
-        (free, (2.0, 2.0)),
-        (clamped, (1.0, 0.5)),
-        (to_a_piston, (2.0, 0.5)),
-        (elbow, (2.0, 0.5)),
+        (Mechanism, driven, (2.0, 0.5)),
+        (Mechanism, free, (2.0, 2.0)),
+        (Mechanism, clamped, (1.0, 0.5)),
+        (SpatialMechanism, swung, (1.0, 1.0)),
+        (SpatialMechanism, free, (2.0, 2.0)),
     ],
 )
-def test_joints_tell_how_ends_are_held(build, lengths):
-    assert effective_lengths(described(build), "arm") == lengths
+def test_joints_tell_how_ends_are_held(kind, build, columns, sizes):
+    """A link without effective lengths of its own has the factor of one that is given them."""
 
+    def told(given):
+        m = kind("held")
+        beam = beams.Beam(beams.rectangle(*sizes), strong.STEEL, columns=given)
+        arm = m.link("arm", length=LENGTH, beam=beam)
+        drives = build(m, arm, {} if kind is Mechanism else {"axis": (0, 0, 1)})
+        m.force("push", arm.tip, x=-PUSH)
+        scene = Scene(
+            m,
+            {name: polynomial(0.0) for name in drives},
+            t=(0.0, 0.0, 1),
+            posture={"rod": -0.6} if build is driven else {},
+        )
+        return evaluate(scene, certificate=False).safety("arm").against("buckling")
 
-def test_in_space_ends_are_joined_or_free():
-    m = SpatialMechanism("m")
-    arm, other = m.link("arm", length=0.4, mass=1.0), m.link("other", length=0.3, mass=1.0)
-    m.revolute("O", m.ground, arm)
-    m.spherical("A", arm.tip, other)
-    description = describe(m, m.values(), [])
-    assert effective_lengths(description, "arm") == (1.0, 1.0)
-    assert effective_lengths(description, "other") == (2.0, 2.0)
-
-
-def test_what_buckling_needs():
-    plain = beams.Material("plain", 7850.0, yield_strength=1e8)
-    m = Mechanism("m")
-    m.revolute(
-        "O", m.ground, m.link("arm", length=0.4, beam=beams.Beam(beams.round_bar(0.02), plain))
-    )
-    solution = evaluate(
-        Scene(m, {"O": polynomial(0.3, 2.0)}, t=(0, 1, 11), wanted=["section"]), certificate=False
-    )
-    with pytest.raises(
-        DeclarationError, match="material 'plain' has no elasticity, which buckling needs"
-    ):
-        solution.safety("arm")
-    with pytest.raises(
-        DeclarationError,
-        match="material 'plain' has no elasticity, which output 'safety:arm' needs",
-    ):
-        evaluate(Scene(m, {"O": polynomial(0.3, 2.0)}, t=(0, 1, 11)), wanted=["safety:arm"])
-    with pytest.raises(
-        DeclarationError,
-        match="material 'plain' has no ultimate and no endurance, which output 'life:arm' needs",
-    ):
-        Scene(m, {"O": polynomial(0.3, 2.0)}, t=(0, 1, 11), wanted=["life:arm"])
+    assert told(None) == told(columns) < math.inf
+    assert told(None) != told((0.7 * columns[0], 0.7 * columns[1]))
 
 
 def test_what_slides_along_a_link_holds_none_of_its_ends():
     """Its place on the link is told as the base, and is not there."""
-    scene = strong.press(beams.rectangle(0.02, 0.01), sliding=True)
-    told = describe(scene.mechanism, scene.mechanism.values(), ["O", "along"])
-    assert effective_lengths(told, "rod") == (1.0, 0.5)
+    sliding, still = (
+        evaluate(strong.press(beams.rectangle(0.02, 0.01), columns=columns, sliding=True))
+        for columns in (None, (1, 0.5))
+    )
+    assert sliding.safety("rod") == still.safety("rod")
+
+
+def test_what_lacks_is_named():
+    plain = beams.Material("plain", 7850.0, yield_strength=1e8)
+    m = Mechanism("m")
+    beam = beams.Beam(beams.round_bar(0.02), plain)
+    m.revolute("O", m.ground, m.link("arm", length=0.4, beam=beam))
+    motion, t = {"O": polynomial(0.3, 2.0)}, (0, 1, 11)
+    for wanted, lacks in (
+        ("section", "elasticity, which buckling needs"),
+        ("safety:arm", "elasticity, which output 'safety:arm' needs"),
+        ("life:arm", "ultimate and no endurance, which output 'life:arm' needs"),
+    ):
+        with pytest.raises(DeclarationError, match=f"material 'plain' has no {lacks}"):
+            evaluate(Scene(m, motion, t=t, wanted=[wanted]), certificate=False).safety("arm")

@@ -1,19 +1,18 @@
-"""Smooth curves: through their points, joined as they should be, and the same in every way of
-evaluating them.
+"""Smooth curves and tables: through their points, joined as they should be, with exact
+derivatives, and what is beyond their ends.
 """
+
+from __future__ import annotations
 
 import math
 from fractions import Fraction
 
 import casadi as ca
 import numpy as np
-import oracle
 import pytest
-from balance import assert_balanced
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from internals import DesignEngine, EvaluationMethod, Status, reference
-from mechanisms import cam, cam_lift, sampled_cam
+from mechanisms import cam, sampled_cam
 from splines import by_hand
 
 from lagrange_casadi import (
@@ -21,17 +20,14 @@ from lagrange_casadi import (
     Scene,
     curve,
     density,
-    derive,
     evaluate,
-    export,
     motion,
+    prepare,
     table,
 )
-from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, SizeError
+from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
-
-ROUND = np.linspace(0.0, 2 * math.pi, 25)
 
 
 @st.composite
@@ -160,10 +156,6 @@ def test_what_is_no_curve(x, y, options, message):
         curve(x, y, **options)
 
 
-def test_ends_that_rounding_parts_are_one():
-    assert curve(ROUND, np.sin(ROUND), periodic=True)(0.0) == 0.0
-
-
 @pytest.mark.parametrize("periodic", [False, True])
 def test_smoothing_leaves_as_much_as_it_is_told(periodic):
     x = np.linspace(0.0, 2 * math.pi, 181)
@@ -214,81 +206,6 @@ def test_a_sampled_cam_goes_to_its_closed_form():
     assert orders[:, 1:].min() > 1.7
 
 
-def unit(lift, angle):
-    """What a unit of the multiplier of rise - lift(angle) = 0 does: forces at points of bodies."""
-    return lambda place: [
-        (("rod", 0.0, 0.0), 0.0, 1.0, 0.0),
-        (("disc", 0.0, 0.0), 0.0, 0.0, -lift(angle(place).v)[1]),
-    ]
-
-
-@pytest.mark.parametrize("t", [0.05, 0.1234, 0.31])
-def test_newton_and_euler_agree_on_a_cam(t):
-    """With the same spline, made another way."""
-    angles = np.linspace(0.0, 2 * math.pi, 73)
-    lift = by_hand(angles, cam_lift(angles), True)
-    spring = by_hand(
-        np.array([-0.002, 0.0, 0.004, 0.008, 0.012]),
-        np.array([-150.0, -200.0, -320.0, -470.0, -700.0]),
-        False,
-    )
-
-    def angle(place):
-        return place(("disc", 0.0, 0.0))[2]
-
-    def gap(place):
-        return place(("rod", 0.0, 0.0))[1] - 0.03 - angle(place).through(*lift(angle(place).v))
-
-    def loads(place):
-        return [(("rod", 0.1, 0.0), 15.0, spring(place(("rod", 0.0, 0.0))[1].v - 0.03)[0], 0.0)]
-
-    contact = oracle.Extra("contact", gap, unit(lift, angle))
-    turned = 0.3 + 40.0 * t + 5.0 * t * t
-    assert_balanced(
-        sampled_cam(), t=t, extras=[contact], loads=[loads], nudge=1e-4, rough={"disc": turned}
-    )
-
-
-def test_errors_are_estimated_beside_50_digits():
-    """Also after a million turns, where the phase is followed in pairs."""
-    for scene in (sampled_cam(), sampled_cam(motion=motion.polynomial(0.3 + 2e6 * math.pi, 40.0))):
-        program = derive(scene)
-        found = evaluate(scene)
-        some = range(0, found.t.size, 16)
-        rows = reference(
-            program, [float(found.t[i]) for i in some], list(scene.mechanism.values().values())
-        )
-        for name in (
-            "effort:main",
-            "multiplier:contact",
-            "motion:guide_acceleration",
-            "motion:guide",
-        ):
-            exact = np.array([float(row[program.names.index(name)]) for row in rows])
-            gap = np.abs(found.array(name)[list(some)] - exact).max()
-            assert gap <= 1e-12 * np.abs(exact).max()
-            assert gap <= 10.0 * found.errors[name]
-
-
-def test_a_curve_needs_no_count_of_whole_turns():
-    """An angle that loops set is seen by a curve over the turn as by a sine: it is the same a turn
-    further.
-    """
-    m = Mechanism("driven_by_its_follower")
-    disc, rod = m.link("disc", length=0.03, mass=0.6), m.link("rod", length=0.1, mass=0.2)
-    m.revolute("main", m.ground, disc)
-    m.revolute("pin", disc.tip, rod)
-    m.prismatic("slide", m.ground, m.point_mass("block", 0.1), axis=(1, 0))
-    m.revolute("end", rod.tip, m.bodies["block"])
-    m.torque("drag", rod, curve(ROUND, np.sin(ROUND), periodic=True)(m.direction(rod)))
-    scene = Scene(m, {"main": motion.polynomial(0.0, 9.0)}, t=(0, 1, 41), posture={"rod": 0.0})
-    found, angle = evaluate(scene), evaluate(scene).pose("rod").angle
-    assert not [name for name in derive(scene).names if name.startswith("_turned")]
-    np.testing.assert_allclose(
-        found.array("load:drag:mz"), curve(ROUND, np.sin(ROUND), periodic=True)(angle), atol=1e-14
-    )
-
-
 STOP = [-0.6, -0.2, 0.2, 0.6], [9.0, 1.0, -1.0, -9.0]
 
 
@@ -303,22 +220,19 @@ def beyond(motion_law=None, law=None):
 
 
 @pytest.mark.parametrize("kind", ["curve", "table"])
-def test_an_argument_beyond_the_ends_is_refused_by_name(kind):
+@pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
+def test_an_argument_beyond_the_ends_is_refused_by_name(kind, backend):
+    """Just at the ends it is not, and what does not need the load does not ask for it."""
     scene = beyond(law=None if kind == "curve" else lambda x: table(x, *STOP))
     cure = "; expected points that reach further, or beyond='hold' or beyond='line'"
-    assert evaluate(scene, parameters={"swing": 0.6}).certified  # just at the ends
-    for backend in ("vm", "c", "lanes"):
-        with pytest.raises(
-            AssemblyError,
-            match=rf"load 'stop': the argument of its {kind}, from -0\.6 to 0\.6, is outside the"
-            rf" {kind}'s range at t = 0\.15 s, where J = .* of that range"
-            rf"{cure if kind == 'table' else ''}$",
-        ):
-            evaluate(scene, parameters={"swing": 0.75}, backend=backend)
-        designs = DesignEngine.of(scene, method=EvaluationMethod(backend))
-        p = np.array([[0.5, 0.5], [0.5, 0.75], [0.5, 0.6]])
-        assert designs.evaluate(p).status.tolist() == [Status.OK, Status.BEYOND_ENDS, Status.OK]
-    # What does not need the load does not ask for it.
+    says = (
+        rf"load 'stop': the argument of its {kind}, from -0\.6 to 0\.6, is outside the {kind}'s"
+        rf" range at t = 0\.15 s, where J = .* of that range{cure if kind == 'table' else ''}$"
+    )
+    with pytest.raises(AssemblyError, match=says):
+        evaluate(scene, parameters={"swing": 0.75}, backend=backend)
+    found = prepare(scene, backend=backend).designs(np.array([[0.5, 0.5], [0.5, 0.75], [0.5, 0.6]]))
+    assert (found.status == 0).tolist() == [True, False, True]
     assert evaluate(scene, wanted=["motion"], parameters={"swing": 0.75}).certified
 
 
@@ -334,80 +248,16 @@ def test_a_table_goes_on_beyond_its_ends_as_it_is_told(way, most):
 def test_a_part_beyond_the_ends_is_refused_by_name():
     """A length by a curve over a parameter, as of a series of parts."""
     m = Mechanism("series")
-    size = m.parameter("size", 2.0)
-    arm = m.link("arm", length=curve([1, 2, 3, 4], [0.2, 0.3, 0.5, 0.9])(size), mass=1.0)
-    m.revolute("J", m.ground, arm)
+    length = curve([1, 2, 3, 4], [0.2, 0.3, 0.5, 0.9])(m.parameter("size", 2.0))
+    m.revolute("J", m.ground, m.link("arm", length=length, mass=1.0))
     scene = Scene(m, {"J": motion.polynomial(0.0, 1.0)}, t=(0, 1, 11))
-    assert evaluate(scene, parameters={"size": 4.0}).description["bodies"]["arm"][
-        "length"
-    ] == pytest.approx(0.9, rel=1e-14)
-    with pytest.raises(
-        ParameterError, match=r"link 'arm': .* curve, from 1 to 4, is outside the curve's range"
-    ):
+    found = evaluate(scene, parameters={"size": 4.0}).description["bodies"]["arm"]
+    assert found["length"] == pytest.approx(0.9, rel=1e-14)
+    says = r"link 'arm': .* curve, from 1 to 4, is outside the curve's range"
+    with pytest.raises(ParameterError, match=says):
         evaluate(scene, parameters={"size": 4.1})
-    for backend in ("vm", "lanes"):
-        found = DesignEngine.of(scene, method=EvaluationMethod(backend)).evaluate(
-            np.array([[3.0], [0.9], [4.0]])
-        )
-        assert found.status.tolist() == [Status.OK, Status.IMPOSSIBLE, Status.OK]
-
-
-def test_an_open_loop_is_told_before_its_curve():
-    """Where its links do not reach, there is nothing to put into a curve."""
-    m = Mechanism("reaching")
-    crank = m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.0)
-    rod = m.link("rod", length=0.2, mass=1.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    ram = m.point_mass("ram", 1.0)
-    m.revolute("B", rod.tip, ram)
-    guide = m.prismatic("guide", m.ground, ram, axis=(1, 0))
-    m.force("push", ram, x=curve([0.05, 0.1, 0.2, 0.31], [1.0, 2.0, 4.0, 3.0])(m.coordinate(guide)))
-    scene = Scene(m, {"O": motion.polynomial(0.0, 6.0)}, t=(0, 1, 101), posture={"rod": 0.0})
-    assert evaluate(scene).certified
-    with pytest.raises(AssemblyError, match="cannot be closed"):
-        evaluate(scene, parameters={"r": 0.25}, t=(0.2, 1, 81))
-    for backend in ("vm", "lanes"):
-        found = DesignEngine.of(scene, method=EvaluationMethod(backend)).evaluate(
-            np.array([[0.1], [0.12], [0.25]])
-        )
-        assert found.status.tolist()[:2] == [Status.OK, Status.BEYOND_ENDS]
-
-
-def test_a_motion_beyond_the_ends_is_refused_by_name():
-    m = beyond().mechanism
-    law = curve([0.0, 0.3, 0.6, 1.0], [0.0, 0.2, -0.1, 0.3])
-    pace = m.parameters["swing"].symbol
-    scene = Scene(m, {"J": motion.expression(lambda t: law(2 * pace * t))}, t=(0, 1, 101))
-    assert evaluate(scene).certified
-    with pytest.raises(
-        DeclarationError,
-        match="the motion of joint 'J': the argument of its curve is outside the curve's range",
-    ):
-        evaluate(scene, parameters={"swing": 0.6})
-    for backend in ("vm", "lanes"):
-        found = DesignEngine.of(scene, method=EvaluationMethod(backend)).evaluate(
-            np.array([[0.5, 0.5], [0.5, 0.6]]), histories=True
-        )
-        assert found.status.tolist() == [Status.OK, Status.BEYOND_ENDS]
-        assert np.isfinite(found.value[0]).all()
-        assert np.isnan(found.value[1]).all()
-        assert np.isnan(found.series[1]).all()
-
-
-def test_a_motion_by_a_curve_is_as_its_samples():
-    t = np.linspace(0.0, 1.0, 12)
-    values = 0.3 * np.sin(5 * t)
-    m = beyond().mechanism
-    by_curve, by_samples = (
-        evaluate(Scene(m, {"J": law}, t=(0, 1, 57)))
-        for law in (motion.expression(lambda s: curve(t, values)(s)), motion.samples(t, values))
-    )
-    for name in by_samples.names():
-        size = np.abs(by_samples.array(name)).max() or 1.0
-        np.testing.assert_allclose(
-            by_curve.array(name), by_samples.array(name), rtol=0, atol=1e-10 * size
-        )
+    status = prepare(scene).designs(np.array([[3.0], [0.9], [4.0]])).status
+    assert (status == 0).tolist() == [True, False, True]
 
 
 def test_a_density_along_a_curve():
@@ -430,43 +280,20 @@ def test_a_density_along_a_curve():
         density.along([1, 2, 3])
 
 
-def test_interpolants_of_casadis_are_refused_with_the_way_out():
+LOOKED_UP = ca.interpolant("spring", "bspline", [[0.0, 1, 2, 3, 4]], [0.0, 1, 4, 9, 16])
+
+
+@pytest.mark.parametrize(
+    "declare",
+    [
+        lambda m, x, p: m.constraint("cam", x - LOOKED_UP(m.time)),
+        lambda m, x, p: m.force("spring", p, x=LOOKED_UP(x)),
+        lambda m, x, p: evaluate(Scene(m, {"X": motion.expression(LOOKED_UP)}, t=(0, 1, 3))),
+    ],
+)
+def test_interpolants_of_casadis_are_refused_with_the_way_out(declare):
     m = Mechanism("looked_up")
     p = m.point_mass("p", 1.0)
     x = m.coordinate(m.prismatic("X", m.ground, p, axis=(1, 0)))
-    found = ca.interpolant(
-        "spring", "bspline", [[0.0, 1.0, 2.0, 3.0, 4.0]], [0.0, 1.0, 4.0, 9.0, 16.0]
-    )
-    for declare in (
-        lambda: m.constraint("cam", x - found(m.time)),
-        lambda: m.force("spring", p, x=found(x)),
-    ):
-        with pytest.raises(
-            DeclarationError,
-            match=r"calls casadi.interpolant.*expected lagrange_casadi.curve\(x, y\)\(ARGUMENT\)",
-        ):
-            declare()
-    with pytest.raises(
-        DeclarationError, match=r"the motion of joint 'X' calls casadi\.interpolant"
-    ):
-        evaluate(Scene(m, {"X": motion.expression(found)}, t=(0, 1, 3)))
-
-
-def test_a_table_in_a_constraint_names_the_curve():
-    m = Mechanism("cornered")
-    x = m.coordinate(m.prismatic("X", m.ground, m.point_mass("p", 1.0), axis=(1, 0)))
-    m.constraint("cam", table(x, [0, 1, 2], [0, 1, 3]) - m.time)
-    with pytest.raises(DeclarationError, match=r"as curve\(x, y\) in place of a table"):
-        evaluate(Scene(m, motion={}, t=(0.5, 1.7, 5), posture={"X": 0.5}))
-
-
-def test_exported_c_tells_how_large_its_curves_are(tmp_path):
-    with pytest.raises(
-        SizeError,
-        match=(
-            r"what curves and motions by samples look up takes .* bytes of constants, and the limit"
-            r" is 1000"
-        ),
-    ):
-        export(sampled_cam(), tmp_path / "small", largest=1000)
-    assert export(sampled_cam(), tmp_path / "enough").prefix == "cam"
+    with pytest.raises(DeclarationError, match=r"calls casadi\.interpolant"):
+        declare(m, x, p)

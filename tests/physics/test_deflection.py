@@ -1,6 +1,8 @@
-"""Deflections of links: against closed forms of Euler and Bernoulli with Timoshenko's shear, fine
-sums, and a frame solver.
+"""Deflections of links, and of the tool that they carry: closed forms of Euler and Bernoulli with
+Timoshenko's shear, fine sums, and a frame solver.
 """
+
+from __future__ import annotations
 
 import math
 
@@ -8,17 +10,22 @@ import frames
 import numpy as np
 import pytest
 import strong
-from commands import command
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, tool_deflection
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 STEEL = beams.material("S235")
+
+
 E, G = STEEL.elasticity, STEEL.shear_modulus
+
+
 LENGTH = 2.0
+
+
 SHAPES = [
     beams.rectangle(0.05, 0.02),
     beams.i_section(0.1, 0.055, 0.004, 0.006),
@@ -55,17 +62,6 @@ def test_a_cantilever_with_a_load_at_its_tip(shape):
     assert found.peak().xi == pytest.approx(1.0)
 
 
-def test_a_cantilever_under_its_weight():
-    """q l^4/8EI + q l^2/2GAs, q l^3/6EI."""
-    shape = SHAPES[0]
-    found, p = cantilever(shape, weight=True).deflection("arm"), shape.properties()
-    q = -STEEL.density * p.area * 9.81
-    assert found.tip["across"] == pytest.approx(
-        q * LENGTH**4 / (8 * E * p.iz) + q * LENGTH**2 / (2 * G * p.shear_y), rel=1e-12
-    )
-    assert found.tip["turn"] == pytest.approx(q * LENGTH**3 / (6 * E * p.iz), rel=1e-12)
-
-
 def bridge(shape, *loads):
     """A link on a pin and on a slide, with loads (x, force)."""
     m = Mechanism("bridge")
@@ -95,33 +91,6 @@ def test_a_beam_on_two_supports_with_a_load_in_its_middle():
     assert found.tip["across"] == pytest.approx(0.0, abs=1e-15)
 
 
-def test_the_deepest_place_beside_the_middle():
-    """A load at a third: the deepest place is where the slope is zero, at sqrt((l^2 - b^2)/3) from
-    the farther end, shear aside.
-    """
-    stiff = beams.rectangle(0.01, 0.02)
-    found = evaluate(bridge(stiff, (LENGTH / 3, -10.0))[1]).deflection("bar")
-    b = LENGTH / 3
-    assert 1.0 - found.peak().xi == pytest.approx(
-        math.sqrt((LENGTH**2 - b**2) / 3) / LENGTH, abs=1e-4
-    )
-    dense = found.grid("across", np.linspace(0, 1, 20001))[0]
-    assert abs(found.peak().value) == pytest.approx(np.abs(dense).max(), rel=1e-9)
-    assert abs(found.peak().value) >= np.abs(dense).max() * (1 - 1e-14)
-
-
-def test_a_tapered_link_by_fine_sums():
-    shape = beams.tapered(beams.rectangle(0.06, 0.02), beams.rectangle(0.02, 0.03))
-    found = cantilever(shape, y=-100.0).deflection("arm")
-    n = 400_000
-    s = (np.arange(n) + 0.5) / n
-    h, w = 0.06 - 0.04 * s, 0.02 + 0.01 * s
-    arm, ds = LENGTH * (1 - s), LENGTH / n
-    bent = np.sum(-100.0 * arm**2 / (E * w * h**3 / 12)) * ds
-    sheared = np.sum(-100.0 / (G * w * h * 10 * 1.3 / (12 + 11 * 0.3))) * ds
-    assert found.tip["across"] == pytest.approx(bent + sheared, rel=1e-9)
-
-
 def test_a_wedge_in_closed_form():
     """Of a height that is linear: M/EI = 12 F y/(E w (h + c y)^3) with y from the tip; its
     integrals have logarithms.
@@ -147,80 +116,22 @@ def test_a_wedge_in_closed_form():
     )
 
 
-def test_a_tube_in_space_is_twisted_stretched_and_bent():
-    """T l/GIt, N l/EA, M l/EI and M l^2/2EI, about both axes."""
-    m = SpatialMechanism("tube")
-    m.set_gravity(0.0, 0.0, 0.0)
-    arm = m.link("arm", length=LENGTH, beam=beams.Beam(SHAPES[2], STEEL))
-    m.weld("wall", m.ground, arm)
-    m.force("pull", arm.tip, x=3e3)
-    m.torque("couple", arm.tip, x=20.0, y=30.0, z=-40.0)
-    found = evaluate(Scene(m, {}, t=(0, 0, 1))).deflection("arm").tip
-    outer, inner = 0.02, 0.017
-    i = math.pi / 4 * (outer**4 - inner**4)
-    bent = {"turn_y": 30.0, "turn_z": -40.0}
-    assert found["twist"] == pytest.approx(20.0 * LENGTH / (G * 2 * i), rel=1e-12)
-    assert found["along"] == pytest.approx(
-        3e3 * LENGTH / (E * math.pi * (outer**2 - inner**2)), rel=1e-12
-    )
-    assert {name: found[name][0] for name in bent} == pytest.approx(
-        {k: v * LENGTH / (E * i) for k, v in bent.items()}, rel=1e-12
-    )
-    assert found["across_y"] == pytest.approx(-40.0 * LENGTH**2 / (2 * E * i), rel=1e-12)
-    assert found["across_z"] == pytest.approx(-30.0 * LENGTH**2 / (2 * E * i), rel=1e-12)
-
-
-def test_a_stepped_link():
-    """Half of it twice as high: by moment areas."""
-    shape = beams.stepped([0.5], [beams.rectangle(0.08, 0.02), beams.rectangle(0.04, 0.02)])
-    found = cantilever(shape, y=-100.0).deflection("arm")
-    i1, i2, half = 0.02 * 0.08**3 / 12, 0.02 * 0.04**3 / 12, LENGTH / 2
-    k = 10 * 1.3 / (12 + 11 * 0.3)
-    bent = -100.0 * ((LENGTH**3 - half**3) / (3 * E * i1) + half**3 / (3 * E * i2))
-    sheared = -100.0 * half / (G * k * 0.02) * (1 / 0.08 + 1 / 0.04)
-    assert found.tip["across"] == pytest.approx(bent + sheared, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    "shape",
-    [beams.rectangle(0.03, 0.05), beams.c_section(0.1, 0.05, 0.004, 0.006)],
-    ids=lambda s: s.kind,
-)
-def test_in_space_it_is_a_frame_s(shape):
-    """Bent both ways, pulled and twisted about the shear centre."""
-    m = SpatialMechanism("arm")
+def test_in_space_it_is_a_frame_s():
+    """Bent both ways, pulled and twisted."""
+    m, shape = SpatialMechanism("arm"), beams.rectangle(0.03, 0.05)
     arm = m.link("arm", length=LENGTH, beam=beams.Beam(shape, STEEL))
     m.weld("wall", m.ground, arm, turned=[("z", "30 deg"), ("y", "-20 deg")])
     m.force("push", arm.tip, x=50.0, y=-100.0, z=30.0)
     m.torque("twist", arm.tip, x=5.0, y=2.0, z=-3.0)
-    solution = evaluate(Scene(m, {}, t=(0, 0, 1)))
-    p, axes = shape.properties(), solution.pose("arm").axes[0]
-    _, moved = frames.of_solution(
-        solution,
-        0,
-        {"arm": (p, E, G, STEEL.density * p.area)},
-        [("arm", LENGTH, (50.0, -100.0, 30.0), (5.0, 2.0, -3.0))],
-    )
-    place, turned = axes @ moved["arm", LENGTH][:3], axes @ moved["arm", LENGTH][3:]
-    found = solution.deflection("arm").tip
-    assert found["along"][0] == pytest.approx(place[0], rel=1e-9)
-    assert [found["turn_y"][0], found["turn_z"][0]] == pytest.approx(turned[1:], rel=1e-9)
-    # The frame's beam is twisted about its axis: a shear centre beside it moves the rest by what
-    # shear twists.
-    if shape.kind == "rectangle":
-        assert [found["across_y"][0], found["across_z"][0], found["twist"][0]] == pytest.approx(
-            [*place[1:], turned[0]], rel=1e-9
-        )
-    else:
-        shear = solution.section("arm").law.at("shear_y", np.zeros((1, 1)))[0, 0]
-        torsion = solution.section("arm").law.at("torsion", np.zeros((1, 1)))[0, 0]
-        weight_twist = (torsion + p.centre_z * shear) * LENGTH / (G * p.torsion)
-        assert found["twist"][0] != pytest.approx(turned[0], rel=1e-2)
-        assert found["twist"][0] == pytest.approx(weight_twist, rel=0.2)
-    largest, _ = solution.deflection("arm").largest()
-    assert largest[0] == pytest.approx(
-        np.hypot(found["across_y"][0], found["across_z"][0]), rel=1e-9
-    )
+    solution, p = evaluate(Scene(m, {}, t=(0, 0, 1))), shape.properties()
+    sections = {"arm": (p, E, G, STEEL.density * p.area)}
+    loads = [("arm", LENGTH, (50.0, -100.0, 30.0), (5.0, 2.0, -3.0))]
+    _, moved = frames.of_solution(solution, 0, sections, loads)
+    told = np.reshape(moved["arm", LENGTH], (2, 3)) @ solution.pose("arm").axes[0].T
+    found = solution.deflection("arm")
+    names = ("along", "across_y", "across_z", "twist", "turn_y", "turn_z")
+    assert [found.tip[name][0] for name in names] == pytest.approx(told.ravel(), rel=1e-9)
+    assert found.largest()[0][0] == pytest.approx(np.hypot(*told[0, 1:]), rel=1e-9)
 
 
 def test_a_rod_that_moves_by_fine_sums():
@@ -252,49 +163,142 @@ def test_a_rod_that_moves_by_fine_sums():
     np.testing.assert_allclose(found.at("across", places[:, None])[:, 0], values, rtol=1e-12)
 
 
-def test_the_command_line_tells_it(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    line = "run connecting_rod --want deflection:rod --over main=90deg:810deg:41"
-    assert command(f"{line} --no-figures --backend vm --no-certificate") == 0
-    said = capsys.readouterr().out
-    assert "deflection:rod" in said
-    assert "from the line between its ends" in said
-    assert "first bending frequency" in said
+PAPER = beams.Material("paper", 700.0)
 
 
-def test_what_has_no_meaning_is_one_line():
-    plain = cantilever(SHAPES[0], y=-1.0)
-    with pytest.raises(UnknownNameError, match="unknown deflection 'bending'"):
-        plain.deflection("arm").grid("bending")
-    with pytest.raises(DeclarationError, match="expected against='ends' or 'base', got 'middle'"):
-        plain.deflection("arm", "middle")
-    soft = cantilever(SHAPES[0], beams.Material("paper", 700.0), y=-1.0)
-    with pytest.raises(
-        DeclarationError, match="material 'paper' has no elasticity and no shear_modulus, which"
-    ):
-        soft.deflection("arm")
+def twisted():
     m = SpatialMechanism("odd")
-    arm = m.link(
-        "arm", length=1.0, beam=beams.Beam(beams.polygon([(0, 0), (0.02, 0), (0, 0.03)]), STEEL)
-    )
+    odd = beams.polygon([(0, 0), (0.02, 0), (0, 0.03)])
+    arm = m.link("arm", length=1.0, beam=beams.Beam(odd, STEEL))
     m.revolute("O", m.ground, arm, axis=(0, 0, 1))
-    scene = Scene(m, {"O": polynomial(0.0)}, t=(0, 0, 1))
-    with pytest.raises(
-        DeclarationError, match="deflection of 'arm': there is no formula for torsion of a polygon"
-    ):
-        evaluate(scene).deflection("arm")
-    bare = Mechanism("bare")
-    bare.weld("A", bare.ground, bare.link("bar", length=1.0, mass=1.0))
-    with pytest.raises(DeclarationError, match="output 'deflection:bar': link 'bar' has no beam"):
-        Scene(bare, {}, wanted=["deflection:bar"], t=(0, 0, 1))
-    mute = Mechanism("mute")
-    mute.weld(
-        "A",
-        mute.ground,
-        mute.link("bar", length=1.0, beam=beams.Beam(SHAPES[0], beams.Material("paper", 700.0))),
+    return evaluate(Scene(m, {"O": polynomial(0.0)}, t=(0, 0, 1)))
+
+
+def held(**matter):
+    m = Mechanism("held")
+    m.weld("A", m.ground, m.link("bar", length=1.0, **matter))
+    return Scene(m, {}, wanted=["deflection:bar"], t=(0, 0, 1))
+
+
+def pressed(place):
+    scene = strong.press(beams.rectangle(0.012, 0.006))
+    return tool_deflection(scene, scene.mechanism.ground.at(0.0, 0.0) if place is None else place)
+
+
+@pytest.mark.parametrize(
+    ("ask", "error", "says"),
+    [
+        (
+            lambda: cantilever(SHAPES[0], y=-1.0).deflection("arm").grid("bending"),
+            UnknownNameError,
+            "unknown deflection 'bending'",
+        ),
+        (
+            lambda: cantilever(SHAPES[0], y=-1.0).deflection("arm", "middle"),
+            DeclarationError,
+            "expected against='ends' or 'base', got 'middle'",
+        ),
+        (
+            lambda: cantilever(SHAPES[0], PAPER, y=-1.0).deflection("arm"),
+            DeclarationError,
+            "material 'paper' has no elasticity and no shear_modulus, which",
+        ),
+        (
+            lambda: twisted().deflection("arm"),
+            DeclarationError,
+            "deflection of 'arm': there is no formula for torsion of a polygon",
+        ),
+        (
+            lambda: held(mass=1.0),
+            DeclarationError,
+            "output 'deflection:bar': link 'bar' has no beam",
+        ),
+        (
+            lambda: held(beam=beams.Beam(SHAPES[0], PAPER)),
+            DeclarationError,
+            "material 'paper' has no elasticity, which output 'deflection:bar' needs",
+        ),
+        (
+            lambda: pressed("ram"),
+            DeclarationError,
+            "tool_deflection: expected a point of the mechanism, got 'ram'",
+        ),
+        (
+            lambda: pressed(None),
+            DeclarationError,
+            "the point is on 'ground', expected a moving body of 'press'",
+        ),
+    ],
+)
+def test_what_has_no_meaning_is_one_line(ask, error, says):
+    with pytest.raises(error, match=says):
+        ask()
+
+
+STEEL_OF_TOOL = strong.STEEL
+
+
+def sections_of(m):
+    found = {}
+    for name, link in m.links.items():
+        p = link.beam.course.cells[0][0].properties()
+        found[name] = (
+            p,
+            link.beam.material.elasticity,
+            link.beam.material.shear_modulus,
+            link.beam.material.density * p.area,
+        )
+    return found
+
+
+def test_two_arms_on_a_line_by_hand():
+    """A load at the tip of two links without mass, their drives locked: what bends each, and how
+    the first turns the second.
+    """
+    m = Mechanism("arms")
+    light = STEEL_OF_TOOL.but(density=1e-9)
+    a, b, force = 0.5, 0.4, -60.0
+    upper = m.link("upper", length=a, beam=beams.Beam(beams.rectangle(0.03, 0.01), light))
+    fore = m.link("fore", length=b, beam=beams.Beam(beams.rectangle(0.02, 0.01), light))
+    m.revolute("shoulder", m.ground, upper)
+    m.revolute("elbow", upper.tip, fore)
+    m.force("load", fore.tip, y=force)
+    found = tool_deflection(
+        Scene(m, {"shoulder": polynomial(0.0), "elbow": polynomial(0.0)}, t=(0, 0, 1)), fore.tip
     )
-    with pytest.raises(
-        DeclarationError,
-        match="material 'paper' has no elasticity, which output 'deflection:bar' needs",
-    ):
-        Scene(mute, {}, wanted=["deflection:bar"], t=(0, 0, 1))
+    e, ga = (
+        STEEL_OF_TOOL.elasticity,
+        STEEL_OF_TOOL.shear_modulus * 0.01 * 10 * 1.3 / (12 + 11 * 0.3),
+    )
+    first, second = e * 0.01 * 0.03**3 / 12, e * 0.01 * 0.02**3 / 12
+    sag = force * (a**3 / 3 + a**2 * b / 2) / first + force * a / (0.03 * ga)
+    turn = force * (a**2 / 2 + a * b) / first
+    own = force * b**3 / (3 * second) + force * b / (0.02 * ga)
+    assert found.by_link["upper"][0][1] == pytest.approx(sag + turn * b, rel=1e-8)
+    assert found.by_link["fore"][0][1] == pytest.approx(own, rel=1e-8)
+    assert found.moved[0][1] == pytest.approx(sag + turn * b + own, rel=1e-8)
+
+
+def test_an_over_constrained_loop_in_space():
+    """A four-bar of pins in space at rest, loaded aside: a place of its coupler moves as a frame's
+    does.
+    """
+    m = SpatialMechanism("four_bar")
+    a = m.link("a", length=0.1, beam=beams.Beam(beams.rectangle(0.03, 0.012), STEEL_OF_TOOL))
+    b = m.link("b", length=0.3, beam=beams.Beam(beams.rectangle(0.02, 0.01), STEEL_OF_TOOL))
+    c = m.link("c", length=0.25, beam=beams.Beam(beams.tube(0.02, 0.003), STEEL_OF_TOOL))
+    axis = (0, 0, 1)
+    m.revolute("O", m.ground, a, axis=axis)
+    m.revolute("A", a.tip, b, axis=axis)
+    m.revolute("B", b.tip, c.tip, axis=axis)
+    m.revolute("C", m.ground.at(0.3, 0, 0), c, axis=axis)
+    m.force("side", b.at(0.15), x=20.0, y=-300.0, z=100.0)
+    scene = Scene(
+        m, {"O": polynomial(0.2)}, posture={"A": 0.5, "C": 1.5}, t=(0, 0, 1), elastic=True
+    )
+    found = tool_deflection(scene, b.at(0.15))
+    solution = evaluate(scene)
+    _, moved = frames.of_solution(
+        solution, 0, sections_of(m), [("b", 0.15, (20.0, -300.0, 100.0), (0, 0, 0))]
+    )
+    assert found.moved[0] == pytest.approx(moved["b", 0.15][:3], rel=1e-7)

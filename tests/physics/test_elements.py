@@ -1,4 +1,6 @@
-"""Plates and bent bars: closed forms, and that they are what they are made of."""
+"""Plates, bent bars and cylinders: closed forms, and that they are what they are made of."""
+
+from __future__ import annotations
 
 import math
 
@@ -6,12 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from internals import area_of, draw_mechanism, shapes
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load, save
-from lagrange_casadi.elements import bent_bar, plate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
+from lagrange_casadi.elements import bent_bar, cylinder, plate
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.motion import harmonic, move, moves, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -23,38 +24,27 @@ pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
     st.tuples(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0)),
     st.booleans(),
 )
-def test_polygons_are_their_triangles(radii, turn, middle, backwards):
+def test_plates_are_their_triangles(radii, turn, middle, backwards):
     """Against triangles from a point inside: the area of each, its centre, and A/36 (a^2 + b^2 +
     c^2) by Steiner's rule.
     """
-    count = len(radii)
-    ring = [
-        (
-            middle[0] + r * math.cos(turn + math.tau * k / count),
-            middle[1] + r * math.sin(turn + math.tau * k / count),
-        )
-        for k, r in enumerate(radii)
-    ]
-    inside = np.array(middle)
-    triangles = [np.array([inside, ring[k], ring[(k + 1) % count]]) for k in range(count)]
-    areas = [
-        abs((t[1] - t[0])[0] * (t[2] - t[0])[1] - (t[1] - t[0])[1] * (t[2] - t[0])[0]) / 2
-        for t in triangles
-    ]
-    centre = sum(a * t.mean(axis=0) for a, t in zip(areas, triangles, strict=True)) / sum(areas)
-    own = [
-        a / 36 * sum(np.sum((t[i] - t[i - 1]) ** 2) for i in range(3))
-        for a, t in zip(areas, triangles, strict=True)
-    ]
-    second = sum(
-        o + a * np.sum((t.mean(axis=0) - centre) ** 2)
-        for o, a, t in zip(own, areas, triangles, strict=True)
-    )
-    area, x, y, found = area_of(ring[::-1] if backwards else ring)
-    assert abs(area) == pytest.approx(sum(areas), rel=1e-10)
-    assert (area < 0) == backwards
-    assert (x, y) == pytest.approx(tuple(centre), abs=1e-10)
-    assert found == pytest.approx(second / sum(areas), rel=1e-9)
+    angles = turn + math.tau * np.arange(len(radii)) / len(radii)
+    rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    ring = np.array(middle) + np.array(radii)[:, None] * rays
+    area, moment, second = 0.0, 0.0, 0.0
+    for k in range(len(ring)):
+        t = np.array([middle, ring[k - 1], ring[k]])
+        a = np.linalg.det(np.column_stack([t, np.ones(3)])) / 2
+        own = a / 36 * sum(np.sum((t[i] - t[i - 1]) ** 2) for i in range(3))
+        area, moment = area + a, moment + a * t.mean(axis=0)
+        second += own + a * np.sum((t.mean(axis=0) - middle) ** 2)
+    corners = [tuple(map(float, corner)) for corner in (ring[::-1] if backwards else ring)]
+    m = Mechanism("m")
+    plate(m, "p", corners, per_area=2.0)
+    made = m.links["p"].mass
+    assert made.mass == pytest.approx(2.0 * area, rel=1e-9)
+    inertia = second - area * np.sum((moment / area - middle) ** 2)
+    assert made.inertia == pytest.approx(2.0 * inertia, rel=1e-7)
 
 
 def swung(make, values=None):
@@ -155,21 +145,6 @@ def test_corners_oblique_in_space_are_where_they_are_told():
     assert volume[0] == pytest.approx(volume[1], abs=1e-14)  # no mirror image
 
 
-def test_plates_are_drawn_and_kept_as_they_are(tmp_path):
-    """A plate with a notch, in the description, in a file, in the shapes
-    of reports and in figures.
-    """
-    corners = [(0.0, 0.0), (0.4, 0.0), (0.4, 0.3), (0.2, 0.1), (0.0, 0.3)]
-    solution = swung(lambda m, side: plate(m, "notched", corners, mass=3.0).corner(0))
-    save(solution, tmp_path / "plate.h5")
-    for kept in (solution, load(tmp_path / "plate.h5")):
-        (shape,) = shapes(kept.description)
-        assert shape.plates == (tuple((x, y, 0.0) for x, y in corners),)
-        axes = draw_mechanism(kept, 1).axes[0]
-        drawn = [patch.get_xy() for patch in axes.patches]
-        assert any(len(places) == len(corners) + 1 for places in drawn)
-
-
 def declared(make, space=False):
     m = SpatialMechanism("m") if space else Mechanism("m")
     return lambda: make(m)
@@ -219,3 +194,55 @@ def declared(make, space=False):
 def test_misuse_is_named(make, says):
     with pytest.raises(DeclarationError, match=says):
         make()
+
+
+def hoist(**options):
+    """A boom that a cylinder lifts."""
+    m = Mechanism("hoist")
+    load = m.parameter("load", 800.0, "kg")
+    boom = m.link("boom", length=3.0, mass=150.0)
+    m.revolute("foot", m.ground, boom)
+    m.weld("grip", boom.tip, m.point_mass("weight", load))
+    made = cylinder(
+        m,
+        "ram",
+        m.ground.at(1.0, -0.2),
+        boom.at(1.5, 0.1),
+        closed=0.5,
+        bore=0.1,
+        rod=0.06,
+        **options,
+    )
+    lifting = moves([move("60 deg", time=3.0)], start="10 deg")
+    return made, Scene(m, {"foot": lifting}, t=(0, 3, 301), posture={"ram": 0.2}, drives=["ram"])
+
+
+def test_a_cylinder_bears_what_virtual_work_says():
+    """The force times the speed of the pins' distance is the load's power; pressures balance the
+    force on both areas.
+    """
+    back = 4e5
+    made, scene = hoist(back_pressure=back, barrel_mass=0.0, rod_mass=0.0)
+    solution = evaluate(scene)
+    assert solution.certified
+    angle = solution.motion("foot")
+    c, s = np.cos(angle.value), np.sin(angle.value)
+    front = np.stack([1.5 * c - 0.1 * s - 1.0, 1.5 * s + 0.1 * c + 0.2])
+    reach = np.hypot(*front)
+    assert solution.motion("ram").value == pytest.approx(reach - 0.5, rel=1e-12)
+    inertia = 150.0 * 9.0 / 3 + 800.0 * 9.0
+    moment = inertia * angle.acceleration + 9.81 * c * (150.0 * 1.5 + 800.0 * 3.0)
+    arm = (-front[0] * (1.5 * s + 0.1 * c) + front[1] * (1.5 * c - 0.1 * s)) / reach
+    force = solution.effort("ram")
+    assert force == pytest.approx(moment / arm, rel=1e-10)
+    cap, ring = math.pi / 4 * 0.1**2, math.pi / 4 * (0.1**2 - 0.06**2)
+    pressures = solution.output("ram_cap_pressure"), solution.output("ram_rod_pressure")
+    assert pressures[0] * cap - pressures[1] * ring == pytest.approx(force, rel=1e-12)
+    assert np.minimum(*pressures) == pytest.approx(back, rel=1e-12)
+    assert (made.cap_area, made.rod_area) == pytest.approx((cap, ring))
+    assert solution.output("ram_flow") == pytest.approx(
+        cap * solution.motion("ram").rate, rel=1e-12
+    )
+    assert solution.output("ram_power") == pytest.approx(
+        force * solution.motion("ram").rate, rel=1e-12
+    )

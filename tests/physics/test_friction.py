@@ -1,15 +1,17 @@
-"""Friction that follows reactions: against closed forms, and over cycles; random mechanisms that
-rub are held against Newton-Euler in tests of their own.
+"""Friction against closed forms: slopes, journals, screws, sleeves and bearings of shafts; and
+what is refused.
 """
+
+from __future__ import annotations
 
 import math
 
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.errors import DeclarationError, ParameterError
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -60,125 +62,274 @@ def test_the_friction_circle_of_a_journal_bearing():
     )
 
 
-def slider_crank():
-    """Pins and a guide that rub, of parameters; one friction is smoothed about rest."""
-    m = Mechanism("slider_crank")
-    mu_A, r_O = m.parameter("mu_A", 0.25), m.parameter("r_O", 0.02, "m")
-    crank, rod = m.link("crank", length=0.1, mass=0.7), m.link("rod", length=0.45, mass=1.3)
-    block = m.link("block", length=0.05, mass=0.8, centre=(0.01, 0.02), inertia=0.001)
-    O = m.revolute("O", m.ground, crank)
-    A, B = m.revolute("A", crank.tip, rod), m.revolute("B", rod.tip, block)
-    G = m.prismatic("G", m.ground, block, axis=(1, 0))
-    m.force("gas", block.at(0.0, 0.01), x=200.0)
-    m.friction("rub_O", O, mu=0.25, radius=r_O)
-    m.friction("rub_A", A, mu=mu_A, radius=0.02)
-    m.friction("rub_B", B, mu=0.25, radius=0.02, smooth=10.0)
-    m.friction("rub_G", G, mu=0.25, length=0.12, static=0.25, stribeck=1.0)
-    turn = (0.0, 2 * math.pi / 25.0, 721)
-    return Scene(m, {"O": polynomial(0.0, 25.0)}, t=turn, posture={"rod": 0.0})
+G, MASS = 9.81, 6.0
 
 
-def test_over_a_turn_the_drive_gives_what_friction_takes():
-    """A slider-crank at an even speed, with a constant push: over a whole turn nothing else takes
-    or gives work.
+def table(across=0.0, along=0.0, **numbers):
+    """A table on a level guide, whose weight is beside its line and beyond its middle."""
+    m = SpatialMechanism("table")
+    block = m.link(
+        "block", length=0.3, mass=MASS, centre=(along, across, 0.0), inertia=(0.1, 0.1, 0.1)
+    )
+    guide = m.prismatic("X", m.ground, block, axis=(1, 0, 0))
+    m.friction("rub", guide, **numbers)
+    return Scene(m, {"X": polynomial(0.0, 0.4)}, t=(0, 1, 3))
 
-    The powers jump where the slide turns back, their sum with the change of energy does not: by
-    trapezia it is exact to rounding.
+
+@pytest.mark.parametrize("across", [0.0, 0.07])
+@pytest.mark.parametrize("along", [0.0, 0.03, -0.2])
+def test_a_weight_beside_a_guide_presses_on_its_blocks_and_on_what_keeps_it_from_turning(
+    across, along
+):
+    """By statics the blocks bear W (1/2 + a/length) and W (1/2 - a/length), and what keeps it from
+    turning W b/radius.
     """
-    solution = evaluate(slider_crank())
+    solution = evaluate(table(across, along, mu=0.1, length=0.12, radius=0.05))
     assert solution.certified
-    work = {"drive": solution.effort("O") * solution.motion("O").rate}
-    work["push"] = 200.0 * solution.motion("G").rate
-    losses = [values for name, values in solution.series.items() if name.endswith(":loss")]
-    assert len(losses) == 4
-    assert all((values >= 0.0).all() for values in losses)
-    work["friction"] = -np.sum(losses, axis=0)
-    turn = {name: np.sum(values[:-1]) * solution.t[1] for name, values in work.items()}
-    assert turn["friction"] < -0.1
-    assert sum(turn.values()) == pytest.approx(0.0, abs=1e-10 * abs(turn["friction"]))
+    pressed = MASS * G * (abs(0.5 + along / 0.12) + abs(0.5 - along / 0.12) + across / 0.05)
+    assert solution.effort("X") == pytest.approx(0.1 * pressed, rel=1e-12)
+    assert solution.series["friction:rub:loss"] == pytest.approx(0.1 * pressed * 0.4, rel=1e-12)
 
 
-def test_what_no_friction_moves_costs_what_it_did():
-    """Frictions that nothing wanted depends on are not solved, and none is
-    where none is declared.
+def sleeve(turn, slide, **options):
+    m = SpatialMechanism("sleeve")
+    rod = m.link("rod", length=0.4, mass=MASS, centre=(0.0, 0.0, 0.0), inertia=(0.02, 0.1, 0.1))
+    joint = m.cylindrical("C", m.ground, rod, axis=(1, 0, 0))
+    numbers = {"mu": 0.2, "radius": 0.03, "length": 0.1} | options
+    m.friction("sliding", joint, along="slide", **numbers)
+    m.friction("turning", joint, along="turn", **numbers)
+    return Scene(m, {"C:slide": slide, "C:turn": turn}, t=(0, 1, 9))
+
+
+@pytest.mark.parametrize(("rate", "speed"), [(0.0, 0.3), (12.0, 0.3), (-12.0, -0.05), (5.0, 0.0)])
+def test_a_sleeve_rubs_against_the_way_its_surface_slides(rate, speed):
+    """A rod that turns slides easily: its friction has the direction of the speed, of which the
+    turning is most.
     """
-    scene = slider_crank()
-    assert derive(scene, ["motion", "load:gas"]).checks("rest") == {}
-    assert len(derive(scene, ["effort"]).checks("rest")) == 3  # the smoothed one is never at rest
-    program = derive(scene, ["load:rub_O"])
-    assert {str(output) for output in program.outputs} >= {
-        "load:rub_O:mz",
-        "friction:rub_O:along",
-        "friction:rub_O:loss",
-    }
+    solution = evaluate(sleeve(polynomial(0.1, rate), polynomial(0.0, speed)))
+    assert solution.certified
+    whole = math.hypot(speed, 0.03 * rate)
+    weight = 0.2 * MASS * G
+    assert solution.series["friction:sliding:along"] == pytest.approx(
+        -weight * speed / whole, rel=1e-12, abs=1e-12
+    )
+    assert solution.series["friction:turning:along"] == pytest.approx(
+        -weight * 0.03**2 * rate / whole, rel=1e-12, abs=1e-12
+    )
+    lost = solution.series["friction:sliding:loss"] + solution.series["friction:turning:loss"]
+    assert lost == pytest.approx(weight * whole, rel=1e-12)
 
 
-def declared(**told):
-    m = Mechanism("wrong")
-    link = m.link("link", length=0.2, mass=1.0)
-    sled, ball = m.link("sled", length=0.1, mass=1.0), m.point_mass("ball", 1.0)
-    joints = {
-        "pin": m.revolute("pin", m.ground, link),
-        "guide": m.prismatic("guide", link, sled, axis=(1, 0)),
-        "ball_pin": m.revolute("ball_pin", link.tip, ball),
-        "slot": m.slot("slot", m.ground, sled.tip),
-        "weld": m.weld("weld", sled, m.point_mass("lump", 1.0)),
-    }
-    return m.friction("rub", joints[told.pop("joint")], **told)
+def test_at_rest_both_are_open_and_where_both_turn_back_they_go_on():
+    solution = evaluate(
+        sleeve(harmonic(0.0, 1.0, 1.0, math.pi / 2), harmonic(0.0, 0.05, 1.0, math.pi / 2))
+    )
+    assert solution.certified
+    assert not solution.resting.any()
+    rates = solution.motion("C:slide").rate, solution.motion("C:turn").rate
+    assert np.abs([rate[0] for rate in rates]).max() < 1e-12
+    whole = math.hypot(0.05, 0.03)
+    assert solution.series["friction:sliding:along"][0] == pytest.approx(
+        0.2 * MASS * G * 0.05 / whole, rel=1e-9
+    )
+    still = evaluate(sleeve(polynomial(0.1), polynomial(0.2)))
+    assert still.resting.all()
+    assert np.isnan(still.series["friction:sliding:along"]).all()
+    assert np.isnan(still.effort("C:turn")).all()
+
+
+MASS_OF_FRICTION_SPACE, G_OF_FRICTION_SPACE, RADIUS = 50.0, 9.81, 0.012
+
+
+def jack(lead, mu, **more):
+    """A spindle that turns upright, and a guided nut that it lifts;
+    thread and thrust bearing rub.
+    """
+    m = SpatialMechanism("jack")
+    p = {"lead": m.parameter("lead", lead, "m"), "mu": m.parameter("mu", mu)}
+    spindle = m.link(
+        "spindle", length=0.3, mass=1.0, centre=(0.15, 0, 0), inertia=(1e-3, 1e-2, 1e-2)
+    )
+    nut = m.link(
+        "nut", length=0.1, mass=MASS_OF_FRICTION_SPACE, centre=(0, 0, 0), inertia=(0.1, 0.1, 0.1)
+    )
+    m.revolute("O", m.ground, spindle, axis=(0, 0, 1), turned=[("y", "-90 deg")])
+    m.prismatic("guide", m.ground, nut, axis=(0, 0, 1))
+    m.screw("thread", spindle, nut, axis=(1, 0, 0), lead=p["lead"], turned=[("y", "90 deg")])
+    m.friction("flanks", m.joints["thread"], mu=p["mu"], radius=RADIUS, **more)
+    return m
+
+
+@pytest.mark.sampled(7)
+@pytest.mark.parametrize("lead", [0.004, 0.02, -0.004, -0.02])
+@pytest.mark.parametrize("mu", [0.0, 0.08, 0.3])
+def test_the_torque_of_a_lifting_screw(lead, mu):
+    """W r tan(angle + phi) to lift, W r tan(phi - angle) to lower (Shigley): where phi > angle the
+    screw locks itself.
+    """
+    scene = Scene(jack(lead, mu), {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0})
+    angle, phi, weight = (
+        math.atan(abs(lead) / math.tau / RADIUS),
+        math.atan(mu),
+        MASS_OF_FRICTION_SPACE * G_OF_FRICTION_SPACE,
+    )
+    for speed in (3.0, -3.0):
+        m = jack(lead, mu)
+        scene = Scene(m, {"O": polynomial(0, speed)}, t=(0, 1, 3), posture={"thread": 0.0})
+        solution = evaluate(scene)
+        assert solution.certified
+        lifts = solution.motion("guide").rate[0] > 0.0
+        driven = solution.effort("O") * math.copysign(1.0, speed)  # along its motion
+        expected = math.tan(angle + phi) if lifts else math.tan(phi - angle)
+        assert driven == pytest.approx(weight * RADIUS * expected, rel=1e-11, abs=1e-12)
+        efficiency = math.tan(angle) / math.tan(angle + phi)
+        if lifts:
+            given, gained = solution.effort("O") * speed, weight * solution.motion("guide").rate
+            assert gained / given == pytest.approx(efficiency, rel=1e-11)
+            assert solution.series["friction:flanks:loss"] == pytest.approx(
+                given - gained, rel=1e-9, abs=1e-9
+            )
+        else:
+            assert (driven[0] > 0.0) == (phi > angle)
+
+
+def test_a_collar_bears_the_thrust():
+    m = SpatialMechanism("upright")
+    disc = m.link("disc", length=0.1, mass=7.0, centre=(0, 0, 0), inertia=(0.1, 0.1, 0.1))
+    m.friction(
+        "collar", m.revolute("O", m.ground, disc, axis=(0, 0, 1)), mu=0.2, radius=0.02, length=0.1
+    )
+    solution = evaluate(Scene(m, {"O": polynomial(0, 3.0)}, t=(0, 1, 3)))
+    assert solution.certified
+    assert solution.effort("O") == pytest.approx(0.2 * 0.02 * 7.0 * G_OF_FRICTION_SPACE, rel=1e-12)
+
+
+def test_where_equilibrium_leaves_bearings_open_so_is_their_friction():
+    """The spindle and the guided nut hold each other across the thread: nothing tells how hard.
+
+    The thread's own force is told.
+    """
+    m = jack(0.004, 0.1)
+    m.friction("bearings", m.joints["O"], mu=0.2, radius=0.02, length=0.1)
+    solution = evaluate(Scene(m, {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0}))
+    assert solution.certified
+    assert {"friction:bearings:along", "load:bearings:mz", "effort:O"} <= set(solution.undetermined)
+    angle, phi = math.atan(0.004 / math.tau / RADIUS), math.atan(0.1)
+    assert np.abs(solution.series["friction:flanks:along"]) == pytest.approx(
+        MASS_OF_FRICTION_SPACE
+        * G_OF_FRICTION_SPACE
+        * RADIUS
+        * abs(math.tan(phi - angle) + math.tan(angle)),
+        rel=1e-11,
+    )
+
+
+MASS_OF_SCREWS, LEAD, G = 50.0, 0.01, 9.81
+
+
+def joints_of(space):
+    m = (SpatialMechanism if space else Mechanism)("bad")
+    a, b, c = (m.link(name, length=0.1, mass=1.0) for name in "abc")
+    if space:
+        m.prismatic("P", m.ground, a, axis=(1, 0, 0))
+        m.cylindrical("C", a, b, axis=(1, 0, 0))
+        m.universal("U", b.tip, c, axis=(1, 0, 0), second=(0, 1, 0))
+        m.screw("S", m.ground, m.link("d", length=0.1, mass=1.0), axis=(1, 0, 0), lead=0.01)
+        return m
+    m.revolute("pin", m.ground, a)
+    m.prismatic("guide", a, b, axis=(1, 0))
+    m.revolute("ball_pin", a.tip, m.point_mass("ball", 1.0))
+    m.slot("slot", m.ground, b.tip)
+    m.weld("weld", b, c)
+    return m
+
+
+RUBS = {"mu": 0.1, "radius": 0.01, "length": 0.1}
 
 
 @pytest.mark.parametrize(
-    ("told", "words"),
+    ("joint", "told", "says"),
     [
-        ({"joint": "pin", "mu": 0.1}, "joint 'pin' turns; expected radius"),
-        (
-            {"joint": "pin", "mu": 0.1, "radius": 0.01, "length": 0.1},
-            "turns and has no guide length; expected radius=",
-        ),
-        ({"joint": "pin", "mu": -0.1, "radius": 0.01}, "mu must be at least 0, got -0.1"),
-        ({"joint": "pin", "mu": 0.1, "radius": 0.0}, "radius must be positive, got 0"),
-        ({"joint": "pin"}, "expected mu=, a friction coefficient, or viscous="),
-        ({"joint": "pin", "viscous": 0.1, "radius": 0.1}, "radius needs mu="),
-        ({"joint": "pin", "mu": 0.1, "radius": 0.01, "static": 0.2}, "static needs stribeck"),
-        ({"joint": "pin", "mu": 0.1, "radius": 0.01, "stribeck": 0.2}, "stribeck needs static="),
-        ({"joint": "guide", "mu": 0.1}, "transmits a moment; expected length="),
-        (
-            {"joint": "guide", "mu": 0.1, "radius": 0.1, "length": 0.1},
-            "slides and has no radius; expected length=",
-        ),
-        ({"joint": "slot", "mu": 0.1, "length": 0.1}, "transmits no moment; leave length= out"),
-        (
-            {"joint": "ball_pin", "mu": 0.1, "radius": 0.01},
-            "has no angle: 'ball' is a point mass",
-        ),
-        (
-            {"joint": "weld", "mu": 0.1},
-            (
-                "joint 'weld' is weld; in a plane friction is possible in these joints: revolute,"
-                " prismatic, slot"
-            ),
-        ),
+        ("pin", {"mu": 0.1}, "joint 'pin' turns; expected radius"),
+        ("pin", RUBS, "turns and has no guide length; expected radius="),
+        ("pin", {"mu": -0.1, "radius": 0.01}, "mu must be at least 0, got -0.1"),
+        ("pin", {"mu": 0.1, "radius": 0.0}, "radius must be positive, got 0"),
+        ("pin", {}, "expected mu=, a friction coefficient, or viscous="),
+        ("pin", {"viscous": 0.1, "radius": 0.1}, "radius needs mu="),
+        ("pin", {"mu": 0.1, "radius": 0.01, "static": 0.2}, "static needs stribeck"),
+        ("pin", {"mu": 0.1, "radius": 0.01, "stribeck": 0.2}, "stribeck needs static="),
+        ("guide", {"mu": 0.1}, "transmits a moment; expected length="),
+        ("guide", RUBS, "slides and has no radius; expected length="),
+        ("slot", {"mu": 0.1, "length": 0.1}, "transmits no moment; leave length= out"),
+        ("ball_pin", {"mu": 0.1, "radius": 0.01}, "has no angle: 'ball' is a point mass"),
+        ("weld", {"mu": 0.1}, "in a plane friction is possible in these joints: revolute, pris"),
+        ("P", {"mu": 0.1, "radius": 0.1}, "transmits a moment; expected length=, the guide length"),
+        ("P", {"mu": 0.1, "length": 0.1}, "a moment about its axis; expected radius="),
+        ("P", RUBS | {"along": "turn"}, "has one coordinate and none called 'turn'"),
+        ("C", RUBS, "has two coordinates; expected along='slide' or 'turn'"),
+        ("C", {"mu": 0.1, "length": 0.1, "along": "slide"}, "joint 'C' turns; expected radius"),
+        ("C", {"mu": 0.1, "radius": 0.1, "along": "turn"}, "a moment; expected length=, the dist"),
+        ("C", RUBS | {"along": "turn", "smooth": 0.1}, "for which smooth= is not available"),
+        ("U", {"mu": 0.1, "radius": 0.1}, "in space friction is possible in these joints: rev"),
+        ("S", {"mu": 0.1, "radius": 0.1, "static": 0.2, "stribeck": 0.1}, "is a screw, whose thr"),
     ],
 )
-def test_mistakes_are_told(told, words):
-    with pytest.raises(
-        DeclarationError, match=f"friction 'rub': .*{words}|friction 'rub': {words}"
-    ):
-        declared(**told)
+def test_mistakes_are_told(joint, told, says):
+    m = joints_of(space=joint in {"P", "C", "U", "S"})
+    with pytest.raises(DeclarationError, match=f"friction 'rub': .*{says}|friction 'rub': {says}"):
+        m.friction("rub", m.joints[joint], **told)
 
 
-def test_its_name_is_one_of_a_load():
-    m = Mechanism("twice")
-    joint = m.revolute("pin", m.ground, m.link("link", length=0.2, mass=1.0))
-    m.friction("rub", joint, viscous=0.1)
-    with pytest.raises(DeclarationError, match="load 'rub' is declared twice"):
-        m.friction("rub", joint, viscous=0.1)
+def test_a_screw_that_no_couple_drives_or_that_would_close_a_loop_is_named():
+    scene = Scene(jack(0.02, 0.1), {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0})
+    words = "'flanks': mu times the lead per radian must be less than the radius"
+    with pytest.raises(ParameterError, match=words):
+        evaluate(scene, parameters={"mu": 4.0})
+    drives = {"O": polynomial(0, 3.0), "guide": polynomial(0, 1.0)}
+    words = "joint 'thread' is a screw between bodies whose positions already follow from drives"
+    with pytest.raises(DeclarationError, match=words):
+        evaluate(Scene(jack(0.02, 0.1), drives, t=(0, 1, 3)))
 
 
-def test_numbers_that_parameters_make_impossible_are_told():
-    for name, value, words in (
-        ("r_O", 0.0, "radius must be positive, got 0"),
-        ("mu_A", -0.1, "mu must be at least 0, got -0.1"),
-    ):
-        with pytest.raises(ParameterError, match=f"friction 'rub_{name[-1]}': {words}"):
-            evaluate(slider_crank(), parameters={name: value})
+@pytest.mark.parametrize("turns", [0.6, 3.2, -40.0])
+def test_a_screw_counts_the_turns_of_what_turns_it(turns):
+    """A loop tells its direction alone; many turns lift the nut by as many leads, at whatever
+    instant one begins.
+    """
+    scene = Scene(
+        jack(LEAD, 0.0),
+        {"O": polynomial(0.4, math.tau * turns)},
+        t=(0, 1, 5),
+        posture={"thread": 0.0},
+    )
+    solution = evaluate(scene)
+    assert solution.certified
+    assert solution.motion("guide").value == pytest.approx(
+        -LEAD * (0.4 / math.tau + turns * solution.t), abs=1e-14
+    )
+    assert solution.motion("thread").value == pytest.approx(
+        -0.4 - math.tau * turns * solution.t, abs=1e-12
+    )
+    late = evaluate(scene, t=(0.75, 1.0, 2))
+    assert late.motion("guide").value[0] == pytest.approx(
+        solution.motion("guide").value[3], abs=1e-14
+    )
+
+
+def test_a_sleeve_that_goes_to_and_fro_and_turns_has_no_jump():
+    """Where the slide turns back while the rod turns, friction along it passes through zero
+    smoothly; and viscous parts add up.
+    """
+    scene = sleeve(
+        polynomial(0.0, 8.0), harmonic(0.0, 0.05, 1.0), static=0.3, stribeck=0.1, viscous=0.7
+    )
+    solution = evaluate(scene)
+    assert solution.certified
+    v, w = solution.motion("C:slide").rate, 0.03 * solution.motion("C:turn").rate
+    whole = np.hypot(v, w)
+    mu = 0.2 + 0.1 * np.exp(-((whole / 0.1) ** 2))
+    assert solution.series["friction:sliding:along"] == pytest.approx(
+        -mu * MASS * G * v / whole - 0.7 * v, rel=1e-11, abs=1e-11
+    )
+    expected = -mu * MASS * G * 0.03 * w / whole - 0.7 * w / 0.03
+    assert solution.series["friction:turning:along"] == pytest.approx(expected, rel=1e-11)

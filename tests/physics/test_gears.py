@@ -1,19 +1,17 @@
-"""Gears that mesh in a plane: closed forms, trains against vector equilibrium,
-and what is refused.
-"""
+"""Gears in a plane: closed forms, efficiencies, planetary sets, and what is refused."""
+
+from __future__ import annotations
 
 import math
-import random
+import re
 
 import numpy as np
 import pytest
-from five_bars import geared_five_bar
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from conftest import CASES
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
-from lagrange_casadi.elements import gears, wheel
-from lagrange_casadi.errors import DeclarationError, ParameterError
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load_case
+from lagrange_casadi.elements import gears, planetary, wheel
+from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError
 from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -70,200 +68,6 @@ def test_a_pair_bears_the_force_of_its_teeth(inside, moment, teeth):
     assert abs(solution.multiplier("mesh")[0]) == pytest.approx(abs(tangential), rel=1e-13)
 
 
-def train(draw):
-    """A train on an arm that turns: a sun on the arm's axis, and gears on the arm, each of which
-    meshes with the one before it.
-
-    Bodies have their masses beside their axes, and bear forces. Numbers are drawn by ``draw(low,
-    high)``.
-    """
-    m = Mechanism("train")
-    m.set_gravity(draw(-5, 5), -9.81)
-    count, inside = int(draw(1, 4)), draw(0, 1) > 0.6
-    radii = [draw(0.02, 0.08) for _ in range(count + 1)]
-    if inside:
-        radii[-1] = radii[-2] + draw(0.05, 0.1)
-    centres, heading = [0j], 0.0
-    for k in range(count):
-        heading += draw(-1.2, 1.2)
-        apart = radii[k + 1] - radii[k] if inside and k == count - 1 else radii[k] + radii[k + 1]
-        centres.append(centres[-1] + apart * np.exp(1j * heading))
-    matter = [
-        (draw(0.2, 2.0), draw(-0.01, 0.01) + 1j * draw(-0.01, 0.01), draw(1e-4, 1e-3))
-        for _ in range(count + 2)
-    ]
-
-    def body(name, k):
-        mass, centre, inertia = matter[k]
-        return m.link(
-            name, length=0.05, mass=mass, centre=(centre.real, centre.imag), inertia=inertia
-        )
-
-    arm, wheels = body("arm", count + 1), [body(f"gear{k}", k) for k in range(count + 1)]
-    laws = {
-        "swing": harmonic(draw(-1, 1), draw(0.3, 1.0), draw(0.5, 2.0)),
-        "pin0": polynomial(draw(-1, 1), draw(-9, 9), draw(-9, 9)),
-    }
-    m.revolute("swing", m.ground, arm)
-    m.revolute("pin0", m.ground, wheels[0])
-    for k in range(1, count + 1):
-        m.revolute(f"pin{k}", arm.at(centres[k].real, centres[k].imag), wheels[k])
-    angle = draw(5, 30)
-    for k in range(count):
-        gears(
-            m,
-            f"mesh{k}",
-            wheels[k],
-            wheels[k + 1],
-            radii=radii[k : k + 2],
-            pressure_angle=f"{angle} deg",
-        )
-    forces = [
-        (draw(-0.02, 0.02) + 1j * draw(-0.02, 0.02), draw(-90, 90) + 1j * draw(-90, 90))
-        for _ in wheels
-    ]
-    for k, (at, force) in enumerate(forces):
-        m.force(f"push{k}", wheels[k].at(at.real, at.imag), x=force.real, y=force.imag)
-    return Scene(m, laws, t=(0, 0.4, 7)), (
-        radii,
-        centres,
-        matter,
-        forces,
-        math.radians(angle),
-        inside,
-    )
-
-
-def by_vectors(solution, told, i):
-    """Forces at an instant by Newton and Euler on free bodies, with the teeth as forces at pitch
-    points.
-
-    Only the motion of the arm and the sun is taken from the solution; the others' follows from
-    velocities at pitch points. Which flank touches is tried.
-    """
-    radii, centres, matter, forces, alpha, inside = told
-    count = len(radii) - 1
-    arm, sun = solution.motion("swing"), solution.motion("pin0")
-    turn, rate, gain = (float(one[i]) for one in (arm.value, arm.rate, arm.acceleration))
-    angles, rates, gains = ([float(one[i])] for one in (sun.value, sun.rate, sun.acceleration))
-    pitches = []
-    for k in range(count):
-        inner = inside and k == count - 1
-        way = (
-            (centres[k + 1] - centres[k]) / abs(centres[k + 1] - centres[k]) * (-1 if inner else 1)
-        )
-        pitches.append(centres[k] + radii[k] * way)
-        arm1, arm2 = pitches[k] - centres[k], pitches[k] - centres[k + 1]
-        # Both have one velocity at the pitch point, as seen from the arm.
-        share = (arm1 / arm2).real
-        for values, own in ((angles, turn), (rates, rate), (gains, gain)):
-            values.append(own + share * (values[k] - own))
-    spin = np.exp(1j * turn)
-    where = [spin * c for c in centres]
-    moved = [(1j * gain - rate**2) * c for c in where]
-    where, moved = [*where, 0j], [*moved, 0j]
-    angles, rates, gains = [*angles, turn], [*rates, rate], [*gains, gain]
-    gravity = complex(*solution.description["gravity"])
-    bodies = count + 2
-    columns = 2 * bodies + count + 2  # pins, teeth, the two drives
-    flanks = np.ones(count)
-    matrix, right = np.zeros((3 * bodies, columns)), np.zeros(3 * bodies)
-    middles = [where[b] + matter[b][1] * np.exp(1j * angles[b]) for b in range(bodies)]
-
-    def push(body, column, place, force):
-        matrix[3 * body : 3 * body + 2, column] += force.real, force.imag
-        matrix[3 * body + 2, column] += (np.conj(place - middles[body]) * force).imag
-
-    for _ in range(3):
-        matrix[:], right[:] = 0.0, 0.0
-        for b in range(bodies):
-            mass, centre, inertia = matter[b]
-            lever = centre * np.exp(1j * angles[b])
-            inertial = mass * (moved[b] + (1j * gains[b] - rates[b] ** 2) * lever - gravity)
-            right[3 * b : 3 * b + 3] += inertial.real, inertial.imag, inertia * gains[b]
-            if b <= count:
-                at, force = forces[b]
-                arm_ = at * np.exp(1j * angles[b]) - lever
-                right[3 * b : 3 * b + 3] -= force.real, force.imag, (np.conj(arm_) * force).imag
-            for axis, unit in enumerate((1.0, 1j)):
-                push(b, 2 * b + axis, where[b], unit)
-                if 0 < b <= count:
-                    push(bodies - 1, 2 * b + axis, where[b], -unit)
-        for k in range(count):
-            out = spin * (pitches[k] - centres[k]) / radii[k]
-            force = 1j * out - flanks[k] * math.tan(alpha) * out
-            push(k, 2 * bodies + k, spin * pitches[k], force)
-            push(k + 1, 2 * bodies + k, spin * pitches[k], -force)
-        matrix[3 * (bodies - 1) + 2, columns - 2] = 1.0
-        matrix[2, columns - 1] = 1.0
-        found = np.linalg.solve(matrix, right)
-        flanks = np.sign(found[2 * bodies : 2 * bodies + count])
-    pins = found[: 2 * bodies].reshape(-1, 2) @ [1.0, 1j]
-    return angles, pins, found[2 * bodies : 2 * bodies + count], found[-2:]
-
-
-@settings(deadline=None, max_examples=6)
-@given(st.integers(0, 10**6))
-def test_random_trains_on_an_arm_that_turns(seed):
-    """All forces agree with vector equilibrium of free bodies, and all certificates hold."""
-    scene, told = train(random.Random(seed).uniform)
-    solution = evaluate(scene)
-    assert solution.certified
-    count = len(told[0]) - 1
-    for i in (0, 3, 6):
-        angles, pins, teeth, drives = by_vectors(solution, told, i)
-        size = max(np.abs(pins).max(), np.abs(teeth).max())
-        for k in range(count + 1):
-            reaction = solution.reaction(f"pin{k}")
-            assert reaction.fx[i] + 1j * reaction.fy[i] == pytest.approx(pins[k], abs=1e-12 * size)
-            start = solution.pose(f"gear{k}").angle[0] - by_vectors(solution, told, 0)[0][k]
-            assert solution.pose(f"gear{k}").angle[i] == pytest.approx(angles[k] + start, abs=1e-11)
-        for k in range(count):
-            assert solution.multiplier(f"mesh{k}")[i] == pytest.approx(teeth[k], abs=1e-12 * size)
-        reaction = solution.reaction("swing")
-        assert reaction.fx[i] + 1j * reaction.fy[i] == pytest.approx(
-            pins[count + 1], abs=1e-12 * size
-        )
-        assert (solution.effort("swing")[i], solution.effort("pin0")[i]) == pytest.approx(
-            tuple(drives), abs=1e-12 * size
-        )
-
-
-@pytest.mark.parametrize("rubs", [False, True])
-def test_pins_that_close_loops_bear_teeth_too(rubs):
-    """Balance, power, and the sections of the carrier at its base hold; and no order of declaration
-    changes anything.
-    """
-    found = [evaluate(geared_five_bar(order, rubs)) for order in ("OABCD", "DCBAO")]
-    for solution in found:
-        assert solution.certified
-        assert (
-            max(solution.certificate[name].max() for name in ("balance", "power", "ends")) < 1e-13
-        )
-    for name in "OABCD":
-        one, other = (solution.reaction(name).fx for solution in found)
-        assert one == pytest.approx(other, abs=1e-11 * np.abs(one).max())
-
-
-def test_the_carrier_bears_what_presses_apart():
-    """Between two gears on an arm that stands still the arm is in tension, by the radial force."""
-    m = Mechanism("arm")
-    m.set_gravity(0, 0)
-    arm = m.link("arm", length=0.1, mass=1.0)
-    first = wheel(m, "first", radius=0.04, mass=1.0)
-    second = wheel(m, "second", radius=0.06, mass=1.0)
-    m.revolute("O", m.ground, arm)
-    m.revolute("A", arm, first)
-    m.revolute("B", arm.tip, second)
-    gears(m, "mesh", first, second, radii=(0.04, 0.06))
-    m.torque("load", second, 30.0)
-    solution = evaluate(Scene(m, {"O": polynomial(0.4), "A": polynomial(0.0)}, t=(0, 1, 2)))
-    assert solution.section("arm").axial[0] == pytest.approx(
-        500.0 * math.tan(math.radians(20)), rel=1e-12
-    )
-    assert np.abs(solution.section("arm").shear[0]) == pytest.approx(500.0, rel=1e-12)
-
-
 def test_a_rack_is_pushed_where_its_gear_is():
     """The force travels along the rack; T = F r, and F tan(20 deg) off the gear."""
     m = Mechanism("rack")
@@ -289,81 +93,6 @@ def test_a_rack_is_pushed_where_its_gear_is():
     assert before == pytest.approx(np.zeros(9), abs=1e-11)
 
 
-def refused(told, **more):
-    with pytest.raises(DeclarationError) as error:
-        pair(**more)
-    assert told in str(error.value)
-    assert "\n" not in str(error.value)
-
-
-@pytest.mark.quick
-def test_bad_gears_are_refused_by_name():
-    refused("pressure_angle must be from 0 to 45 deg, got 50 deg", pressure_angle="50 deg")
-    refused("gears in a plane have no helix", helix_angle="20 deg")
-    refused("hand must be 'right' or 'left'", hand="both")
-    m = Mechanism("bad")
-    first, second, third = (
-        m.link(name, length=0.1, mass=1.0, centre=(0, 0), inertia=1e-3) for name in ("a", "b", "c")
-    )
-    m.revolute("A", m.ground, first)
-    m.revolute("B", m.ground.at(0.1, 0), second)
-    m.revolute("C", second.tip, third)
-
-    def one_line(told, *where, **more):
-        with pytest.raises(DeclarationError) as error:
-            gears(m, "mesh", *where, **more)
-        assert str(error.value).startswith("gears 'mesh': ")
-        assert told in str(error.value)
-        assert "\n" not in str(error.value)
-
-    both = (first, second)
-    one_line(
-        "centres are 0.1 m apart; expected 0.11 m by the radii, or 0.01 m for a gear in a ring",
-        *both,
-        radii=(0.05, 0.06),
-    )
-    one_line("centres are 0.1 m apart; expected 0.09 m", *both, teeth=(20, 40), module=0.003)
-    one_line(
-        "numbers of teeth must be whole, and 1 or more, got 20.5",
-        *both,
-        teeth=(20.5, 40),
-        module=0.003,
-    )
-    one_line(
-        "numbers of teeth must be whole, and 1 or more, got 0", *both, teeth=(0, 40), module=0.003
-    )
-    one_line("radii must be positive, got -0.1 m", *both, radii=(-0.1, 0.2))
-    one_line("module must be positive", *both, teeth=(20, 40), module=0.0)
-    one_line("expected module= and teeth=, or radii=", *both, module=0.003)
-    one_line("expected module= and teeth=, or radii=", *both, radii=(0.05, 0.05), module=0.003)
-    one_line("expected 2 radii, got 1", *both, radii=0.05)
-    one_line("'a' turns on 'ground'; 'c' turns on 'b'", first, third, radii=(0.05, 0.05))
-    one_line("'a' turns on nothing", first.at(0.01), second, radii=(0.05, 0.05))
-    one_line("on 'c'", *both, radii=(0.05, 0.05), carrier=third)
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize(
-    ("values", "told"),
-    [
-        ({"z": 40.5}, "numbers of teeth must be whole, and 1 or more, got 40.5"),
-        ({"r": 0.07}, "its centres are 0.09 m apart"),
-    ],
-)
-def test_values_that_do_not_fit_are_refused(values, told):
-    m = Mechanism("swept")
-    z, r = m.parameter("z", 40.0), m.parameter("r", 0.06, "m")
-    first, second = wheel(m, "first", radius=0.03, mass=1.0), wheel(m, "second", radius=r, mass=1.0)
-    m.revolute("A", m.ground, first)
-    m.revolute("B", m.ground.at(0.09, 0), second)
-    gears(m, "mesh", first, second, teeth=(20, z), radii=(0.03, r))
-    scene = Scene(m, {"A": polynomial(0, 1)}, t=(0, 1, 2))
-    assert evaluate(scene).certified
-    with pytest.raises(ParameterError, match="'mesh'") as error:
-        evaluate(scene, parameters=values)
-    assert told in str(error.value)
-
-
 @pytest.mark.quick
 def test_wheels_are_discs():
     m, s = Mechanism("plane"), SpatialMechanism("space")
@@ -385,30 +114,280 @@ def test_wheels_are_discs():
             wheel(m, "other", **told)
 
 
-def test_a_rack_in_a_loop_that_a_guide_closes():
-    """The guide holds a direction too, which is an equation by itself: the shoe may as well be a
-    point, which has none.
+TAN = math.tan(math.radians(20.0))
+
+
+def lossy_pair(kind, speed=None, **more):
+    """Two gears of which the second is loaded, or brakes; or a gear and a rack."""
+    sizes = {
+        "outside": (0.03, 0.05, 0.08),
+        "ring": (0.03, 0.05, 0.02),
+        "in a ring": (0.05, 0.03, -0.02),
+        "rack": (0.03, 1, 0),
+    }
+    r1, r2, apart = sizes[kind]
+    m = Mechanism("pair")
+    m.set_gravity(0, 0)
+    load_, share = m.parameter("load", 40.0), m.parameter("efficiency", 0.97)
+    first = m.link("first", length=0.03, mass=0.0, centre=(0, 0), inertia=0.0)
+    second = m.link("second", length=0.3, mass=1e-9, centre=(0, 0), inertia=0.0)
+    m.revolute("A", m.ground, first)
+    if kind == "rack":
+        m.prismatic("B", m.ground.at(0, -r1), second, axis=(1, 0))
+        m.force("load", second, x=-load_)
+        gears(m, "mesh", first, second, radii=r1, efficiency=share)
+    else:
+        m.revolute("B", m.ground.at(apart, 0), second)
+        m.torque("load", second, load_ if kind == "outside" else -load_)
+        gears(m, "mesh", first, second, radii=(r1, r2), efficiency=share)
+    ratio = r1 if kind == "rack" else r1 / r2
+    return Scene(m, {"A": speed or polynomial(0.1, 7.0)}, t=(0, 1, 5), **more), ratio
+
+
+@pytest.mark.parametrize("kind", ["outside", "ring", "in a ring", "rack"])
+@pytest.mark.parametrize("moment", [40.0, -40.0])
+@pytest.mark.parametrize("share", [0.97, 0.88, 1.0])
+def test_what_comes_out_is_a_share_of_what_goes_in(kind, moment, share):
+    """Whichever gear drives; the couple is borne by no one else, so both torques and that on the
+    bearings' frame are in balance.
     """
+    scene, ratio = lossy_pair(kind)
+    solution = evaluate(scene, parameters={"load": moment, "efficiency": share})
+    assert solution.certified
+    expected = moment * ratio * (1 / share if moment > 0.0 else share)
+    assert solution.effort("A") == pytest.approx(np.full(5, expected), rel=1e-9)
+    power = solution.effort("A") * 7.0 - moment * ratio * 7.0
+    assert solution.output("mesh_loss") == pytest.approx(power, rel=1e-9, abs=1e-9)
+    assert (power >= -1e-9).all()
 
-    def solved(shoe):
-        m = Mechanism("rack_in_a_loop")
-        cart, arm = m.link("cart", length=0.1, mass=1.0), m.link("arm", length=0.4, mass=1.0)
-        bar, last = m.link("bar", length=0.5, mass=0.5), shoe(m)
-        m.prismatic("x", m.ground, cart, axis=(1, 0))
-        m.revolute("A", cart, arm)
-        m.prismatic("B", arm.at(0.1, 0.04), bar.at(0.2), axis=(1, 0))
-        gears(m, "mesh", cart, bar.at(0.2), radii=0.04, carrier=arm)
-        m.revolute("D", bar.tip, last)
-        m.prismatic("C", m.ground.at(0.0, 0.4), last, axis=(1, 0))
-        rough = {"arm": 0.8, "bar": 0.8, "B": 0.03, "C": 0.4}
-        return evaluate(Scene(m, {"x": harmonic(0.0, 0.1, 1.0)}, t=(0, 0.4, 9), posture=rough))
 
-    point = solved(lambda m: m.point_mass("shoe", 0.3))
-    link = solved(lambda m: m.link("shoe", length=0.05, mass=0.3))
-    assert link.certified
-    for one, other in (
-        (link.multiplier("mesh"), point.multiplier("mesh")),
-        (link.effort("x"), point.effort("x")),
-        (link.reaction("A").fy, point.reaction("A").fy),
-    ):
-        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-12 * np.abs(other).max())
+def test_with_bearings_that_rub():
+    """Both depend on each other: teeth press the bearings, whose friction the teeth pass on."""
+    m = Mechanism("rubbing")
+    m.set_gravity(0, 0)
+    first = wheel(m, "first", radius=0.03, mass=0.5)
+    second = wheel(m, "second", radius=0.05, mass=1.0)
+    joints = m.revolute("A", m.ground, first), m.revolute("B", m.ground.at(0.08, 0), second)
+    for name, joint in zip("ab", joints, strict=True):
+        m.friction(name, joint, mu=0.1, radius=0.01)
+    gears(m, "mesh", first, second, radii=(0.03, 0.05), efficiency=0.95)
+    m.torque("load", second, 20.0)
+    solution = evaluate(Scene(m, {"A": polynomial(0.0, 9.0)}, t=(0, 1, 3)))
+    assert solution.certified
+    force = np.abs(solution.multiplier("mesh"))[0]
+    rub = 0.1 * 0.01 * force * math.hypot(1.0, TAN)
+    couple = 0.05 * 0.03 * force / (1.6 - 0.05)
+    assert force * 0.05 - couple == pytest.approx(20.0 + rub, rel=1e-11)
+    assert solution.effort("A")[0] == pytest.approx(force * 0.03 + couple + rub, rel=1e-11)
+
+
+TAN_OF_PLANETARY_GEAR = math.tan(math.radians(20.0))
+
+
+@pytest.mark.parametrize("values", [{}, {"module": 0.003, "torque": 200.0, "rpm": 300.0}])
+def test_the_case_is_that_of_closed_forms(values):
+    """Speeds, torques, the force of the teeth and what a planet's pin bears, at a steady load."""
+    solution = evaluate(
+        load_case(CASES / "planetary_gear").scene, parameters=values | {"unsteady": 0.0}
+    )
+    assert solution.certified
+    told = {"module": 0.002, "torque": 90.0, "rpm": 1450.0} | values
+    slow = told["rpm"] * 2 * math.pi / 60 / 3.5
+    sun, planet = told["module"] * 12, told["module"] * 9
+    assert solution.motion("output").rate == pytest.approx(np.full(421, slow), rel=1e-13)
+    assert solution.effort("input") == pytest.approx(np.full(421, told["torque"] / 3.5), rel=1e-12)
+    assert np.abs(solution.reaction("housing").mz) == pytest.approx(
+        np.full(421, told["torque"] * 2.5 / 3.5), rel=1e-12
+    )
+    force = told["torque"] / 3.5 / 3 / sun
+    assert np.abs(solution.output("set_sun_tangential")) == pytest.approx(
+        np.full(421, force), rel=1e-12
+    )
+    for k in (1, 2, 3):
+        assert np.abs(solution.multiplier(f"set_ring_{k}")) == pytest.approx(
+            np.full(421, force), rel=1e-12
+        )
+        out = np.exp(1j * (solution.motion("output").value + 2 * math.pi * (k - 1) / 3))
+        reaction = solution.reaction(f"set_pin_{k}")
+        mass = 7850 * math.pi * planet**2 * 0.025
+        borne = -2 * force * 1j * out - mass * slow**2 * (sun + planet) * out + 9.81j * mass
+        assert reaction.fx + 1j * reaction.fy == pytest.approx(borne, rel=0, abs=1e-11 * force)
+    assert solution.output("set_sun_radial") == pytest.approx(
+        np.full(421, force * TAN_OF_PLANETARY_GEAR), rel=1e-12
+    )
+
+
+def planetary_set(driven, held, planets=1, efficiency=None, load=40.0):
+    """A planetary set of which one member is driven, one held, and the third loaded."""
+    m = Mechanism("set")
+    m.set_gravity(0, 0)
+    sun = wheel(m, "sun", radius=0.02, mass=1.0)
+    ring = wheel(m, "ring", radius=0.06, bore=0.05, mass=2.0)
+    carrier = m.link("carrier", length=0.035, mass=1.0, centre=(0, 0), inertia=1e-3)
+    bodies = {"sun": sun, "ring": ring, "carrier": carrier}
+    for name, body in bodies.items():
+        (m.weld if name == held else m.revolute)(f"{name}_bearing", m.ground, body)
+    planetary(
+        m,
+        "set",
+        sun,
+        carrier,
+        ring,
+        teeth=(20, 15, 50),
+        module=0.002,
+        planets=planets,
+        mass=0.3,
+        efficiency=efficiency,
+    )
+    (last,) = set(bodies) - {driven, held}
+    m.torque("load", bodies[last], load)
+    return evaluate(Scene(m, {f"{driven}_bearing": polynomial(0.0, 10.0)}, t=(0, 1, 3))), last
+
+
+# Willis: (w_sun - w_carrier)/(w_ring - w_carrier) = -z_ring/z_sun.
+RATES = {
+    ("sun", "ring"): 1 / 3.5,
+    ("sun", "carrier"): -0.4,
+    ("carrier", "ring"): 3.5,
+    ("carrier", "sun"): 1.4,
+    ("ring", "sun"): 1 / 1.4,
+    ("ring", "carrier"): -2.5,
+}
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("planets", [1, pytest.param(5, marks=pytest.mark.long), 2])
+@pytest.mark.parametrize(("driven", "held"), RATES)
+def test_each_member_may_drive_and_each_be_held(driven, held, planets):
+    solution, last = planetary_set(driven, held, planets)
+    assert solution.certified
+    ratio = RATES[driven, held]
+    assert solution.motion(f"{last}_bearing").rate == pytest.approx(
+        np.full(3, 10.0 * ratio), rel=1e-13
+    )
+    assert solution.effort(f"{driven}_bearing") == pytest.approx(
+        np.full(3, -40.0 * ratio), rel=1e-11
+    )
+    # All three torques are in balance.
+    assert solution.reaction(f"{held}_bearing").mz == pytest.approx(
+        np.full(3, -40.0 * (1 - ratio)), rel=1e-11, abs=1e-11
+    )
+    pins = [solution.reaction(f"set_pin_{k + 1}") for k in range(planets)]
+    teeth = np.abs(solution.multiplier("set_sun"))
+    turning = (
+        0.3 * 0.035 * solution.motion("carrier_bearing").rate ** 2 if held != "carrier" else 0.0
+    )
+    for pin in pins:
+        assert pin.resultant == pytest.approx(np.hypot(2 * teeth, turning), rel=1e-11)
+
+
+@pytest.mark.parametrize("planets", [1, 2])
+@pytest.mark.parametrize("load", [-40.0, 40.0])
+def test_its_efficiency_is_that_of_its_meshes_seen_from_the_carrier(planets, load):
+    """Niemann and Winter: with i the ring's teeth over the sun's, (1 + i e)/(1 + i), with e of both
+    meshes; backward (1 + i/e).
+    """
+    solution, _ = planetary_set("sun", "ring", planets, 0.97, load)
+    assert solution.certified
+    given = solution.effort("sun_bearing") * 10.0
+    taken = -load * solution.motion("carrier_bearing").rate
+    share = (1 + 2.5 * 0.97 ** (2 if load < 0.0 else -2)) / 3.5
+    assert taken / given == pytest.approx(np.full(3, share), rel=1e-9)
+    lost = solution.output("set_sun_loss") + sum(
+        solution.output(f"set_ring_{k + 1}_loss") for k in range(planets)
+    )
+    assert lost == pytest.approx(given - taken, rel=1e-8)
+
+
+TEETH = {"teeth": (20, 40), "module": 0.003}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("where", "more", "says"),
+    [
+        (
+            "ab",
+            {"radii": (0.05, 0.06)},
+            "centres are 0.1 m apart; expected 0.11 m by the radii, or",
+        ),
+        ("ab", TEETH, "centres are 0.1 m apart; expected 0.09 m"),
+        ("ab", TEETH | {"teeth": (20.5, 40)}, "teeth must be whole, and 1 or more, got 20.5"),
+        ("ab", TEETH | {"teeth": (0, 40)}, "teeth must be whole, and 1 or more, got 0"),
+        ("ab", TEETH | {"module": 0.0}, "module must be positive"),
+        ("ab", {"radii": (-0.1, 0.2)}, "radii must be positive, got -0.1 m"),
+        ("ab", {"module": 0.003}, "expected module= and teeth=, or radii="),
+        ("ab", {"radii": (0.05, 0.05), "module": 0.003}, "expected module= and teeth=, or radii="),
+        ("ab", {"radii": 0.05}, "expected 2 radii, got 1"),
+        ("ac", {"radii": (0.05, 0.05)}, "'a' turns on 'ground'; 'c' turns on 'b'"),
+        ("ab", {"radii": (0.05, 0.05), "carrier": "c"}, "on 'c'"),
+        ("ab", {"pressure_angle": "50 deg"}, "pressure_angle must be from 0 to 45 deg, got 50 deg"),
+        ("ab", {"helix_angle": "20 deg"}, "gears in a plane have no helix"),
+        ("ab", {"hand": "both"}, "hand must be 'right' or 'left'"),
+        ("ab", {"mu": 0.1}, "expected mu= for crossed axes, efficiency= for others"),
+        ("ab", {"efficiency": 1.1}, "efficiency must not be above 1, got 1.1"),
+        ("ab", {"efficiency": 0.0}, "efficiency must be above 0, got 0"),
+        ("ring", {"efficiency": 0.4}, "efficiency is too low for a gear in this ring, got 0.4"),
+    ],
+)
+def test_bad_gears_are_refused_by_name(where, more, says):
+    m = Mechanism("bad")
+    a, b, c = (wheel(m, name, radius=0.05, mass=1.0) for name in "abc")
+    m.revolute("A", m.ground, a)
+    m.revolute("B", m.ground.at(0.05 if where == "ring" else 0.1, 0), b)
+    m.revolute("C", b.tip, c)
+    radii = (0.05, 0.1) if where == "ring" else (0.05, 0.05)
+    told = more if {"radii", "teeth", "module"} & set(more) else more | {"radii": radii}
+    told = told | ({"carrier": c} if "carrier" in more else {})
+    with pytest.raises(DeclarationError, match=r"^gears 'mesh': [^\n]*" + re.escape(says)):
+        gears(m, "mesh", a, c if where == "ac" else b, **told)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [
+        ({"z": 40.5}, "'mesh'.* teeth must be whole, and 1 or more, got 40.5"),
+        ({"r": 0.07}, "'mesh'.*its centres are 0.09 m apart"),
+        ({"share": 1.2}, "'mesh': efficiency"),
+        ({"share": 0.0}, "'mesh': efficiency"),
+    ],
+)
+def test_values_that_do_not_fit_are_refused(values, says):
+    m = Mechanism("swept")
+    z, r, share = m.parameter("z", 40.0), m.parameter("r", 0.06, "m"), m.parameter("share", 0.9)
+    first, second = wheel(m, "first", radius=0.03, mass=1.0), wheel(m, "second", radius=r, mass=1.0)
+    m.revolute("A", m.ground, first)
+    m.revolute("B", m.ground.at(0.09, 0), second)
+    gears(m, "mesh", first, second, teeth=(20, z), radii=(0.03, r), efficiency=share)
+    scene = Scene(m, {"A": polynomial(0, 1)}, t=(0, 1, 2))
+    assert evaluate(scene).certified
+    with pytest.raises(ParameterError, match=says):
+        evaluate(scene, parameters=values)
+
+
+def test_a_gear_in_a_ring_that_loses_too_much_jams():
+    with pytest.raises(AssemblyError, match="friction 'mesh:loss': the mechanism jams"):
+        evaluate(lossy_pair("in a ring")[0], parameters={"efficiency": 0.75})
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ({"teeth": (24, 18, 61)}, "its ring has 61 teeth; expected 60"),
+        ({"teeth": (24, 18.5, 61)}, "teeth: expected a list, each a whole number"),
+        ({"planets": 5}, "5 planets cannot be evenly spaced; expected a number that divides 84"),
+        ({"planets": 7}, "7 planets of 18 teeth do not fit"),
+        ({"module": -0.002}, "module must be positive, got -0.002 m"),
+        ({"of": SpatialMechanism}, "only a mechanism in a plane has it"),
+    ],
+)
+def test_planets_that_do_not_fit_are_refused_by_name(more, says):
+    m = more.get("of", Mechanism)("set")
+    sun, carrier = (wheel(m, name, radius=0.05, mass=1.0) for name in ("sun", "carrier"))
+    m.revolute("A", m.ground, sun)
+    m.revolute("B", m.ground, carrier)
+    told = {"teeth": (24, 18, 60), "module": 0.002, "mass": 0.1} | more
+    with pytest.raises(DeclarationError, match=says):
+        planetary(m, "set", sun, carrier, m.ground, **{k: v for k, v in told.items() if k != "of"})

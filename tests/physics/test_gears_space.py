@@ -1,6 +1,8 @@
 """Gears in space: helical, bevel, worm and rack against the forces of textbooks, on the bearings
-and sections of their shafts.
+and sections of their shafts; wheels that roll.
 """
+
+from __future__ import annotations
 
 import math
 
@@ -8,9 +10,9 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate
-from lagrange_casadi.elements import belt, gears, wheel
+from lagrange_casadi.elements import belt, gears
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -183,115 +185,73 @@ def test_a_worm_and_its_wheel(hand, moment):
     assert abs(solution.effort("worm_bearing")[0]) == pytest.approx(50.0 * 2 / 40, rel=1e-12)
 
 
-def test_sections_of_a_shaft_feel_the_teeth_where_they_are():
-    """A slender shaft between the gear and its bearing: torsion up to the gear, bending by its
-    force's arm.
-    """
-    m = SpatialMechanism("shaft")
+def worm(mu, driven, speed=3.0, hand="right", moment=-50.0):
+    m = SpatialMechanism("worm")
     m.set_gravity(0, 0, 0)
-    driver = shaft(m, "driver", (0, 0, 0), (1, 0, 0), (0, 1, 0))
-    driven = shaft(m, "driven", (0, 0.1, 0), (1, 0, 0), (0, 1, 0), True)
-    gears(m, "mesh", driver.at(0.2), driven.at(0.2), radii=(0.04, 0.06))
-    m.torque("load", driven.tip, x=30.0)
-    solution = evaluate(Scene(m, {"driver_bearing": polynomial(0.0)}, t=(0, 1, 2)))
-    assert solution.certified
-    section = solution.section("driven")
-    at = (section.xi * 0.5) if section.xi.max() <= 1.0 else section.xi
-    torsion, bending = section.torsion[0], section.bending[0]
-    assert np.abs(torsion[at > 0.2001]) == pytest.approx(30.0, rel=1e-12)
-    assert torsion[at < 0.1999] == pytest.approx(0.0, abs=1e-10)
-    normal = 30.0 / 0.06 / math.cos(math.radians(20))
-    before = at < 0.1999
-    assert bending[before] == pytest.approx(normal * (0.2 - at[before]), rel=1e-11)
-    assert bending[at > 0.2001] == pytest.approx(0.0, abs=1e-10)
-
-
-def test_a_planet_on_a_tilted_arm():
-    """A differential of bevel gears: side gears on one axis, a planet on a carrier that turns about
-    it; its rate is their mean.
-    """
-    m = SpatialMechanism("differential")
-    m.set_gravity(0, 0, 0)
-    r = 0.05
-    left, right = (wheel(m, name, radius=r, mass=1.0, width=None) for name in ("left", "right"))
-    cage = m.link("cage", length=r, mass=1.0, centre=(0, 0, 0), inertia=(1e-3, 1e-3, 1e-3))
-    planet = wheel(m, "planet", radius=r, mass=0.5)
-    m.revolute("left_axle", m.ground.at(-r, 0, 0), left, axis=(1, 0, 0))
-    m.revolute("right_axle", m.ground.at(r, 0, 0), right, axis=(1, 0, 0))
-    m.revolute("cage_bearing", m.ground, cage, axis=(1, 0, 0))
-    m.revolute("pin", cage.at(0, r, 0), planet, axis=(0, 1, 0), turned=((0, 1, 0), (-1, 0, 0)))
-    gears(m, "one", left, planet, radii=(r, r))
-    gears(m, "other", right, planet, radii=(r, r))
-    m.torque("left_load", left, x=-20.0)
-    m.torque("right_load", right, x=-20.0)
-    laws = {"cage_bearing": harmonic(0.0, 1.0, 1.0), "left_axle": harmonic(0.0, 0.4, 1.0)}
-    solution = evaluate(Scene(m, laws, t=(0, 1, 9)))
-    assert solution.certified
-    rates = [solution.motion(name).rate for name in ("left_axle", "right_axle", "cage_bearing")]
-    assert rates[0] + rates[1] == pytest.approx(2 * rates[2], abs=1e-12)
-    # Nothing turns at the ends of the swing but by inertia, which is small: half of the cage's
-    # torque on each side.
-    gain = solution.motion("pin").acceleration * 0.5 * r**2 / 2
-    teeth = solution.multiplier("one"), solution.multiplier("other")
-    assert np.abs(np.abs(teeth[0] * r) - np.abs(teeth[1] * r)) == pytest.approx(
-        np.abs(gain), abs=1e-9
+    r1, r2, z = 0.02, 0.08, 40
+    kwargs = {"mass": 0.0, "centre": (0, 0, 0)}
+    screw = m.link("screw", length=0.1, inertia=(1e-12, 1e-12, 1e-12), **kwargs)
+    turned = m.link(
+        "turned", length=0.1, inertia=(1e-12, 1e-12, 1e-12), **(kwargs | {"mass": 1e-9})
     )
+    m.revolute("worm", m.ground, screw, axis=(1, 0, 0))
+    m.revolute("wheel", m.ground.at(0, r1 + r2, 0), turned, axis=(0, 0, 1))
+    gears(
+        m, "mesh", screw, turned, radii=(r1, r2), teeth=(4, z), hand=hand, mu=m.parameter("mu", mu)
+    )
+    m.torque(
+        "load",
+        turned if driven == "worm" else screw,
+        **({"z": moment} if driven == "worm" else {"x": moment}),
+    )
+    return Scene(m, {driven: polynomial(0.0, speed)}, t=(0, 1, 3)), math.atan(4 * r2 / (z * r1))
 
 
-def test_a_belt_in_space_is_that_of_the_plane():
-    m = SpatialMechanism("belt")
-    m.set_gravity(0, 0, 0)
-    first = shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0))
-    second = shaft(m, "second", (0, 0.3, 0.4), (1, 0, 0), (0, 1, 0))
-    belt(m, "belt", first.at(0.1), second.at(0.1), radii=(0.05, 0.1), preload=500.0)
-    m.torque("load", second, x=20.0)
-    solution = evaluate(Scene(m, {"first_bearing": polynomial(0.0)}, t=(0, 1, 2)))
-    assert solution.certified
-    assert (solution.output("belt_tight")[0], solution.output("belt_slack")[0]) == pytest.approx(
-        (600.0, 400.0)
-    )
-    lean = math.asin(0.05 / 0.5)
-    push = borne(solution, "first")[0]
-    assert np.linalg.norm(push) == pytest.approx(
-        math.hypot(1000.0 * math.cos(lean), 200.0 * math.sin(lean)), rel=1e-12
-    )
-    assert push[0] == pytest.approx(0.0, abs=1e-10)
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("mu", [0.0, 0.03, 0.1])
+@pytest.mark.parametrize("hand", ["right", "left"])
+def test_a_worm_drives_its_wheel(mu, hand):
+    """Shigley, equation 13-46: (cos(phi) - mu tan(lead))/(cos(phi) + mu cot(lead))."""
+    cosine = math.cos(math.radians(20.0))
+    for speed in (3.0, -3.0):
+        scene, lead = worm(mu, "worm", speed, hand)
+        solution = evaluate(scene)
+        assert solution.certified
+        given, taken = solution.effort("worm") * speed, 50.0 * solution.motion("wheel").rate
+        efficiency = (cosine - mu * math.tan(lead)) / (cosine + mu / math.tan(lead))
+        if taken[0] > 0.0:
+            assert taken / given == pytest.approx(np.full(3, efficiency), rel=1e-9)
+        else:
+            # The wheel pushes: with the sign of mu the other way, less is given back, or it must be
+            # driven.
+            back = (cosine - mu / math.tan(lead)) / (cosine + mu * math.tan(lead))
+            assert given / taken == pytest.approx(np.full(3, back), rel=1e-9)
+        assert given - taken == pytest.approx(solution.output("mesh_loss"), rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.quick
-def test_bad_gears_in_space_are_refused_by_name():
+@pytest.mark.parametrize(
+    ("at", "more", "says"),
+    [
+        ({"second": 0.04}, {}, "gear 1 is 0.1 m from where the axes meet; expected 0.06 m"),
+        ({"third": 0.0}, {}, "0.1 m along the axis"),
+        ({"worm": 0.0}, {}, "crossed axes need teeth= and radii= of both"),
+        ({"worm": 0.02}, {"teeth": (1, 40)}, "0.02 m along its axis from the common perpendicular"),
+        ({"third": 0.1}, {"helix_angle": "80 deg"}, "must be from -75 to 75 deg, got 80 deg"),
+        ({"second": 0.0}, {"of": belt}, "parallel axes"),
+    ],
+)
+def test_bad_gears_in_space_are_refused_by_name(at, more, says):
     m = SpatialMechanism("bad")
-    first = shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0))
-    second = shaft(m, "second", (0, 0, 0), (0, 1, 0), (0, 0, 1))
-    third = shaft(m, "third", (0, 0.1, 0), (1, 0, 0), (0, 1, 0))
-    worm = shaft(m, "worm", (0, 0, 0.1), (0, 1, 0), (0, 0, 1))
-
-    def one_line(told, *where, of=gears, **more):
-        with pytest.raises(DeclarationError) as error:
-            of(m, "mesh", *where, **more)
-        assert told in str(error.value)
-        assert "\n" not in str(error.value)
-
-    one_line(
-        "the centre of its gear 1 is 0.1 m from where the axes meet; expected 0.06 m",
-        first.at(0.1),
-        second.at(0.04),
-        radii=(0.04, 0.06),
-    )
-    one_line("0.1 m along the axis", first.at(0.1), third, radii=(0.04, 0.06))
-    one_line("crossed axes need teeth= and radii= of both", first, worm, radii=(0.04, 0.06))
-    one_line(
-        "0.02 m along its axis from the common perpendicular",
-        first,
-        worm.at(0.02),
-        radii=(0.04, 0.06),
-        teeth=(1, 40),
-    )
-    one_line(
-        "helix_angle must be from -75 to 75 deg, got 80 deg",
-        first,
-        third,
-        radii=(0.04, 0.06),
-        helix_angle="80 deg",
-    )
-    one_line("parallel axes", first, second, of=belt, radii=(0.04, 0.06))
+    shafts = {
+        "first": shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0)),
+        "second": shaft(m, "second", (0, 0, 0), (0, 1, 0), (0, 0, 1)),
+        "third": shaft(m, "third", (0, 0.1, 0), (1, 0, 0), (0, 1, 0)),
+        "worm": shaft(m, "worm", (0, 0, 0.1), (0, 1, 0), (0, 0, 1)),
+    }
+    ((name, place),) = at.items()
+    first = shafts["first"].at(0.0 if name == "worm" else 0.1)
+    make = more.get("of", gears)
+    options = {"radii": (0.04, 0.06)} | {k: v for k, v in more.items() if k != "of"}
+    with pytest.raises(DeclarationError, match=says):
+        make(m, "mesh", first, shafts[name].at(place), **options)

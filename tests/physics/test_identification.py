@@ -1,8 +1,9 @@
 """Parameters from measurements are the true ones, as far as measurements tell them."""
 
+from __future__ import annotations
+
 import runpy
 
-import h5py
 import numpy as np
 import pytest
 from conftest import CASES
@@ -24,16 +25,13 @@ from lagrange_casadi import (
     Measurements,
     Mechanism,
     Scene,
-    SpatialMechanism,
     evaluate,
     excite,
     identify,
     load_case,
     read_measurements,
 )
-from lagrange_casadi.cli import main
 from lagrange_casadi.errors import UnknownNameError
-from lagrange_casadi.motion import expression
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -55,21 +53,6 @@ def test_base_parameters_of_a_planar_arm_are_those_of_the_textbook():
     assert not result.unexcited
     assert np.isinf([result.errors[name] for name in ("m2", "h1", "J1")]).all()
     assert max(result.comparison.relative.values()) < 1e-12
-
-
-def test_what_the_motion_does_not_tell_is_said():
-    """With the second joint at rest its links are one; other motions would tell them apart."""
-    scene = two_links()
-    still = Scene(
-        scene.mechanism,
-        dict(scene.motion) | {"B": expression(lambda t: 0.8 + 0.0 * t)},
-        t=(0, 3, 301),
-    )
-    result = identify(still, record(still, ARM, "effort:A"))
-    assert len(result.base) < 4
-    assert len(result.base) + len(result.unexcited) == 4
-    other = identify(scene, record(scene, ARM, "effort:A"))
-    assert not other.unexcited
 
 
 @pytest.mark.parametrize(
@@ -146,17 +129,6 @@ def test_missing_values_a_filter_and_a_second_record_change_no_truth():
         result.validate(Measurements(exact.t, {"A": exact.columns["A"], "B": exact.columns["B"]}))
 
 
-def test_filtered_errors_are_those_of_filtered_noise():
-    """A filter before least squares leaves the stated errors true."""
-    scene, names = two_links(), ("effort:A", "effort:B")
-    squares = []
-    for seed in range(40):
-        result = identify(scene, noisy(scene, ARM, names, 0.3, seed), cutoff=4.0)
-        away = np.array([one.value for one in result.base]) - combined(result, ARM)
-        squares.append(away @ np.linalg.solve(result.covariance, away))
-    assert 2.7 <= np.mean(squares) <= 5.5  # 4 degrees of freedom: 4 +- 0.45
-
-
 def test_prior_values_are_one_more_measurement():
     scene, names = two_links(), ("effort:A", "effort:B")
     given = noisy(scene, ARM, names, 0.1)
@@ -195,37 +167,6 @@ def test_consistent_parameters_are_those_of_some_body():
     np.testing.assert_allclose(
         list(exact.values.values()), [truth[n] for n in exact.values], atol=1e-6
     )
-
-
-def test_a_thin_rod_is_a_body_that_can_be():
-    """Its moment about its own axis is none; Wensing's matrix has no extent across it."""
-    m = SpatialMechanism("boom")
-    mass = m.parameter("mass", 1.0, "kg", low=0.0)
-    moments = (0.0, 0.03 * mass, 0.03 * mass)
-    rod = m.link("rod", length=0.6, mass=mass, centre=(0.3, 0, 0), inertia=moments)
-    m.revolute("tilt", m.ground, rod, axis=(0, 1, 0))
-    scene = Scene(m, {"tilt": swinging(0.1, 0.4, 0.2)}, t=(0, 2, 101))
-    given = noisy(scene, {"mass": 1.4}, ("effort:tilt",), 0.1)
-    free, safe = identify(scene, given), identify(scene, given, consistent=True)
-    assert not free.impossible
-    assert safe.values["mass"] == pytest.approx(free.values["mass"], rel=1e-6)
-
-
-def test_consistent_parameters_are_the_least_squares_among_possible_ones():
-    """With a moment of inertia that is measured too small, the others are those for the least."""
-    scene, names = two_links(), ("effort:A", "effort:B")
-    some, other = (record(scene, ARM | {"J2": inertia}, *names) for inertia in (0.1, 0.16))
-    efforts = {n: some.columns[n] - (other.columns[n] - some.columns[n]) / 3 for n in names}
-    given = Measurements(some.t, {**some.columns, **efforts}, dict.fromkeys(names, 0.1))
-    known = {"m2": 1.7, "h2": 0.4}
-    assert identify(scene, given, ["J2"], parameters=ARM).values["J2"] == pytest.approx(0.08)
-    safe = identify(scene, given, ["h1", "J1", "J2"], parameters=known, consistent=True)
-    least = 0.4**2 / 1.7
-    held = identify(scene, given, ["h1", "J1"], parameters=known | {"J2": least})
-    assert safe.values["J2"] == pytest.approx(least, rel=1e-4)
-    assert not safe.impossible
-    for name in ("h1", "J1"):
-        assert safe.values[name] == pytest.approx(held.values[name], rel=1e-4)
 
 
 def test_strain_gauges_tell_a_spring():
@@ -291,69 +232,3 @@ def test_an_excitation_keeps_within_limits_and_tells_more():
         shares = (*shares, np.abs(acceleration).max() / most)
         assert low <= angle.min() < angle.max() <= high
         assert 0.99 < max(shares) <= 1.0
-
-
-def test_an_excitation_is_a_drawn_one_if_none_that_is_improved_can_be_followed(monkeypatch):
-    place = "lagrange_casadi.identification.excitation._Search._improved"
-    monkeypatch.setattr(place, lambda _, starts, steps: [20.0 * one.series for one in starts])
-    middles = {f"d{i}": 2 * np.pi * i / 3 + 7 * np.pi / 6 - 0.8 for i in range(3)}
-    limits = {name: (middle - 0.2, middle + 0.2, 1.0, 5.0) for name, middle in middles.items()}
-    found = excite(platform(), limits, period=4.0, harmonics=2)
-    assert found.error == 1.0
-    assert found.condition == found.first
-
-
-def test_the_command_writes_values_a_file_and_a_figure(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    path = tmp_path / "arm_case.py"
-    path.write_text(
-        "from math import sin\n"
-        "from lagrange_casadi import Mechanism, Scene\n"
-        "from lagrange_casadi.motion import harmonic\n"
-        "def scene():\n"
-        "    m = Mechanism('arm')\n"
-        "    w, c = m.parameter('w', 1.0, 'kg'), m.parameter('c', 0.1, 'N m s')\n"
-        "    j = m.revolute('O', m.ground, m.link('l', length=0.5, mass=w))\n"
-        "    m.torsion_spring('d', j, stiffness=0.0, damping=c)\n"
-        "    return Scene(m, {'O': harmonic(0.0, 1.0, 0.5)}, t=(0, 4, 201))\n"
-    )
-    solution = evaluate(load_case(path).scene, parameters={"w": 1.4, "c": 0.25})
-    noise = np.random.default_rng(0).normal(0.0, 0.02, solution.t.size)
-    heads = ["t [s]", "angle [deg]", "O_rate [deg/s]", "O_acceleration [rad/s^2]", "torque [N m]"]
-    columns = [np.degrees(solution.array(f"motion:O{end}")) for end in ("", "_rate")]
-    columns += [solution.array("motion:O_acceleration"), solution.array("effort:O") + noise]
-    rows = zip(solution.t, *columns, strict=True)
-    lines = [",".join(heads), *(",".join(f"{x:.12g}" for x in row) for row in rows)]
-    (tmp_path / "run.csv").write_text("\n".join(lines))
-    given = ["--column", "O=angle", "--column", "effort:O=torque", "--noise", "effort:O=0.02"]
-    given += ["--validate", "run.csv", "--figure", "fit.svg", "--out", "found.h5"]
-    given += ["--report", "page.html"]
-    assert main(["identify", str(path), "run.csv", *given]) == 0
-    said = capsys.readouterr().out
-    settings = dict(word.split("=") for word in said.split() if word[:2] in ("w=", "c="))
-    with h5py.File("found.h5") as file:
-        for name, true in (("w", 1.4), ("c", 0.25)):
-            item = file["parameters"][name]
-            assert float(settings[name]) == item[()]
-            assert abs(item[()] - true) < 4.0 * item.attrs["error"] < 0.02
-        assert file.attrs["complete"]
-        assert sorted(file["base"].attrs["words"]) == ["c", "w"]
-        both = file["record/effort:O"]
-        left = both["measured"][()] - both["model"][()]
-        assert np.sqrt(np.mean(left**2)) == pytest.approx(0.02, rel=0.2)
-        assert file["validation/effort:O"].attrs["relative"] == both.attrs["relative"]
-    assert (tmp_path / "fit.svg").read_text().startswith("<?xml")
-    page = (tmp_path / "page.html").read_text()
-    for words in (f"<td>{settings['w'][:5]}", "standard error", "The record", "Another record"):
-        assert words in page
-    assert page.count("<img") == 4
-    files = [tmp_path / name for name in ("found.h5", "fit.svg", "page.html")]
-    before = [file.read_bytes() for file in files]
-    assert main(["identify", str(path), "run.csv", *given]) == 0
-    assert before == [file.read_bytes() for file in files]
-    assert main(["identify", str(path), "run.csv", *given, "--report", "page.pdf"]) == 2
-    assert main(["check", "found.h5"]) == 0
-    damaged = bytearray(before[0])
-    damaged[len(damaged) // 2] ^= 1
-    (tmp_path / "found.h5").write_bytes(bytes(damaged))
-    assert main(["check", "found.h5"]) == 1

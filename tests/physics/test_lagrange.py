@@ -1,8 +1,16 @@
-"""Lagrange terms of systems that are no linkages, against their textbook equations."""
+"""Lagrange terms of systems that are no linkages, against their textbook equations and, where time
+itself moves them, against the vector equations: forces times virtual displacements, by
+differences in 60 digits.
+"""
+
+from __future__ import annotations
 
 import casadi as ca
+import mpmath
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from lagrange_casadi import LagrangeSystem
 from lagrange_casadi.errors import DeclarationError
@@ -57,69 +65,6 @@ def test_rope_tension_of_a_crane():
     assert released == pytest.approx(-tension, rel=1e-14)
 
 
-def test_coordinates_may_be_a_cosine_and_a_sine():
-    """A pendulum by its angle, and by (cos, sin) with their tangent, is the same pendulum."""
-    q, qd, qdd, c, s = (ca.SX.sym(n) for n in ("q", "qd", "qdd", "c", "s"))
-    kinetic = 2.0 * qd**2 * (1.0 + 0.3 * ca.cos(q)) / 2
-    by_angle = LagrangeSystem(kinetic, -3.0 * ca.sin(q), q, qd, qdd)
-    direction = ca.vertcat(c, s)
-    by_pair = LagrangeSystem(
-        2.0 * qd**2 * (1.0 + 0.3 * c) / 2, -3.0 * s, direction, qd, qdd, tangent=ca.vertcat(-s, c)
-    )
-    angle, rate, acceleration = 0.8, -1.2, 0.5
-    one = numbers(by_angle, by_angle.terms()[0], symbols=[angle, rate, acceleration])
-    two = numbers(
-        by_pair, by_pair.terms()[0], symbols=[np.cos(angle), np.sin(angle), rate, acceleration]
-    )
-    np.testing.assert_allclose(one, two, rtol=1e-15)
-
-
-def double_pendulum(velocities):
-    """Two rods by their absolute angles, the lower one's bearing released by a mobility; E over
-    coordinates, or over velocities.
-    """
-    q, qd, qdd, e, ed, w = (ca.SX.sym(n, 2) for n in ("q", "qd", "qdd", "e", "ed", "w"))
-    l1, l2, m1, m2, inertia, g = 0.7, 0.4, 1.3, 0.8, 0.05, 9.81
-    upper = l1 * ca.vertcat(ca.sin(q[0]), -ca.cos(q[0]))
-    lower = upper + e + l2 * ca.vertcat(ca.sin(q[1]), -ca.cos(q[1]))
-    speeds = [ca.jtimes(place, ca.vertcat(q, e), ca.vertcat(qd, ed)) for place in (upper, lower)]
-    # Partly over velocities, partly over rates and coordinates: only the lower mass is written in
-    # w.
-    own = m1 * ca.sumsqr(speeds[0]) / 2 + inertia * qd[1] ** 2 * (1 + 0.1 * ca.cos(q[0])) / 2
-    fields = {
-        "coordinates": q,
-        "rates": qd,
-        "accelerations": qdd,
-        "mobilities": e,
-        "mobility_rates": ed,
-    }
-    fields["force_function"] = -g * (m1 * upper[1] + m2 * lower[1])
-    if velocities:
-        fields |= {"velocities": w, "velocity_graphs": speeds[1]}
-    return LagrangeSystem(
-        kinetic=own + m2 * ca.sumsqr(w if velocities else speeds[1]) / 2, **fields
-    )
-
-
-def test_energy_over_velocities_gives_the_same_terms():
-    one, two = (numbers(s, *s.terms()) for s in (double_pendulum(False), double_pendulum(True)))
-    np.testing.assert_allclose(two, one, rtol=1e-14)
-
-
-def test_energy_over_velocities_and_the_coordinates_too():
-    """A mass that depends on where it is, moving at w = q': R = m q'' + m' q'^2 / 2, however the
-    energy is split.
-    """
-    q, qd, qdd, w = (ca.SX.sym(n) for n in ("q", "qd", "qdd", "w"))
-    mass = 1 + ca.sin(q) ** 2
-    over_rates = LagrangeSystem(mass * qd**2 / 2, ca.SX(0), q, qd, qdd)
-    mixed = LagrangeSystem(
-        mass * w * qd / 2, ca.SX(0), q, qd, qdd, velocities=w, velocity_graphs=qd
-    )
-    one, two = (numbers(s, s.terms()[0], symbols=[0.7, -0.4, 1.3]) for s in (over_rates, mixed))
-    np.testing.assert_allclose(two, one, rtol=1e-14)
-
-
 def test_fields_and_forces_work_along_velocities():
     """Gravity as the acceleration of a field, and a force on a velocity, are what U and Q* are."""
     q, qd, qdd, w = (ca.SX.sym(n) for n in ("q", "qd", "qdd", "w"))
@@ -141,19 +86,6 @@ def test_fields_and_forces_work_along_velocities():
     assert found == pytest.approx(np.cos(0.7) * (3.0 * (rise + 9.81) - 2.0), rel=1e-14)
 
 
-def test_multipliers_work_on_constraints():
-    """A bead held on the line y = x by a constraint: the multiplier enters with the gradient of Phi
-    (paper eq. 8).
-    """
-    q, qd, qdd, lam = ca.SX.sym("q", 2), ca.SX.sym("qd", 2), ca.SX.sym("qdd", 2), ca.SX.sym("lam")
-    system = LagrangeSystem(
-        ca.sumsqr(qd) / 2, -9.81 * q[1], q, qd, qdd, constraints=q[1] - q[0], multipliers=lam
-    )
-    along, _ = system.terms()
-    f = ca.Function("f", [qdd, lam], [along])
-    np.testing.assert_allclose(f([1.0, 2.0], 5.0).full().ravel(), [1.0 + 5.0, 2.0 + 9.81 - 5.0])
-
-
 def test_other_forces_are_taken_off():
     q, qd, qdd, e, ed = (ca.SX.sym(n) for n in ("q", "qd", "qdd", "e", "ed"))
     system = LagrangeSystem(
@@ -170,24 +102,6 @@ def test_other_forces_are_taken_off():
     along, across = system.terms()
     f = ca.Function("f", [q, qd, qdd], [along, across])
     assert [float(x) for x in f(2.0, 3.0, 4.0)] == [4.0 + 1.5, 4.0 - 14.0]
-
-
-def test_one_reverse_sweep_serves_any_number_of_mobilities():
-    """Instructions for k mobilities grow by little more than k times what one of them needs by
-    itself.
-    """
-
-    def count(k):
-        q, qd, qdd = (ca.SX.sym(n, 4) for n in ("q", "qd", "qdd"))
-        e, ed = ca.SX.sym("e", k), ca.SX.sym("ed", k)
-        place = ca.cumsum(ca.sin(ca.cumsum(q))) + ca.repmat(ca.sum1(e), 4, 1)
-        speed = ca.jtimes(place, ca.vertcat(q, e), ca.vertcat(qd, ed))
-        system = LagrangeSystem(
-            ca.sumsqr(speed), ca.sum1(place), q, qd, qdd, mobilities=e, mobility_rates=ed
-        )
-        return ca.Function("f", [q, qd, qdd], list(system.terms()), {"cse": True}).n_instructions()
-
-    assert count(16) - count(1) < count(1)
 
 
 @pytest.mark.parametrize(
@@ -213,3 +127,238 @@ def test_misuse_is_named(change, says):
     ((name, make),) = change.items()
     with pytest.raises(DeclarationError, match=says):
         LagrangeSystem(**(system.__dict__ | {name: make(system)}))
+
+
+G = 9.81
+
+
+WAYS = ("energy", "velocities", "both")
+
+
+class Functions:
+    """The functions that places are written in, of CasADi or of mpmath."""
+
+    def __init__(self, of):
+        self.sin, self.cos, self.exp, self.sqrt = of.sin, of.cos, of.exp, of.sqrt
+
+
+def lagrange(places, masses, n, way):
+    """R(q, q', q'', t) of point masses at ``places(f, q, t)``, each of three components, the last
+    one upward.
+    """
+    q, qd, qdd, t = ca.SX.sym("q", n), ca.SX.sym("qd", n), ca.SX.sym("qdd", n), ca.SX.sym("t")
+    at = ca.vertcat(*(ca.vertcat(*place) for place in places(Functions(ca), ca.vertsplit(q), t)))
+    speeds = ca.jtimes(at, ca.vertcat(q, t), ca.vertcat(qd, 1))
+    weights = ca.vertcat(*(m for m in masses for _ in range(3)))
+    fields = {"coordinates": q, "rates": qd, "accelerations": qdd, "time": t}
+    fields["force_function"] = -G * sum(m * at[3 * k + 2] for k, m in enumerate(masses))
+    w = ca.SX.sym("w", speeds.numel())
+    over = {"energy": speeds, "velocities": w, "both": ca.vertcat(w[::2], speeds[1::2])}[way]
+    order = {"both": [*range(0, speeds.numel(), 2), *range(1, speeds.numel(), 2)]}.get(
+        way, list(range(speeds.numel()))
+    )
+    fields["kinetic"] = ca.dot(weights[order], over**2) / 2
+    if way != "energy":
+        fields |= {"velocities": w, "velocity_graphs": speeds}
+    return ca.Function("R", [q, qd, qdd, t], [LagrangeSystem(**fields).terms()[0]])
+
+
+def newton(places, masses, state, t):
+    """The same by m (x'' - g) . dx/dq."""
+    q, qd, qdd = ([mpmath.mpf(float(x)) for x in row] for row in state)
+    t = mpmath.mpf(float(t))
+    functions = Functions(mpmath)
+
+    def path(s):
+        return [a + b * (s - t) + c * (s - t) ** 2 / 2 for a, b, c in zip(q, qd, qdd, strict=True)]
+
+    found = []
+    for j in range(len(q)):
+        total = mpmath.mpf(0)
+        for k, m in enumerate(masses):
+            for axis in range(3):
+
+                def moved(s, k=k, axis=axis):
+                    return places(functions, path(s), s)[k][axis]
+
+                def displaced(x, j=j, k=k, axis=axis):
+                    return places(functions, [*q[:j], x, *q[j + 1 :]], t)[k][axis]
+
+                total += (
+                    m
+                    * (mpmath.diff(moved, t, 2) + (G if axis == 2 else 0))
+                    * mpmath.diff(displaced, q[j])
+                )
+        found.append(float(total))
+    return found
+
+
+def assert_newton(places, masses, n, state, t):
+    with mpmath.workdps(60):
+        expected = newton(places, masses, state, t)
+    for way in WAYS:
+        found = lagrange(places, masses, n, way)(*state, t).full().ravel()
+        np.testing.assert_allclose(
+            found, expected, rtol=1e-12, atol=1e-12 * (1 + np.abs(expected).max())
+        )
+
+
+def pendulum(f, q, t):
+    """On a pivot that is shaken to the side and lifted."""
+    return [
+        (0.3 * f.sin(5 * t) + 0.8 * f.sin(q[0]), 0, 0.1 * t**2 * f.cos(2 * t) - 0.8 * f.cos(q[0]))
+    ]
+
+
+def hoop(f, q, t):
+    """A bead on a hoop that turns about its upright diameter, ever faster."""
+    turned = 2 * t + t**2
+    return [
+        (0.5 * f.sin(q[0]) * f.cos(turned), 0.5 * f.sin(q[0]) * f.sin(turned), -0.5 * f.cos(q[0]))
+    ]
+
+
+def frame(f, q, t):
+    """A mass by its coordinates in axes that turn, and whose origin is carried along."""
+    c, s = f.cos(3 * t + f.sin(t)), f.sin(3 * t + f.sin(t))
+    return [(f.sin(4 * t) + c * q[0] - s * q[1], s * q[0] + c * q[1], q[2] + t * q[0])]
+
+
+def growing(f, q, t):
+    """Two pendulums, one on the other, of ropes that are paid out."""
+    l = 0.5 + 0.2 * t
+    first = (l * f.sin(q[0]), 0, -l * f.cos(q[0]))
+    return [first, (first[0] + f.exp(-t) * f.sin(q[1]), 0, first[2] - f.exp(-t) * f.cos(q[1]))]
+
+
+SYSTEMS = [(pendulum, [1.3], 1), (hoop, [0.4], 1), (frame, [2.0], 3), (growing, [1.5, 0.7], 2)]
+
+
+@pytest.mark.parametrize(
+    ("places", "masses", "n"), SYSTEMS, ids=lambda x: getattr(x, "__name__", None)
+)
+@settings(max_examples=10, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_systems_that_time_moves(places, masses, n, seed):
+    generator = np.random.default_rng(seed)
+    assert_newton(places, masses, n, generator.normal(size=(3, n)), generator.uniform(-2.0, 2.0))
+
+
+def test_coordinates_may_be_carried_against_axes_that_turn():
+    """A pendulum's direction in space as cosine and sine, its coordinate against an arm that is
+    turned: p' = T q' + r.
+    """
+    q, qd, qdd, t, p = (ca.SX.sym(*name) for name in (("q",), ("qd",), ("qdd",), ("t",), ("p", 2)))
+    arm, l, m = 2 * t + ca.sin(t), 0.6, 1.4
+    place = ca.vertcat(ca.cos(arm), ca.sin(arm)) + l * ca.vertcat(ca.cos(arm + q), ca.sin(arm + q))
+    speed = ca.jtimes(place, ca.vertcat(q, t), ca.vertcat(qd, 1))
+    plain = LagrangeSystem(m * ca.sumsqr(speed) / 2, -m * G * place[1], q, qd, qdd, time=t)
+    spin, tangent = ca.jacobian(arm, t), ca.vertcat(-p[1], p[0])
+    moved = ca.vertcat(-ca.sin(arm), ca.cos(arm)) * spin + l * tangent * (qd + spin)
+    fields = {
+        "force_function": -m * G * l * p[1],
+        "coordinates": p,
+        "rates": qd,
+        "accelerations": qdd,
+        "tangent": tangent,
+        "time": t,
+    }
+    w = ca.SX.sym("w", 2)
+    carried = LagrangeSystem(m * ca.sumsqr(moved) / 2, drift=tangent * spin, **fields)
+    written = LagrangeSystem(
+        m * ca.sumsqr(w) / 2, drift=tangent * spin, velocities=w, velocity_graphs=moved, **fields
+    )
+    systems = ca.vertcat(*(system.terms()[0] for system in (plain, carried, written)))
+    f = ca.Function("f", [q, qd, qdd, t, p], [systems])
+    angle = 2 * 0.7 + np.sin(0.7) + 0.4
+    one, *others = f(0.4, -1.1, 0.6, 0.7, [np.cos(angle), np.sin(angle)]).full().ravel()
+    np.testing.assert_allclose(others, one, rtol=1e-14)
+    with pytest.raises(DeclarationError, match="velocity_graphs: velocities 0, 1"):
+        LagrangeSystem(m * ca.sumsqr(w) / 2, velocities=w, velocity_graphs=moved, **fields)
+
+
+def test_a_rheonomic_constraint_bears_what_newton_says():
+    """A bead on a straight wire that is turned in a level plane: the wire pushes it by m (2 W r' +
+    W' r).
+    """
+    q = ca.SX.sym("q", 2)
+    qd = ca.SX.sym("qd", 2)
+    qdd = ca.SX.sym("qdd", 2)
+    lam = ca.SX.sym("lam")
+    t = ca.SX.sym("t")
+    m, angle = 0.8, 1.5 * t + t**2
+    phi = ca.cos(angle) * q[1] - ca.sin(angle) * q[0]  # across the wire
+    system = LagrangeSystem(
+        m * ca.sumsqr(qd) / 2, ca.SX(0), q, qd, qdd, constraints=phi, multipliers=lam, time=t
+    )
+    (along, _) = system.terms()
+    now, r, slide, out = 0.6, 0.9, -0.7, 2.0
+    a, w, change = 1.5 * now + now**2, 1.5 + 2 * now, 2.0
+    e, n = np.array([np.cos(a), np.sin(a)]), np.array([-np.sin(a), np.cos(a)])
+    place, speed = r * e, slide * e + r * w * n
+    push = m * (2 * w * slide + change * r)
+    acceleration = (out - r * w**2) * e + push / m * n
+    f = ca.Function("f", [q, qd, qdd, lam, t], [along])
+    left = f(place, speed, acceleration, push, now).full().ravel()
+    np.testing.assert_allclose(
+        left, m * (out - r * w**2) * e, rtol=1e-13
+    )  # what pulls it along the wire, and nothing across
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"time": lambda s: 2 * s.coordinates[0]}, "time must be one symbol"),
+        ({"time": lambda s: s.coordinates}, "time must be one symbol"),
+        ({"time": lambda s: 0.0}, r"time must be one symbol, got 0"),
+        (
+            {"time": lambda s: s.coordinates[0]},
+            "symbol 'q_0' stands both in coordinates and in time",
+        ),
+        (
+            {"accelerations": lambda s: s.rates},
+            "symbol 'qd_0' stands both in rates and in accelerations",
+        ),
+        ({"drift": lambda s: ca.SX.zeros(3)}, "drift must have 2 entries, got 3"),
+        ({"tangent": lambda s: s.rates[0] * ca.SX.eye(2)}, "tangent must not depend on rates"),
+        ({"drift": lambda s: s.rates}, "drift must not depend on rates"),
+        (
+            {"force_function": lambda s: s.velocities[0]},
+            "force_function must not depend on velocities; move such terms into 'forces'",
+        ),
+        (
+            {"force_function": lambda s: s.accelerations[0]},
+            "force_function must not depend on accelerations",
+        ),
+        (
+            {"velocity_graphs": lambda s: s.rates + s.velocities},
+            "velocity_graphs must not depend on velocities",
+        ),
+        (
+            {"velocity_graphs": lambda s: s.rates + s.accelerations},
+            "velocity_graphs must not depend on accelerations",
+        ),
+        (
+            {"velocity_graphs": lambda s: s.rates + ca.SX.sym("time")},
+            "velocity_graphs depends on 'time': set time=time if",
+        ),
+        (
+            {"constraints": lambda s: s.rates[0], "multipliers": lambda s: ca.SX.sym("l")},
+            "constraints must not depend on rates",
+        ),
+    ],
+)
+def test_misuse_of_time_is_named(change, says):
+    q, qd, qdd, w = (ca.SX.sym(name, 2) for name in ("q", "qd", "qdd", "w"))
+    fields = {
+        "kinetic": ca.sumsqr(w),
+        "force_function": q[0],
+        "coordinates": q,
+        "rates": qd,
+        "accelerations": qdd,
+        "velocities": w,
+        "velocity_graphs": qd,
+    }
+    system = LagrangeSystem(**fields)
+    with pytest.raises(DeclarationError, match=says):
+        LagrangeSystem(**(fields | {name: make(system) for name, make in change.items()}))

@@ -1,144 +1,25 @@
-"""Machines from practice, against what is known of them without any equation of motion, and against
-Newton-Euler.
+"""Machines from practice, against what is known of them without any equation of motion, and
+against Newton-Euler.
 """
 
+from __future__ import annotations
+
 import math
-from dataclasses import replace
 
 import numpy as np
-import oracle
 import pytest
-from balance import assert_balanced
 from conftest import CASES
-from internals import derive_derive as derive
-from machines import ROLLING, rolling, shown
-from splines import by_hand
+from machines import shown
 
-from lagrange_casadi import evaluate, load_case
-
-
-def force(name, x, fx, fy, mz=0.0):
-    """What acts on a body on its axis."""
-    return lambda place: [((name, x, 0), fx, fy, mz)]
-
-
-def gas(top, lean, name):
-    """The pressure by a spline made another way."""
-    bars = shown("V-twin")["bars"]
-    pressure = by_hand(
-        np.linspace(0.0, 4 * math.pi, 19), np.array([1e5 * bar for bar in bars]), True
-    )
-
-    def push(place):
-        size = -math.pi / 4 * 0.08**2 * pressure(place(("crank", 0, 0))[2].v - top)[0]
-        return [((f"{name}_piston", 0, 0), size * math.cos(lean), size * math.sin(lean), 0)]
-
-    return push
-
-
-def cam_contact():
-    names = shown("Cam")
-    lift = by_hand(names["angles"], names["lift"](names["angles"]), True)
-    ends = ("follower", 0, 0), ("disc", 0, 0)
-
-    def gap(place):
-        angle = place(ends[1])[2]
-        return place(ends[0])[1] - 0.04 - angle.through(*lift(angle.v))
-
-    return oracle.Extra(
-        "contact",
-        gap,
-        lambda place: [(ends[0], 0, 1, 0), (ends[1], 0, 0, -lift(place(ends[1])[2].v)[1])],
-    )
-
-
-def mesh(name, side):
-    """The tooth's force: along the way of the planet's centre, at its rim; of the sun's mesh with
-    its opposite on the sun.
-    """
-
-    def effect(place):
-        angle, planet = place(("carrier", 0, 0))[2].v, ("planet", 0, 0)
-        on_planet = (planet, -math.sin(angle), math.cos(angle), side * 0.02)
-        return [on_planet] if side > 0 else [on_planet, (("sun", 0, 0), 0, 0, -0.03)]
-
-    return oracle.Extra(name, None, effect)
-
+from lagrange_casadi import Scene, evaluate, load_case
+from lagrange_casadi.motion import dwell, move, moves
 
 QUARTER, TAU = math.pi / 4, 2 * math.pi
-SPRING = [
-    lambda place: [
-        (("follower", 0.12, 0), 0, -300.0 - 12e3 * (place(("follower", 0, 0))[1].v - 0.04), 0)
-    ]
-]
-BELT = oracle.Extra(
-    "belt",
-    lambda place: place(("pulley", 0, 0))[2] - place(("outer", 0, 0))[2],
-    lambda place: [(("pulley", 0, 0), 0, 0, 1), (("outer", 0, 0), 0, 0, -1)],
-)
-BESIDE = {
-    "V-twin": lambda: {
-        "loads": [gas(11 * QUARTER, 3 * QUARTER, "left"), gas(QUARTER, QUARTER, "right")]
-    },
-    "Scissor lift": lambda: {"loads": [force("b2", 1.2, 0, -2500.0), force("a2", 1.2, 0, -2500.0)]},
-    "Toggle press": lambda: {"loads": [force("ram", 0, 0, 80e3)]},
-    "Cam": lambda: {"extras": [cam_contact()], "loads": SPRING},
-    "SCARA": lambda: {"extras": [BELT]},
-    "Rolling gear": lambda: {
-        "extras": [mesh("inside", -1), mesh("outside", 1)],
-        "loads": [force("carrier", 0, 0, 0, -90.0)],
-        "unaided": ["output", "pin"],
-    },
-    "Geneva drive": dict,
-}
 
 
 def along(values, at):
     """The integral of values over what they are along, by trapezia."""
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(at)))
-
-
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize("title", BESIDE)
-def test_against_newton_euler(title):
-    """The machines that are no cases; at instants of the page's own."""
-    scene = rolling() if title == "Rolling gear" else shown(title)["scene"]
-    start, stop = scene.span
-    for part in (0.07, 0.4, 0.83):
-        assert_balanced(scene, t=start + part * (stop - start), nudge=1e-4, **BESIDE[title]())
-
-
-def test_gas_gives_its_work_to_the_crank():
-    """Indicated work is mean torque times angle: by the closed form of a piston's place, at every
-    instant and over two turns.
-    """
-    scene = shown("V-twin")["scene"]
-    fired, idle = (
-        evaluate(scene, parameters={"throttle": x}, over=("main", "45 deg", "765 deg", 7201))
-        for x in (1.0, 0.0)
-    )
-    angle = fired.motion("main").value
-    pressure = by_hand(
-        np.linspace(0.0, 2 * TAU, 19),
-        np.array([1e5 * bar for bar in shown("V-twin")["bars"]]),
-        True,
-    )
-    torque = 0.0
-    for lean, top in ((3 * QUARTER, 11 * QUARTER), (QUARTER, QUARTER)):
-        turned = angle - lean
-        slope = (
-            -0.05
-            * np.sin(turned)
-            * (1 + 0.05 * np.cos(turned) / np.sqrt(0.16**2 - (0.05 * np.sin(turned)) ** 2))
-        )
-        torque += math.pi / 4 * 0.08**2 * np.array([pressure(x)[0] for x in angle - top]) * slope
-    assert (
-        np.abs(fired.effort("main") - idle.effort("main") - torque).max()
-        < 1e-12 * np.abs(fired.effort("main")).max()
-    )
-    indicated = along(torque, angle)
-    assert 2 * TAU * fired.statistics("effort:main").mean == pytest.approx(indicated, rel=1e-9)
-    assert indicated < -100.0
 
 
 def test_a_lift_at_rest_is_held_by_the_slope_of_its_potential():
@@ -154,52 +35,6 @@ def test_a_lift_at_rest_is_held_by_the_slope_of_its_potential():
     lifted = (3 * 5000.0 + 12.0 * g * 2 * (0.5 + 1.5 + 2.5)) * 1.2 * math.cos(turn)
     own = g * ((4.0 - 3.0) * 0.15 * leaning + 3.0 * s * math.cos(turn))
     assert found.effort("ram")[0] == pytest.approx((lifted + own) / dq, rel=1e-13)
-
-
-def test_a_press_gives_the_power_of_its_work():
-    scene = shown("Toggle press")["scene"]
-    pressed, idle = evaluate(scene), evaluate(scene, parameters={"work": 0.0})
-    power = (pressed.effort("main") - idle.effort("main")) * pressed.motion("main").rate
-    done = 80e3 * pressed.motion("way").rate
-    assert np.abs(power - done).max() < 1e-12 * np.abs(done).max()
-
-
-def test_a_cam_turns_against_its_follower():
-    """The torque is the contact's force times the slope of the lift, and the weight of the disc."""
-    found = evaluate(shown("Cam")["scene"])
-    slope = found.motion("guide").rate / 60.0
-    torque = found.output("contact_force") * slope + 1.5 * 9.81 * 0.02 * np.cos(
-        found.motion("main").value
-    )
-    assert np.abs(found.effort("main") - torque).max() < 1e-12 * np.abs(found.effort("main")).max()
-
-
-def test_the_first_motor_of_a_scara_is_a_textbooks():
-    found = evaluate(shown("SCARA")["scene"])
-    first = found.motion("shoulder")
-    bent = found.motion("elbow").value
-    second = found.motion("motor")
-    lever = 0.35 * (4.0 * 0.15 + 3.0 * 0.3)
-    own = 6.0 * 0.35**2 / 3 + (4.0 + 3.0) * 0.35**2
-    torque = own * first.acceleration + lever * (
-        np.cos(bent) * second.acceleration - np.sin(bent) * second.rate**2
-    )
-    assert np.abs(found.effort("shoulder") - torque).max() < 1e-12 * np.abs(torque).max()
-
-
-@pytest.mark.parametrize("drive", ["main", "output", "pin"])
-def test_rows_hold_where_another_joint_drives(drive):
-    """Whoever drives a planetary gear gives the power that its carrier takes; the meshes bear what
-    is then left for them.
-    """
-    scene = replace(rolling(), drives=[drive])
-    found = evaluate(scene)
-    assert found.certified
-    power = ROLLING["torque"] * ROLLING["slow"]
-    assert np.abs(found.effort(drive) * found.motion(drive).rate / power - 1).max() < 1e-12
-    mesh = {"main": 90.0 / (0.03 + 0.07), "output": 0.0, "pin": 0.0}[drive]
-    assert np.abs(np.abs(found.multiplier("inside")) - mesh).max() < 1e-12 * 90.0 / 0.1
-    assert_balanced(scene, t=0.2, nudge=1e-4, **BESIDE["Rolling gear"]() | {"unaided": []})
 
 
 def test_a_wheel_of_four_slots_moves_by_its_closed_form():
@@ -242,7 +77,6 @@ def test_cylinders_lift_what_goes_up():
     of the ground.
     """
     scene = load_case(CASES / "excavator").scene
-    assert derive(scene).newton is None
     found = evaluate(scene, t=(0, 4, 4001))
     assert found.certified
     assert np.abs([found.motion(joint).rate[[0, -1]] for joint in scene.drives]).max() < 1e-12
@@ -289,23 +123,205 @@ def test_a_slow_pump_has_the_torque_of_its_torque_factor():
     assert np.abs(torque - factor * load).max() < 1e-12 * np.abs(full.effort("shaft")).max()
 
 
-def test_a_turn_of_a_pump_lifts_the_fluid_once():
-    """What the fluid adds is its force times the rods' speed: over a turn, times the stroke.
-
-    Weights add nothing.
+def of_scara(solution):
+    """The efforts of both motors by the closed form of textbooks on robots, in absolute angles of
+    the two arms.
     """
-    scene = load_case(CASES / "beam_pump").scene
-    empty, full = (evaluate(scene, parameters={"fluid": x}, t=(0, 6, 6001)) for x in (0.0, 14e3))
-    rate = full.motion("well").rate
-    power = 14e3 * np.where(rate > 0, rate, 0.0)
-    turned = 2 * np.pi / 6
-    gap = (full.effort("shaft") - empty.effort("shaft")) * turned - power
-    assert np.abs(gap).max() < 1e-12 * np.abs(full.output("power")).max()
-    assert (
-        abs(along(empty.effort("shaft"), empty.motion("shaft").value))
-        < 1e-9 * np.abs(empty.effort("shaft")).max()
+    first, second = solution.motion("shoulder"), solution.motion("motor")
+    lever = 0.35 * (4.0 * 0.15 + 3.0 * 0.3)
+    inner = 6.0 * 0.35**2 / 3 + (4.0 + 3.0) * 0.35**2
+    outer = 4.0 * 0.3**2 / 3 + 3.0 * 0.3**2
+    bent = second.value - first.value
+    yield inner * first.acceleration + lever * (
+        np.cos(bent) * second.acceleration - np.sin(bent) * second.rate**2
     )
-    stroke = np.ptp(full.motion("well").value)
-    assert along(full.effort("shaft"), full.motion("shaft").value) == pytest.approx(
-        14e3 * stroke, rel=1e-6
+    yield (outer + 1e-3) * second.acceleration + lever * (
+        np.cos(bent) * first.acceleration + np.sin(bent) * first.rate**2
     )
+
+
+@pytest.mark.parametrize("pace", [1.0, 1.7])
+def test_efforts_are_those_of_the_closed_form(pace):
+    solution = evaluate(load_case(CASES / "scara").scene, parameters={"pace": pace})
+    assert solution.certified
+    for joint, expected in zip(("shoulder", "motor"), of_scara(solution), strict=True):
+        assert solution.effort(joint) == pytest.approx(
+            expected, rel=0, abs=1e-12 * np.abs(expected).max()
+        )
+
+
+G = 9.81
+
+
+THROWS = {"1": 0.0, "2": 2 * math.pi / 3, "3": 4 * math.pi / 3}
+
+
+R, L, ROD, PISTON = 0.04, 0.14, 0.55, 0.4
+
+
+WANTED = ["effort", "motion", "reaction", "load"]
+
+
+@pytest.fixture(scope="module")
+def module():
+    return load_case(CASES / "v6")
+
+
+def pistons(theta, bank):
+    """Of each cylinder its direction, and the places of crank pin and piston on the plane y, z."""
+    for bank_name, side in (("left", 1), ("right", -1)):
+        for number, throw in THROWS.items():
+            u = np.array([math.cos(side * bank / 2), math.sin(side * bank / 2)])
+            pin = R * np.array([np.cos(theta + throw), np.sin(theta + throw)])
+            along, across = u @ pin, u[0] * pin[1] - u[1] * pin[0]
+            yield f"{bank_name}_{number}", u, pin, u[:, None] * (along + np.sqrt(L**2 - across**2))
+
+
+def matter(theta, bank):
+    """Masses of rods and pistons as points (a rod is three: Simpson's rule), and places (2, n)."""
+    for _, _, pin, piston in pistons(theta, bank):
+        yield from ((ROD / 6, pin), (ROD * 2 / 3, (pin + piston) / 2))
+        yield PISTON + ROD / 6, piston
+
+
+def slope(values):
+    """The derivative by the angle of what is periodic over the two turns, by Fourier series."""
+    n = values.shape[-1]
+    wave = 1j * np.fft.fftfreq(n, 1.0 / n) / 2.0
+    return np.fft.ifft(np.fft.fft(values) * wave).real
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"bank": math.pi / 2, "load": 0.0},
+        {"bank": math.pi / 3, "rpm": 5000.0, "right_3_turn": 0.0, "left_1_turn": 1.0},
+    ],
+)
+def test_power_and_momentum(module, values):
+    found = evaluate(module.scene, parameters=values, wanted=WANTED)
+    assert found.certified
+    assert not [name for name in found.undetermined if name.startswith("effort")]
+    theta, bank = found.motion("main_fixed:turn_1").value[:-1], values.get("bank", 2 * math.pi / 3)
+    w = values.get("rpm", 3000.0) * math.pi / 30
+    kinetic, potential, momentum = 0.0, 0.0, np.zeros((2, theta.size))
+    for mass, place in matter(theta, bank):
+        speed = w * slope(place)
+        kinetic = kinetic + mass * np.sum(speed**2, axis=0) / 2
+        potential = potential + mass * G * place[1]
+        momentum += mass * speed
+    # The bent bar: 12 kg/m on three throws, whose centres are at half of the radius in the cheeks.
+    for throw in THROWS.values():
+        reach = 12.0 * (0.06 * R + 2 * R * R / 2)
+        turned = theta + throw
+        potential = potential + reach * G * np.sin(turned)
+        momentum += reach * w * np.array([-np.sin(turned), np.cos(turned)])
+    gas, pushed = 0.0, np.zeros((2, theta.size))
+    for name, u, _, piston in pistons(theta, bank):
+        push = np.array([found.array(f"load:{name}_gas:f{axis}")[:-1] for axis in "yz"])
+        gas = gas + np.sum(push * slope(piston), axis=0)
+        pushed += push
+        assert np.abs(u[0] * push[1] - u[1] * push[0]).max() < 1e-9
+        # It burns near its upper dead centre, once in two turns.
+        if values.get("load", 1.0):
+            k = int(np.argmax(np.hypot(*push)))
+            reach = (u @ piston)[k] / (R + L)
+            assert reach > 0.985
+    told = slope(kinetic + potential) - gas
+    effort = found.effort("main_fixed:turn_1")[:-1]
+    assert np.abs(effort - told).max() < 1e-10 * np.abs(told).max()
+    whole = 6 * (ROD + PISTON) + 12.0 * (4 * 0.05 + 3 * 0.06 + 6 * R) + 8.0
+    told = w * slope(momentum) - pushed - np.array([[0.0], [-whole * G]])
+    walls = [f"{name}_wall" for name, *_ in pistons(theta, bank)]
+    every = [
+        np.array([found.array(f"reaction:{name}:f{axis}")[:-1] for axis in "yz"])
+        for name in ("main_fixed", "main_floating", *walls)
+    ]
+    assert np.abs(sum(every) - told).max() < 1e-10 * np.abs(every).max()
+
+
+@pytest.mark.parametrize(
+    "values", [{}, {"lift": 0.015, "base": 0.06, "stiffness": 20e3, "speed": 40.0}]
+)
+def test_the_contact_of_a_roller_cam_is_that_of_closed_forms(values):
+    """Norton's pressure angle; the spring, the weight and inertia over its cosine; their moment on
+    the shaft.
+    """
+    solution = evaluate(load_case(CASES / "roller_cam").scene, parameters=values)
+    assert solution.certified
+    given = {"base": 0.045, "stiffness": 12e3, "speed": 60.0, "lift": 0.02} | values
+    motion = solution.motion("guide")
+    least, place = np.sqrt((given["base"] + 0.012) ** 2 - 0.006**2), motion.value - 0.05
+    assert np.ptp(motion.value) == pytest.approx(given["lift"], rel=1e-3)
+    assert place.min() == pytest.approx(least, rel=1e-12)
+    pushed = 0.5 * (motion.acceleration + 9.81) + 300.0 + given["stiffness"] * (place - least)
+    tangent = (motion.rate / given["speed"] - 0.006) / place
+    force = solution.output("contact_force")
+    assert force == pytest.approx(pushed * np.hypot(1.0, tangent), rel=1e-10)
+    assert solution.output("contact_pressure_angle") == pytest.approx(
+        np.arctan(np.abs(tangent)), abs=1e-11
+    )
+    assert solution.reaction("guide").fx == pytest.approx(
+        pushed * tangent, rel=0, abs=1e-10 * pushed.max()
+    )
+    assert solution.effort("shaft") == pytest.approx(
+        pushed * motion.rate / given["speed"], rel=0, abs=1e-11 * pushed.max()
+    )
+    assert force.min() > 0.0
+
+
+@pytest.mark.parametrize("values", [{}, {"mu": 0.05, "payload": 300.0}, {"lead": 0.012, "mu": 0.2}])
+def test_the_motor_of_a_screw_lift_lifts_the_weight_and_the_friction(values):
+    """W r tan(angle +- phi) with the inertia of table and spindle; the efficiency of the way up;
+    and work of the whole cycle.
+    """
+    solution = evaluate(load_case(CASES / "screw_lift").scene, parameters=values)
+    assert solution.certified
+    told = {"mu": 0.12, "payload": 800.0, "lead": 0.006} | values
+    angle, phi = math.atan(told["lead"] / (2 * math.pi) / 0.0135), math.atan(told["mu"])
+    motion, table = solution.motion("motor"), solution.motion("guide")
+    weight = 9.81 * (told["payload"] + 60.0) + 60.0 * table.acceleration
+    up = table.rate > 0.0
+    thread = weight * 0.0135 * np.where(up, math.tan(angle + phi), math.tan(angle - phi))
+    # The spindle turns backward on the way up.
+    assert solution.effort("motor") == pytest.approx(6e-4 * motion.acceleration - thread, rel=1e-11)
+    assert table.value == pytest.approx(-motion.value * told["lead"] / (2 * math.pi), abs=1e-13)
+    lifted, given = weight * table.rate, -thread * motion.rate
+    assert (lifted / given)[up] == pytest.approx(
+        np.full(up.sum(), math.tan(angle) / math.tan(angle + phi)), rel=1e-11
+    )
+    assert solution.output("lifting_power") == pytest.approx(lifted, rel=1e-11)
+    # Where it locks itself, it must be driven down.
+    assert (given[~up] > 0.0).all() == (phi > angle)
+    lost = solution.series["friction:flanks:loss"]
+    assert given - lifted == pytest.approx(lost, rel=1e-10, abs=1e-10)
+    assert (lost > 0.0).all()
+
+
+def test_the_file_of_a_scara_is_as_good_as_the_moves_that_it_was_made_from():
+    scene = load_case(CASES / "scara").scene
+
+    def played(start, end):
+        out = move(f"{end} deg", time=0.47, law="s_curve")
+        back = move(f"{start} deg", time=0.43, law="s_curve")
+        return moves(
+            [dwell(0.08), out, dwell(0.12), back, dwell(0.1)], start=f"{start} deg", cyclic=True
+        )
+
+    exact = Scene(
+        scene.mechanism,
+        {"shoulder": played(10, 95), "motor": played(70, 160)},
+        t=scene.t,
+        posture=scene.posture,
+    )
+    found, expected = evaluate(scene, parameters={"pace": 1.0}), evaluate(exact)
+    for joint in ("shoulder", "motor"):
+        assert (
+            np.degrees(np.abs(found.motion(joint).value - expected.motion(joint).value)).max()
+            < 0.002
+        )
+        gap = found.effort(joint) - expected.effort(joint)
+        size = np.abs(expected.effort(joint)).max()
+        assert np.abs(gap).max() < 0.03 * size
+        assert np.sqrt(np.mean(gap**2)) < 0.006 * size

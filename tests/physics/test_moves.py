@@ -1,20 +1,23 @@
-"""Motions made of moves and dwells: where they are when, what they refuse, and the same in every
-way of evaluating them.
-"""
+"""Motions: laws from rest to rest as books print them, moves and dwells, and what is refused."""
+
+from __future__ import annotations
 
 import itertools
 import math
 
+import casadi as ca
 import numpy as np
 import pytest
-from internals import DesignEngine, Status
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
-from lagrange_casadi.cli import main
-from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
+from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import (
     Motion,
     dwell,
+    expression,
+    harmonic,
     move,
     moves,
     polynomial,
@@ -152,8 +155,6 @@ def test_jumps_are_where_the_motion_has_them_and_nowhere_else(law, cyclic):
 
 
 def derivatives(motion):
-    import casadi as ca
-
     t = ca.SX.sym("t")
     rows = [motion(t)]
     for _ in range(3):
@@ -169,14 +170,6 @@ def test_before_and_after_it_rests():
     assert at(law, 0.45)[:2] == pytest.approx(
         (math.radians(60), 1.875 * math.radians(60) / 0.5), rel=1e-14
     )
-
-
-def test_a_drive_that_rests_most_of_the_time():
-    """What rounding leaves at its seams is no jump beside its moves."""
-    law = moves(
-        [move(0.02, time=0.5), move(0.0, time=0.5), dwell()], cyclic=True, period=2 * math.pi
-    )
-    assert evaluate(arm(law, t=(-2 * math.pi, 4 * math.pi, 301))).certified
 
 
 def test_an_indexing_table_advances():
@@ -230,108 +223,35 @@ def test_parameters_change_all_of_it(values):
 
 def test_moves_that_cannot_be_are_refused_everywhere():
     scene = scene_of_parameters()
-    for values, says in (
-        (
-            {"T": 2.0},
-            r"no time is left for the part without one: the others take .* s of the period of 1\.5",
-        ),
-        ({"T": -0.1}, r"move 'out': its time must be positive, got -0\.1 s"),
-        (
-            {"h": 0.0},
-            "move 'back': its distance is zero, so limits give no duration; expected a dwell",
-        ),
-        ({"v": 0.0}, "move 'back': speed must be positive, got 0"),
-    ):
-        with pytest.raises(ParameterError, match=says):
-            evaluate(scene, parameters=values)
-        with pytest.raises(ParameterError, match=says):
-            scene.timetable("J", values)
-    engine = DesignEngine.of(scene)
-    rows = [
-        [0.5, 0.4, 1.5, 2.0],
-        [0.5, 2.0, 1.5, 2.0],
-        [0.5, -0.1, 1.5, 2.0],
-        [0.0, 0.4, 1.5, 2.0],
-        [0.5, 0.4, 0.0, 2.0],
-    ]
-    assert engine.evaluate(np.array(rows)).status.tolist() == [Status.OK, *[Status.IMPOSSIBLE] * 4]
+    refused = {
+        "no time is left for the part without one: the others take .* s of the period of 1.5": {
+            "T": 2.0
+        },
+        "move 'out': its time must be positive, got -0.1 s": {"T": -0.1},
+        "move 'back': its distance is zero, so limits give no duration; expected a dwell": {
+            "h": 0.0
+        },
+        "move 'back': speed must be positive, got 0": {"v": 0.0},
+    }
+    for says, values in refused.items():
+        for ask in (lambda v: evaluate(scene, parameters=v), lambda v: scene.timetable("J", v)):
+            with pytest.raises(ParameterError, match=says):
+                ask(values)
+    usual = {"h": 0.5, "T": 0.4, "v": 1.5, "ratio": 2.0}
+    rows = [[*(usual | values).values()] for values in ({}, *refused.values())]
+    assert (prepare(scene).designs(np.array(rows)).status == 0).tolist() == [True, *[False] * 4]
 
 
 def test_peaks_are_found_beside_jumps():
     """The trapezoid's acceleration jumps between instants; the effort then is that of one side."""
-    law = moves(
-        [
-            move(1.0, time=0.37, law=trapezoid(0.21)),
-            dwell(0.13),
-            move(0.0, time=0.41, law=s_curve(0.3, 0.4)),
-        ],
-        cyclic=True,
-    )
-    scene = arm(law, t=(0, 1.0, 41))
+    parts = [move(1.0, time=0.37, law=trapezoid(0.21)), dwell(0.13)]
+    parts.append(move(0.0, time=0.41, law=s_curve(0.3, 0.4)))
+    scene = arm(moves(parts, cyclic=True), t=(0, 1.0, 41))
     (peak,) = refine(scene, evaluate(scene), ["effort:J"])
-    assert abs(peak.value) == pytest.approx(INERTIA / (0.21 * 0.79) / 0.37**2, rel=1e-12)
-    designs = DesignEngine.of(scene)
-    found = designs.evaluate(np.zeros((1, 0)))
-    effort = [str(quantity) for quantity in designs.quantities].index("effort:J")
-    assert abs(found.value[0, effort]) == pytest.approx(abs(peak.value), rel=1e-12)
-
-
-def test_instants_over_a_move():
-    law = moves(
-        [move(1.0, time=0.4, law="cycloidal"), dwell(0.2), move(0.0, time=0.4)], cyclic=True
-    )
-    solution = evaluate(arm(law), over=("J", 0.1, 0.9, 9))
-    assert solution.motion("J").value == pytest.approx(np.linspace(0.1, 0.9, 9), abs=1e-13)
-    assert solution.t[4] == pytest.approx(0.2, abs=1e-13)
-
-
-def test_moves_of_an_angle_lift_a_follower():
-    """The same law of a cam's angle: accelerations are those of time, by the speed of the cam
-    squared.
-    """
-    m = Mechanism("cam")
-    h = m.parameter("h", 0.02, "m")
-    disc, rod = m.link("disc", length=0.04, mass=1.0), m.link("rod", length=0.1, mass=0.3)
-    main = m.revolute("main", m.ground, disc)
-    guide = m.prismatic("guide", m.ground, rod, axis=(0, 1), angle="90 deg")
-    parts = [
-        move(h, time=2.0, law="cycloidal"),
-        dwell(1.0),
-        move(0.0, time=2.0, law="cycloidal"),
-        dwell(),
-    ]
-    lift = moves(parts, cyclic=True, period=2 * math.pi)
-    m.constraint("contact", m.coordinate(guide) - 0.04 - lift(m.coordinate(main)))
-    scene = Scene(
-        m, {"main": polynomial(0.0, 30.0)}, t=(0, 4 * math.pi / 30, 241), posture={"rod": 1.5}
-    )
-    solution = evaluate(scene, parameters={"h": 0.03})
-    assert solution.certified
-    assert solution.motion("guide").acceleration.max() == pytest.approx(
-        2 * math.pi * 0.03 * (30 / 2.0) ** 2, rel=1e-3
-    )
-    assert solution.motion("guide").value[[0, 120, 240]] == pytest.approx(0.04, abs=1e-14)
-
-
-def test_what_moves_use_beyond_their_demands_has_no_value():
-    """Where the law is part of a constraint, no scene asks for its demands: its value is none, and
-    nothing is returned.
-    """
-    m = Mechanism("cam")
-    T = m.parameter("T", 2.0)
-    disc, rod = m.link("disc", length=0.04, mass=1.0), m.link("rod", length=0.1, mass=0.3)
-    main = m.revolute("main", m.ground, disc)
-    guide = m.prismatic("guide", m.ground, rod, axis=(0, 1), angle="90 deg")
-    lift = moves(
-        [move(0.02, time=T), move(0.0, time=2.0), dwell()], cyclic=True, period=2 * math.pi
-    )
-    m.constraint("contact", m.coordinate(guide) - 0.04 - lift(m.coordinate(main)))
-    scene = Scene(m, {"main": polynomial(0.0, 30.0)}, t=(0, 0.2, 41), posture={"rod": 1.5})
-    evaluate(scene)
-    with pytest.raises(AssemblyError, match=r"not finite|cannot be closed"):
-        evaluate(scene, parameters={"T": 5.0})
-    with pytest.raises(DeclarationError, match="depends on the time alone"):
-        samples([0, 1, 2, 3], [0, 1, 4, 9])(m.coordinate(main))
+    ready, told = prepare(scene), INERTIA / (0.21 * 0.79) / 0.37**2
+    assert abs(peak.value) == pytest.approx(told, rel=1e-12)
+    swept = ready.peaks().value[ready.quantities.index("effort:J")]
+    assert abs(swept) == pytest.approx(told, rel=1e-12)
 
 
 SOON = {"speed": 4.0, "acceleration": 60.0}
@@ -440,56 +360,6 @@ def test_misuse_is_named(make, says):
         make()
 
 
-def test_a_timetable_of_another_joint():
-    with pytest.raises(UnknownNameError, match="unknown driven joint 'K'; valid: J"):
-        arm(moves(CYCLE[:2])).timetable("K")
-    with pytest.raises(UnknownNameError, match="unknown precision 'x'; valid: double, single"):
-        arm(moves(CYCLE[:2])).parameter_constraints("x")
-
-
-def test_a_move_slower_than_its_limits_keeps_its_time():
-    law = moves([move(1.0, time=0.5, **SOON)])
-    row = arm(law).timetable("J").stretches[0]
-    assert (row.stop, row.law) == (0.5, "trapezoid")
-    assert row.speed <= 4.0
-    assert row.acceleration <= 60.0
-
-
-CASE = """
-from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.motion import dwell, move, moves
-
-def scene():
-    m = Mechanism("arm")
-    m.revolute("J", m.ground, m.link("a", length=0.6, mass=2.0))
-    parts = [move(0.5, time=0.25, law="trapezoid", name="out"), dwell(0.5, name="hold"), move(0.0, time=0.25)]
-    return Scene(m, {"J": moves(parts, cyclic=True)}, t=(0, 1, 11))
-"""  # noqa: E501
-
-
-def test_info_tells_moves_and_jumps(here, capsys):
-    (here / "arm.py").write_text(CASE)
-    assert main(["info", "arm.py"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    for line in (
-        ("  drive J: 3 moves and dwells, repeated; within 0 rad (0 deg) and 0.5 rad (28.6479 deg)"),
-        "    out: from 0 to 0.25 s, from 0 by 0.5 rad (trapezoid), at most 3 rad/s, 36 rad/s^2",
-        "    hold: from 0.25 to 0.75 s, rests at 0.5 rad",
-        (
-            "    part 3: from 0.75 to 1 s, from 0.5 by -0.5 rad (polynomial_345), at most 3.75"
-            " rad/s, 46.188 rad/s^2, 1920 rad/s^3"
-        ),
-        (
-            "    the acceleration jumps at 0 s where 'out' begins, 0.0833333 s within 'out',"
-            " 0.166667 s within 'out'"
-        ),
-    ):
-        assert any(
-            found.replace("from 0 rad (0 deg) to 0 rad (0 deg), ", "").startswith(line)
-            for found in lines
-        ), line
-
-
 @pytest.mark.parametrize(
     "options", [{}, {"backend": "vm"}, {"backend": "c"}, {"precision": "single"}]
 )
@@ -514,3 +384,191 @@ def test_at_the_seam_the_next_cycle_begins(options):
     assert prepare(scene, **options)()["motion:J_acceleration"][seams] == pytest.approx(
         size, rel=1e-6
     )
+
+
+PRINTED = {
+    # Norton, Cam Design and Manufacturing Handbook, 2nd edition, table 3-5, and VDI 2143, part 1:
+    # to the digits that are printed.
+    "cycloidal": (2.000, 6.283, 39.5),
+    "modified_sine": (1.760, 5.528, 69.5),
+    "modified_trapezoid": (2.000, 4.888, 61.4),
+    "polynomial_345": (1.875, 5.774, 60.0),
+    "polynomial_4567": (2.188, 7.513, 52.5),
+    "simple_harmonic": (1.571, 4.935, math.inf),
+    "trapezoid": (1.5, 4.5, math.inf),
+}
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_coefficients_are_those_that_books_print(name):
+    row = arm(moves([move(1.0, time=1.0, law=name)])).timetable("J").stretches[0]
+    found = row.speed, row.acceleration, row.jerk
+    for mine, printed in zip(found, PRINTED[name], strict=True):
+        assert mine == pytest.approx(printed, abs=0.06 if printed > 20 else 6e-4)
+
+
+def accelerations(name):
+    """The places between which an acceleration is smooth, and the acceleration but for its scale,
+    as books draw it.
+    """
+    wave = lambda u: np.sin(4 * np.pi * u)  # noqa: E731
+    return {
+        "cycloidal": ((0, 1), lambda u: np.sin(2 * np.pi * u)),
+        "modified_sine": (
+            (0, 1 / 8, 7 / 8, 1),
+            lambda u: np.where(
+                (u < 1 / 8) | (u > 7 / 8), wave(u), np.sin(4 * np.pi * u / 3 + np.pi / 3)
+            ),
+        ),
+        "modified_trapezoid": (
+            (0, 1 / 8, 3 / 8, 5 / 8, 7 / 8, 1),
+            lambda u: np.select(
+                [u < 1 / 8, u < 3 / 8, u < 5 / 8, u < 7 / 8],
+                [wave(u), 1.0, np.cos(4 * np.pi * (u - 3 / 8)), -1.0],
+                wave(u),
+            ),
+        ),
+        "polynomial_345": ((0, 1), lambda u: u * (1 - u) * (1 - 2 * u)),
+        "polynomial_4567": ((0, 1), lambda u: (u * (1 - u)) ** 2 * (1 - 2 * u)),
+        "simple_harmonic": ((0, 1), lambda u: np.cos(np.pi * u)),
+        "trapezoid": (
+            (0, 1 / 3, 2 / 3, 1),
+            lambda u: np.select([u < 1 / 3, u < 2 / 3], [1.0, 0.0], -1.0),
+        ),
+        "s_curve": (
+            (0, 1 / 12, 3 / 12, 4 / 12, 8 / 12, 9 / 12, 11 / 12, 1),
+            lambda u: np.interp(
+                u, np.array([0, 1, 3, 4, 8, 9, 11, 12]) / 12, [0, 1, 1, 0, 0, -1, -1, 0]
+            ),
+        ),
+    }[name]
+
+
+@pytest.mark.parametrize("name", [*PRINTED, "s_curve"])
+def test_laws_are_their_accelerations_integrated_twice(name):
+    breaks, bend = accelerations(name)
+    nodes, weights = np.polynomial.legendre.leggauss(30)
+
+    def integral(f, stop):
+        total = 0.0
+        for a, b in itertools.pairwise(breaks):
+            a, b = min(a, stop), min(b, stop)
+            total += (b - a) / 2 * (weights @ f((a + b) / 2 + (b - a) / 2 * nodes))
+        return total
+
+    # s(u) is the integral of (u - x) a(x) over x up to u.
+    whole = integral(lambda x: (1 - x) * bend(x), 1.0)
+    places = np.array([0.02, 0.11, 0.2, 0.37, 0.49, 0.58, 0.71, 0.86, 0.97])
+    found = derivatives(moves([move(1.0, time=1.0, law=name)]))(places)
+    for k, u in enumerate(places):
+        expected = [
+            integral(lambda x, u=u: (u - x) * bend(x), u),
+            integral(bend, u),
+            float(bend(np.array(u))),
+        ]
+        told = [x / whole for x in expected]
+        assert [row[k] for row in found[:3]] == pytest.approx(told, rel=0, abs=2e-13)
+
+
+def slowest_top(way, v, a, j):
+    """The top speed and the time of the fastest move within limits, by halving the speed at which
+    no time is left to cruise.
+    """
+
+    def ramp(top):
+        return top / a + a / j if top >= a * a / j else 2 * math.sqrt(top / j)
+
+    low, high = 0.0, v
+    if v * ramp(v) > way:
+        for _ in range(200):
+            low, high = (
+                ((low + high) / 2, high)
+                if (low + high) / 2 * ramp((low + high) / 2) < way
+                else (low, (low + high) / 2)
+            )
+    return high, way / high + ramp(high)
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.lists(st.floats(-3.0, 3.0), min_size=4, max_size=4), st.booleans())
+def test_moves_within_limits_are_the_fastest(powers, sharp):
+    """With a stretch of top speed or without one, rounded by a limit of the jerk or not."""
+    way, v, a, j = (10.0**power for power in powers)
+    j = math.inf if sharp else j
+    limits = {"speed": v, "acceleration": a} | ({} if sharp else {"jerk": j})
+    row = arm(moves([move(-way, **limits)])).timetable("J").stretches[0]
+    top, time = slowest_top(way, v, a, j)
+    assert (row.stop, row.speed) == pytest.approx((time, top), rel=1e-9)
+    assert row.acceleration <= a * (1 + 1e-9)
+    assert row.jerk == pytest.approx(j, rel=1e-9)
+
+
+TIMES = [0.0, 0.3, 0.5, 1.1, 1.4, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("law", "t", "told"),
+    [
+        (polynomial(1.0, -2.0, 0.5, 3.0), 2.0, (23.0, 36.0, 37.0)),
+        (polynomial(0.7), 5.0, (0.7, 0.0, 0.0)),
+        (
+            harmonic(0.2, 0.5, 3.0, 0.1),
+            0.4,
+            (
+                0.2 + 0.5 * math.sin(2.4 * math.pi + 0.1),
+                3.0 * math.pi * math.cos(2.4 * math.pi + 0.1),
+                -18.0 * math.pi**2 * math.sin(2.4 * math.pi + 0.1),
+            ),
+        ),
+        (
+            expression(lambda t: ca.exp(-t) * t),
+            1.5,
+            (1.5 * math.exp(-1.5), -0.5 * math.exp(-1.5), -0.5 * math.exp(-1.5)),
+        ),
+        (samples(TIMES, [t**3 - 2 * t for t in TIMES]), 0.8, (0.8**3 - 1.6, -0.08, 4.8)),
+    ],
+)
+def test_laws_have_their_values_and_rates(law, t, told):
+    """A cubic is its own spline."""
+    assert at(law, t) == pytest.approx(told, rel=1e-10, abs=1e-12)
+
+
+RISING = {
+    "steady": polynomial(0.1, 3.7),
+    "backwards": polynomial(0.0, -0.25),
+    "run-up": polynomial(0.0, 1.0, 1.5),
+    "from rest": polynomial(0.0, 0.0, 0.3),
+    "nearly turning back": expression(lambda t: 3 * t - 0.999 * ca.sin(3 * t)),
+    "steep": expression(lambda t: 1.0 - ca.exp(-25 * t) + 30.0 * t),
+    "swing": harmonic(0.0, 9.0, 0.02),
+    "a dwell at its end": expression(lambda t: ca.if_else(t < 1.0, 6 * t * t * (3 - 2 * t), 6.0)),
+}
+
+
+@pytest.mark.parametrize("name", RISING)
+def test_instants_over_a_drive_are_met_to_their_last_bits(name):
+    law, stop = RISING[name], -6.0 if name == "backwards" else 6.0
+    coordinates = np.linspace(0.2, stop, 61)
+    solution = evaluate(arm(law), wanted=["motion"], over=("J", 0.2, stop, 61))
+    motion = solution.motion("J")
+    assert (np.diff(solution.t) > 0.0).all()
+    allowed = 4 * np.spacing(1 + np.abs(coordinates)) + 2 * np.abs(motion.rate) * np.spacing(
+        solution.t
+    )
+    assert (np.abs(motion.value - coordinates) <= allowed).all()
+
+
+@pytest.mark.parametrize(
+    ("law", "stop", "says"),
+    [
+        (polynomial(0.5), 1.0, "is at rest and does not go from 0 rad"),
+        (polynomial(0.0, 2.0), -1.0, "runs opposite to the range from 0 rad"),
+        (harmonic(0.0, 1.0, 2.0), 1.01, r"it reverses at t = 0\.125 s, at 1 rad"),
+        (expression(lambda t: t + 0.02 * ca.sin(100 * t)), 9.0, "it reverses at t = 0.0837758 s"),
+        (expression(ca.tanh), 1.5, r"does not go from 0 rad \(0 deg\) to 1\.5 rad"),
+        (samples([0, 1, 2, 3], [0, 1, 2, 3.5]), 3.6, "its samples end at t = 3 s, at 3.5 rad"),
+    ],
+)
+def test_what_a_law_does_not_do_is_refused(law, stop, says):
+    with pytest.raises(DeclarationError, match=f"over: the motion of joint 'J' .*{says}"):
+        evaluate(arm(law), wanted=["motion"], over=("J", 0.0, stop, 9))

@@ -1,17 +1,18 @@
 """Open chains against Pinocchio, where it is installed: efforts, and the six section forces of
-links that it has in two pieces.
-
-Pinocchio's recursion shares nothing with the package. The numbers at the end are its own (4.1.0),
-and need it no more.
+links that it has in two pieces. Pinocchio's recursion shares nothing with the package. The
+numbers at the end are its own (4.1.0), and need it no more.
 """
+
+from __future__ import annotations
 
 import numpy as np
 import pytest
-from internals import SPACE
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case, motion
 
 RATIOS = (0.2, 0.5, 0.85)
+
+FORCES = ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")
 
 
 def turned_at_random(random):
@@ -112,9 +113,7 @@ def assert_same(scene, pieces, gravity, first=0):
     )
     for (k, ratio), forces in chain.sections(found).items():
         law = solution.section(f"link{k + first}").law
-        own = np.array(
-            [law.at(force, np.full((q.shape[1], 1), ratio))[:, 0] for force in SPACE.forces[:6]]
-        )
+        own = np.array([law.at(force, np.full((q.shape[1], 1), ratio))[:, 0] for force in FORCES])
         assert np.abs(own - forces).max() <= 1e-12 * size, (k, ratio)
 
 
@@ -131,41 +130,16 @@ def test_random_chains(seed):
     assert_same(*drawn(seed))
 
 
-def test_an_arm():
-    assert_same(*arm6(), first=1)
-
-
 def test_an_arm_by_stored_numbers():
-    """What Pinocchio 4.1.0 gave for the case at t = 0.7 s, by :func:`stored`: efforts, then link 2
-    at half its length.
+    """What Pinocchio 4.1.0 gave for the case at t = 0.7 s: efforts, then link 2 at half its
+    length.
     """
-    scene, *_ = arm6()
+    scene = load_case("arm6").scene
     solution = evaluate(scene, t=(0.7, 0.7, 1))
-    efforts = [solution.effort(name)[0] for name in scene.motion]
-    law = solution.section("link2").law
-    own = [law.at(force, np.array([[0.5]]))[0, 0] for force in SPACE.forces[:6]]
-    assert efforts == pytest.approx(STORED[:6], abs=1e-12 * np.abs(STORED).max())
-    assert own == pytest.approx(STORED[6:], abs=1e-12 * np.abs(STORED).max())
-
-
-def test_stored_numbers_are_pinocchios():
-    assert stored() == pytest.approx(STORED, abs=1e-13 * np.abs(STORED).max())
-
-
-def stored():
-    """The numbers, by Pinocchio and the laws of the case alone."""
-    _, pieces, gravity = arm6()
-    chain = peer().Chain([peer().Piece(*piece) for piece in pieces], gravity)
-    tau = 2 * np.pi
-    rows = ((0.0, 1.0, 0.5, 0.0), (0.6, 0.4, 0.5, np.pi / 3), (1.0, 0.5, 0.5, np.pi / 2))
-    rows += ((0.0, 1.2, 0.5, 0.4), (0.7, 0.5, 1.0, 0.0), (0.0, 2.0, 0.5, 1.0))
-    mean, size, often, phase = np.array(rows).T
-    angle = tau * often * 0.7 + phase
-    q = mean + size * np.sin(angle)
-    v = size * tau * often * np.cos(angle)
-    a = -size * (tau * often) ** 2 * np.sin(angle)
-    found = chain.work(q[:, None], v[:, None], a[:, None])()
-    return [*found[chain.efforts, 0].tolist(), *chain.sections(found)[1, 0.5][:, 0].tolist()]
+    law, half = solution.section("link2").law, np.array([[0.5]])
+    found = [solution.effort(name)[0] for name in scene.motion]
+    found += [law.at(force, half)[0, 0] for force in FORCES]
+    assert found == pytest.approx(STORED, abs=1e-12 * np.abs(STORED).max())
 
 
 STORED = (

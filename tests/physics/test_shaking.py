@@ -1,5 +1,7 @@
 """Shaking force and moment: beside what the ground's joints bear, and the classics of balancing."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -18,6 +20,8 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def weightless(name, about=()):
@@ -79,35 +83,6 @@ def test_without_weight_and_loads_it_is_what_the_ground_bears(name):
             )
 
 
-def test_of_slices_with_rotary_inertia():
-    """Each effort of a ball is the moment about its turn's axis, the opposite of the shaking
-    moment's there.
-    """
-    m = SpatialMechanism("thick")
-    m.set_gravity(0, 0, 0)
-    slices = {"yy": density.polynomial(0.02, 0.03), "zz": 0.05, "yz": 0.004}
-    bar = m.link("bar", length=0.8, density=density.thick(density.polynomial(3.0, 1.0), **slices))
-    m.spherical("O", m.ground, bar)
-    shaking(m)
-    laws = [polynomial(0.1, 2.0, 1.5), polynomial(0.2, -3.0), polynomial(0.3, 1.0, -2.0)]
-    solution = evaluate(Scene(m, {"O": laws}, t=(0, 0.3, 5)), backend="vm", certificate=False)
-    a, b = (solution.series[f"motion:O:turn_{k}"] for k in (1, 2))
-    axes = (
-        np.array([1 + 0 * a, 0 * a, 0 * a]),
-        np.array([0 * a, np.cos(a), np.sin(a)]),
-        np.array([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)]),
-    )
-    moment = np.array([solution.output(f"shaking_m{x}") for x in "xyz"])
-    for k, axis in enumerate(axes):
-        told = -(moment * axis).sum(axis=0)
-        np.testing.assert_allclose(
-            told,
-            solution.series[f"effort:O:turn_{k + 1}"],
-            rtol=0,
-            atol=1e-12 * np.abs(moment).max(),
-        )
-
-
 def test_about_another_point():
     """The moment about a point is less by the arm's moment of the force."""
     first, second = (
@@ -161,6 +136,20 @@ def test_a_four_bar_is_balanced_as_berkof_and_lowen_say(coupler):
     assert without["mz"] > 0.1 * plain["mz"]  # balanced forces, not moments
 
 
+def test_mistakes():
+    m = Mechanism("late")
+    with pytest.raises(DeclarationError, match="there are no bodies yet"):
+        shaking(m)
+    arm = m.link("arm", length=0.3, mass=1.0)
+    m.revolute("O", m.ground, arm)
+    with pytest.raises(DeclarationError, match=r"expected a place \(x, y\) for about"):
+        shaking(m, about=(1.0, 2.0, 3.0))
+    shaking(m)
+    m.weld("held", arm.tip, m.point_mass("late", 1.0))
+    with pytest.raises(DeclarationError, match="call shaking after all bodies"):
+        Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 5))
+
+
 def yoke():
     """A Scotch yoke with a counterweight: the slide goes as r cos, the weight turns."""
     m = Mechanism("yoke")
@@ -196,17 +185,30 @@ def test_a_counterweight_trades_one_direction_for_the_other():
     assert found.limits[0].multiplier == pytest.approx(1.0, rel=1e-5)
 
 
-def test_mistakes():
-    m = Mechanism("late")
-    with pytest.raises(DeclarationError, match="there are no bodies yet"):
-        shaking(m)
-    arm = m.link("arm", length=0.3, mass=1.0)
-    m.revolute("O", m.ground, arm)
-    with pytest.raises(DeclarationError, match="expected a place \\(x, y\\) for about"):
-        shaking(m, about=(1.0, 2.0, 3.0))
+def test_of_slices_with_rotary_inertia():
+    """Each effort of a ball is the moment about its turn's axis, the opposite of the shaking
+    moment's there.
+    """
+    m = SpatialMechanism("thick")
+    m.set_gravity(0, 0, 0)
+    slices = {"yy": density.polynomial(0.02, 0.03), "zz": 0.05, "yz": 0.004}
+    bar = m.link("bar", length=0.8, density=density.thick(density.polynomial(3.0, 1.0), **slices))
+    m.spherical("O", m.ground, bar)
     shaking(m)
-    m.weld("held", arm.tip, m.point_mass("late", 1.0))
-    with pytest.raises(
-        DeclarationError, match="body 'late' was declared after it; call shaking after all bodies"
-    ):
-        Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 5))
+    laws = [polynomial(0.1, 2.0, 1.5), polynomial(0.2, -3.0), polynomial(0.3, 1.0, -2.0)]
+    solution = evaluate(Scene(m, {"O": laws}, t=(0, 0.3, 5)), backend="vm", certificate=False)
+    a, b = (solution.series[f"motion:O:turn_{k}"] for k in (1, 2))
+    axes = (
+        np.array([1 + 0 * a, 0 * a, 0 * a]),
+        np.array([0 * a, np.cos(a), np.sin(a)]),
+        np.array([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)]),
+    )
+    moment = np.array([solution.output(f"shaking_m{x}") for x in "xyz"])
+    for k, axis in enumerate(axes):
+        told = -(moment * axis).sum(axis=0)
+        np.testing.assert_allclose(
+            told,
+            solution.series[f"effort:O:turn_{k + 1}"],
+            rtol=0,
+            atol=1e-12 * np.abs(moment).max(),
+        )

@@ -1,13 +1,13 @@
-"""A slender link that slides across its own axis, of which nothing was said: a note says so, and of
-no other link.
+"""A slender link that slides across its own axis, of which nothing was said: a note says so, and
+of no other link.
 """
+
+from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import CASES, NAMES
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load, save
-from lagrange_casadi.case import load_case
 from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -122,22 +122,3 @@ def test_the_note_says_what_to_do_and_doing_it_helps(tmp_path):
     assert evaluate(needle_bar(angle=0)).notes == ()
     save(sideways, tmp_path / "x.h5")
     assert load(tmp_path / "x.h5").notes == (note,)
-
-
-@pytest.mark.parametrize("tip", [False, True])
-def test_of_a_massless_carrier_nothing_is_said(tip):
-    """A cross slide: how the carriage lies matters to nothing, unless something
-    hangs on its tip.
-    """
-    m = Mechanism("cross")
-    table = m.link("table", length=0.1, mass=0.0)
-    carriage = m.link("carriage", length=0.1, mass=0.0)
-    m.prismatic("X", m.ground, table, axis=(1, 0))
-    m.prismatic("Y", table, carriage, axis=(0, 1))
-    m.weld("load", carriage.tip if tip else carriage, m.point_mass("p", 1.0))
-    assert len(across(evaluate(Scene(m, {"X": SLIDE, "Y": SLIDE}, t=(0.0, 1.0, 3))))) == tip
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_no_shipped_case_has_such_a_link(name):
-    assert across(evaluate(load_case(CASES / name).scene, t=(0, 0, 1), wanted=["motion"])) == []

@@ -2,21 +2,24 @@
 worked out here.
 """
 
+from __future__ import annotations
+
 import dataclasses
 import math
 import runpy
 
+import casadi as ca
 import numpy as np
 import pytest
-from conftest import CASES, SMALL, SPATIAL
-from estimates import assert_near, exactly, ratios
-from internals import DesignEngine, EvaluationMethod, figures
+from conftest import CASES
 from spatial_reference import Entry
 
-from lagrange_casadi import derive, evaluate, load_case
+from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case
 from lagrange_casadi.motion import harmonic, polynomial
 
 G = 9.81
+
+
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -35,6 +38,126 @@ def vector(found, group, part, members="xyz"):
 def along(found, link):
     """The direction of a link's axis, by instant."""
     return vector(found, "pose", link, ("xx", "xy", "xz"))
+
+
+def test_the_benchmarks_slider_at_its_start():
+    slide = vm(scene_of("spatial_slider_crank"), t=(0, 0, 1), wanted=["motion"]).motion("guide")
+    assert (slide.value[0], slide.rate[0], slide.acceleration[0]) == pytest.approx(
+        (0.2, 0.24, 1.44), abs=1e-14
+    )
+
+
+def test_a_shaft_out_of_phase_pulsates():
+    """Hooke's joint twice: without inertia the torque follows the speed, between cos^2 and 1/cos^2
+    of the tube's angle.
+    """
+    square = 1 - (0.15 / 0.5) ** 2
+    parameters = {"phase": math.pi / 2}
+    slow = vm(
+        scene_of("cardan_shaft"), parameters=parameters | {"rpm": 1e-3}, wanted=["effort", "motion"]
+    )
+    ratio = slow.motion("far:turn").rate / slow.motion("bearing").rate
+    assert (ratio.min(), ratio.max()) == pytest.approx((square, 1 / square), rel=1e-12)
+    assert np.max(np.abs(slow.effort("bearing") - 80.0 * ratio)) < 1e-7
+    assert (slow.effort("bearing").min(), slow.effort("bearing").max()) == pytest.approx(
+        (72.8, 80 / 0.91), abs=1e-7
+    )
+    fast = vm(scene_of("cardan_shaft"), parameters=parameters, wanted=["effort"]).effort("bearing")
+    assert np.mean(fast[:-1]) == pytest.approx(80.0, abs=1e-11)
+    assert np.ptp(fast) > 4 * np.ptp(slow.effort("bearing"))
+
+
+def test_a_suspension_at_rest():
+    """Six equations of the hub, for the forces along five bars and the effort; half a bar's weight
+    is across it at each end.
+    """
+    found = vm(
+        scene_of("five_link_suspension"), parameters={"travel": 0.0}, t=(0, 0, 1), xi=(0, 1, 3)
+    )
+    told = runpy.run_path(str(CASES / "five_link_suspension" / "case.py"))
+    wheel, weight = np.array(told["WHEEL"]), 0.9 * G
+    top, low = np.array([0.0, 0.45, 0.75]), wheel - [0.0, 0.08, 0.02]
+    distance = np.linalg.norm(top - low)
+    bars, across, lengths = [], [], []
+    given = [
+        (wheel - [0.0, 0.03, 0.0], -18.0 * G * UP),
+        (wheel * [1, 1, 0], np.array([0.0, -2500.0, 4000.0])),
+    ]
+    given.append((low, 30e3 * (distance - 0.62) * (top - low) / distance))
+    for inner, outer in told["BARS"].values():
+        start, end = np.array(inner), np.array(outer)
+        lengths.append(np.linalg.norm(end - start))
+        e = (end - start) / lengths[-1]
+        across.append(-weight / 2 * (UP - (UP @ e) * e))
+        given.append((end, across[-1]))
+        bars.append((end, -e))
+    matrix = np.array(
+        [[*force, *np.cross(place, force)] for place, force in (*bars, (wheel, UP))]
+    ).T
+    right = -sum(np.array([*force, *np.cross(place, force)]) for place, force in given)
+    *forces, effort = np.linalg.solve(matrix, right)
+    size = np.max(np.abs(forces))
+    assert found.effort("wheel:slide_3")[0] == pytest.approx(effort, abs=1e-12 * size)
+    for k, (name, force) in enumerate(zip(told["BARS"], forces, strict=True)):
+        section, back = found.section(name), bars[k][1]
+        assert section.axial[0, [0, -1]] == pytest.approx(
+            [force + weight * (back @ UP), force], abs=1e-12 * size
+        ), name
+        hub = vector(found, "reaction", f"{name}_hub", ("fx", "fy", "fz"))[0]
+        assert np.max(np.abs(hub - (force * back + across[k]))) < 1e-12 * size, name
+        level = math.hypot(*np.cross(back, UP))
+        assert section.bending[0] == pytest.approx(
+            [0, weight * level * lengths[k] / 8, 0], abs=1e-12
+        ), name
+
+
+MASS, GRAVITY = 2.0, 9.81
+
+
+def bowl(place):
+    """z less the height of a bowl that is not round."""
+    x, y, z = place
+    return z - 0.5 * x**2 - y**2 - 0.2 * x * y
+
+
+@pytest.mark.quick
+def test_a_point_on_a_surface():
+    """Its third coordinate follows from the surface; the multiplier times the surface's slopes is
+    the force that holds it.
+    """
+    m = SpatialMechanism("bead")
+    ball = m.point_mass("ball", MASS)
+    m.free("at", m.ground, ball)
+    m.constraint("bowl", bowl(m.place(ball)))
+    laws = {"at:slide_1": harmonic(0.1, 0.3, 1.0), "at:slide_2": harmonic(0.0, 0.2, 1.5, 0.7)}
+    solution = evaluate(Scene(m, laws, t=(0.0, 1.0, 41), posture={"at:slide_3": 0.0}))
+    assert solution.certified
+
+    t = ca.SX.sym("t")
+    x, y = (law.graph(t) for law in laws.values())
+    z = -bowl((x, y, 0.0))
+    place = ca.vertcat(x, y, z)
+    acceleration = ca.jacobian(ca.jacobian(place, t), t)
+    px, py, pz = (ca.SX.sym(name) for name in "xyz")
+    slopes = ca.substitute(
+        ca.gradient(bowl((px, py, pz)), ca.vertcat(px, py, pz)), ca.vertcat(px, py, pz), place
+    )
+    needed = MASS * (acceleration + ca.vertcat(0, 0, GRAVITY))
+    held = needed[2] / slopes[2]
+    expected = ca.Function(
+        "expected",
+        [t],
+        [ca.vertcat(z, held, needed[0] - held * slopes[0], needed[1] - held * slopes[1])],
+    )
+    height, multiplier, along, across = (
+        row.full().ravel() for row in ca.vertsplit(expected(solution.t[None, :]))
+    )
+    np.testing.assert_allclose(solution.motion("at:slide_3").value, height, atol=1e-14)
+    np.testing.assert_allclose(solution.multiplier("bowl"), multiplier, rtol=1e-12)
+    for coordinate, effort in (("at:slide_1", along), ("at:slide_2", across)):
+        np.testing.assert_allclose(
+            solution.effort(coordinate), effort, atol=1e-12 * np.abs(effort).max()
+        )
 
 
 def rate(values, period):
@@ -106,13 +229,6 @@ def test_the_reference_numbers(name):
         assert max(row) < 1e-12 * largest[unit], unit
 
 
-def test_the_benchmarks_slider_at_its_start():
-    slide = vm(scene_of("spatial_slider_crank"), t=(0, 0, 1), wanted=["motion"]).motion("guide")
-    assert (slide.value[0], slide.rate[0], slide.acceleration[0]) == pytest.approx(
-        (0.2, 0.24, 1.44), abs=1e-14
-    )
-
-
 @pytest.mark.parametrize(
     ("name", "period"),
     [("rssr", 0.2 * math.pi), ("arm6", 2.0), ("delta", 0.5), ("spatial_slider_crank", None)],
@@ -129,30 +245,32 @@ def test_over_a_cycle_drives_give_no_work(name, period):
     assert abs(np.mean(np.sum(powers, axis=0))) < 1e-12 * np.max(np.abs(powers))
 
 
-def test_a_shaft_in_phase_passes_the_torque_it_is_loaded_with():
-    found = vm(scene_of("cardan_shaft"), wanted=["effort", "motion"])
-    assert np.max(np.abs(found.effort("bearing") - 80.0)) < 1e-11
-    assert np.max(np.abs(found.motion("far:turn").rate - found.motion("bearing").rate)) < 1e-11
-
-
-def test_a_shaft_out_of_phase_pulsates():
-    """Hooke's joint twice: without inertia the torque follows the speed, between cos^2 and 1/cos^2
-    of the tube's angle.
-    """
-    square = 1 - (0.15 / 0.5) ** 2
-    parameters = {"phase": math.pi / 2}
-    slow = vm(
-        scene_of("cardan_shaft"), parameters=parameters | {"rpm": 1e-3}, wanted=["effort", "motion"]
-    )
-    ratio = slow.motion("far:turn").rate / slow.motion("bearing").rate
-    assert (ratio.min(), ratio.max()) == pytest.approx((square, 1 / square), rel=1e-12)
-    assert np.max(np.abs(slow.effort("bearing") - 80.0 * ratio)) < 1e-7
-    assert (slow.effort("bearing").min(), slow.effort("bearing").max()) == pytest.approx(
-        (72.8, 80 / 0.91), abs=1e-7
-    )
-    fast = vm(scene_of("cardan_shaft"), parameters=parameters, wanted=["effort"]).effort("bearing")
-    assert np.mean(fast[:-1]) == pytest.approx(80.0, abs=1e-11)
-    assert np.ptp(fast) > 4 * np.ptp(slow.effort("bearing"))
+def test_bricards_loop_moves_and_one_force_is_open():
+    scene = scene_of("bricard")
+    found = vm(scene, t=(0, 1, 257))
+    angles = [found.motion(f"J{k}").value for k in range(6)]
+    first, second = np.cos(angles[0]), np.cos(angles[1])
+    for k in range(6):
+        assert np.max(np.abs(np.cos(angles[k]) - (first, second)[k % 2])) < 1e-13
+    assert np.max(np.abs(first + second + first * second)) < 1e-13
+    open_of = {
+        str(output).split(":")[1] for output in found.indeterminate if output.group == "reaction"
+    }
+    assert open_of == {f"J{k}" for k in range(6)}
+    assert all(np.isnan(found.outputs[output]).all() for output in found.indeterminate)
+    assert np.isnan(found.section("link3").axial).all()
+    power, energy = 0.0, 0.0
+    for k in range(1, 6):
+        base = vector(found, "pose", f"link{k}")[:-1]
+        tip = base + 0.5 * along(found, f"link{k}")[:-1]
+        v, w = rate(base, 1.0), rate(tip, 1.0)
+        energy = (
+            energy
+            + 1.5 / 6 * np.sum(v * v + v * w + w * w, axis=1)
+            + 1.5 * G * (base + tip)[:, 2] / 2
+        )
+    power = (found.effort("J0") * found.motion("J0").rate)[:-1]
+    assert np.max(np.abs(power - rate(energy, 1.0))) < 1e-10 * np.max(np.abs(power))
 
 
 def test_an_arm_at_rest_holds_the_weights_beyond_each_joint():
@@ -186,35 +304,6 @@ def test_an_arm_at_rest_holds_the_weights_beyond_each_joint():
         assert found.effort(joint)[0] == pytest.approx(axes[k] @ beyond, abs=1e-12 * 200), joint
 
 
-def test_a_deltas_platform_does_not_turn():
-    found = vm(scene_of("delta"), wanted=["motion"])
-    turned = vector(found, "pose", "platform", [f"{a}{b}" for a in "xyz" for b in "xyz"])
-    assert np.max(np.abs(turned - np.eye(3).ravel())) < 1e-13
-
-
-def test_a_deltas_motors_share_a_circle():
-    """On a level circle about the middle each motor does what the one before it did a third of a
-    turn earlier.
-    """
-    laws = {
-        "tool:slide_1": harmonic(0.0, 0.1, 2.0, math.pi / 2),
-        "tool:slide_2": harmonic(0.0, 0.1, 2.0),
-    }
-    scene = dataclasses.replace(
-        scene_of("delta"), motion=laws | {"tool:slide_3": polynomial(-0.62)}
-    )
-    found = vm(
-        scene, t=(0.0, 0.5, 301), wanted=["effort", "section:arm0", "section:arm1"], xi=(0, 1, 3)
-    )
-    efforts = [found.effort(f"motor{k}")[:-1] for k in range(3)]
-    size = np.max(np.abs(efforts))
-    assert np.ptp(efforts[0]) > 0.1 * size
-    for one, next_one in ((0, 1), (1, 2), (2, 0)):
-        assert np.max(np.abs(np.roll(efforts[one], 100) - efforts[next_one])) < 1e-12 * size
-    first, second = (found.section(f"arm{k}").bending[:-1] for k in range(2))
-    assert np.max(np.abs(np.roll(first, 100, axis=0) - second)) < 1e-12 * np.max(first)
-
-
 def test_a_delta_at_rest_holds_its_weights():
     """In the middle each motor's effort is a third of the rise of the weights' energy with the
     arms' angle.
@@ -237,128 +326,3 @@ def test_a_delta_at_rest_holds_its_weights():
     )
     for k in range(3):
         assert found.effort(f"motor{k}")[0] == pytest.approx(G * rise / 3, abs=1e-12)
-
-
-def test_a_suspension_at_rest():
-    """Six equations of the hub, for the forces along five bars and the effort; half a bar's weight
-    is across it at each end.
-    """
-    found = vm(
-        scene_of("five_link_suspension"), parameters={"travel": 0.0}, t=(0, 0, 1), xi=(0, 1, 3)
-    )
-    told = runpy.run_path(str(CASES / "five_link_suspension" / "case.py"))
-    wheel, weight = np.array(told["WHEEL"]), 0.9 * G
-    top, low = np.array([0.0, 0.45, 0.75]), wheel - [0.0, 0.08, 0.02]
-    distance = np.linalg.norm(top - low)
-    bars, across, lengths = [], [], []
-    given = [
-        (wheel - [0.0, 0.03, 0.0], -18.0 * G * UP),
-        (wheel * [1, 1, 0], np.array([0.0, -2500.0, 4000.0])),
-    ]
-    given.append((low, 30e3 * (distance - 0.62) * (top - low) / distance))
-    for inner, outer in told["BARS"].values():
-        start, end = np.array(inner), np.array(outer)
-        lengths.append(np.linalg.norm(end - start))
-        e = (end - start) / lengths[-1]
-        across.append(-weight / 2 * (UP - (UP @ e) * e))
-        given.append((end, across[-1]))
-        bars.append((end, -e))
-    matrix = np.array(
-        [[*force, *np.cross(place, force)] for place, force in (*bars, (wheel, UP))]
-    ).T
-    right = -sum(np.array([*force, *np.cross(place, force)]) for place, force in given)
-    *forces, effort = np.linalg.solve(matrix, right)
-    size = np.max(np.abs(forces))
-    assert found.effort("wheel:slide_3")[0] == pytest.approx(effort, abs=1e-12 * size)
-    for k, (name, force) in enumerate(zip(told["BARS"], forces, strict=True)):
-        section, back = found.section(name), bars[k][1]
-        assert section.axial[0, [0, -1]] == pytest.approx(
-            [force + weight * (back @ UP), force], abs=1e-12 * size
-        ), name
-        hub = vector(found, "reaction", f"{name}_hub", ("fx", "fy", "fz"))[0]
-        assert np.max(np.abs(hub - (force * back + across[k]))) < 1e-12 * size, name
-        level = math.hypot(*np.cross(back, UP))
-        assert section.bending[0] == pytest.approx(
-            [0, weight * level * lengths[k] / 8, 0], abs=1e-12
-        ), name
-
-
-def test_what_a_suspensions_effort_gives_its_damper_takes():
-    found = vm(scene_of("five_link_suspension"), t=(0, 1, 513), wanted=["effort", "motion"])
-    hub = vector(found, "pose", "hub")[:-1]
-    R = vector(found, "pose", "hub", [f"{a}{b}" for a in "xyz" for b in "xyz"])[:-1].reshape(
-        -1, 3, 3
-    )
-    low = hub + (R[0] @ (np.array([0.0, 0.62, 0.28]) - hub[0])) @ R
-    length = np.linalg.norm(low - np.array([0.0, 0.45, 0.75]), axis=1)
-    given = np.mean((found.effort("wheel:slide_3") * found.motion("wheel:slide_3").rate)[:-1])
-    taken = np.mean(1.8e3 * rate(length, 1.0) ** 2)
-    assert taken > 1.0
-    assert given == pytest.approx(taken, rel=1e-11)
-
-
-def test_bricards_loop_moves_and_one_force_is_open():
-    scene = scene_of("bricard")
-    found = vm(scene, t=(0, 1, 257))
-    angles = [found.motion(f"J{k}").value for k in range(6)]
-    first, second = np.cos(angles[0]), np.cos(angles[1])
-    for k in range(6):
-        assert np.max(np.abs(np.cos(angles[k]) - (first, second)[k % 2])) < 1e-13
-    assert np.max(np.abs(first + second + first * second)) < 1e-13
-    open_of = {
-        str(output).split(":")[1] for output in found.indeterminate if output.group == "reaction"
-    }
-    assert open_of == {f"J{k}" for k in range(6)}
-    assert all(np.isnan(found.outputs[output]).all() for output in found.indeterminate)
-    assert np.isnan(found.section("link3").axial).all()
-    power, energy = 0.0, 0.0
-    for k in range(1, 6):
-        base = vector(found, "pose", f"link{k}")[:-1]
-        tip = base + 0.5 * along(found, f"link{k}")[:-1]
-        v, w = rate(base, 1.0), rate(tip, 1.0)
-        energy = (
-            energy
-            + 1.5 / 6 * np.sum(v * v + v * w + w * w, axis=1)
-            + 1.5 * G * (base + tip)[:, 2] / 2
-        )
-    power = (found.effort("J0") * found.motion("J0").rate)[:-1]
-    assert np.max(np.abs(power - rate(energy, 1.0))) < 1e-10 * np.max(np.abs(power))
-
-
-def test_a_design_whose_small_quantities_are_rounding_is_judged():
-    """Its loop is iterated over all instants, and looked at in a few."""
-    scene = scene_of("cardan_shaft")
-    designs = DesignEngine.of(scene, t=(0.0, 0.1, 33), method=EvaluationMethod("c"))
-    assert (
-        designs.failures(
-            np.array(list(scene.mechanism.values({"aside": 0.05}).values())), derive(scene, ["all"])
-        )
-        == {}
-    )
-
-
-@pytest.mark.sampled(7)
-@pytest.mark.parametrize("name", SMALL)
-def test_estimates_are_near_the_errors(name):
-    """Of all but sections, which the tests' fifty digits know in a plane."""
-    scene = scene_of(name)
-    kinds = ["effort", "motion", "reaction"]
-    scene = dataclasses.replace(scene, wanted=kinds, t=(*scene.span, 21), over=None)
-    assert_near(ratios(evaluate(scene, backend="c"), exactly(scene)))
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", ["rssr", "cardan_shaft"])
-def test_figures_can_be_drawn(name, tmp_path):
-    scene = scene_of(name)
-    link = {"rssr": "coupler", "cardan_shaft": "tube"}[name]
-    solution = evaluate(
-        scene, t=(*scene.span, 31), xi=(0, 1, 11), wanted=["effort", "motion", f"section:{link}"]
-    )
-    drawn = list(figures.draw(solution, None, tmp_path))
-    assert all(path is not None and path.stat().st_size > 2000 for _, path in drawn)
-    assert {"mechanism", f"section_{link}"} <= {spec.name for spec, _ in drawn}
-
-
-def test_there_are_twelve():
-    assert len(SPATIAL) == 12

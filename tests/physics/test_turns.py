@@ -1,9 +1,9 @@
 """Angles that loads see with their turns, against vector Newton-Euler that is followed from the
-start in small steps.
-
-The oracle carries directions as numbers that go on continuously: it counts turns by having been
-there.
+start in small steps. The oracle carries directions as numbers that go on continuously: it
+counts turns by having been there.
 """
+
+from __future__ import annotations
 
 import math
 
@@ -11,10 +11,8 @@ import casadi as ca
 import numpy as np
 import pytest
 from balance import columns_at, oracle_of, postures
-from compiled import EVALUATED, told
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from internals import DesignEngine, EvaluationMethod, Status, depends_on_turns, refine
 from mechanisms import (
     DAMPING,
     DRAG_LINK,
@@ -26,7 +24,7 @@ from mechanisms import (
     truss_platform,
 )
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, table
+from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
 
@@ -164,24 +162,6 @@ def test_the_drive_may_go_back_and_forth(law):
     assert_followed(sprung("AC", law=law, **DRAG_LINK), "AC")
 
 
-def test_it_does_not_matter_which_instants_are_asked_for():
-    """The second turn alone, one instant alone, and few instants far apart: what was there is
-    there.
-    """
-    scene = sprung("AC", **DRAG_LINK)
-    whole = evaluate(scene, t=(0.0, 2.0, 201))
-    for grid, rows in (
-        ((1.0, 2.0, 101), slice(100, None)),
-        ((1.7, 1.7, 1), slice(170, 171)),
-        ((0.0, 2.0, 3), slice(None, None, 100)),
-    ):
-        part = evaluate(scene, t=grid)
-        for name in ("load:coil_A:mz", "load:coil_C:mz", "effort:O", "reaction:B:fx"):
-            np.testing.assert_allclose(
-                part.series[name], whole.series[name][rows], rtol=1e-12, atol=1e-12
-            )
-
-
 def test_a_table_serves_what_comes_round_and_says_what_does_not():
     """Where both ends of a spring go round together, the spring only swings; where one does, it
     winds up and repeats never.
@@ -197,74 +177,6 @@ def test_a_table_serves_what_comes_round_and_says_what_does_not():
         r" repeat",
     ):
         evaluate(sprung("C", **DRAG_LINK), table=64, wanted=["effort"])
-
-
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("backend", ["auto", "c", "vm"])
-def test_sweeps_count_the_same_and_refuse_by_name(backend):
-    """Among them a crank-rocker where the defaults are a drag link: its turns are others."""
-    scene = sprung("C", **DRAG_LINK, parametric=True, count=65)
-    wanted = ["effort", "load:coil_C"]
-    engine = DesignEngine.of(scene, wanted, None, EvaluationMethod(backend))
-    # The first crank-rocker comes near a dead centre, and the last one does not.
-    designs = np.array(
-        [
-            [0.3, 0.35, 0.32],
-            [0.32, 0.36, 0.3],
-            [0.05, 0.35, 0.32],
-            [1.0, 0.1, 0.1],
-            [0.02, 0.1, 0.1],
-        ]
-    )
-    outcome = engine.evaluate(designs, histories=True)
-    assert outcome.status.tolist() == [
-        Status.OK,
-        Status.OK,
-        Status.TURNED,
-        Status.OUT_OF_REACH,
-        Status.TURNED,
-    ]
-    for design, series in zip(designs[:2], outcome.series[:2], strict=True):
-        solution = evaluate(
-            scene, parameters=dict(zip("pqr", design, strict=True)), wanted=wanted, backend="vm"
-        )
-        for name, values in zip(engine.columns, series, strict=True):
-            np.testing.assert_allclose(values, solution.series[name], rtol=1e-12, atol=1e-12)
-    with pytest.raises(
-        AssemblyError,
-        match=r"the angle of 'C', on whose number of revolutions a load depends, is .* deg from"
-        r" the middle",
-    ):
-        evaluate(scene, parameters={"p": 0.05})
-
-
-def test_exported_c_refuses_what_might_be_a_turn_further(tmp_path):
-    """As the API does; and where it does not, a call knows nothing of the one before."""
-    made = export(sprung("C", **DRAG_LINK, parametric=True), tmp_path)
-    prepare = "status = @_prepare(&model, &parameters); @_motion(&model, %s, &inputs); "
-    far = prepare % 1.75 + EVALUATED
-    (_, effort, sentence), *others = told(
-        tmp_path,
-        made,
-        "parameters.p = 0.05; " + prepare % 0.02 + EVALUATED,
-        far,
-        prepare % 0.25 + EVALUATED + far.partition("; ")[2],
-    )
-    assert (
-        sentence
-        == "a load depends on the number of revolutions of an angle, which cannot be determined"
-    )
-    assert math.isnan(effort)
-    solution = evaluate(sprung("C", **DRAG_LINK, parametric=True), t=(0.0, 1.75, 8), backend="c")
-    for status, effort, _ in others:
-        assert (status, effort) == (0, pytest.approx(solution.effort("O")[-1], rel=1e-5))
-
-
-def test_peaks_between_instants_see_the_turns():
-    scene = sprung("C", **DRAG_LINK)
-    fine = evaluate(scene, t=(0.0, 2.0, 20001), wanted=["effort"])
-    (peak,) = refine(scene, evaluate(scene, t=(0.0, 2.0, 41), wanted=["effort"]), ["effort:O"])
-    assert peak.value == pytest.approx(fine.peak("effort:O").value, rel=1e-6)
 
 
 @pytest.mark.long
@@ -305,81 +217,6 @@ def test_a_link_s_direction_counts_as_its_joint_at_the_ground():
     assert np.ptp(solution.motion("Q").value) > 2.5 * math.pi
 
 
-def geared_five_bar():
-    """Two cranks tied by a gear of ratio -2, two bars between them."""
-    m = Mechanism("five_bar")
-    a, b, c, d = (
-        m.link(n, length=l, mass=0.3) for n, l in zip("abcd", (0.1, 0.4, 0.4, 0.12), strict=True)
-    )
-    first = m.revolute("O", m.ground, a)
-    second = m.revolute("Q", m.ground.at(0.5, 0.0), d)
-    m.revolute("A", a.tip, b)
-    m.revolute("D", d.tip, c)
-    m.revolute("B", b.tip, c.tip)
-    m.gear("mesh", first, second, ratio=-2.0, offset=0.3)
-    return m, {"O": polynomial(0.1, 4.0)}, {"b": 0.9, "c": 2.2}
-
-
-def test_what_a_gear_turns_is_counted_by_the_gear():
-    """Between the second crank and its bar the joint goes round twice for each turn of the drive;
-    the second crank's own too.
-    """
-    m, motion, posture = geared_five_bar()
-    coil(m, "D")
-    coil(m, "Q")
-    scene = Scene(m, motion, posture=posture, t=(0.0, 4.0, 161))
-    solution = evaluate(scene)
-    for joint in "DQ":
-        angle = solution.motion(joint)
-        # A gear says what the angle is; what loops set starts in (-pi, pi].
-        np.testing.assert_allclose(
-            solution.series[f"load:coil_{joint}:mz"],
-            -STIFFNESS * (angle.value - FREE) - DAMPING * angle.rate,
-            atol=1e-12,
-        )
-    assert solution.motion("Q").value[0] == pytest.approx(0.3 - 0.2)
-    assert np.ptp(solution.motion("D").value) > 4 * math.pi
-
-
-def test_two_drives():
-    """Five bars: a joint between moving links goes round with either drive."""
-    m = Mechanism("five_bar")
-    a, b, c, d = (
-        m.link(n, length=l, mass=0.3) for n, l in zip("abcd", (0.1, 0.4, 0.4, 0.12), strict=True)
-    )
-    m.revolute("O", m.ground, a)
-    m.revolute("Q", m.ground.at(0.5, 0.0), d)
-    m.revolute("A", a.tip, b)
-    m.revolute("D", d.tip, c)
-    m.revolute("B", b.tip, c.tip)
-    for joint in "ADB":
-        coil(m, joint)
-    motion = {"O": polynomial(0.1, 7.0), "Q": polynomial(1.0, -3.0, -2.0)}
-    assert_followed(Scene(m, motion, posture={"b": 0.9, "c": 2.2}, t=(0.0, 2.0, 101)), "ADB")
-
-
-def test_a_drive_that_slides():
-    """A cylinder swings a boom: nothing turns round, and the joint's angle crosses half a turn."""
-    m = Mechanism("boom")
-    boom = m.link("boom", length=1.0, mass=3.0)
-    barrel, piston = m.link("barrel", length=0.4, mass=1.0), m.link("piston", length=0.4, mass=0.8)
-    m.revolute("O", m.ground, boom)
-    m.revolute("F", m.ground.at(-0.5, 0.3), barrel)
-    m.prismatic("stroke", barrel, piston, axis=(1, 0), angle=math.pi)
-    m.revolute("P", piston.base, boom.at(0.3))
-    for joint in "OP":
-        coil(m, joint)
-    assert_followed(
-        Scene(
-            m,
-            {"stroke": harmonic(0.62, 0.1, 0.7)},
-            posture={"boom": 1.5, "barrel": 0.2},
-            t=(0, 2, 65),
-        ),
-        "OP",
-    )
-
-
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_many_turns_keep_their_phase(precision):
     """A spring that only swings, between links that go round a million times: no digit is lost on
@@ -395,13 +232,6 @@ def test_many_turns_keep_their_phase(precision):
         for scene in (near, far)
     )
     np.testing.assert_allclose(other, one, rtol=0, atol=1e-5 if precision == "single" else 1e-8)
-
-
-def test_an_angle_starts_within_half_a_turn_however_far_the_drive_has_turned():
-    near, far = (sprung("AC", law=polynomial(start, 9.0)) for start in (0.5, 0.5 + 20 * math.pi))
-    for name in ("load:coil_A:mz", "load:coil_C:mz", "effort:O"):
-        one, other = (evaluate(scene).series[name] for scene in (near, far))
-        np.testing.assert_allclose(other, one, rtol=0, atol=1e-11)
 
 
 def test_what_does_not_tell_turns_apart_is_left_within_one():
@@ -424,38 +254,6 @@ def test_what_does_not_tell_turns_apart_is_left_within_one():
         m.torque("seen_by", b, see(m.coordinate(joint)))
         program = derive(Scene(m, {"O": polynomial(0, 6.0)}, posture={"b": 0.0}))
         assert ("_turned:A" in program.names) is counts
-
-
-@pytest.mark.parametrize(
-    ("see", "tells"),
-    [
-        (lambda x, y: ca.cos(x) * y + ca.sin(3 * x - y), False),
-        (lambda x, y: ca.tan(x), False),
-        (lambda x, y: ca.atan2(ca.sin(x), ca.cos(x)), False),
-        (lambda x, y: ca.remainder(x, 2 * math.pi) * y, False),
-        (lambda x, y: ca.remainder(2 * x + y, math.pi), False),
-        (lambda x, y: ca.sin((x + y) - x), False),
-        (lambda x, y: y * 2 + 1, False),
-        (lambda x, y: ca.remainder(x, 3.0), True),
-        (lambda x, y: ca.sin(0.5 * x), True),
-        (lambda x, y: ca.sin(x * y), True),
-        (lambda x, y: ca.fmod(x, 2 * math.pi), True),
-        (lambda x, y: table(x, [0, 1], [0, 2]), True),
-        (lambda x, y: ca.exp(x), True),
-        (lambda x, y: ca.if_else(x > 1, ca.sin(x), 0), True),
-        (lambda x, y: x / y, True),
-    ],
-)
-def test_whether_an_expression_tells_turns_apart(see, tells):
-    """By its operations; and where it says no, none of many whole turns makes a difference."""
-    x, y = ca.SX.sym("x"), ca.SX.sym("y")
-    assert depends_on_turns(see(x, y), x) is tells
-    if not tells:
-        f = ca.Function("f", [x, y], [see(x, y)])
-        for at, other in np.random.default_rng(0).uniform(-4, 4, (50, 2)):
-            assert float(f(at + 3 * math.tau, other)) == pytest.approx(
-                float(f(at, other)), rel=1e-9, abs=1e-9
-            )
 
 
 def led(span):

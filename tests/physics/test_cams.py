@@ -1,16 +1,18 @@
-"""Disc cams: profiles that their followers touch and never cut, forces of closed forms, textbooks'
-radii, and what is refused.
+"""Disc cams: profiles that followers touch and never cut, forces of closed forms, lifts from
+profiles, and what is refused.
 """
+
+from __future__ import annotations
 
 import math
 
+import casadi as ca
 import numpy as np
 import pytest
-from internals import DesignEngine, Status
 
-from lagrange_casadi import LagrangeCasadiError, Mechanism, Scene, curve, evaluate
-from lagrange_casadi.elements import disc_cam
-from lagrange_casadi.errors import AssemblyError, DeclarationError, PathError
+from lagrange_casadi import LagrangeCasadiError, Mechanism, Scene, evaluate
+from lagrange_casadi.elements import disc_cam, profile_lift, read_profile
+from lagrange_casadi.errors import DeclarationError, PathError
 from lagrange_casadi.motion import dwell, move, moves, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -25,6 +27,8 @@ KINDS = [
     "swinging roller -",
     "swinging flat -",
 ]
+
+
 ROLLER, OMEGA, MASS = 0.012, 30.0, 0.8
 
 
@@ -146,104 +150,27 @@ def test_a_flat_follower_is_pressed_beside_its_line():
     assert solution.output("cam_hertz") == pytest.approx(hertz, rel=1e-11)
 
 
-@pytest.mark.parametrize("kind", ["swinging roller", "swinging flat", "swinging flat -"])
-def test_a_swinging_follower_bears_what_free_bodies_say(kind):
-    """The pin's reaction and the contact balance the arm, by its poses alone; where the contact is,
-    the profile tells.
-    """
-    cam, scene = machine(kind)
-    solution = evaluate(scene, over=("main", 0, "350 deg", 36))
-    profile, lead, pose = cam.profile(count=36), solution.motion("lead"), solution.pose("arm")
-    turn = solution.motion("main").value
-    c, s = np.cos(turn), np.sin(turn)
-    contact = np.stack(
-        [0.01 + c * profile.x - s * profile.y, -0.02 + s * profile.x + c * profile.y]
-    )
-    along = np.stack([np.cos(pose.angle), np.sin(pose.angle)])
-    pull = np.stack([-along[1], along[0]]) * lead.acceleration - along * lead.rate**2
-    side = -1 if kind.endswith("-") else 1
-    # What the contact must give: momentum less weight and the pin's reaction.
-    push = (
-        MASS * 0.06 * pull
-        + np.array([[0.0], [MASS * 9.81]])
-        - np.stack([solution.reaction("lead").fx, solution.reaction("lead").fy])
-    )
-    assert np.hypot(*push) == pytest.approx(solution.output("cam_force"), rel=1e-10)
-    arm = contact - np.stack([pose.x, pose.y])
-    turned = arm[0] * push[1] - arm[1] * push[0] - MASS * 9.81 * 0.06 * along[0] - side * 20.0
-    assert turned == pytest.approx(
-        MASS * 0.12**2 / 3 * lead.acceleration, abs=1e-9 * np.abs(turned).max() + 1e-9
-    )
-
-
-def test_designs_and_laws_of_curves():
-    """Many cams at once, and a lift that is a curve through points."""
-    _, scene = machine("roller")
-    engine = DesignEngine.of(scene)
-    found = engine.evaluate(
-        np.array([[0.02, 0.05, 400.0], [0.01, 0.06, 300.0], [0.02, 0.002, 400.0]])
-    )
-    assert found.status.tolist()[:2] == [Status.OK, Status.OK]
-    alone = evaluate(scene, parameters={"h": 0.01, "base": 0.06, "preload": 300.0}, t=scene.t)
-    place = [str(quantity) for quantity in engine.quantities].index("output:cam_force")
-    assert found.value[1, place] >= alone.output("cam_force").max() * (1 - 1e-12)
-    angles = np.linspace(0.0, 2 * np.pi, 61)
-    _, other = machine("roller", lift=curve(angles, 0.01 * (1 - np.cos(angles)), periodic=True))
-    assert evaluate(other).certified
-
-
-def test_the_preload_that_holds_the_contact():
-    """The contact's force goes with the spring's preload: two evaluations tell which one is just
-    enough.
-    """
-    _, scene = machine("roller", h=0.03)
-    low, high = (
-        evaluate(scene, parameters={"preload": force}).output("cam_force")
-        for force in (-400.0, -300.0)
-    )
-    assert low.min() < 0.0
-    least = float((-low / ((high - low) / 100.0)).max()) - 400.0
-    held = evaluate(scene, parameters={"preload": least}).output("cam_force")
-    assert held.min() == pytest.approx(0.0, abs=1e-9)
-
-
 def test_profiles_are_written_for_workshops(here):
     cam, _ = machine("roller")
     profile = cam.profile(count=180)
     profile.save_csv("cam.csv")
+    heads = "angle [deg],x [m],y [m],pressure angle [deg],radius [m]"
+    assert (here / "cam.csv").read_text().startswith(heads)
     rows = np.loadtxt("cam.csv", delimiter=",", skiprows=1)
     assert rows[:, 1:3] == pytest.approx(np.column_stack([profile.x, profile.y]), rel=1e-15)
-    assert (here / "cam.csv").read_text().splitlines()[
-        0
-    ] == "angle [deg],x [m],y [m],pressure angle [deg],radius [m]"
+    assert read_profile("cam.csv") == pytest.approx(rows[:, 1:3], rel=1e-15)
     profile.save_csv("commas.csv", decimal_comma=True)
-    commas = (here / "commas.csv").read_text().replace(";", " ").replace(",", ".")
-    np.testing.assert_array_equal(np.loadtxt(commas.splitlines()[1:]), rows)
+    assert read_profile("commas.csv") == pytest.approx(rows[:, 1:3], rel=1e-15)
     with pytest.raises(PathError, match="does not exist"):
         profile.save_csv("nowhere/cam.csv")
+    undercut = machine("flat")[0].profile({"base": 0.01})
+    with pytest.raises(LagrangeCasadiError, match=r"cam 'cam': its profile is undercut at .* deg"):
+        undercut.save_csv("cut.csv")
     ezdxf = pytest.importorskip("ezdxf")
     profile.save_dxf("cam.dxf")
     (drawn,) = ezdxf.readfile("cam.dxf").modelspace()
-    assert drawn.is_closed
-    assert np.array(
-        [(vertex.dxf.location.x, vertex.dxf.location.y) for vertex in drawn.vertices]
-    ) == pytest.approx(1e3 * rows[:, 1:3], abs=1e-5)
-    before = (here / "cam.dxf").read_bytes()
-    profile.save_dxf("cam.dxf")
-    assert (here / "cam.dxf").read_bytes() == before
-
-
-def test_a_profile_that_cuts_itself_is_told_and_not_written(here):
-    cam, _ = machine("flat")
-    profile = cam.profile({"base": 0.01})
-    assert profile.undercut.any()
-    assert (profile.radius[profile.undercut] <= 0.0).all()
-    with pytest.raises(
-        LagrangeCasadiError,
-        match=r"cam 'cam': its profile is undercut at .* deg of the cam, .*; no profile has",
-    ):
-        profile.save_csv("cam.csv")
-    assert not list(here.iterdir())
+    places = [(vertex.dxf.location.x, vertex.dxf.location.y) for vertex in drawn.vertices]
+    assert np.array(places) == pytest.approx(1e3 * rows[:, 1:3], abs=1e-5)
 
 
 def test_without_ezdxf_one_line_tells_how_to_get_it(monkeypatch):
@@ -256,12 +183,6 @@ def test_without_ezdxf_one_line_tells_how_to_get_it(monkeypatch):
         match=r"a DXF needs ezdxf; install it with: pip install 'lagrange_casadi\[dxf\]'",
     ):
         cam.profile().save_dxf("cam.dxf")
-
-
-def test_radii_that_parameters_make_none_have_no_result():
-    _, scene = machine("roller")
-    with pytest.raises(AssemblyError):
-        evaluate(scene, parameters={"base": -0.05})
 
 
 SHORT = moves([move(0.02, time=0.5), move(0.0, time=0.5), dwell()], cyclic=True, period=2 * math.pi)
@@ -281,7 +202,7 @@ def broken(**options):
         "point": None,
     } | options
     if given["point"] == "other":
-        given["point"] = m._load_point("x", other)
+        given["point"] = other
     if given["follower"] == "main":
         given["cam"] = lead
         given["follower"] = main
@@ -314,3 +235,209 @@ def broken(**options):
 def test_misuse_is_named(options, says):
     with pytest.raises(DeclarationError, match=says):
         broken(**options)
+
+
+ROLLER_OF_PROFILE_LIFT = 0.012
+
+
+KINDS_OF_PROFILE_LIFT = [
+    "roller",
+    "knife",
+    "flat",
+    "swinging roller",
+    "swinging flat",
+    "swinging roller -",
+    "swinging flat -",
+]
+
+
+def profiled(kind, offset=0.008):
+    """A cam on a shaft that is not the origin, its follower, and what its cam is told."""
+    m = Mechanism("machine")
+    disc = m.link("disc", length=0.04, mass=1.5, centre=(0, 0), inertia=1e-3)
+    main = m.revolute("main", m.ground.at(0.01, -0.02), disc.at(0.003, 0.001))
+    options = (
+        {"flat": True}
+        if "flat" in kind
+        else {"roller": ROLLER_OF_PROFILE_LIFT}
+        if "roller" in kind
+        else {}
+    )
+    if kind.startswith("swinging"):
+        arm = m.link("arm", length=0.12, mass=0.8)
+        lead = m.revolute("lead", m.ground.at(0.12, 0.0), arm)
+        options |= {"side": -1 if kind.endswith("-") else 1} | (
+            {} if "flat" in kind else {"point": arm.tip}
+        )
+    else:
+        rod = m.link("rod", length=0.15, mass=0.8)
+        lead = m.prismatic(
+            "lead", m.ground.at(0.01 + offset, -0.02), rod, axis=(0, 1), angle="90 deg"
+        )
+    return m, main, lead, options
+
+
+def rise_and_fall(size, name="polynomial_4567"):
+    parts = [move(size, time=2.0, law=name), dwell(1.0), move(0.0, time=2.0, law=name), dwell()]
+    return moves(parts, cyclic=True, period=2 * math.pi)
+
+
+def values_of(lift, angles):
+    """A lift's values, slopes and bends."""
+    x = ca.SX.sym("x")
+    rows = [ca.SX(lift(x))]
+    rows += [ca.jacobian(rows[-1], x)]
+    rows += [ca.jacobian(rows[-1], x)]
+    return ca.Function("lift", [x], [ca.densify(ca.vertcat(*rows))])(
+        np.asarray(angles)[None]
+    ).full()
+
+
+def circle(radius, eccentric, count, phase=0.0):
+    angle = phase + np.arange(count) * math.tau / count
+    return np.column_stack([eccentric + radius * np.cos(angle), radius * np.sin(angle)])
+
+
+@pytest.mark.parametrize("turned", [1, -1])
+@pytest.mark.parametrize("offset", [0.0, 0.008])
+def test_an_eccentric_disc_lifts_a_roller_as_a_slider_crank(turned, offset):
+    """Its centre is a crank's pin, and both radii are the rod."""
+    m, main, lead, options = profiled("roller", offset)
+    radius, e = 0.05, 0.01
+    found = profile_lift(m, main, lead, circle(radius, e, 360, 0.3)[::turned], **options)
+    angle = np.linspace(-4.0, 9.0, 701)
+    height = e * np.sin(angle) + np.sqrt(
+        (radius + ROLLER_OF_PROFILE_LIFT) ** 2 - (e * np.cos(angle) - offset) ** 2
+    )
+    least = math.sqrt((radius + ROLLER_OF_PROFILE_LIFT - e) ** 2 - offset**2)
+    assert values_of(found, angle)[0] == pytest.approx(height - least, abs=1e-10)
+    assert found.base_radius == pytest.approx(radius - e, abs=1e-10)
+    bend = np.gradient(np.gradient(height, angle), angle)[2:-2]
+    assert values_of(found, angle)[2, 2:-2] == pytest.approx(bend, abs=2e-5)
+
+
+def test_an_eccentric_disc_lifts_a_face_by_a_sine():
+    m, main, lead, options = profiled("flat")
+    found = profile_lift(
+        m, main, lead, np.vstack([circle(0.05, 0.01, 360), circle(0.05, 0.01, 360)[:1]]), **options
+    )
+    angle = np.linspace(0.0, 7.0, 301)
+    value, slope, bend = values_of(found, angle)
+    assert value == pytest.approx(0.01 * (1 + np.sin(angle)), abs=1e-11)
+    assert slope == pytest.approx(0.01 * np.cos(angle), abs=1e-8)
+    assert bend == pytest.approx(-0.01 * np.sin(angle), abs=1e-6)
+    assert found.base_radius == pytest.approx(0.04, abs=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS_OF_PROFILE_LIFT)
+def test_the_way_back_from_a_cam_is_as_exact_as_interpolation(kind):
+    """Twice the points have a sixteenth of the error of the lift, an eighth of the slope's, a
+    quarter of the bend's.
+    """
+    m, main, lead, options = profiled(kind)
+    lift = rise_and_fall(0.2 if kind.startswith("swinging") else 0.02)
+    cam = disc_cam(m, "cam", main, lead, lift, base_radius=0.05, **options)
+    angles = np.linspace(0.0, math.tau, 2001)
+    true = values_of(lift, angles)
+    errors = []
+    for count in (180, 360):
+        profile = cam.profile(count=count)
+        found = profile_lift(m, main, lead, np.column_stack([profile.x, profile.y]), **options)
+        errors.append(
+            np.abs(values_of(found, angles) - true).max(axis=1) / np.abs(true).max(axis=1)
+        )
+        assert found.base_radius == pytest.approx(0.05, abs=1e-8)
+    assert (errors[0] < [8e-7, 4e-5, 4e-3]).all()
+    assert (errors[1] < errors[0] / [14, 7, 3.5]).all()
+
+
+TURN = np.arange(90) * math.tau / 90
+
+
+HOLLOW = (0.05 + 0.008 * np.cos(12 * TURN))[:, None] * np.column_stack([np.cos(TURN), np.sin(TURN)])
+
+
+@pytest.mark.parametrize(
+    ("kind", "points", "says"),
+    [
+        ("roller", circle(0.05, 0.0, 12), "profile: expected at least 16 points, got 12"),
+        (
+            "roller",
+            circle(0.05, 0.0, 40)[:, :1],
+            r"profile: expected points \(x, y\), finite numbers, got an array of shape \(40, 1\)",
+        ),
+        ("roller", circle(math.nan, 0.0, 40), "profile: expected points"),
+        (
+            "roller",
+            circle(0.05, 0.06, 40),
+            r"profile: its points do not enclose the cam's shaft, which is at \(0, 0\)",
+        ),
+        (
+            "roller",
+            np.repeat(circle(0.05, 0.0, 40), 2, axis=0),
+            "profile: points 1 and the next coincide",
+        ),
+        (
+            "roller",
+            HOLLOW,
+            (
+                r"profile: the follower cannot touch it near its point \d+, counted"
+                r" counter-clockwise: the profile is hollow"
+            ),
+        ),
+        ("flat", HOLLOW, r"profile: the follower cannot touch it near its point \d+"),
+        (
+            "swinging roller",
+            circle(0.3, 0.0, 40),
+            "profile: the follower does not reach the whole profile: its end can be from",
+        ),
+        (
+            "swinging flat",
+            circle(0.2, 0.0, 40),
+            "profile: the follower's pivot is .* m from .* shaft, but the profile reaches 0.2 m",
+        ),
+        ("roller", circle(0.001, 0.0, 40) * 1e-3, "profile: "),
+    ],
+)
+def test_what_is_no_profile_is_told(kind, points, says):
+    m, main, lead, options = profiled(kind, offset=0.03)
+    with pytest.raises(DeclarationError, match=says):
+        profile_lift(m, main, lead, points, **options)
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "says"),
+    [
+        (
+            "x,z\n1,2\n",
+            DeclarationError,
+            r"p\.csv, line 1: expected one column 'y', as in x \[mm\], got x, z",
+        ),
+        (
+            "x [in],y\n1,2\n",
+            DeclarationError,
+            r"p\.csv, line 1: column 'x' cannot be in 'in'; valid: m, mm, um",
+        ),
+        (
+            "# cam\nx,y\n1,2\n1,\n",
+            DeclarationError,
+            r"p\.csv, line 4: expected a finite number for y, got ''",
+        ),
+        (
+            "x,y\n1,two\n",
+            DeclarationError,
+            r"p\.csv, line 2: expected a finite number for y, got 'two'",
+        ),
+        (None, PathError, r"p\.csv: no such file"),
+    ],
+)
+def test_a_file_that_is_no_profile_is_told(here, text, error, says):
+    if text is not None:
+        (here / "p.csv").write_text(text)
+    with pytest.raises(error, match=says):
+        read_profile("p.csv")
+
+
+def test_other_units_and_columns_are_read(here):
+    (here / "p.csv").write_text("point;x [mm];y [um]\n1;40,5;-12\n2;-0,25;1e3\n")
+    assert read_profile("p.csv").tolist() == [[0.0405, -1.2e-5], [-0.00025, 1e-3]]

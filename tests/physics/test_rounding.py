@@ -1,0 +1,53 @@
+"""Axes with the rounding of a drawing: an over-constrained loop closes all the same, and says by
+how much its axes were moved.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lagrange_casadi import Scene, SpatialMechanism
+from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.motion import harmonic
+
+
+def swinging(rounding):
+    m = SpatialMechanism("swinging")
+    m.revolute("swing", m.ground, m.link("base", length=0.5, mass=3.0))
+    return Scene(m, {"swing": harmonic(0.2, 0.3, 1.0)}, t=(0, 0.6, 7), rounding=rounding)
+
+
+@pytest.mark.parametrize(
+    "rounding", [-1e-9, 2e-3, np.nan, np.inf, None, True, "1e-6", "a lot", [1e-6]]
+)
+def test_a_tolerance_that_is_none_is_refused(rounding):
+    with pytest.raises(DeclarationError, match="rounding"):
+        swinging(rounding)
+
+
+@pytest.mark.parametrize("off", [1e-13, 1e-8, -9e-7])
+def test_a_second_axis_is_made_exact(off):
+    """Its part across the first is taken, of a joint and of the child's axes; the first stays."""
+    m = SpatialMechanism("cross")
+    turned = ((0.0, 0.0, 1.0), (-1.0, 0.0, off))
+    joint = m.universal(
+        "C",
+        m.ground,
+        m.link("rod", length=0.3, mass=0.5),
+        axis=(1, 0, 0),
+        second=(off, 1, 0),
+        turned=turned,
+    )
+    for first, second in (joint.directions[:2], joint.turned):
+        assert abs(np.dot(first, second)) < 1e-12
+        assert np.linalg.norm(second) == pytest.approx(1.0, abs=1e-15)
+    assert joint.directions[0] == (1.0, 0.0, 0.0)
+
+
+def test_a_second_axis_that_is_off_by_more_is_refused():
+    m = SpatialMechanism("cross")
+    with pytest.raises(DeclarationError, match="right angles"):
+        m.universal(
+            "C", m.ground, m.link("rod", length=0.3, mass=0.5), axis=(1, 0, 0), second=(2e-6, 1, 0)
+        )

@@ -1,0 +1,541 @@
+"""Forces inside links under loads along them and at points: the beams of the textbooks, signs,
+ends and peaks.
+"""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    curve,
+    density,
+    evaluate,
+    motion,
+    prepare,
+)
+from lagrange_casadi.errors import DeclarationError, ParameterError
+from lagrange_casadi.motion import harmonic
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+LENGTH, AT, LOAD = 2.0, 0.25, 10.0
+
+
+def cantilever(tip):
+    """The forces in a beam from a wall along x, without gravity, whose tip bears the force ``tip``
+    along y.
+    """
+    m = Mechanism("cantilever")
+    m.set_gravity(0, 0)
+    beam = m.link("beam", length=LENGTH, mass=1.0)
+    m.weld("wall", m.ground, beam)
+    m.force("load", beam.tip, y=tip)
+    return evaluate(Scene(m, {}, t=(0, 1, 2), xi=(0, 1, 5))).section("beam")
+
+
+def fibre(side, tip, height=0.1, reach=0.3):
+    """The moment that a fibre at ``side`` (1: that of n) bears, by its tension: what the pin in the
+    other fibre cannot.
+    """
+    m = Mechanism("fibres")
+    m.set_gravity(0, 0)
+    beam = m.link("beam", length=LENGTH * (1 - AT), mass=1.0)
+    bar = m.link("bar", length=reach, mass=1.0)
+    m.revolute("pin", m.ground.at(LENGTH * AT, -side * height / 2), beam.at(0, -side * height / 2))
+    m.revolute("back", m.ground.at(LENGTH * AT - reach, side * height / 2), bar)
+    m.revolute("front", bar.tip, beam.at(0, side * height / 2))
+    m.force("load", beam.tip, y=tip)
+    solution = evaluate(Scene(m, {}, t=(0, 1, 2), posture={"bar": 0.0, "beam": 0.0}))
+    return height * solution.section("bar").axial[0, 0]
+
+
+@pytest.mark.parametrize("tip", [-LOAD, LOAD])
+def test_a_positive_moment_stretches_the_fibres_away_from_n(tip):
+    section = cantilever(tip)
+    bending = section.bending[0, np.searchsorted(section.xi, AT)]
+    assert bending == pytest.approx(tip * LENGTH * (1 - AT), rel=1e-12)
+    assert fibre(-1, tip) == pytest.approx(bending, rel=1e-12)
+    assert fibre(1, tip) == pytest.approx(-bending, rel=1e-12)
+
+
+def beam(x=0.0, y=0.0, angle=0.0, turning=False, length=2.0, mass=3.0):
+    """A cantilever at rest, without gravity."""
+    m = Mechanism("beam")
+    m.set_gravity(0.0, 0.0)
+    arm = m.link("arm", length=length, mass=mass)
+    m.revolute("wall", m.ground, arm)
+    m.line_load("wind", arm, x=x, y=y, turning=turning)
+    return Scene(m, {"wall": motion.polynomial(angle)}, t=(0, 1, 3), xi=(0, 1, 9))
+
+
+def test_a_triangular_load_and_a_load_along_the_axis():
+    """From nothing at the base to q at the tip: the moment at the wall is q l^2/3.
+
+    Along the axis the sum beyond the section.
+    """
+    solution = evaluate(beam(y=(0.0, 6.0), x=(4.0, -2.0), angle=0.7, turning=True))
+    u, l, section = solution.xi, 2.0, solution.section("arm")
+    np.testing.assert_allclose(section.shear[0], 6.0 * l * (1 - u**2) / 2, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(
+        section.bending[0], 6.0 * l * l * (1 / 3 - u / 2 + u**3 / 6), rtol=0, atol=1e-13
+    )
+    np.testing.assert_allclose(
+        section.axial[0], l * (4.0 * (1 - u) - 6.0 * (1 - u**2) / 2), rtol=0, atol=1e-13
+    )
+    assert solution.section("arm").bending[0, 0] == pytest.approx(6.0 * l * l / 3, rel=1e-14)
+    assert solution.array("load:wind:mz")[0] == pytest.approx(6.0 * l * l / 12, rel=1e-14)
+    np.testing.assert_array_equal(
+        [section.shear[:, -1], section.bending[:, -1], section.axial[:, -1]], 0.0
+    )
+
+
+def declared(place="rod", **spread):
+    """A rod and a ball, and a load along one of them, from ``low`` to 0.6 m where asked."""
+    m = Mechanism("refused")
+    bodies = {"rod": m.link("rod", length=1.0, mass=1.0), "ball": m.point_mass("ball", 1.0)}
+    low = m.parameter("low", 0.2, "m")
+    if spread.get("between") == "low":
+        spread["between"] = (low, 0.6)
+    if spread.get("between") == "time":
+        spread["between"] = (0.0, m.time)
+    m.line_load("wind", bodies.get(place, m.ground), **{"y": 1.0, **spread})
+    m.revolute("J", m.ground, bodies["rod"])
+    m.weld("W", bodies["rod"].tip, bodies["ball"])
+    return Scene(m, {"J": motion.polynomial(0.0)}, t=(0, 1, 3))
+
+
+ONE = "expected one value, two values at its start and end, or a function of the distance .*, got"
+
+DEGREE = "must be a polynomial of the distance from the base, of degree 7 at most; use one"
+
+FOREIGN = ca.SX.sym("foreign")
+
+
+@pytest.mark.parametrize(
+    ("spread", "says"),
+    [
+        ({"place": "ball"}, "expected a link for a line load, got 'ball'; use a force"),
+        ({"place": "ground"}, "expected a link for a line load, got 'ground'; use a force"),
+        ({"y": (1.0, 2.0, 3.0)}, ONE),
+        ({"y": ()}, ONE),
+        ({"y": "strong"}, "must be a number or an expression"),
+        ({"y": FOREIGN}, "depends on 'foreign'"),
+        ({"y": lambda xi: xi * FOREIGN}, "depends on 'foreign'"),
+        ({"y": ca.sin}, DEGREE),
+        ({"y": curve([0.0, 0.3, 0.6, 1.0], [1.0, 2.0, 1.5, 0.0])}, DEGREE),
+        ({"y": lambda xi: xi**8}, DEGREE),
+        ({"y": lambda xi: 1 / (1 + xi)}, DEGREE),
+        ({"y": lambda xi: ca.if_else(xi < 0.5, 1.0, 2.0)}, DEGREE),
+        ({"y": lambda xi: 2**xi}, DEGREE),
+        ({"y": lambda xi: xi * (1 / 0)}, "cannot be made .*: ZeroDivisionError"),
+        ({"y": lambda xi: xi if xi > 0 else 0}, "cannot be .*: a symbol has no truth"),
+        ({"y": lambda xi: ca.vertcat(xi, xi)}, r"must be a scalar, got one of shape \(2, 1\)"),
+        ({"between": 0.3}, "between must be two distances from the base of 'rod'"),
+        ({"between": "time"}, "between depends on 't', not a parameter"),
+        ({"between": (0.5, 0.5)}, r"between must be two increasing distances .*, got 0\.5"),
+    ],
+)
+def test_what_is_no_line_load_is_refused_by_name(spread, says):
+    with pytest.raises(DeclarationError, match=f"load 'wind':? {says}"):
+        declared(**spread)
+
+
+def test_parameters_that_move_a_load_off_its_link_are_refused():
+    scene = declared(between="low")
+    for low, says in (
+        (-0.1, "acts between -0.1 and 0.6 m, but link 'rod' is from 0 to 1 m"),
+        (0.7, r"acts between 0\.7 and 0\.6 m; expected an end greater than the start"),
+    ):
+        with pytest.raises(ParameterError, match=f"load 'wind': it {says}"):
+            evaluate(scene, parameters={"low": low})
+    found = prepare(scene, backend="vm").designs(np.array([[0.2], [-0.1], [0.6], [0.7]]))
+    assert (found.status == 0).tolist() == [True, False, False, False]
+
+
+SPAN = 3.0
+
+
+def supported(mass=0.0, **spread):
+    """A beam at rest on a pin and on a roller, without gravity; at its base it stands on a
+    carriage.
+    """
+    m = Mechanism("supported")
+    m.set_gravity(0.0, 0.0)
+    carriage, beam = m.point_mass("carriage", 1.0), m.link("beam", length=SPAN, mass=mass)
+    m.prismatic("rail", m.ground, carriage, axis=(1, 0))
+    m.revolute("pin", carriage, beam)
+    m.slot("roller", m.ground, beam.tip)
+    m.line_load("q", beam, **spread)
+    scene = Scene(
+        m, {"rail": motion.polynomial(0.0)}, t=(0, 1, 3), xi=(0, 1, 61), posture={"beam": 0.0}
+    )
+    return evaluate(scene)
+
+
+def looks_like(solution, shear, bending, size, link="beam"):
+    """Its shear and bending moment over the ratio are these, to the rounding of a force of this
+    size [N].
+    """
+    section, u = solution.section(link), solution.xi
+    np.testing.assert_allclose(section.shear[0], shear(u), rtol=0, atol=1e-14 * size)
+    np.testing.assert_allclose(section.bending[0], bending(u), rtol=0, atol=1e-14 * size * SPAN)
+    assert solution.certified
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("mass", [0.0, 1e-9, 1e6])
+def test_a_parabola_on_a_simple_beam(mass):
+    """Of 4 q u (1 - u) downward: supports of q l/3, and 5 q l^2/48 at the middle; the moment
+    stretches the lower side.
+    """
+    q, l = 12.0, SPAN
+    solution = supported(mass, y=lambda xi: -4 * q * xi / l * (1 - xi / l))
+    assert solution.reaction("pin").fy[0] == pytest.approx(q * l / 3, rel=1e-14)
+    assert solution.reaction("roller").fy[0] == pytest.approx(q * l / 3, rel=1e-14)
+    looks_like(
+        solution,
+        lambda u: -q * l * (1 / 3 - 2 * u**2 + 4 * u**3 / 3),
+        lambda u: q * l**2 * (u / 3 - 2 * u**3 / 3 + u**4 / 3),
+        q * l,
+    )
+    peak = solution.peak("section:beam:bending")
+    assert (peak.value, peak.xi) == (
+        pytest.approx(5 * q * l**2 / 48, rel=1e-14),
+        pytest.approx(0.5, abs=1e-9),
+    )
+
+
+@pytest.mark.quick
+def test_a_load_that_changes_sign_turns_a_moment_twice():
+    """From -q to q: q l^2/6 u (1 - u)(1 - 2u), whose summits of either sign are as large."""
+    q, l = 9.0, SPAN
+    solution = supported(y=(-q, q))
+    looks_like(
+        solution,
+        lambda u: -q * l * (1 / 6 - u + u**2),
+        lambda u: q * l**2 * u * (1 - u) * (1 - 2 * u) / 6,
+        q * l,
+    )
+    told = solution.statistics("section:beam:bending")
+    for extreme, sign in ((told.largest, 1), (told.smallest, -1)):
+        assert extreme.value == pytest.approx(sign * q * l**2 / (36 * math.sqrt(3)), rel=1e-14)
+        assert extreme.xi == pytest.approx(0.5 - sign / (2 * math.sqrt(3)), abs=1e-9)
+    shear = solution.statistics("section:beam:shear")
+    assert (shear.largest.value, shear.smallest.value) == (
+        pytest.approx(q * l / 12),
+        pytest.approx(-q * l / 6),
+    )
+
+
+@pytest.mark.quick
+def test_a_short_load_is_a_force():
+    """However short it is, it loses no digits; a millionth of the link carries as much as the force
+    that it is.
+    """
+    force, end = 40.0, 1.0 + 1e-6 * SPAN
+    width = end - 1.0
+    solution = supported(y=-force / width, between=(1.0, end))
+    middle = (1.0 + width / 2) / SPAN
+    far = np.abs(solution.xi - middle) > 1e-3
+    shear = -force * np.where(solution.xi < middle, 1 - middle, -middle)
+    bending = (
+        force
+        * SPAN
+        * np.where(solution.xi < middle, (1 - middle) * solution.xi, middle * (1 - solution.xi))
+    )
+    np.testing.assert_allclose(
+        solution.section("beam").shear[0][far], shear[far], rtol=0, atol=1e-14 * force
+    )
+    np.testing.assert_allclose(
+        solution.section("beam").bending[0][far], bending[far], rtol=0, atol=1e-14 * force * SPAN
+    )
+
+
+def gate():
+    """A gate that stands in water up to a depth: rho g b (depth - xi), and nothing above it."""
+    m = Mechanism("gate")
+    depth = m.parameter("depth", 1.6, "m", low=0.1, high=2.4)
+    leaf = m.link("leaf", length=2.5, mass=300.0)
+    m.revolute("hinge", m.ground, leaf)
+    m.line_load(
+        "water",
+        leaf,
+        y=lambda xi: -1000 * 9.81 * 2.0 * (depth - xi),
+        between=(0.0, depth),
+        turning=True,
+    )
+    return Scene(m, {"hinge": motion.polynomial(math.pi / 2)}, t=(0, 1, 2), xi=(0, 1, 11))
+
+
+@pytest.mark.quick
+def test_water_against_a_gate():
+    """The hinge holds rho g b h^3/6, and a section at xi what is of that beyond it."""
+    solution = evaluate(gate())
+    w, h = 1000 * 9.81 * 2.0, 1.6
+    assert solution.effort("hinge")[0] == pytest.approx(w * h**3 / 6, rel=1e-13)
+    assert solution.reaction("hinge").fx[0] == pytest.approx(-w * h**2 / 2, rel=1e-13)
+    left = np.maximum(h - solution.xi * 2.5, 0.0)
+    np.testing.assert_allclose(
+        solution.section("leaf").shear[0], -w * left**2 / 2, rtol=0, atol=1e-13 * w
+    )
+    np.testing.assert_allclose(
+        solution.section("leaf").bending[0], -w * left**3 / 6, rtol=0, atol=1e-13 * w
+    )
+    assert solution.array("load:water:fx")[0] == pytest.approx(w * h**2 / 2, rel=1e-13)
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("mass", [0.0, 0.4])
+def test_single_precision_tells_peaks_where_a_force_is_the_same_all_along(mass):
+    """Beyond its load a massless link has one shear: there rounding alone would say where its
+    bending moment is steepest.
+    """
+    m = Mechanism("linkage")
+    a, b, c = (m.link(n, length=l, mass=mass) for n, l in (("a", 0.1), ("b", 0.35), ("c", 0.25)))
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    m.revolute("C", m.ground.at(0.3, 0.05), c)
+    lift = lambda xi: -30 + 50 * xi + 2000 * xi**2 - 6250 * xi**3  # noqa: E731
+    m.line_load("flow", c, y=lift, between=(0.0, 0.1), turning=True)
+    motions, t = {"O": motion.polynomial(0.2, 3.0, 4.0)}, (0.1, 0.9, 81)
+    scene = Scene(m, motions, ["section:c"], posture={"c": 1.5}, t=t)
+    single, double = (
+        prepare(scene, backend="lanes", precision=precision).peaks()
+        for precision in ("single", "double")
+    )
+    np.testing.assert_allclose(single.value, double.value, rtol=1e-5, atol=1e-12)
+
+
+@pytest.mark.quick
+def test_a_mast_in_the_wind():
+    """A cantilever under q u^2 along y and an even load along z: shear and bending of the
+    textbooks, and their sizes.
+    """
+    m, l = SpatialMechanism("mast"), 4.0
+    m.set_gravity(0.0, 0.0, 0.0)
+    mast = m.link("mast", length=l, mass=0.0)
+    m.weld("head", mast.tip, m.point_mass("lamp", 1.0))
+    m.revolute("foot", m.ground, mast, axis=(0.0, 0.0, 1.0))
+    m.line_load("wind", mast, y=lambda xi: 5.0 * (xi / l) ** 2, z=-3.0)
+    m.line_load("rope", mast, x=2.0, between=(1.0, 3.0), turning=True)
+    solution = evaluate(Scene(m, {"foot": motion.polynomial(0.0)}, t=(0, 1, 3), xi=(0, 1, 17)))
+    assert solution.certified
+    section, u = solution.section("mast"), solution.xi
+    y, z = 5.0 * l * (1 - u**3) / 3, -3.0 * l * (1 - u)
+    about_z, about_y = 5.0 * l**2 * (1 / 4 - u / 3 + u**4 / 12), 3.0 * l**2 * (1 - u) ** 2 / 2
+    for force, told in {
+        "axial": 2.0 * np.clip(3.0 - u * l, 0.0, 2.0),
+        "shear_y": y,
+        "shear_z": z,
+        "torsion": 0.0 * u,
+        "bending_y": about_y,
+        "bending_z": about_z,
+        "shear": np.hypot(y, z),
+        "bending": np.hypot(about_y, about_z),
+    }.items():
+        np.testing.assert_allclose(section.array(force)[0], told, rtol=0, atol=2e-14, err_msg=force)
+    assert solution.reaction("foot").mz is not None
+
+
+def thick(**keywords):
+    """A shaft whose slices change along it, with what acts at a station and along it, and a round
+    bar that swings on it.
+    """
+    m = SpatialMechanism("thick")
+    width, push = m.parameter("width", 0.1, "m", low=0.0), m.parameter("push", 5.0, "N")
+    flat = density.thick(
+        density.tabulated((0.0, 0.4, 1.0), (3.0, 2.0, 2.5)),
+        yy=density.polynomial(2e-2, -1e-2, 2e-2),
+        zz=density.tabulated((0.0, 0.7, 1.0), (4e-2, 1e-2, 3e-2)),
+        yz=2e-3,
+    )
+    shaft = m.link("shaft", length=0.7, density=flat)
+    bar = m.link(
+        "bar",
+        length=0.4,
+        density=density.thick(
+            density.polynomial(3.0), yy=3.0 * width**2 / 16, zz=3.0 * width**2 / 16
+        ),
+    )
+    m.revolute("O", m.ground, shaft, axis=(0.9, 0.3, 0.2))
+    m.universal("K", shaft.tip, bar, axis=(0.0, 0.3, 1.0), second=(0.1, 1.0, -0.3))
+    m.force("pull", shaft.at(0.35, 0.03, -0.02), x=2.0, y=push, z=-3.0)
+    m.line_load("wind", shaft, y=lambda xi: push * (1 - 2 * xi), z=2.0, between=(0.1, 0.6))
+    inside = m.results.section(shaft, 0.3)
+    m.output("inside", inside.torsion + 2 * inside.bending_y - inside.bending_z, unit="N m")
+    laws = {
+        "O": motion.harmonic(0.2, 1.4, 3.0),
+        "K:turn_1": motion.harmonic(0.1, 0.8, 5.0),
+        "K:turn_2": motion.harmonic(0.3, 0.4, 4.0),
+    }
+    return Scene(m, laws, **({"t": (0.0, 1.0, 5)} | keywords))
+
+
+def slices_beyond(yy, zz, yz, rate, angular):
+    """The couple that slices of these second moments need: I a + w x I w, on the link's axes."""
+    inertia = np.array([[yy + zz, 0, 0], [0, zz, -yz], [0, -yz, yy]])
+    return inertia @ angular + np.cross(rate, inertia @ rate)
+
+
+def test_a_shaft_that_is_wound_up_and_one_that_tumbles():
+    """Of a uniform bar about its axis torsion falls evenly to the tip, and its effort is J times
+    its acceleration.
+    """
+    m, l, yy, zz, yz = SpatialMechanism("shaft"), 0.5, 0.03, 0.01, 0.004
+    m.set_gravity(0.0, 0.0, 0.0)
+    shaft = m.link(
+        "shaft", length=l, density=density.thick(density.polynomial(2.0), yy=yy, zz=zz, yz=yz)
+    )
+    m.spherical("S", m.ground, shaft)
+    laws = [
+        motion.polynomial(0.0, 2.0, 1.5),
+        motion.polynomial(0.0, -3.0),
+        motion.polynomial(0.0, 1.0, -2.0),
+    ]
+    solution = evaluate(Scene(m, {"S": laws}, t=(0, 0.1, 2), xi=(0, 1, 9)), backend="vm")
+    assert solution.certified
+    # At zero the axes of the turns are the link's: w = (2, -3, 1); the later turns carry theirs on.
+    rate, section = np.array([2.0, -3.0, 1.0]), solution.section("shaft")
+    angular = np.array([3.0, 0.0, -4.0]) + np.array([2 * -3.0 * 0, 0, 0])
+    angular = angular + np.array([-3.0 * 1.0, -2.0 * 1.0, 2.0 * -3.0]) * np.array([1, 1, 1])
+    couple = slices_beyond(yy, zz, yz, rate, angular)
+    u, x = solution.xi, solution.xi * l
+    gamma = np.array(
+        [
+            -(rate[1] ** 2 + rate[2] ** 2),
+            angular[2] + rate[0] * rate[1],
+            rate[0] * rate[2] - angular[1],
+        ]
+    )
+    first, second = 2.0 * (l**2 - x**2) / 2, 2.0 * ((l**3 - x**3) / 3 - x * (l**2 - x**2) / 2)
+    told = {
+        "axial": -gamma[0] * first,
+        "shear_y": -gamma[1] * first,
+        "shear_z": -gamma[2] * first,
+        "torsion": -couple[0] * (l - x),
+        "bending_y": gamma[2] * second - couple[1] * (l - x),
+        "bending_z": -gamma[1] * second - couple[2] * (l - x),
+    }
+    for force, values in told.items():
+        np.testing.assert_allclose(
+            section.array(force)[0], values, rtol=0, atol=1e-13, err_msg=force
+        )
+    assert u.size == 9
+
+
+@pytest.mark.parametrize(
+    ("moments", "says"),
+    [
+        (
+            {"yy": -1e-3, "zz": 1e-3},
+            (
+                "link 'a': impossible second moments of slices: yy, zz and yy zz - yz yz must not"
+                " be negative"
+            ),
+        ),
+        ({"yy": 1e-3, "zz": 1e-3, "yz": 2e-3}, "link 'a': impossible second moments of slices"),
+        (
+            {"yy": 1e-3, "zz": density.polynomial(1e-3, -3e-3)},
+            "link 'a': impossible second moments of slices",
+        ),
+    ],
+)
+def test_slices_that_cannot_be_are_refused(moments, says):
+    m = SpatialMechanism("m")
+    m.revolute(
+        "O",
+        m.ground,
+        m.link("a", length=0.5, density=density.thick(density.polynomial(1.0), **moments)),
+    )
+    with pytest.raises(ParameterError, match=says):
+        evaluate(Scene(m, {"O": motion.polynomial(0.0, 1.0)}, t=(0, 1, 3)))
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (
+            lambda: Mechanism("m").link(
+                "a", length=0.5, density=density.thick(density.polynomial(1.0), yy=1e-3, zz=1e-3)
+            ),
+            "link 'a': second moments of slices are for links in space",
+        ),
+        (
+            lambda: density.thick(3.0, yy=1e-3, zz=1e-3),
+            r"density thick: expected a density of lagrange_casadi\.density, got 3\.0",
+        ),
+        (
+            lambda: density.thick(density.polynomial(1.0), yy=density.uniform(1e-3), zz=1e-3),
+            "density thick: second moments are numbers, or along the link by polynomial",
+        ),
+    ],
+)
+def test_what_has_no_slices_is_named(make, says):
+    with pytest.raises(DeclarationError, match=says):
+        make()
+
+
+def loaded(place, ratios):
+    """A bar at rest with a force at a place, and outputs of what sections feel of it."""
+    m = Mechanism("bar")
+    bar = m.link("bar", length=0.3, mass=1e-12)
+    m.revolute("O", m.ground, bar)
+    m.force("F", bar.at(place), y=-10.0)
+    for k, ratio in enumerate(ratios):
+        m.output(f"shear_{k}", m.results.section(bar, ratio).shear, unit="N")
+    return evaluate(Scene(m, {"O": harmonic(0.0, 0.0, 1.0)}, t=(0.0, 1.0, 2)), xi=(0, 1, 4))
+
+
+@pytest.mark.parametrize(
+    ("place", "rest"),
+    [(0.1, [-10, 0, 0, 0]), (0.2, [-10, -10, 0, 0]), (0.3, [-10] * 4), (0.0, [0] * 4)],
+)
+def test_a_section_at_a_load_point_is_on_its_tip_s_side_whatever_rounding_says(place, rest):
+    """A tenth of a metre over three tenths is not one third in doubles."""
+    assert np.linspace(0, 1, 4)[1] != 0.1 / 0.3
+    found = loaded(place, np.linspace(0, 1, 4).tolist())
+    np.testing.assert_allclose(found.section("bar").shear[0], rest, atol=1e-9)
+    np.testing.assert_allclose([found.output(f"shear_{k}")[0] for k in range(4)], rest, atol=1e-9)
+
+
+def blade():
+    """A blade that turns, under loads that begin and end with it."""
+    m = Mechanism("blade")
+    link = m.link("shaft", length=0.6, density=density.tabulated((0, 0.4, 1), (3.0, 2.0, 2.5)))
+    m.revolute("pin", m.ground, link)
+    m.line_load("wind", link, x=(-3.0, 5.0), y=lambda xi: 4.0 + 2.0 * xi**2, turning=True)
+    m.force("push", link.at(0.25, 0.02), x=4.0, y=-2.0)
+    return Scene(m, {"pin": motion.polynomial(0.3, 2.0, 1.5)}, t=(0, 1, 5))
+
+
+@pytest.mark.parametrize("make", [blade, thick])
+def test_forces_along_a_link_change_as_they_say_and_peak_where_they_do(make):
+    """Nothing is beyond the tip or the base, where a load may begin and end."""
+    solution, step = evaluate(make(), backend="vm", certificate=False), 1e-5
+    law, fine = solution.section("shaft").law, np.linspace(0, 1, 20001)
+    for force in solution.table.forces:
+        values = law.on_grid(force, fine)
+        steepest = np.abs(law.along(force, np.tile(fine, (5, 1)))).max(axis=1)
+        largest, found = np.abs(values).max(axis=1), np.abs(law.extreme(force)[1])
+        assert (found >= largest * (1 - 1e-12)).all(), force
+        assert (found <= largest * (1 + 1e-9) + steepest * 5e-5).all(), force
+        rounding = 1e-5 * steepest.max() + 64 * np.finfo(float).eps * largest.max() / step
+        for at, ways in (
+            (0.0, (0, 1, 2)),
+            (0.33, (-1, 0, 1)),
+            (0.8, (-1, 0, 1)),
+            (1.0, (-2, -1, 0)),
+        ):
+            places = [np.full((5, 1), at + k * step) for k in ways]
+            near = [law.at(force, place)[:, 0] for place in places]
+            slope = np.gradient(near, step, axis=0, edge_order=2)[ways.index(0)]
+            found = law.along(force, places[ways.index(0)], "base" if at else "tip")[:, 0]
+            np.testing.assert_allclose(found, slope, rtol=0, atol=rounding, err_msg=f"{force} {at}")
