@@ -79,9 +79,9 @@ def print_functions(
 
     ``casadi_real`` is for the caller to define: a number of the precision, or with ``packs`` a pack
     of ``lanes_real``. Names of tables begin with ``prefix``. Long functions that are ``rare`` are
-    compiled for size. Nothing of it allocates, recurs, or is
-    seen outside. Raises :class:`.DeclarationError` for a function that calls another one, or does
-    what C has no name for; :class:`.SizeError` for a number that is too large for single precision.
+    compiled for size. Nothing of it allocates, recurs, or is seen outside. Raises
+    :class:`.DeclarationError` for a function that calls another one, or does what C has no name
+    for; :class:`.SizeError` for a number that is too large for single precision.
     """
     printer = _Printer(precision, prefix, packs, "RARE" if rare else "PART", {})
     bodies = [printer.function(name, function) for name, function in functions.items()]
