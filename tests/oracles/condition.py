@@ -20,6 +20,7 @@ from balance import settle
 from internals import DTYPES, END, FORCES, ROUNDING, arithmetic, interpret
 from mpmath import mp
 from precise import precise
+from truth import matter, section
 
 DIGITS = 50
 LEAST = 1e-30
@@ -168,13 +169,13 @@ def _coefficients(link):
 
 
 def _matter(scene, program, p):
-    """Length and cells of the density, by link."""
+    """What each link is made of: see :func:`truth.matter`."""
     m, found = scene.mechanism, {}
     (numbers,) = interpret(_made(scene, program), [p], arithmetic())
     numbers = iter(numbers)
     for name in program.wanted.sections:
-        length = next(numbers)
-        found[name] = length, [[next(numbers) for _ in cell] for cell in m.links[name].mass.cells]
+        density, length = m.links[name].mass, next(numbers)
+        found[name] = matter(density, length, [[next(numbers) for _ in c] for c in density.cells])
     return found
 
 
@@ -210,73 +211,39 @@ def _outputs(scene, program, time, driven, z, p, places):
         for name, value in zip(program.names, found, strict=True)
         if not name.startswith("_")
     }
-    laws = {name.split(":")[1]: {} for name in named if name.startswith("section:")}
-    for name in [name for name in named if name.startswith("section:")]:
-        _, link, part, member = name.split(":")
-        laws[link].setdefault(part, {})[member] = named.pop(name)
+    stations = {link: {} for link in program.wanted.sections}
+    for name, value in named.items():
+        if name.startswith("section:") and name.endswith(":station"):
+            _, link, part, _ = name.split(":")
+            stations[link][part] = value
     if places is None:
-        places = [Place(name) for name in named] + [
+        places = [Place(name) for name in named if not name.startswith("section:")] + [
             Place(f"section:{link}:{force}", *where)
-            for link, law in laws.items()
-            for where in _ratios(law)
+            for link, there in stations.items()
+            for where in _ratios(there.values())
             for force in FORCES
         ]
-    values, matter = [], _matter(scene, program, p)
+    values, made = [], _matter(scene, program, p)
     for place in places:
         if place.ratio is None:
             values.append(named[place.name])
         elif place.name.endswith(FORCES[0]):
             # All three of a section at once: their places follow each other.
-            link = scene.mechanism.links[place.name.split(":")[1]]
-            values += _section(link.mass, *matter[link.name], laws[link.name], place.ratio)
+            link, u = place.name.split(":")[1], place.ratio
+            seen = {part: u < at or u == 1 <= at for part, at in stations[link].items()}
+            values += section(named, made[link], link, u, seen)
     return places, values
 
 
-def _ratios(law):
+def _ratios(stations):
     """Ratios from base to tip, and beside every station."""
     yield from ((mp.mpf(ratio),) for ratio in RATIOS)
-    for part, members in law.items():
-        if part != "law":
-            for precisions, near in (
-                (("double",), BESIDE["double"]),
-                (("double", "single"), BESIDE["single"]),
-            ):
-                yield from (
-                    (mp.mpf(float(members["station"] + side * near)), precisions)
-                    for side in (-1, 1)
-                )
-
-
-def _section(density, length, cells, law, ratio):
-    """The forces of a section by the law's definition, the moments of its material by their own
-    integrals.
-    """
-    mass, first, second = _moments(density, length, cells, ratio)
-    c, xi = law["law"], ratio * length
-    forces = [
-        c["n0"] + c["n1"] * mass + c["n2"] * first,
-        c["f0"] + c["f1"] * mass + c["f2"] * first,
-        c["m0"]
-        + c["f0"] * (length - xi)
-        + c["f1"] * (first - xi * mass)
-        + c["f2"] * (second - xi * first),
-    ]
-    for part, load in law.items():
-        if part != "law" and (ratio < load["station"] or ratio == 1 <= load["station"]):
-            acting = load["n"], load["f"], load["m"] + load["f"] * (load["station"] * length - xi)
-            forces = [force + more for force, more in zip(forces, acting, strict=True)]
-    return forces
-
-
-def _moments(density, length, cells, ratio):
-    found = [mp.mpf(0)] * 3
-    for (a, b), cell in zip(itertools.pairwise(density.breaks), cells, strict=True):
-        a, b = max(mp.mpf(a), ratio), mp.mpf(b)
-        for j, coefficient in enumerate(cell if b > a else ()):
-            for k in range(3):
-                part = (b ** (j + k + 1) - a ** (j + k + 1)) / (j + k + 1)
-                found[k] += coefficient * (length if density.per_length else 1) * part * length**k
-    return found
+    for at in stations:
+        for precisions, near in (
+            (("double",), BESIDE["double"]),
+            (("double", "single"), BESIDE["single"]),
+        ):
+            yield from ((mp.mpf(float(at + side * near)), precisions) for side in (-1, 1))
 
 
 @dataclass(frozen=True)

@@ -2,24 +2,24 @@
 
 import functools
 import importlib
-import itertools
 import math
 from contextlib import nullcontext
 from dataclasses import replace
 
 import casadi as ca
+import extremes
 import kinds
 import numpy as np
 import pytest
 from conftest import CASES, PLANAR
 from estimates import COUNT, FACTOR, METHODS, assert_near, exactly, methods, ratios
-from internals import COARSE, TOLERANCE, Link, Output, certify, explained, run, tolerance
-from mechanisms import chain, sampled, six_bar, slider_crank, truss_platform
+from internals import run
+from mechanisms import slider_crank
 from outside import doubled
-from stepped import iterated, pinned
+from stepped import iterated
 from truth import true_errors, truth
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, save
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
 from lagrange_casadi.errors import AssemblyError, CertificateWarning
 from lagrange_casadi.motion import harmonic, polynomial
 
@@ -50,110 +50,23 @@ def test_cases(name, method):
     assert_near(ratios(evaluate(scene, **METHODS[method]), exact))
 
 
-def four_bar(pin=Mechanism.revolute):
-    """A four-bar whose numbers are parameters."""
-    m = Mechanism("random_four_bar")
-    numbers = zip("abc", (0.1, 0.35, 0.25), (0.3, 0.5, 0.4), strict=True)
-    a, b, c = (
-        m.link(n, length=m.parameter(f"l{n}", l), mass=m.parameter(f"m{n}", w))
-        for n, l, w in numbers
-    )
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    pin(m, "B", b.tip, c.tip)
-    m.revolute("C", m.ground.at(m.parameter("x", 0.3), m.parameter("y", 0.05)), c)
-    return m, {"b": 0.9, "c": 1.5}
-
-
-def offset_crank(pin=Mechanism.revolute):
-    """An offset slider-crank whose numbers are parameters."""
-    m = Mechanism("random_crank")
-    numbers = zip("ab", (0.1, 0.35), (0.3, 0.5), strict=True)
-    a, b = (
-        m.link(n, length=m.parameter(f"l{n}", l), mass=m.parameter(f"m{n}", w))
-        for n, l, w in numbers
-    )
-    s = m.point_mass("s", m.parameter("ms", 0.6))
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    pin(m, "B", b.tip, s)
-    m.prismatic("P", m.ground.at(0, m.parameter("y", 0.02)), s, axis=(1, 0))
-    return m, {"b": 0.0, "P": 0.4}
-
-
-LAWS = (polynomial(0.4, 9.0, -1.5), harmonic(0.5, 1.7, 1.3))
-
-
-@functools.cache
-def declared(build, law, pin):
-    m, posture = build(pin)
-    return Scene(m, {"O": LAWS[law]}, posture=posture, t=(0.0, 1.3, COUNT))
-
-
-def drawn(build, rng):
-    """Lengths of a crank that turns all the way round, masses over four decades."""
-    a = rng.uniform(0.02, 0.6)
-    masses = {
-        name: 10 ** rng.uniform(-3, 1) for name in ("ma", "mb", "mc" if build is four_bar else "ms")
-    }
-    if build is offset_crank:
-        y = a * rng.choice([0.0, 1e-4, 0.2])
-        return masses | {"la": a, "lb": (a + y) * (1 + 10 ** rng.uniform(-3, 1)), "y": y}
-    b, c = a * rng.uniform(1.3, 6.0, 2)
-    frame, angle = rng.uniform(abs(b - c) + 1.001 * a, b + c - 1.001 * a), rng.uniform(-1.0, 1.0)
-    return masses | {
-        "la": a,
-        "lb": b,
-        "lc": c,
-        "x": frame * math.cos(angle),
-        "y": frame * math.sin(angle),
-    }
-
-
 @pytest.mark.filterwarnings(
     "ignore:the certificate fails"
 )  # of a loop that few Newton steps leave open: how far is told
 @pytest.mark.sampled(13)
-@pytest.mark.parametrize("law", range(len(LAWS)))
-@pytest.mark.parametrize(
-    ("build", "pin"),
-    [(four_bar, Mechanism.revolute), (offset_crank, Mechanism.revolute), (offset_crank, pinned)],
-)
-@pytest.mark.parametrize("seed", range(2))
-def test_random_loops(build, law, seed, pin):
-    """On every rung, as far as it goes: steps that are too few are refused where they are no
-    solution at all.
-    """
-    scene, rng = declared(build, law, pin), np.random.default_rng([seed, law])
-    parameters = drawn(build, rng)
-    exact = exactly(scene, parameters)
+@pytest.mark.parametrize("seed", range(3, 5))
+@pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
+def test_random_mechanisms_by_every_method(kind, seed):
+    """As far as each goes: steps that are too few are refused where they are no solution at all."""
+    scene = kinds.closing(kind, [seed])
+    exact = exactly(scene)
     for method, words in methods(scene).items():
         try:
-            solution = evaluate(scene, parameters=parameters, **words)
+            solution = evaluate(scene, **words)
         except AssemblyError:
             assert "newton" in method
         else:
             assert_near(ratios(solution, exact))
-
-
-@pytest.mark.sampled(7)
-@pytest.mark.parametrize(
-    "scene",
-    [
-        lambda: chain(("revolute", True), ("prismatic", False), ("revolute", False)),
-        lambda: chain(*(("revolute", k % 2 == 0) for k in range(6))),
-        six_bar,
-        truss_platform,
-        lambda: sampled(1.0),
-    ],
-    ids=["chain", "chain of six", "six_bar", "iterated", "sampled"],
-)
-def test_other_mechanisms(scene):
-    scene = scene()
-    scene = Scene(scene.mechanism, scene.motion, posture=scene.posture, t=(0.0, 0.9, COUNT))
-    exact = exactly(scene)
-    for method in ("lanes", "c", "single"):
-        assert_near(ratios(evaluate(scene, **METHODS[method]), exact))
 
 
 @pytest.mark.sampled(7)
@@ -208,41 +121,6 @@ def test_random_mechanisms(kind):
     assert 0.7 < np.median(every) < 3.0
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(
-    "kind", [kinds.stephenson_two, kinds.stephenson_driven_last, kinds.platform]
-)
-def test_too_few_steps_claim_what_they_leave(kind):
-    """Where loops begin near a dead centre the second instant is the worst, for the first is
-    closed.
-    """
-    looked = dict.fromkeys((1, 2, 3), 0)
-    for seed, steps in itertools.product(range(3), looked):
-        if steps == 1:
-            scene = kinds.closing(kind, [seed])
-            closed = evaluate(scene, backend="vm", t=(0.0, 1.0, 201))
-        try:
-            solution = evaluate(scene, backend="vm", newton=steps, t=(0.0, 1.0, 201))
-        except AssemblyError:
-            continue
-        for name, values in closed.series.items():
-            gaps = solution.series[name] - values
-            gaps = (
-                np.abs(gaps - math.tau * np.rint(gaps / math.tau)) if _turns(name) else np.abs(gaps)
-            )
-            if np.max(gaps) > 100 * closed.errors[name]:
-                looked[steps] += 1
-                assert 0.1 < solution.errors[name] / np.max(gaps) < 10.0, (seed, steps, name)
-    assert looked[1]
-    assert looked[2]
-
-
-def _turns(name):
-    return name.endswith(":angle") or (
-        name.startswith("motion:") and not name.endswith(("_rate", "_acceleration"))
-    )
-
-
 def test_the_second_instant_may_be_the_worst():
     """A six-bar that begins near a dead centre, two steps an instant: the first is closed, and
     errors fall from there.
@@ -254,26 +132,11 @@ def test_the_second_instant_may_be_the_worst():
     worst = 0.0
     for name, values in closed.series.items():
         gaps = np.abs(solution.series[name] - values)
-        if not _turns(name) and np.max(gaps) > 100 * closed.errors[name]:
+        # Angles may be off by whole turns.
+        if closed.unit(name) != "rad" and np.max(gaps) > 100 * closed.errors[name]:
             worst = max(worst, np.max(gaps) / np.median(gaps))
             assert 0.5 < solution.errors[name] / np.max(gaps) < 2.0, name
     assert worst > 100.0
-
-
-def test_a_residual_that_rounding_does_not_explain_is_an_error(solution):
-    """One reaction a thousandth too large: every force may be as far off as the balance is."""
-    fx = Output("reaction", "A", "fx")
-    wrong = replace(solution, outputs=dict(solution.outputs) | {fx: 1.001 * solution.outputs[fx]})
-    balance = {"balance": np.array([1e-16, 3e-4]), "closure": np.array([1e-16, 1e-15])}
-    errors = {Output.of(name): error for name, error in solution.errors.items()}
-    raised = explained(wrong, balance, errors)
-    for output in solution.quantities():
-        if output.group in ("effort", "reaction", "section"):
-            assert raised[output] == pytest.approx(3e-4 * abs(wrong.peak(output).value), rel=1e-12)
-        else:
-            assert raised[output] == errors[output]
-    assert explained(wrong, {"balance": np.array([1e-15])}, errors) == errors
-    assert explained(wrong, balance, {}) == {}
 
 
 def test_wrong_formulas_raise_the_estimates(monkeypatch):
@@ -294,7 +157,7 @@ def test_wrong_formulas_raise_the_estimates(monkeypatch):
     assert np.max(after.certificate["balance"]) > 1e-4
     for name in ("effort:O", "reaction:B:fy", "section:rod:bending"):
         assert before.errors[name] < 1e-13 * abs(before.peak(name).value)
-        assert after.errors[name] > 1e-4 * abs(after.peak(name).value)
+        assert 1e-4 < after.errors[name] / abs(after.peak(name).value) < 1e-2
     assert after.errors["motion:A"] == before.errors["motion:A"]
 
 
@@ -316,12 +179,6 @@ def test_what_the_code_did_wrong_is_an_error_of_what_it_did_wrong(monkeypatch):
     )
 
 
-def test_without_a_certificate_there_are_no_estimates():
-    solution = evaluate(slider_crank(["all"]), certificate=False)
-    assert solution.errors == {}
-    assert solution.certificate == {}
-
-
 def arm(load):
     m = Mechanism("arm")
     link = m.link("arm", length=1, mass=1)
@@ -333,12 +190,13 @@ def arm(load):
 def test_graphs_that_call_functions_have_no_estimates():
     assert evaluate(arm(doubled), backend="vm").errors == {}
     assert set(evaluate(arm(ca.sin), backend="vm").errors) >= {"effort:J", "load:t:mz"}
+    assert evaluate(arm(ca.sin), backend="vm", certificate=False).errors == {}
 
 
 def test_a_trial_that_comes_to_nothing_says_nothing():
     """The arccosine of one: where a trial goes beyond, it is no number, and the others tell."""
     scene = arm(lambda angle: ca.acos(ca.sin(angle)))
-    scene = Scene(scene.mechanism, {"J": polynomial(math.pi / 2)}, t=(0, 1, 11))
+    scene = replace(scene, motion={"J": polynomial(math.pi / 2)}, t=(0, 1, 11))
     solution = evaluate(scene, backend="vm")
     assert np.all(solution.series["load:t:mz"] == 0.0)
     assert 1e-9 < solution.errors["load:t:mz"] < 1e-7
@@ -348,11 +206,10 @@ def test_half_a_turn_is_as_good_as_less_half_a_turn():
     """A rod that swings about the direction of -x: where a trial falls on the other side, nothing
     is off by a turn.
     """
-    m, _ = offset_crank()
-    scene = Scene(m, {"O": harmonic(0.0, 1.0, 1.0)}, posture={"b": math.pi}, t=(0.0, 1.0, 41))
-    solution = evaluate(scene, parameters={"y": 0.0})
-    assert np.min(np.abs(np.abs(solution.pose("b").angle) - math.pi)) < 1e-15
-    assert solution.errors["pose:b:angle"] < 1e-13
+    scene = replace(extremes.slider_crank(harmonic(0.0, 1.0, 1.0)), posture={"rod": math.pi})
+    solution = evaluate(scene, t=(0.0, 1.0, 41))
+    assert np.min(np.abs(np.abs(solution.pose("rod").angle) - math.pi)) < 1e-15
+    assert solution.errors["pose:rod:angle"] < 1e-13
 
 
 def test_the_instant_nearest_to_a_dead_centre_is_looked_at():
@@ -386,42 +243,3 @@ def test_one_step_an_instant_begins_with_a_closed_loop(backend):
         assert gap[0] < 1e-9 * np.max(np.abs(closed.series[name]))
         assert 0.1 * np.max(gap) < one.errors[name] < 2.0 * np.max(gap)
         assert 1e-9 < np.max(gap) / np.max(np.abs(closed.series[name])) < 1e-2
-
-
-def test_estimates_go_through_the_file(tmp_path, solution):
-    save(solution, tmp_path / "x.h5")
-    assert load(tmp_path / "x.h5").errors == solution.errors
-    assert set(solution.errors) >= {
-        "effort:O",
-        "section:rod:shear",
-        "section:rod:law:n0",
-        "pose:rod:angle",
-    }
-
-
-def test_what_residuals_are_held_to():
-    scene = slider_crank()
-    assert tolerance(evaluate(scene)) == TOLERANCE
-    assert tolerance(evaluate(scene, precision="single")) == COARSE
-    assert tolerance(evaluate(iterated(), newton=1)) == COARSE
-    far = evaluate(scene, t=(1e6, 1e6 + 0.08, 11))
-    reported = np.max(certify(far)["balance"])
-    assert (
-        np.max(far.certificate["balance"]) < TOLERANCE < reported < tolerance(far) < 1e4 * reported
-    )
-
-
-def test_sections_of_every_density_are_looked_at():
-    solution = evaluate(load_case(CASES / "arm").scene, t=(0, 2, 31))
-    links = [
-        body.name
-        for body in load_case(CASES / "arm").scene.mechanism.moving
-        if isinstance(body, Link)
-    ]
-    for link in links:
-        for force in ("axial", "shear", "bending"):
-            assert (
-                0
-                < solution.errors[f"section:{link}:{force}"]
-                < 1e-12 * abs(solution.peak(f"section:{link}:{force}").value)
-            )

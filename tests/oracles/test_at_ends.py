@@ -4,10 +4,8 @@ must not see it by chance.
 
 import numpy as np
 import pytest
-from exported import by_c99, compare, expected, exported, instants, solve
-from internals import FORCES, DesignEngine, EvaluationMethod
 
-from lagrange_casadi import Mechanism, Scene, evaluate, refine, sweep
+from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -65,57 +63,3 @@ def test_sections_see_it_at_the_tip_and_never_at_the_base(way, end):
     assert np.abs(solution.section("bar").shear[:, column] - borne).max() < within
     assert np.abs(solution.section("bar").bending[:, column]).max() < within
     assert np.abs(solution.output("felt") - borne).max() < within
-    # No place along it sees more than its ends and what lies between them.
-    fine = np.abs(law.on_grid("shear", np.linspace(0, 1, 2001))).max(axis=1)
-    _, most = law.extreme("shear")
-    assert np.abs(np.abs(most) - fine).max() < 1e-3 * fine.max()
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("end", ["tip", "base"])
-def test_sweeps_have_the_refined_peaks(end):
-    scene, _ = rail(end)
-    solution = evaluate(scene)
-    names = [f"section:bar:{force}" for force in FORCES]
-    refined = {peak.name: peak.value for peak in refine(scene, solution, names)}
-    for way in ("c", "lanes"):
-        designs = DesignEngine.of(scene, method=EvaluationMethod(way))
-        outcome = designs.evaluate(np.array([[LENGTH]]))
-        found = dict(zip(map(str, designs.quantities), outcome.value[0], strict=True))
-        for name, value in refined.items():
-            assert abs(found[name] - value) < 1e-11 * abs(value), (way, name)
-
-
-@pytest.mark.parametrize("end", ["tip", "base"])
-def test_sections_that_sweeps_keep_see_it_in_single_precision_too(end):
-    scene, at = rail(end)
-    kept = sweep(
-        scene,
-        {"l": [LENGTH]},
-        wanted=["section:bar"],
-        precision="single",
-        xi=(0, 1, 3),
-        keep="histories",
-    )
-    shear = evaluate(scene).section("bar").shear[:, -1 if at else 0]
-    found = kept["history:section:bar:shear"][0][:, -1 if at else 0]
-    assert np.abs(found - shear).max() < SHIFT["single"] * np.abs(shear).max()
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("precision", ["double", "single"])
-def test_exported_c_sees_what_the_api_does(precision, tmp_path):
-    for end in ("tip", "base"):
-        scene, _ = rail(end)
-        folder = tmp_path / end
-        made, told = exported(scene, folder, precision=precision)
-        solution = solve(scene, precision)
-        found = by_c99(folder, told, instants(solution.t, precision))
-        compare(
-            found,
-            expected(scene, told, solution),
-            told,
-            made,
-            solution,
-            exact=precision == "double",
-        )

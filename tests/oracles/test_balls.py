@@ -5,15 +5,13 @@ evaluating them.
 import dataclasses
 import functools
 
-import casadi as ca
 import numpy as np
 import pytest
 from balls import platform, suspension
-from internals import Output, quaternion_of
-from internals import spherical_axes_of as axes_of
-from spatial_bodies import GROUND, Rod
+from internals import Output
+from spatial_bodies import GROUND
 from spatial_bridge import coordinate, declared, plain, postures
-from spatial_oracle import REACTION, SECTION
+from spatial_oracle import REACTION
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate
 from lagrange_casadi.motion import harmonic
@@ -73,21 +71,6 @@ def compare(drawn, solution, true, rounding=1e-12):
                 assert np.allclose(
                     solution.pose(body).axes[k], np.array(pose.R, float).T, rtol=0, atol=rounding
                 ), body
-        for rod in (
-            ()
-            if not solution.links_with_sections
-            else (body.name for body in drawn.mechanism.bodies if isinstance(body, Rod))
-        ):
-            for i, xi in enumerate(solution.xi):
-                told = one.sections[rod].at(float(xi)).astype(float)
-                own = np.array([getattr(solution.section(rod), name)[k, i] for name in SECTION])
-                if rod in solution.description["bars"]:
-                    # A bar's cross-section has axes of its own.
-                    told, own = (
-                        np.array([x[0], np.hypot(*x[1:3]), 0, x[3], np.hypot(*x[4:]), 0])
-                        for x in (told, own)
-                    )
-                assert (np.abs(own - told) < rounding * np.array(sizes)).all(), rod
 
 
 @pytest.mark.parametrize(
@@ -141,18 +124,6 @@ def test_every_way_to_evaluate_passes_gimbal_lock(options, rounding):
     wanted = None if "precision" not in options else ["effort", "reaction", "motion"]
     solution = evaluate(scene, wanted=wanted, **options)
     compare(drawn, solution, true, rounding)
-
-
-def test_a_quaternion_of_any_axes_turns_to_them():
-    rng, q = np.random.default_rng(0), ca.SX.sym("q", 4)
-    turned = ca.Function("axes", [q], [axes_of(q)])
-    halves = [np.eye(4)[k] + 1e-9 * rng.normal(size=4) for k in range(4)]
-    for told in [*halves, *rng.normal(size=(100, 4))]:
-        axes = turned(told).full().reshape(3, 3)
-        again = np.array(quaternion_of(axes))
-        assert np.allclose(axes @ axes.T, np.eye(3), rtol=0, atol=1e-15)
-        assert np.allclose(turned(again).full().reshape(3, 3), axes, rtol=0, atol=1e-15)
-        assert np.linalg.norm(again) == pytest.approx(1.0, abs=1e-15)
 
 
 def hung(pin, block):

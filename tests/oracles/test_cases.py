@@ -4,23 +4,16 @@ instants, their figures.
 
 import math
 
-import casadi as ca
 import numpy as np
 import pytest
 from arithmetic import DOUBLE
 from balance import compare
 from beside import of_case
 from conftest import CASES, NAMES, PLANAR
-from internals import figures
 
-from lagrange_casadi import LagrangeSystem, evaluate, load_case
+from lagrange_casadi import evaluate, load_case
 
 pytestmark = pytest.mark.usefixtures("released")
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_those_in_space_are_told_from_planar_ones(name):
-    assert load_case(CASES / name).scene.mechanism.space == (name not in PLANAR)
 
 
 @pytest.mark.sampled(3)
@@ -44,19 +37,6 @@ def test_certificate_is_at_rounding_level(name):
     level = {"closure": 1e-12} if name == "screw_lift" else {}
     for residual in expected:
         assert np.max(certificate[residual]) < level.get(residual, 1e-13), residual
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", PLANAR)
-def test_every_figure_can_be_drawn(name, tmp_path):
-    case = load_case(CASES / name)
-    drawn = list(
-        figures.draw(
-            evaluate(case.scene, t=(*case.scene.t[:2], 41), xi=(0, 1, 21)), case.figures, tmp_path
-        )
-    )
-    assert all(path is not None and path.stat().st_size > 2000 for _, path in drawn)
-    assert "mechanism" in {spec.name for spec, _ in drawn}
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -120,69 +100,6 @@ def test_squeezer_against_the_printed_reference():
         assert solution.pose(body).angle[0] + turn == pytest.approx(SET["q"][i], abs=1e-14)
 
 
-def test_squeezer_at_the_printed_rates():
-    """At the set's own q, q' and q'', all seven, the Lagrange terms give its torque and multipliers
-    to its own accuracy.
-    """
-    q = ca.SX.sym("q", 7)
-    qd = ca.SX.sym("qd", 7)
-    qdd = ca.SX.sym("qdd", 7)
-    lam = ca.SX.sym("lam", 6)
-    module = load_module("andrews_squeezer")
-    beta, theta, gamma, phi, delta, omega, epsilon = ca.vertsplit(q)
-    g = vars(module)
-    pin = _u(beta) * g["RR"] - _u(beta + theta) * g["D"]
-    b, a = ca.DM([g["XB"], g["YB"]]), ca.DM([g["XA"], g["YA"]])
-    turned = math.pi / 2
-    k3 = _u(gamma - turned)
-    h, corner = a + g["ZT"] * _u(delta), a + g["U"] * _u(epsilon - turned)
-    gaps = ca.vertcat(
-        pin - b - g["SS"] * k3,
-        pin - h - g["E"] * _u(phi + delta - turned),
-        pin - corner - g["ZF"] * _u(omega + epsilon),
-    )
-    bodies = [
-        (1, g["RA"] * _u(beta), beta),
-        (2, g["RR"] * _u(beta) - g["DA"] * _u(beta + theta), beta + theta),
-        (3, g["SB"] * k3 + g["SA"] * _u(gamma), gamma),
-        (4, h + (g["E"] - g["EA"]) * _u(phi + delta - turned), phi + delta),
-        (5, g["TA"] * _u(delta) + g["TB"] * _u(delta + turned), delta),
-        (6, corner + (g["ZF"] - g["FA"]) * _u(omega + epsilon), omega + epsilon),
-        (7, g["UB"] * _u(epsilon - turned) + g["UA"] * _u(epsilon), epsilon),
-    ]
-    kinetic = sum(
-        g[f"M{i}"] * ca.sumsqr(ca.jtimes(place, q, qd)) / 2
-        + g[f"I{i}"] * ca.jtimes(angle, q, qd) ** 2 / 2
-        for i, place, angle in bodies
-    )
-    attached = b + g["SC"] * k3 + g["SD"] * _u(gamma)
-    stretch = ca.norm_2(attached - ca.DM([g["XC"], g["YC"]])) - 0.07785
-    system = LagrangeSystem(
-        kinetic, -4530.0 * stretch**2 / 2, q, qd, qdd, constraints=-gaps, multipliers=lam
-    )
-    along, _ = system.terms()
-    f = ca.Function(
-        "f", [q, qd, qdd], [ca.substitute(along, lam, ca.DM.zeros(6)), ca.jacobian(along, lam)]
-    )
-    rest, slope = (x.full() for x in f(SET["q"], SET["rate"], SET["acceleration"]))
-    found = np.linalg.lstsq(np.hstack([slope, -np.eye(7, 1)]), -rest, rcond=None)[0].ravel()
-    np.testing.assert_allclose(found[:6], SET["multipliers"], rtol=1e-8)
-    assert found[6] == pytest.approx(0.033, abs=1e-8)
-
-
-def _u(angle):
-    return ca.vertcat(ca.cos(angle), ca.sin(angle))
-
-
-def load_module(name):
-    import importlib.util
-
-    spec = importlib.util.spec_from_file_location(name, CASES / name / "case.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def test_quick_return_is_quicker_back():
     """The rocker's two strokes take the crank 180 deg less and more twice the angle whose sine is r
     over the distance.
@@ -204,15 +121,6 @@ def test_a_leg_takes_no_work_over_a_turn():
     assert abs(_trapezoid(effort, angle)) < 1e-9 * np.abs(effort).max()
     assert np.ptp(found.output("foot_x")) == pytest.approx(0.679, abs=1e-3)
     assert np.ptp(found.output("foot_y")) == pytest.approx(0.225, abs=1e-3)
-
-
-def test_engine_turns_twice_and_gives_work():
-    solution = evaluate(load_case(CASES / "engine").scene)
-    assert solution.motion("main").value[-1] - solution.motion("main").value[0] == pytest.approx(
-        4 * math.pi
-    )
-    torque = _trapezoid(solution.effort("main"), solution.motion("main").value) / (4 * math.pi)
-    assert -40.0 < torque < -5.0
 
 
 def _trapezoid(values, at):

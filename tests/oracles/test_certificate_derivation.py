@@ -185,14 +185,6 @@ def test_a_wrong_derivation_is_noticed(name, monkeypatch):
         assert residual in evaluate(made()).failed
 
 
-@pytest.mark.parametrize("made", [arm_in_space, tool_on_a_path])
-@pytest.mark.parametrize("precision", ["double", "single"])
-def test_a_right_one_is_certified(made, precision):
-    assert evaluate(
-        made(), precision=precision, backend="c" if precision == "single" else "vm"
-    ).certified
-
-
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_a_law_that_jumps_may_be_on_either_side(precision):
     """Where rounding decides, as of a stop that is met exactly at an instant, and of a rest."""
@@ -207,25 +199,3 @@ def test_a_law_that_jumps_may_be_on_either_side(precision):
     assert evaluate(
         scene, precision=precision, backend="c" if precision == "single" else "vm"
     ).certified
-
-
-def test_turns_that_few_instants_do_not_tell_are_no_gap():
-    """What a load has seen with its turns is reported without those between instants that are far
-    apart.
-    """
-    m = Mechanism("drag_link")
-    a, b, c = (
-        m.link(name, length=length, mass=0.4)
-        for name, length in zip("abc", (0.3, 0.35, 0.32), strict=True)
-    )
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
-    joint = m.revolute("C", m.ground.at(0.1, 0.0), c)
-    angle = m.coordinate(joint)
-    m.torque("stiffer", c, -0.3 * angle - 0.01 * angle**3)
-    scene = Scene(
-        m, {"O": motion.polynomial(0.2, 6.3)}, posture={"b": 0.9, "c": 1.5}, t=(0.0, 3.0, 101)
-    )
-    for grid in ((0.0, 2.0, 3), (2.7, 2.7, 1)):
-        assert evaluate(scene, t=grid).certified

@@ -60,7 +60,7 @@ def falling():
     )
 
 
-def flywheel(gravity):
+def flywheel(gravity=9.81e6):
     """A link that spins fast about its middle."""
     m = Mechanism("flywheel")
     m.set_gravity(0.0, -gravity)
@@ -76,12 +76,24 @@ RIGHT = {
     "a link of 1e200 kg": (lambda: pendulum(1e200, 1e6), {}),
     "a spring of 1e10 N/m": (lambda: sprung(), {}),
     "a fall": (falling, {}),
+    "far from the origin": (lambda: far(1e7, load=1e5), {}),
     "a flywheel": (lambda: flywheel(9.81), {}),
+    "a flywheel of great weight": (flywheel, {}),
     "a flywheel without weight": (lambda: flywheel(0.0), {}),
     "a crank of a micrometre, a rod of a kilometre": (slider_crank, {"r": 1e-6, "l": 1e3}),
     "a crank of 1e-310 m": (slider_crank, {"r": 1e-310}),
     "all of 1e-310 kg": (slider_crank, {"m1": 1e-310, "m2": 1e-310, "m3": 1e-310}),
 }
+
+
+UNSEEN = {
+    "a fall": "nothing is needed but rounding",
+    "a flywheel": "the weight is nothing beside what the speed makes of roundings",
+    "a flywheel without weight": "there is no force",
+    "far from the origin": "reported places leave less than the tolerance",
+}
+"""Right results in which a millionth of a force is not told, and why."""
+SEEN = [name for name, (_, parameters) in RIGHT.items() if name not in UNSEEN and not parameters]
 
 
 @pytest.mark.sampled(9)
@@ -90,8 +102,8 @@ RIGHT = {
 def test_what_is_right_passes(name, precision):
     """And does not come near what fails."""
     made, parameters = RIGHT[name]
-    if precision == "single" and "200 kg" in name:
-        pytest.skip("singles end at 1e38")
+    if precision == "single" and ("200 kg" in name or "far" in name):
+        pytest.skip("singles end at 1e38, and know a place at 1e7 m to a metre")
     scene = made()
     solution = evaluate(
         scene,
@@ -108,60 +120,44 @@ def test_what_is_right_passes(name, precision):
     assert max(found.values()) < solution.tolerance / 10, found
 
 
-def test_far_from_the_origin_right_results_pass():
-    """Where reported places leave less than the tolerance."""
-    assert evaluate(far(1e7, load=1e5), backend="vm").certified
-
-
 def wrong(scene, solution, name):
-    """The largest residuals of a solution with one output that is off by a millionth."""
-    values = solution.series[name] * MILLIONTH
-    residuals = certify(
-        solution, declaration(scene, scene.mechanism.values(None)), {Output.of(name): values}
-    )
-    return {residual: float(gaps.max()) for residual, gaps in residuals.items()}
+    """The largest residual of a solution with one output that is off by a millionth."""
+    off = {Output.of(name): solution.series[name] * MILLIONTH}
+    residuals = certify(solution, declaration(scene, scene.mechanism.values(None)), off)
+    return max(float(gaps.max()) for gaps in residuals.values())
 
 
-WRONG = {
-    "lift, effort": (scissors, "effort:slide", "power"),
-    "lift, reaction": (scissors, "reaction:M2:fx", "balance"),
-    "lift, section": (scissors, "section:a1:law:f0", "ends"),
-    "light, effort": (pendulum, "effort:O", "power"),
-    "light, load": (pendulum, "load:load:fx", "balance"),
-    "light, section": (pendulum, "section:link:load:n", "ends"),
-    "lightest, effort": (lambda: pendulum(1e-200, 1e-199), "effort:O", "power"),
-    "lightest, reaction": (lambda: pendulum(1e-200, 1e-199), "reaction:O:fy", "balance"),
-    "heaviest, effort": (lambda: pendulum(1e200, 1e6), "effort:O", "power"),
-    "stiff, spring": (sprung, "load:spring:fx", "power"),
-    "stiff, effort": (sprung, "effort:O", "balance"),
-    "flywheel, reaction": (lambda: flywheel(9.81e6), "reaction:O:fy", "balance"),
-    "slider-crank, reaction": (slider_crank, "reaction:A:fy", "balance"),
-    "slider-crank, effort": (slider_crank, "effort:O", "power"),
-}
-
-
-@pytest.mark.parametrize("name", WRONG)
-def test_a_millionth_fails(name):
-    made, output, residual = WRONG[name]
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize(
+    "made",
+    [
+        *(pytest.param(lambda k=k: kinds.closing(k, [2, 0]), id=k.__name__) for k in kinds.KINDS),
+        *(pytest.param(RIGHT[name][0], id=name) for name in SEEN),
+    ],
+)
+def test_a_millionth_of_any_large_force_fails(made):
+    """Of every one that is no less than a hundredth of the largest reaction."""
     scene = made()
     solution = evaluate(scene, backend="vm")
     assert solution.certified
-    assert 1e-9 < wrong(scene, solution, output)[residual] < 1e-5
-
-
-@pytest.mark.sampled(7)
-@pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
-def test_a_millionth_of_any_large_force_fails(kind):
-    """Of every one that is no less than a hundredth of the largest reaction."""
-    scene = kinds.closing(kind, [2, 0])
-    solution = evaluate(scene, backend="vm")
     peaks = {name: np.max(np.abs(values)) for name, values in solution.series.items()}
     largest = max(peak for name, peak in peaks.items() if name.startswith("reaction:"))
     forces = [
         name
-        for name in peaks
-        if name.startswith(("effort:", "reaction:", "load:")) and peaks[name] > largest / 100
+        for name, peak in peaks.items()
+        if peak > largest / 100
+        and (
+            name.startswith(("effort:", "reaction:", "load:"))
+            or name.endswith((":law:n0", ":law:f0"))
+        )
     ]
-    assert len(forces) > 4
+    assert forces
     for name in forces:
-        assert max(wrong(scene, solution, name).values()) > 1e-9, name
+        assert wrong(scene, solution, name) > 1e-9, name
+
+
+def test_blocks_change_no_certificate(solution, monkeypatch):
+    whole = certify(solution)
+    monkeypatch.setattr("lagrange_casadi.verification.certificate._BLOCK", 77)
+    for name, values in certify(solution).items():
+        assert np.array_equal(values, whole[name])

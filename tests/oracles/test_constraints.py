@@ -7,84 +7,11 @@ import numpy as np
 import oracle
 import pytest
 from balance import assert_balanced
-from internals import DesignEngine
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.motion import expression, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
-
-
-def sleigh(lead=0.0):
-    """A body on a skate: x, y and its heading are prescribed; the blade takes the place of the
-    drive of y. It carries a boom.
-    """
-    m = Mechanism("sleigh")
-    m.set_gravity(0.0, 0.0)
-    cross, pivot = m.link("cross", length=0.1, mass=0.0), m.link("pivot", length=0.1, mass=0.0)
-    body, boom = m.link("body", length=0.4, mass=2.0), m.link("boom", length=0.8, mass=0.5)
-    m.prismatic("X", m.ground, cross, axis=(1, 0))
-    across = m.prismatic("Y", cross, pivot, axis=(0, 1))
-    m.revolute("turn", pivot, body)
-    m.weld("stem", body.tip, boom, angle=1.0)
-    vx, vy = m.velocity(body)
-    q = m.direction(body)
-    m.nonholonomic("blade", -ca.sin(q) * vx + ca.cos(q) * vy, replaces=across)
-    laws = {
-        "X": expression(lambda t: 2.0 * ca.sin(0.5 * t)),
-        "Y": expression(lambda t: 2.0 - 2.0 * ca.cos(0.5 * t)),
-        "turn": polynomial(lead, 0.5),
-    }
-    return Scene(m, laws, t=(0.2, 3.0, 15))
-
-
-def test_a_row_bears_what_a_drive_would():
-    solution = evaluate(sleigh())
-    assert solution.certified
-    with pytest.raises(DeclarationError, match="unknown drive 'Y'; valid: X, turn"):
-        solution.effort("Y")
-
-
-def test_motion_that_violates_a_row_is_refused():
-    with pytest.raises(
-        AssemblyError,
-        match=r"non-holonomic constraint 'blade' by -0\.0\d+ at t = 0\.2 s, where X = 0\.19",
-    ):
-        evaluate(sleigh(lead=0.1))
-
-
-def test_a_row_must_replace_a_drive():
-    base = sleigh()
-    with pytest.raises(
-        DeclarationError,
-        match="constraint 'blade' replaces the drive of joint 'Y', which has no motion",
-    ):
-        Scene(base.mechanism, {"X": polynomial(0), "turn": polynomial(0)})
-
-
-def test_a_row_along_which_nothing_goes_is_not_violated():
-    """A skate that starts along an inclined axis: what is added up in its row is rounding, term by
-    term, and its speed is not.
-    """
-    m = Mechanism("sleigh")
-    cross, pivot, body = (m.link(n, length=0.1, mass=1.0) for n in ("cross", "pivot", "body"))
-    m.prismatic("X", m.ground, cross, axis=(0.0, -1.0), angle=-2.513896326794897)
-    across = m.prismatic(
-        "Y", cross, pivot, axis=(-0.8093825600407514, 0.58728176500031), angle=1.5437
-    )
-    m.revolute("Z", pivot, body)
-    vx, vy = m.velocity(body)
-    q = m.direction(body)
-    m.nonholonomic("blade", -ca.sin(q) * vx + ca.cos(q) * vy, replaces=across)
-    laws = {
-        "X": expression(lambda t: 0.55 * ca.sin(0.35 * t)),
-        "Y": expression(lambda t: 0.55 - 0.55 * ca.cos(0.35 * t)),
-        "Z": expression(lambda t: -0.6006 + 0.35 * t),
-    }
-    scene = Scene(m, laws, t=(0, 0.05, 2))
-    assert evaluate(scene).certified
-    assert DesignEngine.of(scene, ["effort"]).evaluate(np.zeros((1, 0))).status == 0
 
 
 def towed(drives):

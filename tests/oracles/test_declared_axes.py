@@ -20,13 +20,9 @@ DRAWS = FAMILIES | {"anyhow": anyhow}
 RATIOS = (0.0, 0.25, 0.5, 0.75, 1.0)
 QUICK = [("anyhow", 8), ("rssr", 0), ("rssp", 1), ("tree", 3)]
 MANY = [("anyhow", 0), ("rsur", 1), ("suspension", 0), ("loop", 1)]
-MANY += [("anyhow", seed) for seed in range(100, 400)]
-MANY += [
-    (name, seed)
-    for name in ("tree", "loop", "rssr", "rsur", "rssp", "rsup")
-    for seed in range(100, 130)
-]
-MANY += [(name, seed) for name in ("suspension", "arm") for seed in range(100, 110)]
+COUNTS = {"anyhow": 300, "suspension": 10, "arm": 10}
+COUNTS |= dict.fromkeys(("tree", "loop", "rssr", "rsur", "rssp", "rsup"), 30)
+MANY += [(name, 100 + k) for name, count in COUNTS.items() for k in range(count)]
 
 
 class Section:

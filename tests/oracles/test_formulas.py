@@ -5,7 +5,6 @@ What differs after forty digits differs in kind. Every number of a case is a par
 (:mod:`parametric`), and what constants are left in its graphs are taken for what they mean.
 """
 
-import sys
 from dataclasses import replace
 
 import mpmath
@@ -13,15 +12,11 @@ import numpy as np
 import pytest
 from conftest import CASES, PLANAR
 from internals import FORCES, EvaluationMethod, arithmetic, interpret, reference, run
-from mechanisms import truss_platform
-from outside import doubled
 from parametric import declared, meant
 from precise import precise
 from truth import matter_of, section
 
-from lagrange_casadi import Mechanism, Scene, derive, load_case
-from lagrange_casadi.errors import AssemblyError, DeclarationError, LagrangeCasadiError
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi import derive
 
 MP = mpmath.mp
 EXACT = replace(arithmetic(), constant=meant(MP.mpf))
@@ -83,64 +78,3 @@ def assert_equal(expected, found, mechanism):
     assert {n for n in found if n.startswith(("effort", "reaction", "pose", "multiplier"))} <= set(
         expected
     )
-
-
-@pytest.mark.parametrize(
-    ("x", "value"),
-    [
-        (1 / 3, lambda pi: MP.mpf(1) / 3),
-        (-1 / 12, lambda pi: MP.mpf(-1) / 12),
-        (0.1, lambda pi: MP.mpf(1) / 10),
-        (0.12345678, lambda pi: MP.mpf(0.12345678)),
-        (2 * np.pi, lambda pi: 2 * pi),
-        (180 / np.pi, lambda pi: 180 / pi),
-        (0.0, lambda pi: 0),
-        (np.inf, lambda pi: MP.inf),
-    ],
-)
-def test_what_constants_mean(x, value):
-    with MP.workdps(50):
-        exact = value(MP.mpf(np.pi))
-        assert (
-            meant(MP.mpf)(float(x)) == exact
-            or abs(meant(MP.mpf)(float(x)) / exact - 1) < MP.mpf(10) ** -48
-        )
-
-
-def test_a_reference_has_the_digits_that_are_asked_for():
-    scene = load_case(CASES / "rrr3").scene
-    program = derive(scene, ["effort"])
-    z = np.array(program.newton.guess)[:, None]
-    rows = {
-        digits: reference(program, [scene.t[0]], [], z=z, digits=digits)[0] for digits in (25, 60)
-    }
-    for name, few, many in zip(program.names, rows[25], rows[60], strict=True):
-        if name.startswith("_gap:"):  # which is nothing but what the digits leave
-            continue
-        with MP.workdps(60):
-            assert MP.mpf(10) ** -50 < abs(few / many - 1) < MP.mpf(10) ** -19
-
-
-def test_what_a_reference_refuses(monkeypatch):
-    scene = truss_platform()
-    program = derive(scene)
-    far = np.full((len(program.newton.guess), 1), 1.0)
-    monkeypatch.setattr("lagrange_casadi.verification.reference._STEPS", 3)
-    with pytest.raises(
-        AssemblyError,
-        match=r"the loops closed by joint .* do not close to all digits at t = 0\.5 s",
-    ):
-        reference(program, [0.5], [0.05], z=far)
-    m = Mechanism("arm")
-    arm = m.link("arm", length=1, mass=1)
-    m.torque("t", arm, doubled(m.coordinate(m.revolute("J", m.ground, arm))))
-    with pytest.raises(
-        DeclarationError, match="function 'instant' cannot be followed: it calls another one"
-    ):
-        reference(derive(Scene(m, {"J": polynomial(0.3, 1)}, t=(0, 1, 2))), [0.5], [])
-    monkeypatch.setitem(sys.modules, "mpmath", None)
-    with pytest.raises(
-        LagrangeCasadiError,
-        match=r"a reference of many digits needs mpmath; install it with: pip install",
-    ):
-        reference(program, [0.5], [0.05], z=far)

@@ -11,9 +11,8 @@ from drawn_curves import T, cam, constraint, shown, slide, told_by_limits
 from internals import DesignEngine, Smooth, Status
 from operations import EACH, X, Y
 
-from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
+from lagrange_casadi import evaluate, prepare
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -81,16 +80,17 @@ def test_curves_that_touch_in_a_third_power_are_no_place_alone(program):
         assert smooth.isolated(path, (), between=True) is None
 
 
-def test_every_operation_is_looked_at_where_it_touches():
-    many = compare(list(expressions())[::61])
+@pytest.mark.parametrize(
+    "part",
+    [
+        slice(0, None, 61),
+        *(pytest.param(slice(k, None, 8), marks=pytest.mark.long) for k in range(8)),
+    ],
+)
+def test_every_operation_is_looked_at_where_it_touches(part):
+    many = compare(list(expressions())[part])
     assert len(many["smooth"]) > 25
     assert len(many["isolated"]) > 5
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("part", range(8))
-def test_more_expressions(part):
-    compare(list(expressions())[part::8])
 
 
 LAWS = {
@@ -149,54 +149,3 @@ def test_designs_are_sought_between_instants_and_refused_there_too(scene, count)
     with pytest.raises((DeclarationError, AssemblyError)):
         f.peaks(k=0.0)
     f.peaks(k=1.2)
-
-
-@SCENES
-def test_peaks_between_instants_are_not_those_of_a_place_alone(scene):
-    """-2 x^2 of a lift has its curvature at zero too; an instant there has none, and so has more
-    weight left.
-    """
-    made = scene(lambda x: -2 * ca.if_else(x == 0, 0, x**2 + 0.3 * x**4), 20)
-    solution = evaluate(made, certificate=False)
-    with pytest.raises(DeclarationError, match="differs from its values on both sides"):
-        refine(made, solution)
-    assert np.isfinite(
-        refine(made, evaluate(made, parameters={"k": 1.2}, certificate=False))[0].value
-    )
-
-
-@pytest.mark.parametrize("t", [(0.0, 0.0, 1), (0.0, 1.0, 11), (-1.0, 0.0, 11)])
-def test_the_first_instant_the_last_and_a_single_one_are_looked_at(t):
-    with pytest.raises(
-        DeclarationError, match="curvature where t = 0 differs from its values on both sides"
-    ):
-        evaluate(slid(LAWS["fabs"]), t=t, certificate=False)
-
-
-def test_what_lies_between_both_sides_of_a_jump_of_acceleration_stays():
-    for law in (
-        lambda x: ca.fmax(x, 0) ** 2,
-        lambda x: x * ca.fabs(x),
-        lambda x: ca.if_else(x < 0, 0, x**2),
-    ):
-        evaluate(slid(law), certificate=False)
-
-
-def test_a_rest_is_no_place_alone():
-    evaluate(slid(lambda x: ca.fmax(ca.fabs(x) - 0.55, 0) ** 3), certificate=False)
-
-
-@pytest.mark.parametrize("name", LAWS)
-def test_loads_act_at_an_instant_as_they_are_declared(name):
-    """Nothing of them is differentiated: what is said of an instant is so."""
-    m = Mechanism("loaded")
-    body = m.point_mass("body", 2.0)
-    m.prismatic("way", m.ground, body, axis=(1, 0))
-    m.force("push", body, x=LAWS[name](m.time))
-    solution = evaluate(
-        Scene(m, {"way": polynomial(0.0, 1.0)}, t=(-1.0, 1.0, 21), wanted=("effort",))
-    )
-    declared = ca.Function("law", [T], [ca.SX(LAWS[name](T))])
-    np.testing.assert_allclose(
-        solution.effort("way"), -declared(solution.t[None]).full().ravel(), atol=1e-15
-    )

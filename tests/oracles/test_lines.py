@@ -4,9 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from spatial_bridge import declared, plain
 from spatial_draft import orientation
-from spatial_mechanisms import planar_four_bar, planar_slider_crank
 
 from lagrange_casadi import Scene, SpatialMechanism, derive, evaluate
 from lagrange_casadi.errors import AssemblyError, PostureError
@@ -91,12 +89,6 @@ def test_no_iteration_is_needed(name):
     solved = evaluate(scene)
     assert solved.certified
     assert max(solved.certificate[name].max() for name in ("closure", "balance", "power")) < 1e-12
-
-
-@pytest.mark.parametrize("draw", [planar_four_bar, planar_slider_crank])
-def test_dyads_need_no_iteration_however_their_plane_lies(draw):
-    """Their forces are held against Newton and Euler in test_spatial_evaluate."""
-    assert derive(declared(plain(draw(1)))).newton is None
 
 
 def test_all_ways_of_a_rod_that_lies_askew():

@@ -139,26 +139,29 @@ def sees(u, station, side="tip", slack=1e-12):
 
 
 def matter_of(mechanism, values, link):
-    """A link's length, and as a function of a ratio the moments of what lies beyond it, about the
-    base.
-    """
+    """A link's :func:`matter` for values of the parameters."""
     body = mechanism.links[link]
-    l = MP.mpf(mechanism.number(body.length, values))
-    size = l if body.mass.per_length else 1
-    cells = [
-        [MP.mpf(mechanism.number(coefficient, values)) * size for coefficient in cell]
-        for cell in body.mass.cells
-    ]
+    cells = [[mechanism.number(x, values) for x in cell] for cell in body.mass.cells]
+    return matter(body.mass, mechanism.number(body.length, values), cells)
+
+
+def matter(density, length, cells):
+    """A link's length, and as a function of a ratio the moments of what lies beyond it, about the
+    base; ``cells`` are the density's coefficients as numbers.
+    """
+    l = MP.mpf(length)
+    size = l if density.per_length else 1
+    cells = [[MP.mpf(coefficient) * size for coefficient in cell] for cell in cells]
 
     @functools.cache
     def beyond(u):
         mu = [MP.mpf(0)] * 3
         for (a, b), cell in zip(
-            itertools.pairwise(map(MP.mpf, body.mass.breaks)), cells, strict=True
+            itertools.pairwise(map(MP.mpf, density.breaks)), cells, strict=True
         ):
-            for (j, density), k in itertools.product(enumerate(cell), range(3)):
+            for (j, coefficient), k in itertools.product(enumerate(cell), range(3)):
                 mu[k] += (
-                    density
+                    coefficient
                     * l**k
                     * max(b ** (j + k + 1) - max(a, u) ** (j + k + 1), 0)
                     / (j + k + 1)
