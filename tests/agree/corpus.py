@@ -2,9 +2,9 @@
 commits are judged.
 
 ``python tests corpus make`` writes a file for each mechanism: its declaration as text, and
-outputs, peaks, statuses and stated errors, of every fifth mechanism by every way to evaluate.
-``check`` evaluates the text of one file in five, ``check --whole`` of every file. It prints what
-differs by more than the error that the commit of the corpus stated, and is not in ``allowed.txt``.
+outputs, peaks, statuses and stated errors. ``check`` evaluates the text of one file in five,
+``check --whole`` of every file. It prints what differs by more than the error that the commit of
+the corpus stated, and is not in ``allowed.txt``. Draws must be those of that commit.
 """
 
 from __future__ import annotations
@@ -19,17 +19,14 @@ import sys
 import tempfile
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
-from functools import cached_property, partial
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-import exported
 import numpy as np
-import pasted
 
 import lagrange_casadi as lc
 
@@ -38,9 +35,6 @@ ROOT = HERE.parents[1]
 
 FROZEN, ALLOWED = HERE / "frozen", HERE / "allowed.txt"
 INSTANTS, RATIOS = 24, (0.0, 1.0, 5)
-EVERY = 5
-"""One mechanism in so many is evaluated in every way."""
-
 SUBSET = 5
 """One file in so many is checked unless all are asked for."""
 
@@ -60,8 +54,6 @@ def declarations() -> Iterator[tuple[str, str]]:
     import every_way
     import random_friction
     import random_mechanisms
-    import spatial_anyhow
-    import spatial_bridge
     import spatial_friction
     import spatial_mechanisms
 
@@ -78,17 +70,21 @@ def declarations() -> Iterator[tuple[str, str]]:
         parameters = made.drawn.keywords.get("parameters")
         keywords = {"t": made.drawn.grid, "parameters": parameters}
         yield f"rubbing_{seed}", f"{made.source}keywords = {keywords!r}\n"
-    families = spatial_mechanisms.FAMILIES
-    seeds = [(name, seed) for name in families for seed in range(FAMILY)]
-    for name, seed in [*seeds, *(("anyhow", seed) for seed in range(ANYHOW))]:
-        drawn = spatial_bridge.plain((families | {"anyhow": spatial_anyhow.anyhow})[name](seed))
-        declare = partial(spatial_bridge.declared, drawn)
-        yield f"{name}_{seed}", pasted.paste(spatial_bridge, declare)
-    found = map(spatial_friction.rubbing, spatial_friction.CASES)
-    rubbing = ((drawn, t, rubs) for drawn, t, rubs in found if rubs)
-    for k, (drawn, t, rubs) in zip(range(RUBBING_IN_SPACE), rubbing, strict=False):
-        declare = partial(spatial_bridge.declared, drawn, t, rubs=rubs)
-        yield f"rubbing_in_space_{k}", pasted.paste(spatial_bridge, declare)
+    drawn = [(name, seed) for name in spatial_mechanisms.FAMILIES for seed in range(FAMILY)]
+    for family, seed in [*drawn, *(("anyhow", seed) for seed in range(ANYHOW))]:
+        yield (
+            f"{family}_{seed}",
+            f"from every_way import spatial\nscene = spatial({family!r}, {seed})\n",
+        )
+    rubs = [k for k, case in enumerate(spatial_friction.CASES) if spatial_friction.rubbing(case)[2]]
+    for k in rubs[:RUBBING_IN_SPACE]:
+        lines = [
+            "from spatial_bridge import declared",
+            "from spatial_friction import CASES, rubbing",
+            f"drawn, t, rubs = rubbing(CASES[{k}])",
+            "scene = declared(drawn, t, rubs=rubs)",
+        ]
+        yield f"rubbing_in_space_{k}", "\n".join(lines)
 
 
 @dataclass(frozen=True)
@@ -100,127 +96,46 @@ class Record:
     within: dict[str, float] = field(default_factory=dict)
 
 
-class Mechanism:
-    """A mechanism as a text declares it, and all that it has."""
-
-    def __init__(self, text: str) -> None:
-        space: dict[str, Any] = {"keywords": {}}
-        exec(compile(text, "declaration", "exec"), space)
-        self.scene, self.keywords = space["scene"], space["keywords"]
-
-    def evaluate(self, **method: Any) -> lc.Solution:
-        flags = "" if method.get("backend") == "vm" else BUILT
-        return lc.evaluate(self.scene, **{"xi": RATIOS, "flags": flags, **self.keywords, **method})
-
-    @cached_property
-    def solution(self) -> lc.Solution:
-        return self.evaluate()
-
-    def ways(self, every: bool) -> dict[str, Callable[[], Record]]:
-        """Return all ways but the first by name."""
-        first = {"errors": self.errors, "peaks": self.peaks}
-        methods: dict[str, dict[str, Any]] = {
-            "c": {"backend": "c"},
-            "vm": {"backend": "vm"},
-            "single": {"precision": "single"},
-            "newton": {"newton": 4},
-            "table": {"table": 1e-6},
-        }
-        others = {name: partial(self.evaluated, **method) for name, method in methods.items()}
-        more = {"prepare": self.prepared, "sweep": self.swept, "export": self.exported}
-        return first | (others | more if every else {})
-
-    def evaluated(self, **method: Any) -> Record:
-        """All quantities at some instants; section forces at some ratios."""
-        solution = self.evaluate(**method) if method else self.solution
-        values = {name: solution.array(name)[_some(solution.t)] for name in solution.names()}
-        verdict = "certified" if solution.certified else f"fails {sorted(solution.failed)}"
-        return Record(verdict, values, _within(solution))
-
-    def errors(self) -> Record:
-        """Decimal orders of stated errors: an estimate is right within a factor of ten."""
-        solution, sizes = self.solution, _sizes(self.solution)
-        names = [name for name in solution.names() if name in solution.errors]
-        least = {name: 1e-16 * sizes[solution.unit(name)] + 1e-300 for name in names}
-        values = {name: np.log10(max(solution.errors[name], least[name])) for name in names}
-        return Record("stated", values, dict.fromkeys(values, 1.0))
-
-    def peaks(self) -> Record:
-        """Sizes of the largest forces over all times; their instants would be of no digits."""
-        solution = self.solution
-        names = [n for n in solution.names() if n.startswith(FORCES) and solution.determined(n)]
-        peaks = {peak.name: abs(peak.value) for peak in lc.refine(self.scene, solution, names)}
-        return Record("refined", peaks, _within(solution, SEARCHED))
-
-    def prepared(self) -> Record:
-        keywords = {"flags": BUILT, **self.keywords}
-        values = self.scene.mechanism.values(keywords.pop("parameters", None))
-        keywords.pop("xi", None)
-        series = lc.prepare(self.scene, **keywords)(**values)
-        names = [name for name in series if name in self.solution.names()]
-        some = _some(self.solution.t)
-        return Record("ok", {n: series[n][some].copy() for n in names}, _within(self.solution))
-
-    def swept(self) -> Record:
-        """Two designs by the first parameter that is not zero."""
-        values = self.scene.mechanism.values(self.keywords.get("parameters"))
-        name = next((name for name, value in values.items() if value), None)
-        if name is None:
-            return Record("has no parameter")
-        value = values.pop(name)
-        keywords = {k: x for k, x in self.keywords.items() if k in ("t", "over", "wanted")}
-        axis, given = {name: (value, 1.001 * value, 2)}, {"parameters": values, "flags": BUILT}
-        swept = lc.sweep(self.scene, axis, **given, **keywords, workers=1)
-        kinds = ("status", "peak:", "mean:", "rms:")
-        columns = {k: np.asarray(swept[k]) for k in swept if k.startswith(kinds)}
-        within, largest = {}, Counter[str]()
-        for column in columns:
-            size = float(np.nanmax(np.abs(columns[column]), initial=0.0))
-            largest[swept.unit(column)] = max(largest[swept.unit(column)], size)
-        stated = _within(self.solution)
-        for column in columns:
-            own = stated.get(column.partition(":")[2], 0.0)
-            within[column] = own + SEARCHED * largest[swept.unit(column)]
-        return Record("ok", columns, within)
-
-    def exported(self) -> Record:
-        """Numbers of exported C, built by itself."""
-        if "parameters" in self.keywords:
-            return Record("is exported with its defaults")
-        wanted = {"wanted": self.keywords["wanted"]} if "wanted" in self.keywords else {}
-        t, stated = self.solution.t[_some(self.solution.t)], _within(self.solution)
-        with tempfile.TemporaryDirectory() as folder:
-            _, told = exported.exported(self.scene, Path(folder), **wanted)
-            rows = exported.by_c99(
-                Path(folder), told, exported.instants(t, "double"), ("-O0", "-ffp-contract=off")
-            )
-        names = [row["path"].replace("/", ":") for row in told["outputs"]]
-        columns = dict(zip(names, rows.T, strict=False))
-        values = {name: column for name, column in columns.items() if name in stated}
-        return Record("ok", values, stated)
-
-
-def results(text: str, every: bool) -> dict[str, Record]:
-    """Return what a declaration has in each way; an exception is the status of its way."""
+def results(text: str) -> dict[str, Record]:
+    """Return what a declaration has: outputs at some instants, decimal orders of stated errors, and
+    the largest forces over all times. An exception is the status of what it ends.
+    """
+    space: dict[str, Any] = {"keywords": {}}
     found: dict[str, Record] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            mechanism = Mechanism(text)
-            found["evaluate"] = mechanism.evaluated()
+            exec(compile(text, "declaration", "exec"), space)
+            solution = lc.evaluate(
+                space["scene"], **{"xi": RATIOS, "flags": BUILT, **space["keywords"]}
+            )
         except Exception as error:  # also one that is not ours: none may come anew
             return {"evaluate": Record(f"{type(error).__name__}: {error}")}
-        for way, evaluate in mechanism.ways(every).items():
-            try:
-                found[way] = evaluate()
-            except Exception as error:
-                found[way] = Record(f"{type(error).__name__}: {error}")
+        some = np.unique(np.linspace(0, solution.t.size - 1, INSTANTS).round().astype(int))
+        values = {name: solution.array(name)[some] for name in solution.names()}
+        verdict = "certified" if solution.certified else f"fails {sorted(solution.failed)}"
+        found["evaluate"] = Record(verdict, values, _within(solution))
+        found["errors"] = _errors(solution)
+        try:
+            found["peaks"] = _peaks(space["scene"], solution)
+        except Exception as error:
+            found["peaks"] = Record(f"{type(error).__name__}: {error}")
     return found
 
 
-def _some(t: np.ndarray) -> np.ndarray:
-    """Return some of the instants."""
-    return np.unique(np.linspace(0, t.size - 1, INSTANTS).round().astype(int))
+def _errors(solution: lc.Solution) -> Record:
+    """Decimal orders of stated errors: an estimate is right within a factor of ten."""
+    sizes = _sizes(solution)
+    least = {name: 1e-16 * sizes[solution.unit(name)] + 1e-300 for name in solution.errors}
+    values = {name: np.log10(max(error, least[name])) for name, error in solution.errors.items()}
+    return Record("stated", values, dict.fromkeys(values, 1.0))
+
+
+def _peaks(scene: lc.Scene, solution: lc.Solution) -> Record:
+    """Sizes of the largest forces; their instants would be of no digits."""
+    names = [n for n in solution.names() if n.startswith(FORCES) and solution.determined(n)]
+    peaks = {peak.name: abs(peak.value) for peak in lc.refine(scene, solution, names)}
+    return Record("refined", peaks, _within(solution, SEARCHED))
 
 
 def _sizes(solution: lc.Solution) -> dict[str, float]:
@@ -262,10 +177,10 @@ def differences(was: dict[str, Record], now: dict[str, Record]) -> Iterator[tupl
                 yield f"{way}/{name}", f"off by {gap:.2g}, more than {most:.2g}"
 
 
-def make(name: str, text: str, folder: Path, every: bool, commit: str) -> str:
+def make(name: str, text: str, folder: Path, commit: str) -> str:
     """Write the file of a mechanism, and return a line on it."""
-    made = results(text, every)
-    told = {"commit": commit, "text": text, "every": every, "ways": {}}
+    made = results(text)
+    told = {"commit": commit, "text": text, "ways": {}}
     arrays = {}
     for way, one in made.items():
         told["ways"][way] = {"status": one.status, "within": one.within}
@@ -277,8 +192,8 @@ def make(name: str, text: str, folder: Path, every: bool, commit: str) -> str:
     return f"{name}: {flat.size} numbers {'; '.join(sorted(statuses))[:200]}"
 
 
-def read(path: Path) -> tuple[str, bool, dict[str, Record]]:
-    """Return the text of a file, whether all ways are in it, and what they had."""
+def read(path: Path) -> tuple[str, dict[str, Record]]:
+    """Return the text of a file, and what its mechanism had."""
     with np.load(path) as file:
         told, flat = json.loads(str(file["told"])), file["numbers"]
     found = {way: Record(one["status"], {}, one["within"]) for way, one in told["ways"].items()}
@@ -288,14 +203,13 @@ def read(path: Path) -> tuple[str, bool, dict[str, Record]]:
         size = int(np.prod(shape))
         found[way].values[name] = flat[at : at + size].reshape(shape)
         at += size
-    return told["text"], told["every"], found
+    return told["text"], found
 
 
 def check(path: Path) -> list[tuple[str, str]]:
     """Return what is not as it was for the mechanism of a file, by ENTRY/WAY/NAME."""
-    text, every, was = read(path)
-    now = results(text, every)
-    return [(f"{path.stem}/{where}", words) for where, words in differences(was, now)]
+    text, was = read(path)
+    return [(f"{path.stem}/{where}", words) for where, words in differences(was, results(text))]
 
 
 def allowances(text: str) -> dict[str, str]:
@@ -337,8 +251,8 @@ def main(arguments: list[str] | None = None) -> int:
             describe = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40"]
             commit = subprocess.run(describe, capture_output=True, text=True).stdout.strip()
             made = [
-                pool.submit(make, name, text, asked.folder, k % EVERY == 0, commit)
-                for k, (name, text) in enumerate(declarations())
+                pool.submit(make, name, text, asked.folder, commit)
+                for name, text in declarations()
                 if fnmatch.fnmatchcase(name, asked.only)
             ]
             for one in as_completed(made):

@@ -1,10 +1,8 @@
 """Compilers that fail, hang, cannot be started or say what is no text; and what is built again."""
 
 import os
-import re
 import shutil
 import signal
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -125,41 +123,6 @@ def test_an_interrupt_stops_the_compiler(here, tmp_path_factory, monkeypatch, nu
     assert time.monotonic() - began < 10.0
     sweeps.wait_for(lambda: gone(folder / "pid"))
     assert os.listdir(here) == []
-
-
-CROWDED = """
-import os, sys
-from lagrange_casadi.cli import main
-import resource
-resource.setrlimit(resource.RLIMIT_NOFILE, (64, 64))
-held = []
-try:
-    while True:
-        held.append(os.open(os.devnull, os.O_RDONLY))
-except OSError:
-    for _ in range({free}):
-        os.close(held.pop())
-from lagrange_casadi import codegen
-from lagrange_casadi.errors import CompilerError
-for language in ("c", "c++"):
-    try:
-        codegen.find_compiler(language)
-        sys.exit("found")
-    except CompilerError as error:
-        print(error)
-for number in held:
-    os.close(number)
-assert codegen.find_compiler() is not None
-"""
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("free", [0, 3])
-def test_too_few_descriptors_are_not_no_compiler(free):
-    command = [sys.executable, "-c", CROWDED.format(free=free)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert re.fullmatch(r"(cannot start \S+: Too many open files\n){2}", done.stdout)
 
 
 def sealed(library, content):

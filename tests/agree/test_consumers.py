@@ -1,10 +1,9 @@
-"""Programs that use an exported folder alone, in C++17 and Python, against the API over a cycle;
-and on other rungs one in C99, which test_every_way uses for all scenes.
+"""Programs that use an exported folder alone, in C++17 against the API over a cycle; and on other
+rungs one in C99, which test_every_way uses for all scenes.
 """
 
 import shutil
 import subprocess
-import sys
 
 import pytest
 from exported import (
@@ -107,27 +106,4 @@ def test_a_cpp17_program_finds_the_package(name, tmp_path):
     found = run(
         [tmp_path / "consumer" / "consumer", *map(str, RATIOS)], instants(solution.t, "double")
     )
-    compare(found, expected(scene, told, solution), told, made, solution)
-
-
-@pytest.mark.sampled(7)
-@needs_cmake
-@pytest.mark.parametrize(
-    ("name", "precision"),
-    [("slider_crank", "double"), ("slider_crank", "single"), ("truss_platform", "double")],
-)
-def test_a_python_program_loads_the_shared_library(name, precision, tmp_path):
-    scene = SCENES[name]()
-    made, told = exported(scene, tmp_path, precision=precision)
-    build = built(tmp_path, "-DBUILD_SHARED_LIBS=ON", "-DBUILD_TESTING=OFF")
-    (library,) = build.glob(f"lib{told['prefix']}.so")
-    solution = solve(scene, precision)
-    command = [
-        sys.executable,
-        CONSUMERS / "python" / "main.py",
-        tmp_path,
-        library,
-        *map(str, RATIOS),
-    ]
-    found = run(command, instants(solution.t, precision))
     compare(found, expected(scene, told, solution), told, made, solution)

@@ -1,12 +1,7 @@
 """The frozen corpus notices a change of one part in 1e9, and reports what is allowed in vain."""
 
 import corpus
-import pasted
 import pytest
-import spatial_bridge
-from spatial_anyhow import anyhow
-
-from lagrange_casadi import evaluate
 
 pytestmark = pytest.mark.quick
 
@@ -23,13 +18,13 @@ scene = Scene(m, {"O": motion.harmonic(0.1, 0.5, 1.0)}, t=(0.0, 1.0, 9))
 def was(tmp_path_factory):
     """The mechanism in a file."""
     folder = tmp_path_factory.mktemp("frozen")
-    corpus.make("pendulum", TEXT, folder, False, "a commit")
+    corpus.make("pendulum", TEXT, folder, "a commit")
     return folder / "pendulum.npz"
 
 
 def test_what_is_not_changed_is_as_it_was(was):
-    text, every, found = corpus.read(was)
-    assert (text, every, [*found]) == (TEXT, False, ["evaluate", "errors", "peaks"])
+    text, found = corpus.read(was)
+    assert (text, [*found]) == (TEXT, ["evaluate", "errors", "peaks"])
     assert found["evaluate"].values["section:rod:shear"].shape == (9, 5)
     assert not corpus.check(was)
 
@@ -46,9 +41,9 @@ def test_what_is_not_changed_is_as_it_was(was):
     ],
 )
 def test_one_part_in_a_billion_is_noticed(was, old, new, where):
-    text, every, found = corpus.read(was)
+    text, found = corpus.read(was)
     assert old in text
-    assert where in dict(corpus.differences(found, corpus.results(text.replace(old, new), every)))
+    assert where in dict(corpus.differences(found, corpus.results(text.replace(old, new))))
 
 
 def test_a_difference_is_allowed_for_a_reason():
@@ -60,21 +55,6 @@ def test_a_difference_is_allowed_for_a_reason():
     )
     with pytest.raises(ValueError, match=r"one/\* has no reason"):
         corpus.allowances("one/*\n")
-
-
-def test_a_pasted_declaration_makes_the_same_scene():
-    """Of one in space that has couplings, loads along links and laws of functions."""
-    drawn = spatial_bridge.plain(anyhow(0))
-    text = pasted.paste(spatial_bridge, lambda: spatial_bridge.declared(drawn))
-    assert "line_load" in text
-    assert "constraint" in text
-    scene = corpus.Mechanism(text).scene
-    once, again = (
-        evaluate(one, backend="vm", certificate=False).series
-        for one in (scene, spatial_bridge.declared(drawn))
-    )
-    assert [*once] == [*again]
-    assert all((once[name] == again[name]).all() for name in once)
 
 
 def test_what_is_no_number_stays_none():
