@@ -5,7 +5,6 @@ optimizes it, however many threads run it, and whatever stands beside an instant
 import itertools
 import subprocess
 
-import casadi as ca
 import numpy as np
 import pytest
 from compiled import (
@@ -112,21 +111,6 @@ def test_no_flag_changes_the_arithmetic_of_the_process(backend):
     """What -ffast-math allows in a library is not done to everyone who loads it."""
     evaluate(slider_crank(["effort"]), backend=backend, flags="-ffast-math")
     assert np.float64(1e-310) * np.float64(0.5) == 5e-311
-
-
-@pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
-def test_a_load_may_call_a_function_that_is_not_inlined(backend):
-    x = ca.SX.sym("x")
-    called = ca.Function("called", [x], [ca.sin(x) * x], {"never_inline": True})
-    m = Mechanism("arm")
-    k, arm = m.parameter("k", 2.0), m.link("arm", length=1, mass=1)
-    joint = m.revolute("J", m.ground, arm)
-    m.torque("t", arm, called(m.coordinate(joint)) * called(k))
-    solution = evaluate(Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)), backend=backend)
-    angle = solution.motion("J").value
-    np.testing.assert_allclose(
-        solution.series["load:t:mz"], np.sin(angle) * angle * np.sin(2.0) * 2.0, rtol=1e-14
-    )
 
 
 def pushed(constant):

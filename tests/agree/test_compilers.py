@@ -2,14 +2,10 @@
 
 import os
 import shutil
-import signal
-import sys
-import time
 from pathlib import Path
 
 import pytest
 import sweeps
-from commands import words
 from compiled import fake_compiler
 from internals import cache, compiler
 from mechanisms import slider_crank
@@ -103,26 +99,6 @@ def test_a_time_limit_that_is_none_is_one_line(here, fresh_cache, monkeypatch, c
     assert main(["run", str(CASE), "--no-figures", "--t", "0:0.08:9", "--backend", "c"]) == 1
     says = f"error: $LAGRANGE_CASADI_COMPILER_TIMEOUT = '{text}': expected a number of seconds"
     assert capsys.readouterr().err == f"{says} above 0; without it they are 600\n"
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
-@pytest.mark.parametrize("script", [HANGS, f"{TELLS} {HANGS}"], ids=["version", "compiling"])
-def test_an_interrupt_stops_the_compiler(here, tmp_path_factory, monkeypatch, number, script):
-    folder = tmp_path_factory.mktemp("fake")
-    fake_compiler(folder, monkeypatch, script.format(pid=folder / "pid"))
-    monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
-    command = [sys.executable, *words("-m lagrange_casadi run CASE --backend c --no-figures")]
-    with sweeps.process(*command) as stopped:
-        sweeps.wait_for((folder / "pid").exists)
-        began = time.monotonic()
-        stopped.send_signal(number)
-        says = "error: interrupted; no file was left incomplete\n"
-        assert stopped.communicate(timeout=60) == ("", says)
-    assert stopped.returncode == 130
-    assert time.monotonic() - began < 10.0
-    sweeps.wait_for(lambda: gone(folder / "pid"))
-    assert os.listdir(here) == []
 
 
 def sealed(library, content):

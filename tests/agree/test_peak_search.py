@@ -219,15 +219,9 @@ def test_any_density_and_any_station(matter):
         assert_refined(scene, designs, outcome, row, p[row])
         found = peaks_of(designs, outcome, row)
         for name in ("section:b:axial", "section:b:shear", "section:b:bending"):
-            value, t, xi = found[name]
+            value, t, _ = found[name]
             there = alone(scene, p[row], (t, t, 1), xi=(0, 1, 4001))
             assert abs(value) >= np.abs(there.array(name)).max() * (1 - 1e-13)
-            law = there.section("b").law
-            sides = [
-                float(law.at(name.split(":")[2], np.array([[xi]]), side)[0, 0])
-                for side in ("tip", "base")
-            ]
-            assert min(abs(value - side) for side in sides) <= 1e-11 * abs(value)
 
 
 def shaped():

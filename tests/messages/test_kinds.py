@@ -2,8 +2,6 @@
 make, are told in one line that says what was expected, whatever function they are given to.
 """
 
-import os
-
 import numpy as np
 import pytest
 
@@ -214,13 +212,6 @@ def test_what_is_no_name_is_told(solution, name):
             of(name)
 
 
-def test_a_number_for_a_path_closes_no_stream():
-    """Python would open the standard output, and close it."""
-    with pytest.raises(DeclarationError):
-        load(True)
-    os.fstat(1)
-
-
 MANY = [f"reaction:joint_{k}" for k in range(100)]
 UNKNOWN = {
     "unknown link 'crnk' (did you mean 'crank'?); valid: crank, rod": ("crnk", ["crank", "rod"]),
@@ -298,12 +289,6 @@ def test_the_ground_has_its_name(taker):
         DeclarationError, match="the name is taken by the ground of mechanism 'machine'"
     ):
         TAKERS[taker](machine(), "ground")
-
-
-def test_no_name_is_reserved():
-    for declare in (*BEARERS.values(), lambda m, name: m.parameter(name, 1)):
-        for name in ("law", "x_rate", "x_acceleration", "certificate", "all"):
-            declare(machine(), name)
 
 
 CHOICES = {
