@@ -4,7 +4,7 @@ commits are judged.
 ``python tests corpus make`` writes a file for each mechanism: its declaration as text, and
 outputs, peaks, statuses and stated errors. ``check`` evaluates the text of one file in five,
 ``check --whole`` of every file. It prints what differs by more than the error that the commit of
-the corpus stated, and is not in ``allowed.txt``. Draws must be those of that commit.
+the corpus stated. Draws must be those of that commit.
 """
 
 from __future__ import annotations
@@ -12,13 +12,12 @@ from __future__ import annotations
 import argparse
 import contextlib
 import fnmatch
-import json
 import os
+import pickle
 import subprocess
 import sys
 import tempfile
 import warnings
-from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
@@ -33,7 +32,7 @@ import lagrange_casadi as lc
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 
-FROZEN, ALLOWED = HERE / "frozen", HERE / "allowed.txt"
+FROZEN = HERE / "frozen"
 INSTANTS, RATIOS = 24, (0.0, 1.0, 5)
 SUBSET = 5
 """One file in so many is checked unless all are asked for."""
@@ -125,9 +124,10 @@ def results(text: str) -> dict[str, Record]:
 
 def _errors(solution: lc.Solution) -> Record:
     """Decimal orders of stated errors: an estimate is right within a factor of ten."""
-    sizes = _sizes(solution)
-    least = {name: 1e-16 * sizes[solution.unit(name)] + 1e-300 for name in solution.errors}
-    values = {name: np.log10(max(error, least[name])) for name, error in solution.errors.items()}
+    sizes, values = _sizes(solution), {}
+    for name in solution.errors.keys() & {*solution.names()}:
+        least = 1e-16 * sizes[solution.unit(name)] + 1e-300
+        values[name] = np.log10(max(solution.errors[name], least))
     return Record("stated", values, dict.fromkeys(values, 1.0))
 
 
@@ -180,58 +180,23 @@ def differences(was: dict[str, Record], now: dict[str, Record]) -> Iterator[tupl
 def make(name: str, text: str, folder: Path, commit: str) -> str:
     """Write the file of a mechanism, and return a line on it."""
     made = results(text)
-    told = {"commit": commit, "text": text, "ways": {}}
-    arrays = {}
-    for way, one in made.items():
-        told["ways"][way] = {"status": one.status, "within": one.within}
-        arrays |= {f"{way}/{k}": np.asarray(x, float) for k, x in one.values.items()}
-    flat = np.concatenate([np.zeros(0), *(x.ravel() for x in arrays.values())])
-    told["shapes"] = {key: x.shape for key, x in arrays.items()}
-    np.savez_compressed(folder / f"{name}.npz", told=json.dumps(told), numbers=flat)
+    told = {way: vars(one) for way, one in made.items()}
+    (folder / f"{name}.pickle").write_bytes(pickle.dumps((commit, text, told)))
+    numbers = sum(np.size(values) for one in made.values() for values in one.values.values())
     statuses = {one.status for one in made.values() if ":" in one.status}
-    return f"{name}: {flat.size} numbers {'; '.join(sorted(statuses))[:200]}"
+    return f"{name}: {numbers} numbers {'; '.join(sorted(statuses))[:200]}"
 
 
 def read(path: Path) -> tuple[str, dict[str, Record]]:
     """Return the text of a file, and what its mechanism had."""
-    with np.load(path) as file:
-        told, flat = json.loads(str(file["told"])), file["numbers"]
-    found = {way: Record(one["status"], {}, one["within"]) for way, one in told["ways"].items()}
-    at = 0
-    for key, shape in told["shapes"].items():
-        way, _, name = key.partition("/")
-        size = int(np.prod(shape))
-        found[way].values[name] = flat[at : at + size].reshape(shape)
-        at += size
-    return told["text"], found
+    _, text, told = pickle.loads(path.read_bytes())
+    return text, {way: Record(**one) for way, one in told.items()}
 
 
 def check(path: Path) -> list[tuple[str, str]]:
     """Return what is not as it was for the mechanism of a file, by ENTRY/WAY/NAME."""
     text, was = read(path)
     return [(f"{path.stem}/{where}", words) for where, words in differences(was, results(text))]
-
-
-def allowances(text: str) -> dict[str, str]:
-    """Return the reasons of differences that are allowed, by their patterns."""
-    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
-    found = {}
-    for line in lines:
-        pattern, _, reason = line.partition(" ")
-        if not reason.strip():
-            raise ValueError(f"allowed.txt: {pattern} has no reason; expected 'PATTERN reason'")
-        found[pattern] = reason.strip()
-    return found
-
-
-def judged(found: list[tuple[str, str]], allowed: dict[str, str]) -> tuple[list[str], Counter[str]]:
-    """Return a line for each difference that is not allowed, and how often each pattern is used."""
-    used, lines = Counter[str](), []
-    for where, words in found:
-        patterns = [pattern for pattern in allowed if fnmatch.fnmatchcase(where, pattern)]
-        used.update(patterns)
-        lines += [] if patterns else [f"{where}: {words}"]
-    return lines, used
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -258,18 +223,15 @@ def main(arguments: list[str] | None = None) -> int:
             for one in as_completed(made):
                 print(one.result(), flush=True)
             return 0
-        paths = sorted(asked.folder.glob(f"{asked.only}.npz"))
+        paths = sorted(asked.folder.glob(f"{asked.only}.pickle"))
         if not paths:
             sys.exit(f"{asked.folder} has no such files; make them at the commit to compare with")
         paths = paths if asked.whole else paths[::SUBSET]
         found = [difference for one in pool.map(check, paths) for difference in one]
-    allowed = allowances(ALLOWED.read_text())
-    lines, used = judged(found, allowed)
-    unused = [pattern for pattern in allowed if pattern not in used] if asked.whole else []
-    for line in [*lines, *(f"allowed.txt: {pattern} is not used" for pattern in unused)]:
-        print(line)
-    print(f"{len(paths)} mechanisms, {len(lines)} differences, {used.total()} allowed")
-    return 1 if lines or unused else 0
+    for where, words in found:
+        print(f"{where}: {words}")
+    print(f"{len(paths)} mechanisms, {len(found)} differences")
+    return int(bool(found))
 
 
 if __name__ == "__main__":
