@@ -145,7 +145,10 @@ REFUSED = {
     "cube": (loaded(lambda q, w, t: 1e-6 * w**3), "another power enters 'load:load:mz'"),
     "at rest": (loaded(lambda q, w, t: w**2 / ca.fabs(w)), r"is not finite at rest, where pin ="),
     "grows": (loaded(lambda q, w, t: 2 * q**2), "repeat after at most 4 turns of joint 'pin'"),
-    "friction": (packer, "but friction depends on its sign: 'rub'"),
+    "friction": (
+        lambda: replace(packer(), wanted=["effort"]),
+        "but friction depends on its sign: 'rub'",
+    ),
     "gear": (lambda: geared(0.7), "after at most 4 turns of joint 'first', but"),
     "iterated": (truss_platform, "expected a drive that can make whole revolutions"),
     "dead centre": (flat_parallelogram, "the loop closed by joint 'B' passes a dead centre"),
