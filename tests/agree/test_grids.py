@@ -1,36 +1,49 @@
-"""Grids of section forces: compiled or not, in one piece or in many, the same bits, and the law."""
+"""Grids of section forces: compiled or not, in one piece or in many, the same bits."""
 
 import numpy as np
 import pytest
-from every_way import DECLARED
 from internals import grids
-
-from lagrange_casadi import evaluate
 
 pytestmark = pytest.mark.quick
 
-WAYS = [
-    {"WORTH_COMPILING": 10**12},
-    {"_SHARE": 1000},
-    {"_STREAMING": 0},
-    {"_STREAMING": 0, "_SHARE": 1000},
-]
-"""All by NumPy; by many threads; past the caches; both."""
+random = np.random.default_rng(4)
 
 
-@pytest.mark.parametrize("name", ["plane", "space", "sampled_cam"])
-def test_grids_are_those_of_the_law_to_the_last_bit(name, monkeypatch):
-    """Links with loads along them have more terms than others, and of resultants twice as many."""
-    solution = evaluate(DECLARED[name](), backend="vm", xi=(0, 1, 37), certificate=False)
-    for link in solution.links_with_sections:
-        law = solution.section(link).law
-        for force in solution.table.forces:
-            usual = law.on_grid(force, solution.xi)
-            places = np.tile(solution.xi, (solution.t.size, 1))
-            size = 1e-13 * np.abs(usual).max()
-            np.testing.assert_allclose(usual, law.at(force, places), rtol=0, atol=size)
-            for way in WAYS:
-                with monkeypatch.context() as patch:
-                    for constant, value in way.items():
-                        patch.setattr(grids, constant, value)
-                    assert law.on_grid(force, solution.xi).tobytes() == usual.tobytes()
+@pytest.mark.parametrize("many", [0, 2])
+@pytest.mark.parametrize("planes", [1, 2])
+@pytest.mark.parametrize("terms", [1, 2, 3, 4, 5, 9])
+def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypatch):
+    """A link with loads along it has more terms than others: a resultant of five once lost its last
+    one in compiled code.
+    """
+    n, k = 97, 37
+    columns, rows = [*random.normal(size=(planes * terms, n))], random.normal(size=(terms, k))
+    loads = [tuple(random.uniform(0, 1, size=(3, n))) for _ in range(planes * many)]
+    u, found = np.linspace(0, 1, k), []
+    for worth, share, streaming in (
+        (10**12, 1, 0),
+        (0, 10**9, 10**12),
+        (0, 1000, 10**12),
+        (0, 10**9, 0),
+        (0, 1000, 0),
+    ):
+        monkeypatch.setattr(grids, "WORTH_COMPILING", worth)
+        monkeypatch.setattr(grids, "_SHARE", share)
+        monkeypatch.setattr(grids, "_STREAMING", streaming)
+        found.append(np.full((n + 1, k), np.nan))
+        given = grids.Columns(columns, loads, planes), grids.Functions(rows)
+        grids.fill([given], u, found[-1][None, :n], threads=3)
+        assert np.isnan(found[-1][n]).all()
+    assert len({grid.tobytes() for grid in found}) == 1
+    sums = np.zeros((planes, n, k))
+    for plane in range(planes):
+        for m in range(plane * terms, (plane + 1) * terms):
+            sums[plane] += columns[m][:, None] * rows[m - plane * terms]
+        for station, constant, slope in loads[plane * many : (plane + 1) * many]:
+            sums[plane] += np.where(
+                u < station[:, None],
+                constant[:, None] + slope[:, None] * (station[:, None] - u),
+                0.0,
+            )
+    expected = np.hypot(*sums) if planes == 2 else sums[0]
+    np.testing.assert_allclose(found[0][:n], expected, rtol=0, atol=1e-13)
