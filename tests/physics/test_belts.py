@@ -88,6 +88,8 @@ def test_in_space_a_pulley_may_count_its_angle_the_other_way(axis):
     solution = evaluate(Scene(m, {"A": polynomial(0.1, 7.0)}, t=(0, 1, 2)))
     assert solution.certified
     assert solution.effort("A")[0] == pytest.approx(24.0 * 5 / 12 / 0.9, rel=1e-12)
+    loss = 0.1 * solution.effort("A")[0] * 7.0
+    assert solution.output("belt_loss")[0] == pytest.approx(loss, rel=1e-12)
     about = 0.4 * solution.reaction("B").fy[0] + solution.effort("A")[0] - 24.0
     assert about == pytest.approx(0.0, abs=1e-12)
 

@@ -5,6 +5,7 @@ profiles, and what is refused.
 from __future__ import annotations
 
 import math
+import sys
 
 import casadi as ca
 import numpy as np
@@ -150,7 +151,7 @@ def test_a_flat_follower_is_pressed_beside_its_line():
     assert solution.output("cam_hertz") == pytest.approx(hertz, rel=1e-11)
 
 
-def test_profiles_are_written_for_workshops(here):
+def test_profiles_are_written_for_workshops(here, monkeypatch):
     cam, _ = machine("roller")
     profile = cam.profile(count=180)
     profile.save_csv("cam.csv")
@@ -171,6 +172,9 @@ def test_profiles_are_written_for_workshops(here):
     (drawn,) = ezdxf.readfile("cam.dxf").modelspace()
     places = [(vertex.dxf.location.x, vertex.dxf.location.y) for vertex in drawn.vertices]
     assert np.array(places) == pytest.approx(1e3 * rows[:, 1:3], abs=1e-5)
+    monkeypatch.setitem(sys.modules, "ezdxf.addons.r12writer", None)
+    with pytest.raises(LagrangeCasadiError, match="a DXF needs ezdxf; install it with"):
+        profile.save_dxf("cam.dxf")
 
 
 SHORT = moves([move(0.02, time=0.5), move(0.0, time=0.5), dwell()], cyclic=True, period=2 * math.pi)
