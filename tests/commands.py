@@ -1,6 +1,9 @@
 """Commands as they are typed."""
 
 import shlex
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from conftest import CASES
 
@@ -25,3 +28,23 @@ def missing(stated, printed):
         if not found:
             return f"{piece!r} is not in:\n{printed}"
     return None
+
+
+class Hung(BaseException):
+    """A call that does not end."""
+
+
+@contextmanager
+def limited(seconds: int) -> Iterator[None]:
+    """Raise :class:`Hung` in what does not end within some seconds."""
+
+    def hung(*_: object) -> None:
+        raise Hung
+
+    before = signal.signal(signal.SIGALRM, hung)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)

@@ -29,9 +29,9 @@ def slider_crank(wanted=("all",), mechanism=None, **keywords):
     )
 
 
-def crank_slider(pin=PIN):
+def crank_slider(pin=PIN, lengths=(0.1, 0.2)):
     m = Mechanism("slider_crank")
-    r, l = m.parameter("r", 0.1, "m"), m.parameter("l", 0.2, "m")
+    r, l = (m.parameter(name, length, "m") for name, length in zip("rl", lengths, strict=True))
     crank = m.link("crank", length=r, mass=m.parameter("m1", 0.1, "kg"))
     rod = m.link("rod", length=l, mass=m.parameter("m2", 0.1, "kg"))
     slider = m.point_mass("slider", m.parameter("m3", 0.1, "kg"))

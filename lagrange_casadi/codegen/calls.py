@@ -1,8 +1,7 @@
 """Arguments of compiled code: a struct whose members Python sets by name and C reads by name.
 
 One list of members makes both the C struct and the :class:`ctypes.Structure`, so neither depends on
-an order that is written down twice. ``tests/agree/test_calls.py`` asks a compiler whether both lie
-alike in memory.
+an order that is written down twice.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ class ClosedForm:
 
 
 Verified: TypeAlias = Callable[[Sequence[ClosedForm]], bool]
-"""Whether solutions, one after another, were put back into the equations."""
+"""Function that is true if solutions, one after another, satisfy the equations of a loop."""
 
 
 def solve_loop(

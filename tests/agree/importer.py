@@ -1,14 +1,11 @@
 """A tool that imports FMUs, as far as tests need one, and scenes to be imported."""
 
-import math
-
 import casadi as ca
 import numpy as np
 import pytest
 from mechanisms import crank_and_rod
 
-from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.motion import harmonic
+from lagrange_casadi import Scene
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 
@@ -24,35 +21,6 @@ def windy():
     return Scene(
         scene.mechanism, dict(scene.motion), ["all"], posture={"b": 0.0}, t=(0.3, 1.3, 101)
     )
-
-
-def robot():
-    """Three legs under a platform, whose loops are iterated; the length of a shin and the
-    platform's mass are parameters.
-    """
-    m = Mechanism("robot")
-    shin = m.parameter("shin", 0.28, "m", low=0.1, high=0.5)
-    platform = m.link(
-        "platform",
-        length=0.2,
-        mass=m.parameter("mass", 1.5, "kg", low=0.0),
-        centre=(0.0, 0.0),
-        inertia=0.01,
-    )
-    posture, motion = {"platform": 0.0}, {}
-    for i in range(3):
-        angle = 2 * math.pi * i / 3 + math.pi / 6
-        upper = m.link(f"upper{i}", length=0.28, mass=0.8)
-        lower = m.link(f"lower{i}", length=0.28 if i else shin, mass=0.5)
-        m.revolute(f"drive{i}", m.ground.at(0.5 * math.cos(angle), 0.5 * math.sin(angle)), upper)
-        m.revolute(f"knee{i}", upper.tip, lower)
-        m.revolute(
-            f"foot{i}", lower.tip, platform.at(0.12 * math.cos(angle), 0.12 * math.sin(angle))
-        )
-        inward = angle + math.pi
-        posture[f"upper{i}"], posture[f"lower{i}"] = inward - 0.8, inward + 0.8
-        motion[f"drive{i}"] = harmonic(inward - 0.8, 0.2, 1.0, 2 * math.pi * i / 3)
-    return Scene(m, motion, ["all"], t=(0, 1, 201), posture=posture)
 
 
 def signals(solution, ahead=0, **tuned):

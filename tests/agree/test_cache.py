@@ -2,23 +2,20 @@
 not; and graphs that are derived once, named by all that they come from.
 """
 
-import hashlib
 import os
 import pickle
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import casadi as ca
 import numpy as np
 import pytest
-from internals import Wanted, cache, fingerprint, sources
+from internals import Wanted, cache, fingerprint
 from mechanisms import slider_crank
 from outside import doubled
 from places import FOLDERS
 
-import lagrange_casadi
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import PathError, PickleError
@@ -94,30 +91,6 @@ def test_the_command_shows_what_is_kept(fresh_cache, monkeypatch, capsys):
     assert capsys.readouterr().out.startswith(
         f"{fresh_cache}: 1 graph, 2 libraries, 1.23 MB in 7 files\nlimit: 3 MB, "
     )
-
-
-PROGRAM = """
-import sys
-sys.path[:0] = {folders!r}
-import threaded
-from lagrange_casadi import evaluate
-for own in range(3):
-    evaluate(threaded.press(own), backend="c", flags="-O0", t=(0, 1, 9), certificate=False)
-"""
-
-
-@pytest.mark.long
-def test_processes_share_a_cache_that_holds_too_little(tmp_path):
-    """Each removes what another one is about to load."""
-    command = [sys.executable, "-W", "error", "-c", PROGRAM.format(folders=FOLDERS)]
-    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), cache.VARIABLE: "60k"}
-    started = [
-        subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True)
-        for _ in range(3)
-    ]
-    assert [(process.communicate(timeout=120)[1], process.returncode) for process in started] == [
-        ("", 0)
-    ] * 3
 
 
 def owned_by_another(path, monkeypatch):
@@ -255,14 +228,6 @@ def test_every_change_of_a_declaration_has_another_name():
     assert name_of(pendulum()) == names[0]
 
 
-def test_what_cannot_be_told_is_not_kept(fresh_cache):
-    scene = pendulum()
-    scene.mechanism.note = object()
-    assert name_of(scene) is None
-    derive(scene)
-    assert not list(fresh_cache.glob("*.graph"))
-
-
 def test_a_damaged_graph_is_derived_again_and_said(fresh_cache):
     first = evaluate(pendulum())
     (path,) = fresh_cache.glob("*.graph")
@@ -289,12 +254,3 @@ def test_a_motion_by_a_callback_is_not_kept(fresh_cache):
         PickleError, match=r"the scene of '.*' cannot be pickled: it calls a function"
     ):
         pickle.dumps(derive(scene, ["motion"]))
-
-
-def test_the_code_that_derives_is_all_of_the_package():
-    """A change anywhere may derive other graphs: none is believed to be as it was kept."""
-    root = Path(lagrange_casadi.__file__).parent
-    digest = hashlib.sha256()
-    for path in sorted(root.rglob("*.py")):
-        digest.update(f"{path.relative_to(root)}\0".encode() + path.read_bytes())
-    assert sources() == digest.hexdigest()

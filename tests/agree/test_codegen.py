@@ -3,18 +3,11 @@ optimizes it, however many threads run it, and whatever stands beside an instant
 """
 
 import itertools
-import os
-import platform
-import re
-import shutil
 import subprocess
-import sys
 
-import casadi as ca
 import numpy as np
 import pytest
 from compiled import (
-    HEADER,
     PEDANTIC,
     SCENES,
     STRICT,
@@ -25,20 +18,14 @@ from compiled import (
 from conftest import CASES
 from design_rows import DENSITIES, loaded
 from internals import (
-    FLAGS,
-    LANES_PLACE,
     EvaluationMethod,
     KeptOutputs,
     backends,
-    compensated,
     library,
-    plain,
     stages_of,
 )
 from mechanisms import crank_and_rod, every_function, slider_crank
-from operations import EACH
 from parametric import declared
-from places import FOLDERS, TESTS
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
 from lagrange_casadi.errors import SizeError
@@ -124,126 +111,6 @@ def test_no_flag_changes_the_arithmetic_of_the_process(backend):
     """What -ffast-math allows in a library is not done to everyone who loads it."""
     evaluate(slider_crank(["effort"]), backend=backend, flags="-ffast-math")
     assert np.float64(1e-310) * np.float64(0.5) == 5e-311
-
-
-@pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
-def test_a_load_may_call_a_function_that_is_not_inlined(backend):
-    x = ca.SX.sym("x")
-    called = ca.Function("called", [x], [ca.sin(x) * x], {"never_inline": True})
-    m = Mechanism("arm")
-    k, arm = m.parameter("k", 2.0), m.link("arm", length=1, mass=1)
-    joint = m.revolute("J", m.ground, arm)
-    m.torque("t", arm, called(m.coordinate(joint)) * called(k))
-    solution = evaluate(Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)), backend=backend)
-    angle = solution.motion("J").value
-    np.testing.assert_allclose(
-        solution.series["load:t:mz"], np.sin(angle) * angle * np.sin(2.0) * 2.0, rtol=1e-14
-    )
-
-
-def test_emission_is_the_same_in_every_process(tmp_path):
-    """Two interpreters with different hash seeds emit the same bytes; no path, no clock."""
-    program = (
-        "import sys; sys.path[:0] = {!r}; from mechanisms import slider_crank; from lagrange_casadi"
-        " import codegen, derive; "
-    )
-    program = (
-        program.format([str(tmp_path), *FOLDERS]) + "print(codegen.emit(derive(slider_crank())))"
-    )
-    texts = []
-    for seed in ("1", "2"):
-        environment = os.environ | {"PYTHONHASHSEED": seed}
-        done = subprocess.run(
-            [sys.executable, "-c", program],
-            capture_output=True,
-            text=True,
-            check=True,
-            env=environment,
-        )
-        texts.append(done.stdout)
-    assert texts[0] == texts[1]
-    assert str(tmp_path) not in texts[0]
-    assert str(TESTS) not in texts[0]
-
-
-def object_code(name, precision, language, folder):
-    """The object code of a scene, by the package's own flags, pedantically clean."""
-    program = derive(WHOLE[name]())
-    source = codegen.emit(
-        program, plain(program) if precision == "double" else compensated(program, precision)
-    )
-    path = folder / ("scene.c" if language == "c" else "scene.cpp")
-    path.write_text(
-        source if language == "c" else source.replace(LANES_PLACE, HEADER.read_text(), 1)
-    )
-    flags = [flag for flag in FLAGS[language] if flag not in ("-shared", "-nostartfiles")]
-    # A pack is passed as the machine's vectors are, and CasADi knows no C++.
-    flags += STRICT if language == "c" else [*STRICT[3:], "-Wno-psabi"]
-    command = [
-        *codegen.find_compiler(language).command,
-        *flags,
-        "-c",
-        path,
-        "-o",
-        folder / "scene.o",
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return folder / "scene.o"
-
-
-# Arithmetic, comparisons and conversions of doubles, in SSE, AVX and x87; to move or to mask eight
-# bytes is none.
-ON_DOUBLES = re.compile(
-    r"v?(add|sub|mul|div|sqrt|max|min|cmp\w*|u?comi|round|rndscale|rcp\w*|rsqrt\w*|scalef|reduce|get\w+|h(add|sub)|addsub|dp)[sp]d"
-    r"|vfn?m\w+[sp]d|v?cvt\w*[sp]d\w*|f(ld|st|add|sub|mul|div|prem|sqrt|ild|com|ucom|i?st)\w*"
-)
-
-
-def on_doubles(path):
-    """The instructions on doubles in object code."""
-    listed = subprocess.run(
-        ["objdump", "-d", "--no-show-raw-insn", path], capture_output=True, text=True, check=True
-    )
-    found = re.findall(r"^\s*[0-9a-f]+:\s+(?:\{\w+\}\s+)?(\w+)", listed.stdout, re.MULTILINE)
-    assert len(found) > 50
-    return {instruction for instruction in found if ON_DOUBLES.fullmatch(instruction)}
-
-
-def functions_of_doubles(path):
-    """The functions of doubles that object code asks a library for."""
-    listed = subprocess.run(["nm", "-u", path], capture_output=True, text=True, check=True)
-    names = [line.split()[-1].rpartition("_")[2] for line in listed.stdout.splitlines()]
-    return {name for name in names if name in {*EACH, "pow", "sincos"} - {"not", "and", "or"}}
-
-
-tools = pytest.mark.skipif(
-    not (
-        shutil.which("objdump")
-        and shutil.which("nm")
-        and platform.machine() in ("x86_64", "AMD64", "i686")
-    ),
-    reason="reads the instructions of x86 by objdump and nm",
-)
-
-
-@pytest.mark.sampled(13)
-@tools
-@both
-@pytest.mark.parametrize("name", WHOLE)
-def test_no_instruction_is_on_doubles(name, language, tmp_path):
-    path = object_code(name, "single", language, tmp_path)
-    assert on_doubles(path) == set()
-    assert functions_of_doubles(path) == set()
-
-
-@tools
-@both
-def test_instructions_on_doubles_are_told(language, tmp_path):
-    """The same look at code for doubles finds them."""
-    path = object_code("functions", "double", language, tmp_path)
-    assert {name.removeprefix("v")[:3] for name in on_doubles(path)} >= {"add", "mul", "sub"}
-    assert functions_of_doubles(path) >= {"atan2", "exp", "erf", "hypot", "pow"}
 
 
 def pushed(constant):

@@ -1,17 +1,11 @@
 """Compilers that fail, hang, cannot be started or say what is no text; and what is built again."""
 
 import os
-import re
 import shutil
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
 import sweeps
-from commands import words
 from compiled import fake_compiler
 from internals import cache, compiler
 from mechanisms import slider_crank
@@ -105,61 +99,6 @@ def test_a_time_limit_that_is_none_is_one_line(here, fresh_cache, monkeypatch, c
     assert main(["run", str(CASE), "--no-figures", "--t", "0:0.08:9", "--backend", "c"]) == 1
     says = f"error: $LAGRANGE_CASADI_COMPILER_TIMEOUT = '{text}': expected a number of seconds"
     assert capsys.readouterr().err == f"{says} above 0; without it they are 600\n"
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
-@pytest.mark.parametrize("script", [HANGS, f"{TELLS} {HANGS}"], ids=["version", "compiling"])
-def test_an_interrupt_stops_the_compiler(here, tmp_path_factory, monkeypatch, number, script):
-    folder = tmp_path_factory.mktemp("fake")
-    fake_compiler(folder, monkeypatch, script.format(pid=folder / "pid"))
-    monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
-    command = [sys.executable, *words("-m lagrange_casadi run CASE --backend c --no-figures")]
-    with sweeps.process(*command) as stopped:
-        sweeps.wait_for((folder / "pid").exists)
-        began = time.monotonic()
-        stopped.send_signal(number)
-        says = "error: interrupted; no file was left incomplete\n"
-        assert stopped.communicate(timeout=60) == ("", says)
-    assert stopped.returncode == 130
-    assert time.monotonic() - began < 10.0
-    sweeps.wait_for(lambda: gone(folder / "pid"))
-    assert os.listdir(here) == []
-
-
-CROWDED = """
-import os, sys
-from lagrange_casadi.cli import main
-import resource
-resource.setrlimit(resource.RLIMIT_NOFILE, (64, 64))
-held = []
-try:
-    while True:
-        held.append(os.open(os.devnull, os.O_RDONLY))
-except OSError:
-    for _ in range({free}):
-        os.close(held.pop())
-from lagrange_casadi import codegen
-from lagrange_casadi.errors import CompilerError
-for language in ("c", "c++"):
-    try:
-        codegen.find_compiler(language)
-        sys.exit("found")
-    except CompilerError as error:
-        print(error)
-for number in held:
-    os.close(number)
-assert codegen.find_compiler() is not None
-"""
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("free", [0, 3])
-def test_too_few_descriptors_are_not_no_compiler(free):
-    command = [sys.executable, "-c", CROWDED.format(free=free)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert re.fullmatch(r"(cannot start \S+: Too many open files\n){2}", done.stdout)
 
 
 def sealed(library, content):

@@ -1,61 +1,26 @@
-"""Programs that use an exported folder alone, in C++17 and Python, against the API over a cycle;
-and on other rungs one in C99, which test_every_way uses for all scenes.
+"""An exported folder tests itself, and a program in C++17 that uses the folder alone has the
+numbers of the API over a cycle. A program in C99 does so for all scenes, in test_every_way.
 """
 
 import shutil
 import subprocess
-import sys
 
 import pytest
 from exported import (
     CONSUMERS,
-    FEW,
     RATIOS,
-    by_c99,
     compare,
     expected,
     exported,
     instants,
     run,
     solve,
-    values,
 )
 from mechanisms import (
     slider_crank,
-    truss_platform,
 )
-from stepped import iterated
 
 from lagrange_casadi import export, load_case
-
-SCENES = {
-    name: lambda name=name: load_case(name).scene
-    for name in ("slider_crank", "beam_pump", "quick_return", "rrr3")
-} | {"iterated": iterated, "truss_platform": truss_platform}
-
-
-@pytest.mark.sampled(9)
-@pytest.mark.parametrize("precision", ["double", "single"])
-@pytest.mark.parametrize(
-    ("name", "method"),
-    [
-        ("iterated", {"newton": 2}),
-        ("rrr3", {"newton": 3}),
-        ("slider_crank", {"table": 64}),
-        ("beam_pump", {"newton": 2}),
-    ],
-)
-def test_on_other_rungs_too(name, method, precision, tmp_path):
-    scene = SCENES[name]()
-    made, told = exported(
-        scene, tmp_path, precision=precision, parameters=values(scene, precision), **method
-    )
-    solution = solve(scene, precision, **method)
-    found = by_c99(tmp_path, told, instants(solution.t, precision))
-    # Before counted steps the API closes the loops in doubles, the program in its own precision:
-    # other roundings from there on.
-    apart = {"exact": False, "few": 4 * FEW} if "newton" in method else {}
-    compare(found, expected(scene, told, solution), told, made, solution, **apart)
 
 
 def built(folder, *options):
@@ -87,7 +52,7 @@ def test_the_folder_tests_itself(tmp_path):
 @needs_cmake
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "rrr3"])
 def test_a_cpp17_program_finds_the_package(name, tmp_path):
-    scene = SCENES[name]()
+    scene = load_case(name).scene
     made, told = exported(scene, tmp_path / "exported")
     build, prefix = built(tmp_path / "exported", "-DBUILD_TESTING=OFF"), tmp_path / "installed"
     subprocess.run(
@@ -107,27 +72,4 @@ def test_a_cpp17_program_finds_the_package(name, tmp_path):
     found = run(
         [tmp_path / "consumer" / "consumer", *map(str, RATIOS)], instants(solution.t, "double")
     )
-    compare(found, expected(scene, told, solution), told, made, solution)
-
-
-@pytest.mark.sampled(7)
-@needs_cmake
-@pytest.mark.parametrize(
-    ("name", "precision"),
-    [("slider_crank", "double"), ("slider_crank", "single"), ("truss_platform", "double")],
-)
-def test_a_python_program_loads_the_shared_library(name, precision, tmp_path):
-    scene = SCENES[name]()
-    made, told = exported(scene, tmp_path, precision=precision)
-    build = built(tmp_path, "-DBUILD_SHARED_LIBS=ON", "-DBUILD_TESTING=OFF")
-    (library,) = build.glob(f"lib{told['prefix']}.so")
-    solution = solve(scene, precision)
-    command = [
-        sys.executable,
-        CONSUMERS / "python" / "main.py",
-        tmp_path,
-        library,
-        *map(str, RATIOS),
-    ]
-    found = run(command, instants(solution.t, precision))
     compare(found, expected(scene, told, solution), told, made, solution)

@@ -1,33 +1,14 @@
 """Exports to controllers: structured text of IEC 61131-3, run; a header of C++, compiled."""
 
-import os
 import re
 import shutil
 import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
 from structured import blocks
 
 from lagrange_casadi import evaluate, export, load_case
-
-MATIEC = Path(os.environ.get("MATIEC") or Path(shutil.which("iec2c") or "none").parent)
-"""The folder of matiec's compiler, in which its library is."""
-
-RUN = """\
-#include "iec_std_lib.h"
-TIME __CURRENT_TIME;
-BOOL __DEBUG;
-#include "POUS.h"
-#include "POUS.c"
-int main(void) {{
-  static {0} test;
-  {0}_init__(&test, 0);
-  {0}_body__(&test);
-  return printf("%d failed", (int) __GET_VAR(test.FAILED)) < 0;
-}}
-"""
 
 
 def written(name, folder, **options):
@@ -55,22 +36,6 @@ def test_structured_text_passes_its_test(name, tmp_path):
     test = test[f"mechanism_{prefix}_test"]()
     test()
     assert test.failed > 0
-
-
-@pytest.mark.skipif(not (MATIEC / "iec2c").is_file(), reason="needs matiec, on PATH or as MATIEC")
-@pytest.mark.parametrize("name", ["slider_crank", "scara", "cardan_shaft"])
-def test_structured_text_passes_its_test_compiled_by_matiec(name, tmp_path):
-    _, prefix = written(name, tmp_path, structured_text=True)
-    (tmp_path / "run.c").write_text(RUN.format(f"mechanism_{prefix}_test".upper()))
-    library = MATIEC / "lib"
-    for command in (
-        [MATIEC / "iec2c", "-I", library, f"{prefix}.st"],
-        ["gcc", "-O0", "-w", "-I", library / "C", "run.c", "-o", "run", "-lm"],
-    ):
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-    done = subprocess.run(["./run"], cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert done.stdout == "0 failed"
 
 
 def test_what_is_no_result_is_not_valid(tmp_path):

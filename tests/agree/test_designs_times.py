@@ -80,22 +80,6 @@ def test_means_are_over_the_time_of_a_whole_turn(law):
             assert found == pytest.approx(mean, abs=1e-6 * np.abs(values).max())
 
 
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("method", [{"backend": "lanes"}, {"backend": "c", "precision": "single"}])
-def test_a_row_has_the_same_bytes_whatever_stands_beside_it(method):
-    scene = press(uneven, wanted=["effort", "section:rod"], over=("O", 0, TURN, 41))
-    p = np.array([[rpm, 0.3 + 0.01 * k] for k, rpm in enumerate(np.linspace(50, 3000, 23))])
-    designs = prepare(scene, **method)
-    whole = designs.designs(p, threads=1, histories=True)
-    other = designs.designs(p, threads=3, histories=True)
-    for name in ("status", "value", "t", "xi", "mean", "rms", "series", "over", "times"):
-        assert getattr(whole, name).tobytes() == getattr(other, name).tobytes(), name
-    for row in (0, 7, 22):
-        alone = designs.designs(p[[row]], histories=True)
-        assert alone.value.tobytes() == whole.value[[row]].tobytes()
-        assert alone.series.tobytes() == whole.series[[row]].tobytes()
-
-
 def test_a_swing_that_is_looked_for_at_a_time_of_each_designs_own():
     """A motion without parameters, followed from a time that has them: some designs find it on its
     way, others on the next.

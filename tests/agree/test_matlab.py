@@ -1,7 +1,6 @@
 """The mex function of an exported folder, as Octave builds and calls it."""
 
 import math
-import os
 import shutil
 import subprocess
 from functools import cache
@@ -152,18 +151,6 @@ def test_parameters_change_what_they_should(built):
     assert found["sized", "is"].tolist() == [3, 1]
 
 
-def test_single_precision_keeps_the_digits_of_a_coordinate(built):
-    """After 10000 turns, an angle in doubles is given as two singles: the effort is that of the
-    first turn.
-    """
-    folder, _, _ = built("slider_crank", "single")
-    script = (
-        f"{SHOW}i = struct('O', [0.3, 0.3 + 2e4*pi], 'O_rate', [70 70], 'O_acceleration', [0 0]);\n"
-    )
-    effort = shown(octave(f"{script}show('o', slider_crank_mex(i));", folder))["o", "effort_O"]
-    np.testing.assert_allclose(effort[1], effort[0], rtol=3e-6)
-
-
 GIVEN = """
 i = struct('O', [0 1], 'O_rate', [7 7], 'O_acceleration', [0 0]);
 o = slider_crank_mex(i);
@@ -234,33 +221,3 @@ def test_misuse_is_told_in_one_sentence(built):
         assert line.startswith("slider_crank_mex: "), (call, line)
         assert expected.lower() in line.lower(), (call, line)
         assert line.endswith("."), (call, line)
-
-
-@pytest.mark.sampled(6)
-@pytest.mark.parametrize("compiler", ["gcc", "clang"])
-@pytest.mark.parametrize(
-    ("name", "method"),
-    [("slider_crank", "single"), ("slider_crank", "double"), ("andrews_squeezer", "single")],
-)
-def test_compilers_have_nothing_to_say(name, method, compiler, built):
-    if shutil.which(compiler) is None:
-        pytest.skip(f"there is no {compiler}")
-    folder, agreed, _ = built(name, method)
-    headers = subprocess.run(
-        ["mkoctfile", "-p", "OCTINCLUDEDIR"], capture_output=True, text=True, check=True
-    ).stdout.strip()
-    flags = [
-        "-std=c99",
-        "-pedantic",
-        "-Wall",
-        "-Wextra",
-        "-Wconversion",
-        "-Wshadow",
-        "-Werror",
-        "-O2",
-        "-isystem",
-        headers,
-    ]
-    command = [compiler, *flags, "-c", f"{agreed.prefix}_mex.c", "-o", os.devnull]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr

@@ -5,13 +5,12 @@ compiler warns of it.
 import ctypes
 import itertools
 import math
-import re
 
 import casadi as ca
 import numpy as np
 import pytest
 from compiled import cc
-from internals import cell, entries, print_functions, printer
+from internals import print_functions, printer
 from outside import doubled
 
 from lagrange_casadi import codegen
@@ -81,29 +80,6 @@ def test_all_operations_have_the_bits_of_the_virtual_machine(tmp_path):
         # Which of two zeros is the larger one, C leaves open.
         some = ~np.isnan(found) & (values[0] != values[1])
         assert np.array_equal(np.signbit(found[some]), np.signbit(expected[some])), values
-
-
-def looked_up(points):
-    x, y = ca.SX.sym("x"), ca.SX.sym("y")
-    breaks, numbers = np.linspace(-1.0, 2.0, points), np.sin(np.arange(points - 1) * 1.7)
-    found = [entries(numbers, cell(breaks, argument, ends=True)) for argument in (x, ca.sin(x) + y)]
-    return ca.Function(
-        "f", [x, y], [ca.vertcat(found[0] * found[1] + y, ca.ceil(y))], {"cse": True}
-    )
-
-
-@pytest.mark.parametrize("points", [4, 5, 17, 361])
-def test_tables_have_the_numbers_of_the_virtual_machine(points, tmp_path):
-    function = looked_up(points)
-    text = print_functions({"made": function}, "double", prefix="table")
-    # What rounds to whole numbers of itself is left; an entry, which is whole already, is not
-    # rounded.
-    assert text.count("ceil(") == 1
-    assert len(re.findall(r"a\d+ = table_", text)) == 4
-    call = compiled(function, tmp_path)
-    for x in np.linspace(-1.5, 2.5, 97):
-        for y in (-0.3, 0.0, 0.7):
-            assert np.array_equal(call(x, y), function(x, y).full().ravel())
 
 
 @pytest.mark.parametrize(

@@ -68,14 +68,3 @@ def test_the_stack_that_the_header_states_is_never_exceeded(
         pytest.skip(f"there is no {command[0]}")
     source = exported(case, method, sources / f"{method}-{case}")
     assert 64 < deepest(command, source, tmp_path) <= stated(source.with_suffix(".h"))
-
-
-@pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc")
-def test_the_statement_is_of_use(tmp_path):
-    """A bound of megabytes would never be exceeded, either."""
-    source = exported("slider_crank", "double", tmp_path / "slider_crank")
-    assert (
-        stated(source.with_suffix(".h"))
-        < 2 * deepest(("gcc", "-O0", *FLAGS), source, tmp_path)
-        < 16_384
-    )

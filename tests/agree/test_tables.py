@@ -8,16 +8,20 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
+from compiled import STRICT, cc
 from exported import by_c99, compare, expected, exported, instants, solve
 from internals import compiler, cycle_table
 from mechanisms import (
+    bracket,
     crank_and_rod,
+    driven_slider,
     flat_parallelogram,
     four_bar,
     parallelogram,
     slider_crank,
     truss_platform,
 )
+from packer import scene as packer
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion
 from lagrange_casadi.errors import DeclarationError
@@ -128,40 +132,23 @@ def test_errors_fall_with_the_sixth_power_of_the_distance():
     assert 10.5 < math.log2(coarse / fine) < 13.5
 
 
-def two_drives():
-    m = Mechanism("arm")
-    first, second = m.link("first", length=0.5, mass=1.2), m.link("second", length=0.5, mass=1.2)
-    m.revolute("near", m.ground, first)
-    m.revolute("far", first.tip, second)
-    return Scene(m, {"near": motion.polynomial(0, 1), "far": motion.polynomial(0, 1)}, t=(0, 1, 5))
-
-
-def rubbing():
-    m = Mechanism("rubbing")
-    pin = m.revolute("pin", m.ground, m.link("bar", length=0.3, mass=1.0))
-    m.friction("rub", pin, mu=0.1, radius=0.02)
-    return Scene(m, {"pin": motion.polynomial(0, 1)}, t=(0, 1, 5))
-
-
-def driven_slide():
-    m, posture = slider_crank().mechanism, {"crank": 0.7, "rod": -0.4}
-    return Scene(m, {"guide": motion.polynomial(0.25, 0.1)}, posture=posture, t=(0, 0.1, 5))
-
-
 def loaded(load):
     return lambda: arm(load, t=(0, 1, 5))
 
 
 REFUSED = {
-    "two": (two_drives, "expected one driven joint, whose angle determines all, got 'near', 'far'"),
-    "slides": (driven_slide, "the driven joint 'guide' slides; expected one that turns"),
+    "two": (bracket, "expected one driven joint, whose angle determines all, got 'J', 'S'"),
+    "slides": (driven_slider, "the driven joint 'P' slides; expected one that turns"),
     "time": (loaded(lambda q, w, t: ca.sin(t)), "but these depend on the time: 'load:load:mz'"),
     "sign": (loaded(lambda q, w, t: -3 * ca.sign(w)), "quadratic in the rate of joint 'pin'"),
     "size": (loaded(lambda q, w, t: -1e-3 * w * ca.fabs(w)), "depends on a rate's sign"),
     "cube": (loaded(lambda q, w, t: 1e-6 * w**3), "another power enters 'load:load:mz'"),
     "at rest": (loaded(lambda q, w, t: w**2 / ca.fabs(w)), r"is not finite at rest, where pin ="),
     "grows": (loaded(lambda q, w, t: 2 * q**2), "repeat after at most 4 turns of joint 'pin'"),
-    "friction": (rubbing, "but friction depends on its sign: 'rub'"),
+    "friction": (
+        lambda: replace(packer(), wanted=["effort"]),
+        "but friction depends on its sign: 'rub'",
+    ),
     "gear": (lambda: geared(0.7), "after at most 4 turns of joint 'first', but"),
     "iterated": (truss_platform, "expected a drive that can make whole revolutions"),
     "dead centre": (flat_parallelogram, "the loop closed by joint 'B' passes a dead centre"),
@@ -222,3 +209,11 @@ def test_compiled_or_not_and_however_cut_the_bits_are_the_same(name, precision, 
         plain = evaluate(scene, backend="vm", **method)
         cycle_table._compiled.cache_clear()
         assert plain.array(f"effort:{next(iter(scene.laws))}").tobytes() == whole.tobytes()
+
+
+@pytest.mark.parametrize("real", ["float", "double"])
+def test_the_reader_is_pedantically_clean(real, tmp_path):
+    (tmp_path / "interpolate.c").write_text(cycle_table.source())
+    strict = [*STRICT, "-Wconversion", f"-DREAL={real}", "-c"]
+    result = cc(["cc", *strict], tmp_path, "interpolate.c", output="x.o")
+    assert result.returncode == 0, result.stderr

@@ -100,34 +100,6 @@ def test_a_case_is_sent_to_another_process_and_loaded_anew_there(tmp_path):
     assert copy.copy(case.scene) is copy.deepcopy({"scene": case.scene})["scene"] is case.scene
 
 
-POOLED = """
-import multiprocessing
-
-class Half:
-    def __init__(self, number):
-        self.number = number
-
-def half(number):
-    return Half(number / 2)
-
-def scene():
-    with multiprocessing.get_context({method!r}).Pool(2) as pool:
-        return arm(sum(found.number for found in pool.map(half, [1.0, 2.0])))
-"""
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
-def test_a_case_may_have_processes_work_for_it(here, method):
-    path = write(here / "pooled.py", POOLED.format(method=method))
-    own = "import sys; from lagrange_casadi.cli import main; sys.exit(main())"
-    for start in (["-m", "lagrange_casadi"], ["-c", own]):
-        asked = [sys.executable, *start, "info", str(path)]
-        done = subprocess.run(asked, capture_output=True, text=True, timeout=120, check=False)
-        assert (done.returncode, done.stderr) == (0, "")
-        assert "link of 1.5 m" in done.stdout
-
-
 @pytest.mark.parametrize(
     "raised",
     ["BaseException('x')", "SystemExit('x')", "type('Odd', (BaseException,), {})('x')"],

@@ -4,13 +4,12 @@ for what has a meaning. Drawn ones of every option, and a table of the sentences
 
 import os
 import random
-import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from commands import command, words
+from commands import Hung, command, limited, words
 from conftest import CASES
 
 from lagrange_casadi.cli import main
@@ -215,10 +214,6 @@ def main_options(command):
     return group.commands[command].params
 
 
-class Hung(BaseException):
-    """A command that does not end."""
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory, interpreted):
     place = tmp_path_factory.mktemp("misuses")
@@ -240,21 +235,13 @@ def folder(tmp_path_factory, interpreted):
 
 def fault(arguments, capsys):
     """What is wrong with how a misuse is answered."""
-
-    def hung(*_):
-        raise Hung
-
-    before = signal.signal(signal.SIGALRM, hung)
-    signal.alarm(120)
     try:
-        status = main(arguments)
+        with limited(120):
+            status = main(arguments)
     except Hung:
         return "hangs"
     except (Exception, SystemExit) as error:
         return f"{type(error).__name__}: {str(error)[:200]}"
-    finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
     told = capsys.readouterr()
     lines = [
         line for line in told.err.splitlines() if not line.startswith(("note:", "Usage:", "Try "))

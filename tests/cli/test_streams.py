@@ -7,7 +7,6 @@ import resource
 import shlex
 import shutil
 import signal
-import socket
 import stat
 import subprocess
 import sys
@@ -154,13 +153,6 @@ def test_what_is_a_file_or_a_folder_is_no_node(folder, capfd, node):
     assert sorted(os.listdir()) == before
 
 
-def test_a_socket_is_refused(folder, capfd):
-    with socket.socket(socket.AF_UNIX) as server:
-        server.bind("socket")
-        assert command("table s.h5 --csv socket") == 2
-    assert capfd.readouterr().err == "error: cannot write socket: it is a socket, not a file\n"
-
-
 @pytest.mark.parametrize("kind", ["pipe", "folder", "link"])
 def test_what_is_among_figures_and_not_a_file_is_not_replaced(folder, capfd, kind):
     assert command("plot x.h5 --out f") == 0
@@ -270,13 +262,3 @@ def test_a_reader_that_goes_early_is_no_error(folder, line):
     assert done.stderr == ""
     assert Path("status").read_text() == "1\n"
     assert os.path.exists("x.h5") == line.startswith("run")
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    "backend", ["module://matplotlib_inline.backend_inline", "module://nowhere.at_all", "TkAgg"]
-)
-def test_a_backend_that_a_notebook_set_draws_all_the_same(folder, backend):
-    done = shell(f"{PROGRAM} {RUN} --figures f", env={**os.environ, "MPLBACKEND": backend})
-    assert (done.returncode, done.stderr) == (0, "")
-    assert list((folder / "f").glob("*.png"))

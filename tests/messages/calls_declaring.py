@@ -34,6 +34,12 @@ tuple.
 """
 
 
+def calls(prefix: str, owner: Any, table: dict[str, dict[str, Any]]) -> Iterator[tuple[str, Call]]:
+    """Yield calls of an owner's functions, by prefix and name."""
+    for name, given in table.items():
+        yield f"{prefix}{name}", (getattr(owner, name), given)
+
+
 def plane() -> SimpleNamespace:
     """A planar mechanism under declaration, and its parts."""
     m = Mechanism("m")
@@ -110,74 +116,84 @@ def declarations() -> Iterator[tuple[str, Call]]:
     """Calls of what declares a mechanism, on mechanisms of their own."""
     p, s, w, d = plane(), space(), wheels(), drum()
     two = {"parent": p.rod.tip, "child": p.m.point_mass("end", 1.0)}
-    yield "Mechanism", (Mechanism, {"name": "new"})
-    yield "SpatialMechanism", (SpatialMechanism, {"name": "new"})
-    for name, given in {
-        "parameter": {"name": "new", "default": 1.0, "unit": "m", "low": 0.0, "high": 2.0},
-        "link": {"name": "new", "length": 0.1, "mass": 1.0},
-        "point_mass": {"name": "new", "mass": 1.0},
-        "revolute": {"name": "new", **two},
-        "prismatic": {"name": "new", **two, "axis": (1.0, 0.0)},
-        "slot": {"name": "new", **two},
-        "weld": {"name": "new", **two},
-        "constraint": {"name": "new", "phi": p.m.coordinate(p.other)},
-        "nonholonomic": {"name": "new", "expression": p.m.rate(p.other), "replaces": p.pin},
-        "gear": {"name": "new", "first": p.pin, "second": p.other, "ratio": 2.0},
-        "force": {"name": "new", "point": p.arm.tip, "x": 1.0},
-        "torque": {"name": "new", "point": p.arm, "value": 1.0},
-        "spring": {
-            "name": "new",
-            "first": p.m.ground.at(1.0, 1.0),
-            "second": p.arm.tip,
-            "stiffness": 1.0,
-            "length": 1.0,
+    yield from {
+        "Mechanism": (Mechanism, {"name": "new"}),
+        "SpatialMechanism": (SpatialMechanism, {"name": "new"}),
+    }.items()
+    yield from calls(
+        "Mechanism.",
+        p.m,
+        {
+            "parameter": {"name": "new", "default": 1.0, "unit": "m", "low": 0.0, "high": 2.0},
+            "link": {"name": "new", "length": 0.1, "mass": 1.0},
+            "point_mass": {"name": "new", "mass": 1.0},
+            "revolute": {"name": "new", **two},
+            "prismatic": {"name": "new", **two, "axis": (1.0, 0.0)},
+            "slot": {"name": "new", **two},
+            "weld": {"name": "new", **two},
+            "constraint": {"name": "new", "phi": p.m.coordinate(p.other)},
+            "nonholonomic": {"name": "new", "expression": p.m.rate(p.other), "replaces": p.pin},
+            "gear": {"name": "new", "first": p.pin, "second": p.other, "ratio": 2.0},
+            "force": {"name": "new", "point": p.arm.tip, "x": 1.0},
+            "torque": {"name": "new", "point": p.arm, "value": 1.0},
+            "spring": {
+                "name": "new",
+                "first": p.m.ground.at(1.0, 1.0),
+                "second": p.arm.tip,
+                "stiffness": 1.0,
+                "length": 1.0,
+            },
+            "damper": {
+                "name": "new",
+                "first": p.m.ground.at(1.0, 1.0),
+                "second": p.arm.tip,
+                "damping": 1.0,
+            },
+            "torsion_spring": {"name": "new", "joint": p.pin, "stiffness": 1.0},
+            "friction": {"name": "new", "joint": p.pin, "mu": 0.1, "radius": 0.01},
+            "line_load": {"name": "new", "link": p.arm, "y": 1.0},
+            "output": {"name": "new", "expression": p.m.coordinate(p.pin)},
+            "path": {"name": "new", "point": p.arm.tip},
+            "coordinate": {"joint": p.pin},
+            "rate": {"joint": p.pin},
+            "place": {"point": p.arm.tip},
+            "velocity": {"point": p.arm.tip},
+            "direction": {"link": p.arm},
+            "values": {"overrides": {"l": 0.5}},
+            "set_gravity": {"x": 0.0, "y": -9.81},
         },
-        "damper": {
-            "name": "new",
-            "first": p.m.ground.at(1.0, 1.0),
-            "second": p.arm.tip,
-            "damping": 1.0,
-        },
-        "torsion_spring": {"name": "new", "joint": p.pin, "stiffness": 1.0},
-        "friction": {"name": "new", "joint": p.pin, "mu": 0.1, "radius": 0.01},
-        "line_load": {"name": "new", "link": p.arm, "y": 1.0},
-        "output": {"name": "new", "expression": p.m.coordinate(p.pin)},
-        "path": {"name": "new", "point": p.arm.tip},
-        "coordinate": {"joint": p.pin},
-        "rate": {"joint": p.pin},
-        "place": {"point": p.arm.tip},
-        "velocity": {"point": p.arm.tip},
-        "direction": {"link": p.arm},
-        "values": {"overrides": {"l": 0.5}},
-        "set_gravity": {"x": 0.0, "y": -9.81},
-    }.items():
-        yield f"Mechanism.{name}", (getattr(p.m, name), given)
+    )
     own = plane()
     yield "Mechanism.number", (own.m.number, {"expression": own.l, "values": {"l": 0.5}})
     both = {"parent": s.arm.tip, "child": s.rod}
     axis = {"axis": (0.0, 0.0, 1.0)}
-    for name, given in {
-        "nonholonomic": {"name": "new", "expression": s.m.rate(s.pin), "replaces": s.pin},
-        "at": {"body": s.bar, "x": 0.1, "y": 0.0, "z": 0.0},
-        "link": {"name": "new", "length": 0.1, "mass": 1.0},
-        "revolute": {"name": "new", **both, **axis},
-        "prismatic": {"name": "new", **both, **axis},
-        "cylindrical": {"name": "new", **both, **axis},
-        "slot": {"name": "new", **both},
-        "screw": {"name": "new", **both, **axis, "lead": 0.01},
-        "universal": {"name": "new", **both, **axis, "second": (0.0, 1.0, 0.0)},
-        "planar": {"name": "new", **both, **axis},
-        "spherical": {"name": "new", **both},
-        "free": {"name": "new", **both},
-        "weld": {"name": "new", **both},
-        "force": {"name": "new", "point": s.arm.tip, "z": 1.0},
-        "torque": {"name": "new", "point": s.arm, "z": 1.0},
-        "line_load": {"name": "new", "link": s.arm, "z": 1.0},
-        "set_gravity": {"x": 0.0, "y": 0.0, "z": -9.81},
-    }.items():
-        yield f"SpatialMechanism.{name}", (getattr(s.m, name), given)
-    yield "Link.at", (p.arm.at, {"x": 0.1})
-    yield "Ground.at", (p.m.ground.at, {"x": 0.1, "y": 0.1})
+    yield from calls(
+        "SpatialMechanism.",
+        s.m,
+        {
+            "nonholonomic": {"name": "new", "expression": s.m.rate(s.pin), "replaces": s.pin},
+            "at": {"body": s.bar, "x": 0.1, "y": 0.0, "z": 0.0},
+            "link": {"name": "new", "length": 0.1, "mass": 1.0},
+            "revolute": {"name": "new", **both, **axis},
+            "prismatic": {"name": "new", **both, **axis},
+            "cylindrical": {"name": "new", **both, **axis},
+            "slot": {"name": "new", **both},
+            "screw": {"name": "new", **both, **axis, "lead": 0.01},
+            "universal": {"name": "new", **both, **axis, "second": (0.0, 1.0, 0.0)},
+            "planar": {"name": "new", **both, **axis},
+            "spherical": {"name": "new", **both},
+            "free": {"name": "new", **both},
+            "weld": {"name": "new", **both},
+            "force": {"name": "new", "point": s.arm.tip, "z": 1.0},
+            "torque": {"name": "new", "point": s.arm, "z": 1.0},
+            "line_load": {"name": "new", "link": s.arm, "z": 1.0},
+            "set_gravity": {"x": 0.0, "y": 0.0, "z": -9.81},
+        },
+    )
+    yield from {
+        "Link.at": (p.arm.at, {"x": 0.1}),
+        "Ground.at": (p.m.ground.at, {"x": 0.1, "y": 0.1}),
+    }.items()
     steel = {"mechanism": w.m, "name": "new"}
     corners = [(0.0, 0.0), (0.1, 0.0), (0.1, 0.1)]
     plate = elements.plate(w.m, "plate", corners, mass=1.0)
@@ -185,43 +201,57 @@ def declarations() -> Iterator[tuple[str, Call]]:
     cam = elements.disc_cam(w.m, "cams", w.turn, w.slide, lift, base_radius=0.05)
     groove = elements.cylindrical_cam(d.m, "groove", d.turn, d.slide, lift)
     points = [(0.05 * np.cos(a), 0.05 * np.sin(a)) for a in np.linspace(0.0, 6.0, 20)]
-    for name, given in {
-        "wheel": {**steel, "radius": 0.1, "width": 0.01},
-        "gears": {**steel, "first": w.first, "second": w.second, "radii": (0.1, 0.1)},
-        "belt": {**steel, "first": w.first, "second": w.second, "radii": (0.05, 0.05)},
-        "plate": {**steel, "corners": corners, "mass": 1.0},
-        "bent_bar": {**steel, "corners": corners, "mass": 1.0},
-        "disc_cam": {
-            **steel,
-            "cam": w.turn,
-            "follower": w.slide,
-            "lift": lift,
-            "base_radius": 0.05,
+    yield from calls(
+        "",
+        elements,
+        {
+            "wheel": {**steel, "radius": 0.1, "width": 0.01},
+            "gears": {**steel, "first": w.first, "second": w.second, "radii": (0.1, 0.1)},
+            "belt": {**steel, "first": w.first, "second": w.second, "radii": (0.05, 0.05)},
+            "plate": {**steel, "corners": corners, "mass": 1.0},
+            "bent_bar": {**steel, "corners": corners, "mass": 1.0},
+            "disc_cam": {
+                **steel,
+                "cam": w.turn,
+                "follower": w.slide,
+                "lift": lift,
+                "base_radius": 0.05,
+            },
+            "cylinder": {
+                **steel,
+                "rear": w.m.ground,
+                "front": w.first,
+                "closed": 0.3,
+                "bore": 0.05,
+            },
+            "cylindrical_cam": {
+                "mechanism": d.m,
+                "name": "new",
+                "cam": d.turn,
+                "follower": d.slide,
+                "lift": lift,
+            },
+            "two_bearings": {
+                **steel,
+                "housing": w.m.ground,
+                "fixed": w.m.link("axle", length=0.2, mass=1.0),
+                "floating": w.m.links["axle"].tip,
+            },
+            "two_bushes": {
+                **steel,
+                "rod": w.m.link("rod", length=0.2, mass=1.0),
+                "first": w.m.ground,
+                "second": w.m.ground.at(0.1, 0.0),
+            },
+            "profile_lift": {
+                "mechanism": w.m,
+                "cam": w.turn,
+                "follower": w.slide,
+                "points": points,
+            },
+            "read_profile": {"path": "profile.csv"},
         },
-        "cylinder": {**steel, "rear": w.m.ground, "front": w.first, "closed": 0.3, "bore": 0.05},
-        "cylindrical_cam": {
-            "mechanism": d.m,
-            "name": "new",
-            "cam": d.turn,
-            "follower": d.slide,
-            "lift": lift,
-        },
-        "two_bearings": {
-            **steel,
-            "housing": w.m.ground,
-            "fixed": w.m.link("axle", length=0.2, mass=1.0),
-            "floating": w.m.links["axle"].tip,
-        },
-        "two_bushes": {
-            **steel,
-            "rod": w.m.link("rod", length=0.2, mass=1.0),
-            "first": w.m.ground,
-            "second": w.m.ground.at(0.1, 0.0),
-        },
-        "profile_lift": {"mechanism": w.m, "cam": w.turn, "follower": w.slide, "points": points},
-        "read_profile": {"path": "profile.csv"},
-    }.items():
-        yield name, (getattr(elements, name), given)
+    )
     e = Mechanism("e")
     sun = elements.wheel(e, "sun", teeth=18, radius=0.018, width=0.01)
     arm = e.link("carrier", length=0.1, mass=1.0)
@@ -236,23 +266,24 @@ def declarations() -> Iterator[tuple[str, Call]]:
         "teeth": (18, 18, 54),
         "module": 0.002,
     }
-    yield "planetary", (elements.planetary, {**given, "mass": 0.1})
-    yield "Plate.at", (plate.at, {"x": 0.0, "y": 0.0})
-    yield "Plate.corner", (plate.corner, {"number": 1})
-    yield "Bent.corner", (bent.corner, {"number": 1})
-    yield "Cam.profile", (cam.profile, {"count": 36})
-    yield "CylindricalCam.groove", (groove.groove, {"count": 36})
-    yield "CamProfile.save_csv", (cam.profile(count=36).save_csv, {"path": "cam.csv"})
-    yield "CamProfile.save_dxf", (cam.profile(count=36).save_dxf, {"path": "cam.dxf"})
+    yield from {
+        "planetary": (elements.planetary, {**given, "mass": 0.1}),
+        "Plate.at": (plate.at, {"x": 0.0, "y": 0.0}),
+        "Plate.corner": (plate.corner, {"number": 1}),
+        "Bent.corner": (bent.corner, {"number": 1}),
+        "Cam.profile": (cam.profile, {"count": 36}),
+        "CylindricalCam.groove": (groove.groove, {"count": 36}),
+        "CamProfile.save_csv": (cam.profile(count=36).save_csv, {"path": "cam.csv"}),
+        "CamProfile.save_dxf": (cam.profile(count=36).save_dxf, {"path": "cam.dxf"}),
+    }.items()
     rolling = bearings.Rolling(dynamic=1e4, hours=1e4)
-    yield "fit", (bearings.fit, {"*": (p.m, p.pin, rolling)})
-    yield (
-        "shaking",
-        (
+    yield from {
+        "fit": (bearings.fit, {"*": (p.m, p.pin, rolling)}),
+        "shaking": (
             importlib.import_module("lagrange_casadi").shaking,
             {"mechanism": p.m, "about": (0.0, 0.0)},
         ),
-    )
+    }.items()
     x = ca.SX.sym("x")
     rates, speeds = ca.SX.sym("v"), ca.SX.sym("a")
     system = {

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-from calls_declaring import SPAN, Call, declarations, plane, sized, swing
+from calls_declaring import SPAN, Call, calls, declarations, plane, sized, swing
 from calls_of_laws import laws
 
 from lagrange_casadi import (
@@ -90,67 +90,76 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     record = root.Measurements(t, columns)
     heads = [f"{at},{angle},1.0" for at, angle in zip(t, columns["O"], strict=True)]
     Path("record.csv").write_text("\n".join(["t [s],O [rad],effort:O [N m]", *heads]))
-    for name, given in {
-        "compile_scene": {"scene": scene, "wanted": ["effort"]},
-        "derive": {"scene": scene, "wanted": ["effort"]},
-        "evaluate": {**lean, "certificate": False},
-        "prepare": lean,
-        "refine": {**both, "names": ["effort:O"]},
-        "sensitivities": {**both, "backend": "vm"},
-        "holding": both,
-        "tolerances": {**lean, "within": {"l": 0.01}, "samples": 10},
-        "tool_deflection": {"scene": scene, "point": scene.mechanism.links["arm"].tip},
-        "vibration": {"solution": solution, "link": "arm"},
-        "sweep": {**lean, "grid": one, "out": "made.h5", "force": True, "workers": 1},
-        "optimise": {
-            **bare,
-            "minimise": "l",
-            "over": {"l": (0.2, 0.3)},
-            "starts": 1,
-            "screen": 2,
-            "points": 2,
+    yield from calls(
+        "",
+        root,
+        {
+            "compile_scene": {"scene": scene, "wanted": ["effort"]},
+            "derive": {"scene": scene, "wanted": ["effort"]},
+            "evaluate": {**lean, "certificate": False},
+            "prepare": lean,
+            "refine": {**both, "names": ["effort:O"]},
+            "sensitivities": {**both, "backend": "vm"},
+            "holding": both,
+            "tolerances": {**lean, "within": {"l": 0.01}, "samples": 10},
+            "tool_deflection": {"scene": scene, "point": scene.mechanism.links["arm"].tip},
+            "vibration": {"solution": solution, "link": "arm"},
+            "sweep": {**lean, "grid": one, "out": "made.h5", "force": True, "workers": 1},
+            "optimise": {
+                **bare,
+                "minimise": "l",
+                "over": {"l": (0.2, 0.3)},
+                "starts": 1,
+                "screen": 2,
+                "points": 2,
+            },
+            "best": {"sweep": swept, "minimise": "l"},
+            "read_designs": {"path": "designs.csv"},
+            "load": {"path": "run.h5"},
+            "check": {"path": "run.h5"},
+            "save": {"solution": solution, "path": "saved.h5"},
+            "load_case": {"path": "slider_crank"},
+            "read": {"path": str(PRESS)},
+            "save_model": {"scene": scene, "path": "model.json"},
+            "link_load_cases": {"solution": solution, "link": "arm"},
+            "write_load_cases": {"cases": [], "folder": "load_cases"},
+            "Measurements": {"t": t, "columns": columns},
+            "read_measurements": {"path": "record.csv"},
+            "identify": {"scene": scene, "measurements": record, "backend": "vm"},
+            "excite": {
+                "scene": scene,
+                "limits": {"O": (-1.0, 1.0, 2.0, 9.0)},
+                "steps": 1,
+                "backend": "vm",
+            },
+            "write_spectrum": {"solution": solution, "name": "effort:O", "path": "spectrum.csv"},
+            "bearing_loads": {"solution": solution, "joint": "O"},
+            "export": {"scene": scene, "out": "exported", "wanted": ["effort"], "force": True},
+            "free": {"scene": scene, "wanted": ["effort"]},
+            "flywheel": {"scene": scene, "start": (0.0, 30.0), "count": 5, "wanted": ["effort"]},
         },
-        "best": {"sweep": swept, "minimise": "l"},
-        "read_designs": {"path": "designs.csv"},
-        "load": {"path": "run.h5"},
-        "check": {"path": "run.h5"},
-        "save": {"solution": solution, "path": "saved.h5"},
-        "load_case": {"path": "slider_crank"},
-        "read": {"path": str(PRESS)},
-        "save_model": {"scene": scene, "path": "model.json"},
-        "link_load_cases": {"solution": solution, "link": "arm"},
-        "write_load_cases": {"cases": [], "folder": "load_cases"},
-        "Measurements": {"t": t, "columns": columns},
-        "read_measurements": {"path": "record.csv"},
-        "identify": {"scene": scene, "measurements": record, "backend": "vm"},
-        "excite": {
-            "scene": scene,
-            "limits": {"O": (-1.0, 1.0, 2.0, 9.0)},
-            "steps": 1,
-            "backend": "vm",
-        },
-        "write_spectrum": {"solution": solution, "name": "effort:O", "path": "spectrum.csv"},
-        "bearing_loads": {"solution": solution, "joint": "O"},
-        "export": {"scene": scene, "out": "exported", "wanted": ["effort"], "force": True},
-        "free": {"scene": scene, "wanted": ["effort"]},
-        "flywheel": {"scene": scene, "start": (0.0, 30.0), "count": 5, "wanted": ["effort"]},
-    }.items():
-        yield name, (getattr(root, name), given)
+    )
     found = root.identify(scene, record, backend="vm")
     yield "Identification.validate", (found.validate, {"measurements": record})
-    for name, given in {
-        "quantities": {"drives": ["O"]},
-        "motion": {"drives": ["O"]},
-        "cutoff": {"drive": "O"},
-    }.items():
-        yield f"Measurements.{name}", (getattr(record, name), given)
-    for name, given in {
-        "forces": {"solution": solution},
-        "refine_safety": {**both, "link": "arm"},
-        "refine_stress": {**both, "link": "arm"},
-        "shortfall": {"scene": scene, "counts": [5, 9], "names": ["effort:O"]},
-    }.items():
-        yield f"peaks.{name}", (getattr(peaks, name), given)
+    yield from calls(
+        "Measurements.",
+        record,
+        {
+            "quantities": {"drives": ["O"]},
+            "motion": {"drives": ["O"]},
+            "cutoff": {"drive": "O"},
+        },
+    )
+    yield from calls(
+        "peaks.",
+        peaks,
+        {
+            "forces": {"solution": solution},
+            "refine_safety": {**both, "link": "arm"},
+            "refine_stress": {**both, "link": "arm"},
+            "shortfall": {"scene": scene, "counts": [5, 9], "names": ["effort:O"]},
+        },
+    )
     size = importlib.import_module("lagrange_casadi.studies.sizing").size
     yield (
         "size",
@@ -159,128 +168,161 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
             {"scene": sized(), "profiles": [beams.Profile("p", {"height": 0.03, "width": 0.01})]},
         ),
     )
-    for name, given in {
-        "animate": {"path": "cycle.svg"},
-        "array": {"name": "effort:O"},
-        "deflection": {"link": "arm"},
-        "determined": {"name": "effort:O"},
-        "during": {"instants": slice(0, 2)},
-        "effort": {"joint": "O"},
-        "extremes": {"name": "effort:O"},
-        "life": {"link": "arm"},
-        "motion": {"joint": "O"},
-        "peak": {"name": "effort:O"},
-        "pose": {"body": "arm"},
-        "reaction": {"joint": "O"},
-        "report": {"path": "page.html"},
-        "safety": {"link": "arm"},
-        "section": {"link": "arm"},
-        "statistics": {"name": "effort:O"},
-        "stress": {"link": "arm"},
-        "unit": {"name": "effort:O"},
-        "view": {"height": 300},
-    }.items():
-        yield f"Solution.{name}", (getattr(solution, name), given)
-    yield "Scene.report", (scene.report, {"path": "scene.html"})
-    yield "Scene.checked", (scene.checked, {"values": {"l": 0.5}})
-    yield "Scene.timing", (scene.timing, {"t": SPAN})
-    yield "Scene.values", (scene.values, {"parameters": {"l": 0.5}})
-    yield "Scene.wants", (scene.wants, {"names": ["effort"]})
-    yield "Scene.with_elastic", (scene.with_elastic, {"elastic": True})
-    yield (
-        "Deflection.at",
-        (solution.deflection("arm").at, {"name": solution.deflection("arm").names[0], "u": 0.5}),
+    yield from calls(
+        "Solution.",
+        solution,
+        {
+            "animate": {"path": "cycle.svg"},
+            "array": {"name": "effort:O"},
+            "deflection": {"link": "arm"},
+            "determined": {"name": "effort:O"},
+            "during": {"instants": slice(0, 2)},
+            "effort": {"joint": "O"},
+            "extremes": {"name": "effort:O"},
+            "life": {"link": "arm"},
+            "motion": {"joint": "O"},
+            "peak": {"name": "effort:O"},
+            "pose": {"body": "arm"},
+            "reaction": {"joint": "O"},
+            "report": {"path": "page.html"},
+            "safety": {"link": "arm"},
+            "section": {"link": "arm"},
+            "statistics": {"name": "effort:O"},
+            "stress": {"link": "arm"},
+            "unit": {"name": "effort:O"},
+            "view": {"height": 300},
+        },
     )
-    for name, given in {
-        "at": {"xi": 0.5},
-        "fibres": {"xi": 0.5},
-        "grid": {"kind": "von_mises"},
-        "largest": {"kind": "von_mises"},
-        "largest_at_notches": {"kind": "von_mises"},
-        "peak": {"kind": "von_mises"},
-    }.items():
-        yield f"Stress.{name}", (getattr(of.stress, name), given)
-    yield "Safety.against", (solution.safety("arm").against, {"what": "yielding"})
-    yield "Plane.value", (strength.critical_plane(np.eye(3, 4)).value, {})
-    for name, given in {
-        "safety": {"solution": solution, "link": "arm"},
-        "life": {"solution": solution, "link": "arm"},
-        "stress": {"solution": solution, "link": "arm"},
-        "joint_safety": {"solution": solution, "joint": "O"},
-        "safeties": {"solution": solution},
-        "effective_lengths": {"description": solution.description, "link": "arm"},
-    }.items():
-        yield f"strength.{name}", (getattr(strength, name), given)
+    yield from {
+        "Scene.report": (scene.report, {"path": "scene.html"}),
+        "Scene.checked": (scene.checked, {"values": {"l": 0.5}}),
+        "Scene.timing": (scene.timing, {"t": SPAN}),
+        "Scene.values": (scene.values, {"parameters": {"l": 0.5}}),
+        "Scene.wants": (scene.wants, {"names": ["effort"]}),
+        "Scene.with_elastic": (scene.with_elastic, {"elastic": True}),
+        "Deflection.at": (
+            solution.deflection("arm").at,
+            {"name": solution.deflection("arm").names[0], "u": 0.5},
+        ),
+    }.items()
+    yield from calls(
+        "Stress.",
+        of.stress,
+        {
+            "at": {"xi": 0.5},
+            "fibres": {"xi": 0.5},
+            "grid": {"kind": "von_mises"},
+            "largest": {"kind": "von_mises"},
+            "largest_at_notches": {"kind": "von_mises"},
+            "peak": {"kind": "von_mises"},
+        },
+    )
+    yield from {
+        "Safety.against": (solution.safety("arm").against, {"what": "yielding"}),
+        "Plane.value": (strength.critical_plane(np.eye(3, 4)).value, {}),
+    }.items()
+    yield from calls(
+        "strength.",
+        strength,
+        {
+            "safety": {"solution": solution, "link": "arm"},
+            "life": {"solution": solution, "link": "arm"},
+            "stress": {"solution": solution, "link": "arm"},
+            "joint_safety": {"solution": solution, "joint": "O"},
+            "safeties": {"solution": solution},
+            "effective_lengths": {"description": solution.description, "link": "arm"},
+        },
+    )
     yield "Prepared.__call__", (of.prepared, {"*": ({"l": 0.3},)})
     for name in ("peaks", "gradient", "curvature"):
         yield f"Prepared.{name}", (getattr(of.prepared, name), {"*": ({"l": 0.3},)})
     yield "Prepared.designs", (of.prepared.designs, {"p": np.array([[0.3]])})
-    for name, given in {
-        "array": {"name": "effort:O", "parameter": "l"},
-        "curvature": {"name": "effort:O", "parameter": "l", "other": "l"},
-        "mean": {"name": "effort:O"},
-        "rms": {"name": "effort:O"},
-        "peak": {"name": "effort:O"},
-        "peaks": {"names": ["effort:O"]},
-    }.items():
-        yield f"Sensitivities.{name}", (getattr(of.sensitivities, name), given)
+    yield from calls(
+        "Sensitivities.",
+        of.sensitivities,
+        {
+            "array": {"name": "effort:O", "parameter": "l"},
+            "curvature": {"name": "effort:O", "parameter": "l", "other": "l"},
+            "mean": {"name": "effort:O"},
+            "rms": {"name": "effort:O"},
+            "peak": {"name": "effort:O"},
+            "peaks": {"names": ["effort:O"]},
+        },
+    )
     peak = "peak:effort:O"
-    for name, given in {
-        "__getitem__": {"name": peak},
-        "at_number": {"axis": "l", "number": 0},
-        "axes_of": {"names": [peak]},
-        "blocks": {"names": [peak]},
-        "check_columns": {"names": [peak]},
-        "column": {"name": peak},
-        "design": {"number": 0},
-        "open": {"path": "swept.h5"},
-        "report": {"path": "sweep.html"},
-        "select": {"l": 0.2},
-        "thinned": {"axis": "l", "stride": 2},
-        "to_xarray": {"names": [peak]},
-        "unit": {"name": peak},
-        "values": {"number": 0, "names": [peak]},
-    }.items():
-        yield f"Sweep.{name}", (getattr(swept, name), given)
+    yield from calls(
+        "Sweep.",
+        swept,
+        {
+            "__getitem__": {"name": peak},
+            "at_number": {"axis": "l", "number": 0},
+            "axes_of": {"names": [peak]},
+            "blocks": {"names": [peak]},
+            "check_columns": {"names": [peak]},
+            "column": {"name": peak},
+            "design": {"number": 0},
+            "open": {"path": "swept.h5"},
+            "report": {"path": "sweep.html"},
+            "select": {"l": 0.2},
+            "thinned": {"axis": "l", "stride": 2},
+            "to_xarray": {"names": [peak]},
+            "unit": {"name": peak},
+            "values": {"number": 0, "names": [peak]},
+        },
+    )
     swept_room = importlib.import_module("lagrange_casadi.studies.sweep")
-    yield "chosen", (swept_room.chosen, {"sweep": swept, "names": ["l"]})
-    yield "is_sweep", (swept_room.is_sweep, {"path": "swept.h5"})
+    yield from {
+        "chosen": (swept_room.chosen, {"sweep": swept, "names": ["l"]}),
+        "is_sweep": (swept_room.is_sweep, {"path": "swept.h5"}),
+    }.items()
     held = {"solution": solution, "joint": "O"}
-    for name, given in {
-        "duty_of": held,
-        "inertia_at": {"scene": scene, "joint": "O"},
-        "assess": {"motor": of.motor, "duty": of.duty},
-        "plot_duty": {"duty": of.duty, "path": "duty.png"},
-        "select": {
-            "motors": [of.motor],
-            "duty": lambda ratio, inertia: actuators.duty_of(**held, ratio=ratio, inertia=inertia),
+    yield from calls(
+        "",
+        actuators,
+        {
+            "duty_of": held,
+            "inertia_at": {"scene": scene, "joint": "O"},
+            "assess": {"motor": of.motor, "duty": of.duty},
+            "plot_duty": {"duty": of.duty, "path": "duty.png"},
+            "select": {
+                "motors": [of.motor],
+                "duty": lambda ratio, inertia: actuators.duty_of(
+                    **held, ratio=ratio, inertia=inertia
+                ),
+            },
         },
-    }.items():
-        yield name, (getattr(actuators, name), given)
-    for name, given in {
-        "torque": {"value": 1.0},
-        "power": {"value": 1.0},
-        "torque_curve": {"speeds": [0.0, 1.0], "torques": [1.0, 0.0]},
-        "dc_motor": {"stall_torque": 1.0, "no_load_speed": 10.0},
-        "induction_motor": {
-            "breakdown_torque": 1.0,
-            "breakdown_slip": 0.2,
-            "synchronous_speed": 10.0,
+    )
+    yield from calls(
+        "forward.",
+        forward,
+        {
+            "torque": {"value": 1.0},
+            "power": {"value": 1.0},
+            "torque_curve": {"speeds": [0.0, 1.0], "torques": [1.0, 0.0]},
+            "dc_motor": {"stall_torque": 1.0, "no_load_speed": 10.0},
+            "induction_motor": {
+                "breakdown_torque": 1.0,
+                "breakdown_slip": 0.2,
+                "synchronous_speed": 10.0,
+            },
+            "expression": {"law": lambda t, angle, speed: -speed},
+            "plot_cycle": {"motion": of.gone, "path": "cycle.png"},
         },
-        "expression": {"law": lambda t, angle, speed: -speed},
-        "plot_cycle": {"motion": of.gone, "path": "cycle.png"},
-    }.items():
-        yield f"forward.{name}", (getattr(forward, name), given)
+    )
     yield "Law.geared", (forward.torque(1.0).geared, {"ratio": 2.0})
     chosen = {**held, "bearings": bearings.deep_groove("62"), "hours": 10.0}
-    yield "select_bearing", (bearings.select_bearing, chosen)
-    yield "Motor.short_time_torque", (of.motor.short_time_torque, {"speed": 10.0})
-    yield "Motor.continuous_torque", (of.motor.continuous_torque, {"speed": 10.0})
-    yield "write_animation", (animation.write_animation, {"solution": solution, "path": "made.svg"})
-    yield "default_figures", (figures.default_figures, {"solution": solution})
+    yield from {
+        "select_bearing": (bearings.select_bearing, chosen),
+        "Motor.short_time_torque": (of.motor.short_time_torque, {"speed": 10.0}),
+        "Motor.continuous_torque": (of.motor.continuous_torque, {"speed": 10.0}),
+        "write_animation": (animation.write_animation, {"solution": solution, "path": "made.svg"}),
+        "default_figures": (figures.default_figures, {"solution": solution}),
+    }.items()
     drawn = {"solution": solution, "specs": [figures.TimePlot("f", ("effort:O",))], "folder": "."}
-    yield "draw", (figures.draw, drawn)
-    yield "TimePlot.draw", (drawn["specs"][0].draw, {"solution": solution})
+    yield from {
+        "draw": (figures.draw, drawn),
+        "TimePlot.draw": (drawn["specs"][0].draw, {"solution": solution}),
+    }.items()
 
 
 def files() -> None:

@@ -6,7 +6,6 @@ import importlib
 import inspect
 import itertools
 import random
-import signal
 import warnings
 from collections.abc import Mapping
 from decimal import Decimal
@@ -17,6 +16,7 @@ import casadi as ca
 import numpy as np
 import public_calls
 import pytest
+from commands import Hung, limited
 
 from lagrange_casadi import Mechanism
 from lagrange_casadi.errors import LagrangeCasadiError
@@ -105,10 +105,6 @@ export optimise sweep tolerances size Scene.report draw Sweep.report Solution.re
 """What takes long where it takes a value: left out of the quick walk."""
 
 
-class Hung(BaseException):
-    """A call that does not end."""
-
-
 @pytest.fixture(scope="module")
 def things(tmp_path_factory, interpreted):
     with pytest.MonkeyPatch.context() as patch:
@@ -153,14 +149,8 @@ def changed(function, given, name, value):
 
 def fault(function, given):
     """What is wrong with how a call ends; nothing where it is refused as it should be."""
-
-    def hung(*_):
-        raise Hung
-
-    before = signal.signal(signal.SIGALRM, hung)
-    signal.alarm(120)
     try:
-        with warnings.catch_warnings():
+        with limited(120), warnings.catch_warnings():
             warnings.simplefilter("error")
             call(function, given)
     except LagrangeCasadiError as error:
@@ -170,9 +160,6 @@ def fault(function, given):
         return "hangs"
     except Exception as error:  # what the test is about
         return f"{type(error).__name__}: {str(error)[:200]}"
-    finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
     return "is accepted"
 
 

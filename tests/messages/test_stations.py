@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi import Mechanism, Scene, evaluate, read, save_model
+from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
 
@@ -90,35 +90,6 @@ def test_the_lines_of_a_refusal_make_what_was_meant(station):
     torque = inertia * alpha + G * (MASS * LENGTH / 2 + WEIGHT * station) * np.cos(angle)
     limit = 1e-13 * np.abs(torque).max()
     np.testing.assert_allclose(solution.effort("O"), torque, rtol=0, atol=limit)
-    arm = station - max(0.0, min(station, LENGTH))
-    weight = WEIGHT * (G * np.cos(angle) + station * alpha) * arm
-    bending = solution.section("arm_tail").bending
-    np.testing.assert_allclose(np.abs(bending[:, 0]), np.abs(weight), rtol=1e-12, atol=1e-12)
-    np.testing.assert_allclose(bending[:, -1], 0.0, atol=1e-13)
-
-
-def slide(start):
-    """A block that slides past the tip of its rail; its line begins at a station."""
-    m = Mechanism("rail")
-    rail, block = m.link("rail", length=0.4, mass=1.0), m.point_mass("block", 2.0)
-    m.revolute("O", m.ground, rail)
-    m.prismatic("P", rail.at(start), block, axis=(1, 0))
-    laws = {"O": polynomial(0.3, 2.0), "P": polynomial(0.5 - start, 0.4)}
-    return Scene(m, laws, t=(0.0, 0.2, 5))
-
-
-def test_a_line_may_be_told_by_a_place_beyond_the_end(tmp_path):
-    """The same sections are loaded; and the model that a file holds takes the same effort."""
-    scene = slide(0.1)
-    save_model(scene, tmp_path / "rail.json")
-    within = evaluate(scene)
-    again = evaluate(read(tmp_path / "rail.json"), t=scene.t)
-    np.testing.assert_allclose(again.effort("O"), within.effort("O"), rtol=1e-12)
-    for other in (slide(0.5), slide(-0.2)):
-        beyond = evaluate(other)
-        for name in ("axial", "shear", "bending"):
-            forces, there = (getattr(one.section("rail"), name) for one in (beyond, within))
-            np.testing.assert_allclose(forces, there, rtol=0.0, atol=1e-12 * np.abs(there).max())
 
 
 WHY = {

@@ -7,18 +7,16 @@ import subprocess
 
 import numpy as np
 import pytest
+from mechanisms import crank_and_rod
 from strong import robot
 
 from lagrange_casadi import (
-    Mechanism,
-    Scene,
     beams,
     evaluate,
     link_load_cases,
     load_case,
     write_load_cases,
 )
-from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -26,9 +24,6 @@ FORCES, MOMENTS = ("axial", "shear_y", "shear_z"), ("torsion", "bending_y", "ben
 
 
 PLANAR = ("axial", "shear", "", "", "", "bending")
-
-
-STEEL = beams.material("S355")
 
 
 SPRING = 1e7
@@ -106,23 +101,17 @@ def means(stresses, height, width):
 
 
 def press():
-    """A slider-crank upright whose rod bears a force beside its axis."""
-    m = Mechanism("press")
-    crank = m.link("crank", length=0.1, beam=beams.Beam(beams.rectangle(0.05, 0.03), STEEL))
+    """A rod that bears a force beside its axis."""
     tapered = beams.tapered(beams.rectangle(0.06, 0.03), beams.rectangle(0.04, 0.02))
-    rod = m.link("rod", length=0.4, beam=beams.Beam(tapered, STEEL))
-    ram = m.point_mass("ram", 15.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, ram)
-    m.prismatic("guide", m.ground, ram, axis=(0, 1))
-    m.force("push", rod.at(0.13, 0.02), x=-3000.0, y=500.0)
-    return Scene(m, {"O": polynomial(0, 30.0)}, t=(0, 0.2094395, 61), posture={"rod": 1.5})
+    return crank_and_rod(
+        {"beam": beams.Beam(tapered, beams.material("S355"))},
+        loads=lambda m, parts: m.force("push", parts["b"].at(0.13, 0.02), x=-3000.0, y=500.0),
+    )
 
 
 CASES = {
     "connecting_rod": (lambda: load_case("connecting_rod").scene, ("rod",)),
-    "press": (press, ("rod",)),
+    "press": (press, ("b",)),
     "robot": (lambda: robot(beams.rectangle(0.25, 0.2)), ("upper",)),  # in space
 }
 

@@ -84,16 +84,6 @@ def test_the_bearings_bear_the_gas_force(scene):
         assert 1e3 * bearing.width == math.ceil(1e3 * ratio * bearing.bore)
 
 
-def test_what_governs(running, capsys):
-    rod, crank = running.safety("rod"), running.safety("crank")
-    assert running.certified
-    assert (rod.governs.against, crank.governs.against) == ("fatigue", "fatigue")
-    expected = {"yield": 7.88, "buckling": 6.79, "fatigue": 4.65}
-    for against, factor in expected.items():
-        assert rod.against(against) == pytest.approx(factor, rel=2e-3)
-    assert math.isinf(running.life("rod").cycles)
-
-
 def test_fatigue_by_hand(running):
     """At the outermost fibres s = N/A -+ M/W, over ratios of a grid; in the flanges beside the web
     shear adds a little.

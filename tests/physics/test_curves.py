@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mechanisms import cam, sampled_cam
 from splines import by_hand
 
 from lagrange_casadi import (
@@ -174,36 +173,6 @@ def test_smoothing_leaves_as_much_as_it_is_told(periodic):
     s = ca.SX.sym("s")
     bend = ca.Function("bend", [s], [ca.jacobian(ca.jacobian(found(s), s), s)])
     assert np.abs(bend(x[None, 5:-5]).full()).max() < 2.0 < np.abs(np.diff(y, 2) / x[1] ** 2).max()
-
-
-def test_a_sampled_cam_goes_to_its_closed_form():
-    """The second derivative of a cubic spline is right to the square of its step, and so are
-    forces.
-    """
-    exact = evaluate(cam(lambda angle: 0.004 * (1 - ca.cos(angle)) + 0.0007 * ca.sin(3 * angle)))
-    gaps = []
-    for count in (73, 145, 289):
-        found = evaluate(sampled_cam(count))
-        assert found.certified
-        gaps.append(
-            [
-                np.abs(found.motion("guide").value - exact.motion("guide").value).max() / 0.008,
-                np.abs(
-                    found.motion("guide").acceleration - exact.motion("guide").acceleration
-                ).max()
-                / 20.0,
-                np.abs(found.effort("main") - exact.effort("main")).max()
-                / np.abs(exact.effort("main")).max(),
-                np.abs(found.section("rod").axial - exact.section("rod").axial).max()
-                / np.abs(exact.section("rod").axial).max(),
-            ]
-        )
-    gaps = np.array(gaps)
-    assert gaps[-1, 0] < 1e-7
-    assert gaps[-1, 1:].max() < 1e-3
-    orders = np.log2(gaps[:-1] / gaps[1:])
-    assert orders[:, 0].min() > 3.5
-    assert orders[:, 1:].min() > 1.7
 
 
 STOP = [-0.6, -0.2, 0.2, 0.6], [9.0, 1.0, -1.0, -9.0]

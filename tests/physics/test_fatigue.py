@@ -189,24 +189,6 @@ def test_a_bar_in_tension_with_a_mean(amplitude, mean):
     assert math.tan(2 * plane.angle) == pytest.approx(1 / SHARE, rel=1e-3)
 
 
-@pytest.mark.parametrize("along", [(1.0, 0.0), (0.0, 1.0), (0.6, 0.8)])
-def test_normal_and_shear_stress_in_phase_and_a_quarter_turn_out_of_it(along):
-    """Mohr's circle: its middle counts k times, its radius hypot(1, k) times; whichever way the
-    shear stress points. Out of phase, shear stress of half the normal one has the same amplitude on
-    all planes that are turned about the third direction: the plane is the cross-section.
-    """
-    found = strength.critical_plane(
-        history(100 * np.cos(TURN), *(70 * c * np.cos(TURN) for c in along))
-    )
-    told = SHARE * 50.0 + math.hypot(50.0, 70.0) * math.hypot(1.0, SHARE)
-    assert found.value() == pytest.approx(1e6 * told, rel=1e-6)
-    found = strength.critical_plane(
-        history(100 * np.cos(TURN), *(50 * c * np.sin(TURN) for c in along))
-    )
-    assert found.value() == pytest.approx(1e6 * (50.0 + SHARE * 100.0), rel=1e-6)
-    assert found.angle == pytest.approx(0.0, abs=1e-3)
-
-
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.6])
 def test_any_amplitudes_out_of_phase_against_all_planes_one_by_one(share):
     normal, shear = 120 * np.cos(TURN) + 30, 80 * np.sin(TURN + 0.4)

@@ -7,12 +7,11 @@ import re
 
 import numpy as np
 import pytest
-from conftest import CASES
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load_case
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import gears, planetary, wheel
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -68,31 +67,6 @@ def test_a_pair_bears_the_force_of_its_teeth(inside, moment, teeth):
     assert abs(solution.multiplier("mesh")[0]) == pytest.approx(abs(tangential), rel=1e-13)
 
 
-def test_a_rack_is_pushed_where_its_gear_is():
-    """The force travels along the rack; T = F r, and F tan(20 deg) off the gear."""
-    m = Mechanism("rack")
-    m.set_gravity(0, 0)
-    pinion = wheel(m, "pinion", radius=0.05, mass=1.0)
-    bar = m.link("bar", length=0.6, mass=0.0)
-    m.revolute("turn", m.ground, pinion)
-    m.prismatic("slide", m.ground.at(0, -0.07), bar.at(0.3, -0.02), axis=(1, 0))
-    mesh = gears(m, "mesh", pinion, bar.at(0.3), radii=0.05)
-    m.force("push", bar.tip, x=-100.0)
-    solution = evaluate(Scene(m, {"turn": harmonic(0.0, 1.5, 1.0)}, t=(0, 1, 9)))
-    assert solution.certified
-    assert mesh.kind == "rack"
-    assert solution.motion("slide").value == pytest.approx(
-        0.05 * solution.motion("turn").value, abs=1e-15
-    )
-    assert solution.multiplier("mesh") == pytest.approx(np.full(9, -100.0), rel=1e-12)
-    # Beyond the pinion nothing bends the bar; the load is along it.
-    place = 0.3 - solution.motion("slide").value
-    beyond = solution.section("bar").law.at("axial", (place / 0.6 + 0.01)[:, None])[:, 0]
-    before = solution.section("bar").law.at("axial", (place / 0.6 - 0.01)[:, None])[:, 0]
-    assert beyond == pytest.approx(np.full(9, -100.0), rel=1e-12)
-    assert before == pytest.approx(np.zeros(9), abs=1e-11)
-
-
 @pytest.mark.quick
 def test_wheels_are_discs():
     m, s = Mechanism("plane"), SpatialMechanism("space")
@@ -112,9 +86,6 @@ def test_wheels_are_discs():
     ):
         with pytest.raises(DeclarationError, match="wheel 'other'"):
             wheel(m, "other", **told)
-
-
-TAN = math.tan(math.radians(20.0))
 
 
 def lossy_pair(kind, speed=None, **more):
@@ -159,62 +130,6 @@ def test_what_comes_out_is_a_share_of_what_goes_in(kind, moment, share):
     power = solution.effort("A") * 7.0 - moment * ratio * 7.0
     assert solution.output("mesh_loss") == pytest.approx(power, rel=1e-9, abs=1e-9)
     assert (power >= -1e-9).all()
-
-
-def test_with_bearings_that_rub():
-    """Both depend on each other: teeth press the bearings, whose friction the teeth pass on."""
-    m = Mechanism("rubbing")
-    m.set_gravity(0, 0)
-    first = wheel(m, "first", radius=0.03, mass=0.5)
-    second = wheel(m, "second", radius=0.05, mass=1.0)
-    joints = m.revolute("A", m.ground, first), m.revolute("B", m.ground.at(0.08, 0), second)
-    for name, joint in zip("ab", joints, strict=True):
-        m.friction(name, joint, mu=0.1, radius=0.01)
-    gears(m, "mesh", first, second, radii=(0.03, 0.05), efficiency=0.95)
-    m.torque("load", second, 20.0)
-    solution = evaluate(Scene(m, {"A": polynomial(0.0, 9.0)}, t=(0, 1, 3)))
-    assert solution.certified
-    force = np.abs(solution.multiplier("mesh"))[0]
-    rub = 0.1 * 0.01 * force * math.hypot(1.0, TAN)
-    couple = 0.05 * 0.03 * force / (1.6 - 0.05)
-    assert force * 0.05 - couple == pytest.approx(20.0 + rub, rel=1e-11)
-    assert solution.effort("A")[0] == pytest.approx(force * 0.03 + couple + rub, rel=1e-11)
-
-
-TAN_OF_PLANETARY_GEAR = math.tan(math.radians(20.0))
-
-
-@pytest.mark.parametrize("values", [{}, {"module": 0.003, "torque": 200.0, "rpm": 300.0}])
-def test_the_case_is_that_of_closed_forms(values):
-    """Speeds, torques, the force of the teeth and what a planet's pin bears, at a steady load."""
-    solution = evaluate(
-        load_case(CASES / "planetary_gear").scene, parameters=values | {"unsteady": 0.0}
-    )
-    assert solution.certified
-    told = {"module": 0.002, "torque": 90.0, "rpm": 1450.0} | values
-    slow = told["rpm"] * 2 * math.pi / 60 / 3.5
-    sun, planet = told["module"] * 12, told["module"] * 9
-    assert solution.motion("output").rate == pytest.approx(np.full(421, slow), rel=1e-13)
-    assert solution.effort("input") == pytest.approx(np.full(421, told["torque"] / 3.5), rel=1e-12)
-    assert np.abs(solution.reaction("housing").mz) == pytest.approx(
-        np.full(421, told["torque"] * 2.5 / 3.5), rel=1e-12
-    )
-    force = told["torque"] / 3.5 / 3 / sun
-    assert np.abs(solution.output("set_sun_tangential")) == pytest.approx(
-        np.full(421, force), rel=1e-12
-    )
-    for k in (1, 2, 3):
-        assert np.abs(solution.multiplier(f"set_ring_{k}")) == pytest.approx(
-            np.full(421, force), rel=1e-12
-        )
-        out = np.exp(1j * (solution.motion("output").value + 2 * math.pi * (k - 1) / 3))
-        reaction = solution.reaction(f"set_pin_{k}")
-        mass = 7850 * math.pi * planet**2 * 0.025
-        borne = -2 * force * 1j * out - mass * slow**2 * (sun + planet) * out + 9.81j * mass
-        assert reaction.fx + 1j * reaction.fy == pytest.approx(borne, rel=0, abs=1e-11 * force)
-    assert solution.output("set_sun_radial") == pytest.approx(
-        np.full(421, force * TAN_OF_PLANETARY_GEAR), rel=1e-12
-    )
 
 
 def planetary_set(driven, held, planets=1, efficiency=None, load=40.0):

@@ -65,45 +65,6 @@ def test_rope_tension_of_a_crane():
     assert released == pytest.approx(-tension, rel=1e-14)
 
 
-def test_fields_and_forces_work_along_velocities():
-    """Gravity as the acceleration of a field, and a force on a velocity, are what U and Q* are."""
-    q, qd, qdd, w = (ca.SX.sym(n) for n in ("q", "qd", "qdd", "w"))
-    height_rate = ca.cos(q) * qd
-    height_acceleration = ca.cos(q) * qdd - ca.sin(q) * qd**2
-    system = LagrangeSystem(
-        3.0 * w**2 / 2,
-        ca.SX(0),
-        q,
-        qd,
-        qdd,
-        velocities=w,
-        velocity_graphs=height_rate,
-        velocity_rates=height_acceleration + 9.81,
-        velocity_forces=2.0,
-    )
-    (found,) = numbers(system, system.terms()[0], symbols=[0.7, -0.4, 1.3])
-    rise = np.cos(0.7) * 1.3 - np.sin(0.7) * 0.16
-    assert found == pytest.approx(np.cos(0.7) * (3.0 * (rise + 9.81) - 2.0), rel=1e-14)
-
-
-def test_other_forces_are_taken_off():
-    q, qd, qdd, e, ed = (ca.SX.sym(n) for n in ("q", "qd", "qdd", "e", "ed"))
-    system = LagrangeSystem(
-        (qd + ed) ** 2 / 2,
-        ca.SX(0),
-        q,
-        qd,
-        qdd,
-        mobilities=e,
-        mobility_rates=ed,
-        forces=-0.5 * qd,
-        mobility_forces=7.0 * q,
-    )
-    along, across = system.terms()
-    f = ca.Function("f", [q, qd, qdd], [along, across])
-    assert [float(x) for x in f(2.0, 3.0, 4.0)] == [4.0 + 1.5, 4.0 - 14.0]
-
-
 @pytest.mark.parametrize(
     ("says", "change"),
     {
@@ -242,39 +203,6 @@ SYSTEMS = [(pendulum, [1.3], 1), (hoop, [0.4], 1), (frame, [2.0], 3), (growing, 
 def test_systems_that_time_moves(places, masses, n, seed):
     generator = np.random.default_rng(seed)
     assert_newton(places, masses, n, generator.normal(size=(3, n)), generator.uniform(-2.0, 2.0))
-
-
-def test_coordinates_may_be_carried_against_axes_that_turn():
-    """A pendulum's direction in space as cosine and sine, its coordinate against an arm that is
-    turned: p' = T q' + r.
-    """
-    q, qd, qdd, t, p = (ca.SX.sym(*name) for name in (("q",), ("qd",), ("qdd",), ("t",), ("p", 2)))
-    arm, l, m = 2 * t + ca.sin(t), 0.6, 1.4
-    place = ca.vertcat(ca.cos(arm), ca.sin(arm)) + l * ca.vertcat(ca.cos(arm + q), ca.sin(arm + q))
-    speed = ca.jtimes(place, ca.vertcat(q, t), ca.vertcat(qd, 1))
-    plain = LagrangeSystem(m * ca.sumsqr(speed) / 2, -m * G * place[1], q, qd, qdd, time=t)
-    spin, tangent = ca.jacobian(arm, t), ca.vertcat(-p[1], p[0])
-    moved = ca.vertcat(-ca.sin(arm), ca.cos(arm)) * spin + l * tangent * (qd + spin)
-    fields = {
-        "force_function": -m * G * l * p[1],
-        "coordinates": p,
-        "rates": qd,
-        "accelerations": qdd,
-        "tangent": tangent,
-        "time": t,
-    }
-    w = ca.SX.sym("w", 2)
-    carried = LagrangeSystem(m * ca.sumsqr(moved) / 2, drift=tangent * spin, **fields)
-    written = LagrangeSystem(
-        m * ca.sumsqr(w) / 2, drift=tangent * spin, velocities=w, velocity_graphs=moved, **fields
-    )
-    systems = ca.vertcat(*(system.terms()[0] for system in (plain, carried, written)))
-    f = ca.Function("f", [q, qd, qdd, t, p], [systems])
-    angle = 2 * 0.7 + np.sin(0.7) + 0.4
-    one, *others = f(0.4, -1.1, 0.6, 0.7, [np.cos(angle), np.sin(angle)]).full().ravel()
-    np.testing.assert_allclose(others, one, rtol=1e-14)
-    with pytest.raises(DeclarationError, match="velocity_graphs: velocities 0, 1"):
-        LagrangeSystem(m * ca.sumsqr(w) / 2, velocities=w, velocity_graphs=moved, **fields)
 
 
 def test_a_rheonomic_constraint_bears_what_newton_says():

@@ -7,17 +7,13 @@ from __future__ import annotations
 import itertools
 import math
 
-import frames
 import numpy as np
 import pytest
 from elastic_mechanisms import (
     LIGHT,
     STEEL,
-    agrees,
     held,
     made,
-    moving,
-    sections_of,
     three_cranks,
 )
 
@@ -61,51 +57,6 @@ def test_a_beam_held_at_both_ends():
     assert not solution.undetermined
     assert solution.certificate["elasticity"].max() < 1e-12
     assert set(map(str, solution.elasticity.completed)) >= {"reaction:A:fy", "section:bar:law:m0"}
-
-
-def test_a_bar_on_three_supports():
-    """Two equal spans under their weight: 3/8, 10/8 and 3/8 of a span's weight (Timoshenko,
-    Strength of Materials I).
-    """
-    m = Mechanism("spans")
-    shape = beams.rectangle(0.02, 0.02)
-    bar = m.link("bar", length=2.0, beam=made(shape))
-    m.revolute("A", m.ground, bar)
-    for name, x in (("B", 1.0), ("C", 2.0)):
-        foot = m.point_mass(f"foot{name}", 0.0)
-        m.prismatic(f"slide{name}", m.ground.at(x, 0), foot, axis=(1, 0))
-        m.revolute(name, foot, bar.at(x))
-    solution = evaluate(Scene(m, {}, t=(0, 0, 1), posture={"bar": 0.0}, elastic=True))
-    span, p = 4e-4 * STEEL.density * 9.81, shape.properties()
-    ei, ga = STEEL.elasticity * p.iz, STEEL.shear_modulus * p.shear_y
-    # Of the bar on its ends alone: the sag of its middle by its weight, over that by a unit force
-    # there.
-    middle = (5 * 2.0**4 / (384 * ei) + 2.0**2 / (8 * ga)) / (2.0**3 / (48 * ei) + 2.0 / (4 * ga))
-    found = [solution.reaction(name).fy[0] / span for name in "ABC"]
-    assert found == pytest.approx([(2 - middle) / 2, middle, (2 - middle) / 2], rel=1e-9)
-    assert found == pytest.approx([0.375, 1.25, 0.375], rel=1e-3)
-
-
-def test_a_planar_four_bar_of_spatial_pins_that_moves():
-    """Its inertia by differences of its poses; every component of every reaction is a frame's."""
-    m, solution = moving()
-    i, h = 4, solution.t[1]
-    stencil = (
-        np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])
-        / h**2
-    )
-
-    def accelerations(link, x):
-        pose = solution.pose(link)
-        return stencil @ (np.stack([pose.x, pose.y, pose.z], axis=1) + x * pose.axes[:, 0])
-
-    sections = sections_of(**{name: link.beam for name, link in m.links.items()})
-    reactions, _ = frames.of_solution(
-        solution, i, sections, [("b", 0.15, (20.0, 0, 100.0), (0, 0, 0))], accelerations
-    )
-    agrees(solution, i, reactions, 1e-6)
-    assert solution.certified
-    assert not solution.undetermined
 
 
 def test_a_link_without_a_beam_leaves_open_what_goes_through_it_and_is_named():

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
+from lagrange_casadi import Mechanism, Scene, evaluate, prepare
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import (
     Motion,
@@ -23,7 +23,6 @@ from lagrange_casadi.motion import (
     polynomial,
     s_curve,
     samples,
-    trapezoid,
 )
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -163,15 +162,6 @@ def derivatives(motion):
     return lambda times: [row.full().ravel() for row in function(np.asarray(times)[None])]
 
 
-def test_before_and_after_it_rests():
-    law = moves([move("90 deg", time=0.5)], start="30 deg", begin=0.2)
-    for t, angle in ((-5.0, 30.0), (0.1, 30.0), (0.7, 90.0), (100.0, 90.0)):
-        assert at(law, t) == (pytest.approx(math.radians(angle), rel=1e-15), 0.0, 0.0)
-    assert at(law, 0.45)[:2] == pytest.approx(
-        (math.radians(60), 1.875 * math.radians(60) / 0.5), rel=1e-14
-    )
-
-
 def test_an_indexing_table_advances():
     law = moves(
         [move(by="90 deg", time=0.3, law="modified_trapezoid"), dwell(0.2)],
@@ -240,18 +230,6 @@ def test_moves_that_cannot_be_are_refused_everywhere():
     usual = {"h": 0.5, "T": 0.4, "v": 1.5, "ratio": 2.0}
     rows = [[*(usual | values).values()] for values in ({}, *refused.values())]
     assert (prepare(scene).designs(np.array(rows)).status == 0).tolist() == [True, *[False] * 4]
-
-
-def test_peaks_are_found_beside_jumps():
-    """The trapezoid's acceleration jumps between instants; the effort then is that of one side."""
-    parts = [move(1.0, time=0.37, law=trapezoid(0.21)), dwell(0.13)]
-    parts.append(move(0.0, time=0.41, law=s_curve(0.3, 0.4)))
-    scene = arm(moves(parts, cyclic=True), t=(0, 1.0, 41))
-    (peak,) = refine(scene, evaluate(scene), ["effort:J"])
-    ready, told = prepare(scene), INERTIA / (0.21 * 0.79) / 0.37**2
-    assert abs(peak.value) == pytest.approx(told, rel=1e-12)
-    swept = ready.peaks().value[ready.quantities.index("effort:J")]
-    assert abs(swept) == pytest.approx(told, rel=1e-12)
 
 
 SOON = {"speed": 4.0, "acceleration": 60.0}

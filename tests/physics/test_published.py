@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from balance import instant_at, section_forces
+from balance import instant_at
 from conftest import SIXTY_DIGITS
 from mechanisms import slider_crank
 
@@ -193,96 +193,3 @@ def test_eq_14_active_torque(program, x):
     assert found == pytest.approx(torque_14(x, corrected=True), abs=1e-14 * scale)
     miss = x.r**2 * missing_in_14(x) * x.rate**2
     assert found - torque_14(x, corrected=False) == pytest.approx(miss, abs=1e-13 * scale)
-
-
-def guide_19(x, corrected):
-    """Eq. (19), N_B, term by term; the corrections are those listed in the test."""
-    m2, m3, r, l, s, c, D, q = x.m2, x.m3, x.r, x.l, x.s, x.c, x.D, x.q
-    # In short 3 (m2 + 2 m3) r^2 D^2 (s^2 theta'' + s c theta'^2), which only D^2 below turns into a
-    # force.
-    first = (
-        3 * m2 * r**6 * s**6 + 6 * m3 * r**6 * s**6 + 3 * m2 * r**2 * l**4 * s**2
-        + 6 * m3 * r**2 * l**4 * s**2 - 6 * m2 * r**4 * l**2 * s**4 - 12 * m3 * r**4 * l**2 * s**4
-    ) * x.acceleration + (
-        3 * m2 * r**6 * s**5 * c + 6 * m3 * r**6 * s**5 * c - 6 * m2 * r**4 * l**2 * s**3 * c
-        - 12 * m3 * r**4 * l**2 * s**3 * c + 3 * m2 * r**2 * l**4 * s * c + 6 * m3 * r**2 * l**4 * s * c  # noqa: E501
-    ) * x.rate**2  # fmt: skip
-    factor = c if corrected else 1.0
-    second = (
-        (3 * m2 * r**5 * s**4 + 6 * m3 * r**5 * s**4) * factor + m2 * r * l**4 * c
-        - 4 * m2 * r**3 * l**2 * s**2 * c - 6 * m3 * r**3 * l**2 * s**2 * c
-    ) * x.acceleration  # fmt: skip
-    a, b = (4, 6) if corrected else (2, 4)
-    second += (
-        -3 * m2 * r**5 * s**5 - 6 * m3 * r**5 * s**5 + a * m2 * r**3 * l**2 * s + 6 * m3 * r**3 * l**2 * s  # noqa: E501
-        - m2 * r * l**4 * s - b * m2 * r**3 * l**2 * s * c**2 - 12 * m3 * r**3 * l**2 * s * c**2
-    ) * x.rate**2  # fmt: skip
-    weight = -m2 * G / 2 - m3 * G
-    if corrected:
-        return first / (6 * D**2 * q) - second / (6 * D**2) + weight
-    return first / (6 * D * q) + second / (6 * D) + weight
-
-
-@pytest.mark.parametrize("x", STATES)
-def test_eq_19_guide_force(program, x):
-    """Corrected: 6 D^2 q and - 6 D^2 below; a factor c with r^5 s^4; 4 and 6 for 2 and 4 with m2
-    r^3 l^2. N_B = -(reaction, y).
-    """
-    found = -engine(program, x)["reaction:guide:fy"]
-    scale = abs(found) + (x.m2 + x.m3) * x.r * (x.rate**2 + abs(x.acceleration))
-    assert found == pytest.approx(guide_19(x, corrected=True), abs=1e-13 * scale)
-    assert abs(found - guide_19(x, corrected=False)) > 1e-3 * scale
-
-
-def axial_21(x, xi, corrected):
-    """Eq. (21), N, as printed but for the last term of gravity."""
-    m2, m3, r, l, s, c, D, q = x.m2, x.m3, x.r, x.l, x.s, x.c, x.D, x.q
-    first = (
-        6 * m2 * r**6 * xi * s**5 * c - 5 * m2 * r**2 * l**5 * s * c - 6 * m3 * r**2 * l**5 * s * c
-        - 3 * m2 * r**6 * l * s**5 * c + 8 * m2 * r**4 * l**3 * s**3 * c + 6 * m3 * r**4 * l**3 * s**3 * c  # noqa: E501
-        - 12 * m2 * r**4 * l**2 * xi * s**3 * c + 6 * m2 * r**2 * l**4 * xi * s * c
-    ) * x.acceleration + (
-        -6 * m2 * r**6 * xi * s**6 + 3 * m2 * r**6 * l * s**6 - 3 * m2 * r**2 * l**5 * c**2
-        - 6 * m3 * r**2 * l**5 * c**2 + 2 * m2 * r**4 * l**3 * s**2 + 5 * m2 * r**2 * l**5 * s**2
-        + 6 * m3 * r**4 * l**3 * s**2 + 6 * m3 * r**2 * l**5 * s**2 - 10 * m2 * r**4 * l**3 * s**4
-        - 12 * m3 * r**4 * l**3 * s**4 + 3 * m2 * r**2 * l**3 * xi**2 * c**2 - m2 * r**4 * l**3 * s**2 * c**2  # noqa: E501
-        - 6 * m3 * r**4 * l**3 * s**2 * c**2 - 6 * m2 * r**2 * l**4 * xi * s**2
-        + 12 * m2 * r**4 * l**2 * xi * s**4 - 3 * m2 * r**4 * l * xi**2 * s**2 * c**2
-    ) * x.rate**2  # fmt: skip
-    last = 6 * m2 * G * r * l**4 * s * (xi if corrected else 1.0)
-    first += (
-        6 * m2 * G * r**3 * l**3 * s**3 - 3 * m2 * G * r * l**5 * s + 6 * m2 * G * r**5 * xi * s**5
-        - 3 * m2 * G * r**5 * l * s**5 - 12 * m2 * G * r**3 * l**2 * xi * s**3 + last
-    )  # fmt: skip
-    second = (
-        -12 * m2 * r**5 * l**3 * s**5 + 12 * m3 * r**3 * l**5 * s**3 + 15 * m2 * r**3 * l**5 * s**3
-        - 6 * m3 * r**5 * l**3 * s**5 - 6 * m2 * r * l**7 * s - 6 * m3 * r * l**7 * s
-        - 6 * m2 * r**7 * xi * s**7 + 3 * m2 * r**7 * l * s**7 - 18 * m2 * r**3 * l**4 * xi * s**3
-        + 18 * m2 * r**5 * l**2 * xi * s**5 + 6 * m2 * r * l**6 * xi * s
-    ) * x.acceleration + (
-        -6 * m2 * r * l**7 * c - 6 * m3 * r * l**7 * c + 6 * m2 * r * l**6 * xi * c
-        + 15 * m2 * r**3 * l**5 * s**2 * c + 12 * m3 * r**3 * l**5 * s**2 * c - 12 * m2 * r**5 * l**3 * s**4 * c  # noqa: E501
-        - 6 * m3 * r**5 * l**3 * s**4 * c - 6 * m2 * r**7 * xi * s**6 * c + 3 * m2 * r**7 * l * s**6 * c  # noqa: E501
-        - 18 * m2 * r**3 * l**4 * xi * s**2 * c + 18 * m2 * r**5 * l**2 * xi * s**4 * c
-    ) * x.rate**2  # fmt: skip
-    return first / (6 * l**2 * D**2) + second / (6 * l**2 * D**2 * q)
-
-
-@pytest.mark.parametrize("ratio", [0.0, 0.1, 0.25, 0.5, 0.9, 1.0])
-@pytest.mark.parametrize("x", STATES)
-def test_eq_21_axial_force(program, x, ratio):
-    """The last term of gravity needs a factor xi, by its dimension; all else is right.
-
-    N = -(axial): compression positive.
-    """
-    found = engine(program, x)
-    law = {k: found[f"section:rod:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
-    axial = -section_forces(law, x.m2, x.l, ratio)[0]
-    scale = (x.m2 + x.m3) * x.r * (x.rate**2 + abs(x.acceleration)) * x.l / x.q + x.m2 * G
-    xi = ratio * x.l
-    assert axial == pytest.approx(axial_21(x, xi, corrected=True), abs=1e-13 * scale)
-    miss = x.m2 * G * x.r * x.l**2 * x.s * (xi - 1.0) / x.D**2
-    assert axial - axial_21(x, xi, corrected=False) == pytest.approx(
-        miss, abs=1e-12 * (scale + abs(miss))
-    )
-    assert abs(miss) > 1e-3 * x.m2 * G * x.r

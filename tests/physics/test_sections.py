@@ -4,8 +4,6 @@ ends and peaks.
 
 from __future__ import annotations
 
-import math
-
 import casadi as ca
 import numpy as np
 import pytest
@@ -63,37 +61,6 @@ def test_a_positive_moment_stretches_the_fibres_away_from_n(tip):
     assert bending == pytest.approx(tip * LENGTH * (1 - AT), rel=1e-12)
     assert fibre(-1, tip) == pytest.approx(bending, rel=1e-12)
     assert fibre(1, tip) == pytest.approx(-bending, rel=1e-12)
-
-
-def beam(x=0.0, y=0.0, angle=0.0, turning=False, length=2.0, mass=3.0):
-    """A cantilever at rest, without gravity."""
-    m = Mechanism("beam")
-    m.set_gravity(0.0, 0.0)
-    arm = m.link("arm", length=length, mass=mass)
-    m.revolute("wall", m.ground, arm)
-    m.line_load("wind", arm, x=x, y=y, turning=turning)
-    return Scene(m, {"wall": motion.polynomial(angle)}, t=(0, 1, 3), xi=(0, 1, 9))
-
-
-def test_a_triangular_load_and_a_load_along_the_axis():
-    """From nothing at the base to q at the tip: the moment at the wall is q l^2/3.
-
-    Along the axis the sum beyond the section.
-    """
-    solution = evaluate(beam(y=(0.0, 6.0), x=(4.0, -2.0), angle=0.7, turning=True))
-    u, l, section = solution.xi, 2.0, solution.section("arm")
-    np.testing.assert_allclose(section.shear[0], 6.0 * l * (1 - u**2) / 2, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(
-        section.bending[0], 6.0 * l * l * (1 / 3 - u / 2 + u**3 / 6), rtol=0, atol=1e-13
-    )
-    np.testing.assert_allclose(
-        section.axial[0], l * (4.0 * (1 - u) - 6.0 * (1 - u**2) / 2), rtol=0, atol=1e-13
-    )
-    assert solution.section("arm").bending[0, 0] == pytest.approx(6.0 * l * l / 3, rel=1e-14)
-    assert solution.array("load:wind:mz")[0] == pytest.approx(6.0 * l * l / 12, rel=1e-14)
-    np.testing.assert_array_equal(
-        [section.shear[:, -1], section.bending[:, -1], section.axial[:, -1]], 0.0
-    )
 
 
 def declared(place="rod", **spread):
@@ -213,28 +180,6 @@ def test_a_parabola_on_a_simple_beam(mass):
 
 
 @pytest.mark.quick
-def test_a_load_that_changes_sign_turns_a_moment_twice():
-    """From -q to q: q l^2/6 u (1 - u)(1 - 2u), whose summits of either sign are as large."""
-    q, l = 9.0, SPAN
-    solution = supported(y=(-q, q))
-    looks_like(
-        solution,
-        lambda u: -q * l * (1 / 6 - u + u**2),
-        lambda u: q * l**2 * u * (1 - u) * (1 - 2 * u) / 6,
-        q * l,
-    )
-    told = solution.statistics("section:beam:bending")
-    for extreme, sign in ((told.largest, 1), (told.smallest, -1)):
-        assert extreme.value == pytest.approx(sign * q * l**2 / (36 * math.sqrt(3)), rel=1e-14)
-        assert extreme.xi == pytest.approx(0.5 - sign / (2 * math.sqrt(3)), abs=1e-9)
-    shear = solution.statistics("section:beam:shear")
-    assert (shear.largest.value, shear.smallest.value) == (
-        pytest.approx(q * l / 12),
-        pytest.approx(-q * l / 6),
-    )
-
-
-@pytest.mark.quick
 def test_a_short_load_is_a_force():
     """However short it is, it loses no digits; a millionth of the link carries as much as the force
     that it is.
@@ -256,127 +201,6 @@ def test_a_short_load_is_a_force():
     np.testing.assert_allclose(
         solution.section("beam").bending[0][far], bending[far], rtol=0, atol=1e-14 * force * SPAN
     )
-
-
-def gate():
-    """A gate that stands in water up to a depth: rho g b (depth - xi), and nothing above it."""
-    m = Mechanism("gate")
-    depth = m.parameter("depth", 1.6, "m", low=0.1, high=2.4)
-    leaf = m.link("leaf", length=2.5, mass=300.0)
-    m.revolute("hinge", m.ground, leaf)
-    m.line_load(
-        "water",
-        leaf,
-        y=lambda xi: -1000 * 9.81 * 2.0 * (depth - xi),
-        between=(0.0, depth),
-        turning=True,
-    )
-    return Scene(m, {"hinge": motion.polynomial(math.pi / 2)}, t=(0, 1, 2), xi=(0, 1, 11))
-
-
-@pytest.mark.quick
-def test_water_against_a_gate():
-    """The hinge holds rho g b h^3/6, and a section at xi what is of that beyond it."""
-    solution = evaluate(gate())
-    w, h = 1000 * 9.81 * 2.0, 1.6
-    assert solution.effort("hinge")[0] == pytest.approx(w * h**3 / 6, rel=1e-13)
-    assert solution.reaction("hinge").fx[0] == pytest.approx(-w * h**2 / 2, rel=1e-13)
-    left = np.maximum(h - solution.xi * 2.5, 0.0)
-    np.testing.assert_allclose(
-        solution.section("leaf").shear[0], -w * left**2 / 2, rtol=0, atol=1e-13 * w
-    )
-    np.testing.assert_allclose(
-        solution.section("leaf").bending[0], -w * left**3 / 6, rtol=0, atol=1e-13 * w
-    )
-    assert solution.array("load:water:fx")[0] == pytest.approx(w * h**2 / 2, rel=1e-13)
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("mass", [0.0, 0.4])
-def test_single_precision_tells_peaks_where_a_force_is_the_same_all_along(mass):
-    """Beyond its load a massless link has one shear: there rounding alone would say where its
-    bending moment is steepest.
-    """
-    m = Mechanism("linkage")
-    a, b, c = (m.link(n, length=l, mass=mass) for n, l in (("a", 0.1), ("b", 0.35), ("c", 0.25)))
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
-    m.revolute("C", m.ground.at(0.3, 0.05), c)
-    lift = lambda xi: -30 + 50 * xi + 2000 * xi**2 - 6250 * xi**3  # noqa: E731
-    m.line_load("flow", c, y=lift, between=(0.0, 0.1), turning=True)
-    motions, t = {"O": motion.polynomial(0.2, 3.0, 4.0)}, (0.1, 0.9, 81)
-    scene = Scene(m, motions, ["section:c"], posture={"c": 1.5}, t=t)
-    single, double = (
-        prepare(scene, backend="lanes", precision=precision).peaks()
-        for precision in ("single", "double")
-    )
-    np.testing.assert_allclose(single.value, double.value, rtol=1e-5, atol=1e-12)
-
-
-@pytest.mark.quick
-def test_a_mast_in_the_wind():
-    """A cantilever under q u^2 along y and an even load along z: shear and bending of the
-    textbooks, and their sizes.
-    """
-    m, l = SpatialMechanism("mast"), 4.0
-    m.set_gravity(0.0, 0.0, 0.0)
-    mast = m.link("mast", length=l, mass=0.0)
-    m.weld("head", mast.tip, m.point_mass("lamp", 1.0))
-    m.revolute("foot", m.ground, mast, axis=(0.0, 0.0, 1.0))
-    m.line_load("wind", mast, y=lambda xi: 5.0 * (xi / l) ** 2, z=-3.0)
-    m.line_load("rope", mast, x=2.0, between=(1.0, 3.0), turning=True)
-    solution = evaluate(Scene(m, {"foot": motion.polynomial(0.0)}, t=(0, 1, 3), xi=(0, 1, 17)))
-    assert solution.certified
-    section, u = solution.section("mast"), solution.xi
-    y, z = 5.0 * l * (1 - u**3) / 3, -3.0 * l * (1 - u)
-    about_z, about_y = 5.0 * l**2 * (1 / 4 - u / 3 + u**4 / 12), 3.0 * l**2 * (1 - u) ** 2 / 2
-    for force, told in {
-        "axial": 2.0 * np.clip(3.0 - u * l, 0.0, 2.0),
-        "shear_y": y,
-        "shear_z": z,
-        "torsion": 0.0 * u,
-        "bending_y": about_y,
-        "bending_z": about_z,
-        "shear": np.hypot(y, z),
-        "bending": np.hypot(about_y, about_z),
-    }.items():
-        np.testing.assert_allclose(section.array(force)[0], told, rtol=0, atol=2e-14, err_msg=force)
-    assert solution.reaction("foot").mz is not None
-
-
-def thick(**keywords):
-    """A shaft whose slices change along it, with what acts at a station and along it, and a round
-    bar that swings on it.
-    """
-    m = SpatialMechanism("thick")
-    width, push = m.parameter("width", 0.1, "m", low=0.0), m.parameter("push", 5.0, "N")
-    flat = density.thick(
-        density.tabulated((0.0, 0.4, 1.0), (3.0, 2.0, 2.5)),
-        yy=density.polynomial(2e-2, -1e-2, 2e-2),
-        zz=density.tabulated((0.0, 0.7, 1.0), (4e-2, 1e-2, 3e-2)),
-        yz=2e-3,
-    )
-    shaft = m.link("shaft", length=0.7, density=flat)
-    bar = m.link(
-        "bar",
-        length=0.4,
-        density=density.thick(
-            density.polynomial(3.0), yy=3.0 * width**2 / 16, zz=3.0 * width**2 / 16
-        ),
-    )
-    m.revolute("O", m.ground, shaft, axis=(0.9, 0.3, 0.2))
-    m.universal("K", shaft.tip, bar, axis=(0.0, 0.3, 1.0), second=(0.1, 1.0, -0.3))
-    m.force("pull", shaft.at(0.35, 0.03, -0.02), x=2.0, y=push, z=-3.0)
-    m.line_load("wind", shaft, y=lambda xi: push * (1 - 2 * xi), z=2.0, between=(0.1, 0.6))
-    inside = m.results.section(shaft, 0.3)
-    m.output("inside", inside.torsion + 2 * inside.bending_y - inside.bending_z, unit="N m")
-    laws = {
-        "O": motion.harmonic(0.2, 1.4, 3.0),
-        "K:turn_1": motion.harmonic(0.1, 0.8, 5.0),
-        "K:turn_2": motion.harmonic(0.3, 0.4, 4.0),
-    }
-    return Scene(m, laws, **({"t": (0.0, 1.0, 5)} | keywords))
 
 
 def slices_beyond(yy, zz, yz, rate, angular):
@@ -504,38 +328,3 @@ def test_a_section_at_a_load_point_is_on_its_tip_s_side_whatever_rounding_says(p
     found = loaded(place, np.linspace(0, 1, 4).tolist())
     np.testing.assert_allclose(found.section("bar").shear[0], rest, atol=1e-9)
     np.testing.assert_allclose([found.output(f"shear_{k}")[0] for k in range(4)], rest, atol=1e-9)
-
-
-def blade():
-    """A blade that turns, under loads that begin and end with it."""
-    m = Mechanism("blade")
-    link = m.link("shaft", length=0.6, density=density.tabulated((0, 0.4, 1), (3.0, 2.0, 2.5)))
-    m.revolute("pin", m.ground, link)
-    m.line_load("wind", link, x=(-3.0, 5.0), y=lambda xi: 4.0 + 2.0 * xi**2, turning=True)
-    m.force("push", link.at(0.25, 0.02), x=4.0, y=-2.0)
-    return Scene(m, {"pin": motion.polynomial(0.3, 2.0, 1.5)}, t=(0, 1, 5))
-
-
-@pytest.mark.parametrize("make", [blade, thick])
-def test_forces_along_a_link_change_as_they_say_and_peak_where_they_do(make):
-    """Nothing is beyond the tip or the base, where a load may begin and end."""
-    solution, step = evaluate(make(), backend="vm", certificate=False), 1e-5
-    law, fine = solution.section("shaft").law, np.linspace(0, 1, 20001)
-    for force in solution.table.forces:
-        values = law.on_grid(force, fine)
-        steepest = np.abs(law.along(force, np.tile(fine, (5, 1)))).max(axis=1)
-        largest, found = np.abs(values).max(axis=1), np.abs(law.extreme(force)[1])
-        assert (found >= largest * (1 - 1e-12)).all(), force
-        assert (found <= largest * (1 + 1e-9) + steepest * 5e-5).all(), force
-        rounding = 1e-5 * steepest.max() + 64 * np.finfo(float).eps * largest.max() / step
-        for at, ways in (
-            (0.0, (0, 1, 2)),
-            (0.33, (-1, 0, 1)),
-            (0.8, (-1, 0, 1)),
-            (1.0, (-2, -1, 0)),
-        ):
-            places = [np.full((5, 1), at + k * step) for k in ways]
-            near = [law.at(force, place)[:, 0] for place in places]
-            slope = np.gradient(near, step, axis=0, edge_order=2)[ways.index(0)]
-            found = law.along(force, places[ways.index(0)], "base" if at else "tip")[:, 0]
-            np.testing.assert_allclose(found, slope, rtol=0, atol=rounding, err_msg=f"{force} {at}")

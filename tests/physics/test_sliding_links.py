@@ -15,56 +15,30 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 SLIDE = polynomial(0.1, 0.2)
 
 
-def axis_drawn(rng, size):
-    """A direction: along an axis, against it, next to it, or anyhow."""
-    if rng.random() < 0.5:
-        return [float(x) for x in rng.choice([-1.0, 1.0]) * np.eye(size)[rng.integers(size)]]
-    if rng.random() < 0.4:
-        return [1.0, *(1e-9 * rng.normal(size=size - 1)).tolist()]
-    return rng.normal(size=size).tolist()
-
-
 def drawn(seed):
-    """A link that slides on the ground or on a link that stands still, and whether something was
-    said of how it lies.
+    """A link that slides on the ground or on a link that stands still, along an axis or anyhow, and
+    whether something was said of how it lies.
     """
     rng = np.random.default_rng(seed)
-    space = bool(rng.integers(2))
-    m = SpatialMechanism("sliding") if space else Mechanism("sliding")
-    kind = str(rng.choice(["prismatic", "cylindrical", "screw"] if space else ["prismatic"]))
-    motion = {}
-    parent = m.ground
-    if rng.random() < 0.5:
-        parent = m.link("arm", length=0.5, mass=1.0)
-        motion["shoulder"] = polynomial(float(rng.normal()))
-        m.revolute("shoulder", m.ground, parent, **({"axis": axis_drawn(rng, 3)} if space else {}))
-    axis = axis_drawn(rng, 3 if space else 2)
-    if not space and rng.random() < 0.3:
-        axis[1] = axis[1] * m.parameter("lean", 1.0)
-    words = {"axis": tuple(axis)}
-    given = "nothing"
-    hard = space and parent is m.ground and rng.random() < 0.3
-    if hard:
-        given, words["at"] = "place", (0.0, 0.0, 0.0)
-        bar = m.link("bar", between=((0, 0, 0), tuple(rng.normal(size=3).tolist())), mass=0.3)
-    elif rng.random() < 0.2:
-        given = "inertia"
-        whole = ((0.1, 0, 0), (0.1, 0.2, 0.2)) if space else ((0.1, 0), 0.2)
-        bar = m.link("bar", length=0.3, mass=1.0, centre=whole[0], inertia=whole[1])
-    else:
-        bar = m.link("bar", length=0.3, mass=0.3)
-        if rng.random() < 0.3:
-            given = "turn"
-            turned = rng.choice([0.0, float(rng.normal())])
-            words |= {"turned": [("z", turned)]} if space else {"angle": turned}
-    if kind == "screw":
-        words["lead"] = 0.01
-    getattr(m, kind)("way", parent, bar, **words)
-    motion |= (
-        {"way:slide": SLIDE, "way:turn": polynomial(0.0)}
-        if kind == "cylindrical"
-        else {"way": SLIDE}
+    space, given, motion = (
+        bool(seed % 2),
+        rng.choice(["nothing", "turn", "inertia"]),
+        {"way": SLIDE},
     )
+    m = SpatialMechanism("sliding") if space else Mechanism("sliding")
+    size, parent, matter = 3 if space else 2, m.ground, {}
+    if rng.random() < 0.5:
+        parent, motion["shoulder"] = m.link("arm", length=0.5, mass=1.0), polynomial(0.7)
+        m.revolute("shoulder", m.ground, parent, **({"axis": (0.3, 0.4, 1.0)} if space else {}))
+    along = rng.choice([-1.0, 1.0]) * np.eye(size)[rng.integers(size)]
+    axis = rng.choice([along, along + 1e-9, rng.normal(size=size)])
+    words = {"axis": tuple(map(float, axis))}
+    if given == "inertia":
+        matter = {"centre": (0.1, 0, 0)[:size], "inertia": (0.1, 0.2, 0.2) if space else 0.2}
+    if given == "turn":
+        angle = float(rng.choice([0.0, rng.normal()]))
+        words |= {"turned": [("z", angle)]} if space else {"angle": angle}
+    m.prismatic("way", parent, m.link("bar", length=0.3, mass=0.3, **matter), **words)
     return Scene(m, motion, t=(0.0, 1.0, 3), xi=(0, 1, 3)), given
 
 

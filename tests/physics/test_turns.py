@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 
-import casadi as ca
 import numpy as np
 import pytest
 from balance import columns_at, oracle_of, postures
@@ -19,9 +18,7 @@ from mechanisms import (
     FREE,
     STIFFNESS,
     coil,
-    slider_crank,
     sprung,
-    truss_platform,
 )
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
@@ -151,49 +148,6 @@ def test_random_four_bars(seed):
     assert_followed(scene, joints, count=3)
 
 
-@pytest.mark.sampled(7)
-@pytest.mark.parametrize(
-    "law",
-    [polynomial(5.0, -3.0), harmonic(0.4, 9.0, 0.5), harmonic(100.0, 0.3, 2.0)],
-    ids=["back", "both", "swing"],
-)
-def test_the_drive_may_go_back_and_forth(law):
-    assert_followed(sprung("AC", law=law), "AC")
-    assert_followed(sprung("AC", law=law, **DRAG_LINK), "AC")
-
-
-def test_a_table_serves_what_comes_round_and_says_what_does_not():
-    """Where both ends of a spring go round together, the spring only swings; where one does, it
-    winds up and repeats never.
-    """
-    together = sprung("AB", **DRAG_LINK)
-    exact, read = evaluate(together), evaluate(together, table=1e-9)
-    np.testing.assert_allclose(
-        read.effort("O"), exact.effort("O"), rtol=0, atol=1e-8 * np.abs(exact.effort("O")).max()
-    )
-    with pytest.raises(
-        DeclarationError,
-        match=r"effort:O.* do not repeat.*a load that depends on a number of revolutions may not"
-        r" repeat",
-    ):
-        evaluate(sprung("C", **DRAG_LINK), table=64, wanted=["effort"])
-
-
-@pytest.mark.long
-def test_loops_that_are_iterated():
-    """Three bars on three legs, and springs between legs and bars; one of
-    them crosses half a turn.
-    """
-
-    def loads(m):
-        for joint in ("corner0", "mate1", "foot2"):
-            coil(m, joint)
-
-    scene = truss_platform(loads)
-    assert derive(scene).newton is not None
-    assert_followed(scene, ("corner0", "mate1", "foot2"), count=21)
-
-
 def whitworth(direction=False):
     """A crank's pin in the slot of a link whose pivot lies within the crank's circle: the slotted
     link goes all the way round.
@@ -232,28 +186,6 @@ def test_many_turns_keep_their_phase(precision):
         for scene in (near, far)
     )
     np.testing.assert_allclose(other, one, rtol=0, atol=1e-5 if precision == "single" else 1e-8)
-
-
-def test_what_does_not_tell_turns_apart_is_left_within_one():
-    """Under a sine whole turns make no difference: no rule is sought, and nothing is held to it."""
-    for see, counts in (
-        (ca.sin, False),
-        (lambda x: 3 * ca.cos(2 * x + 1) ** 2, False),
-        (lambda x: x, True),
-        (lambda x: ca.sin(x / 2), True),
-    ):
-        m = slider_crank().mechanism
-        m = Mechanism("seen")
-        a = m.link("a", length=0.1, mass=0.3)
-        b = m.link("b", length=0.3, mass=0.3)
-        s = m.point_mass("s", 1.0)
-        m.revolute("O", m.ground, a)
-        joint = m.revolute("A", a.tip, b)
-        m.revolute("B", b.tip, s)
-        m.prismatic("guide", m.ground, s, axis=(1, 0))
-        m.torque("seen_by", b, see(m.coordinate(joint)))
-        program = derive(Scene(m, {"O": polynomial(0, 6.0)}, posture={"b": 0.0}))
-        assert ("_turned:A" in program.names) is counts
 
 
 def led(span):

@@ -1,13 +1,9 @@
 """The benchmarks' own machinery: what they measure is right, and what is wrong gets no time."""
 
-import numpy as np
 import pytest
 
 from benchmarks import comparisons
-from benchmarks.definitions import METHODS, Comparison, Method
-from benchmarks.peers.opti_slider_crank import solved
-from benchmarks.peers.paper_case import SliderCrank
-from lagrange_casadi import load_case, optimise
+from benchmarks.definitions import Comparison
 
 
 @pytest.fixture(autouse=True)
@@ -58,34 +54,3 @@ def test_a_method_whose_result_is_wrong_reports_no_time(monkeypatch):
     assert "ns" not in found["c"]
     assert found["c"]["why"].startswith("wrong: 1.0e-08 of the peak")
     assert "wrong" in comparisons.row(found["c"])
-
-
-def test_a_peer_that_is_not_installed_is_said(monkeypatch):
-    monkeypatch.setitem(METHODS, "numpy", Method("absent", "peers.absent"))
-    found = rows("sections", ("numpy", "by hand"), t=9, xi=3)
-    assert (
-        found["numpy"]["why"] == "not installed (benchmarks.peers.absent): pip install '.[bench]'"
-    )
-    assert found["by hand"]["ns"] > 0
-
-
-def test_the_optimum_by_hand_is_ours(interpreted):
-    """Peaks held at instants and ratios are a little lower than those
-    that are found between them.
-    """
-    t, bounds = np.linspace(0.0, 0.08, 161), {"l": (0.12, 0.8), "r": (0.07, 0.1)}
-    values, level = solved(
-        SliderCrank(), t, np.linspace(0.38, 0.48, 11), 1.2, bounds, {"l": 0.3, "r": 0.08}
-    )
-    found = optimise(
-        load_case("slider_crank").scene,
-        minimise="peak:effort:O",
-        over=bounds,
-        subject_to=["peak:section:rod:bending <= 1.2"],
-        t=(0.0, 0.08, 161),
-        starts=[{"l": 0.3, "r": 0.08}],
-    )
-    assert found.converged
-    assert level == pytest.approx(found.objective, rel=3e-4)
-    assert level <= found.objective * (1 + 1e-9)
-    assert values == pytest.approx(dict(found.values), rel=1e-3)

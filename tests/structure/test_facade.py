@@ -4,8 +4,6 @@ it is asked for.
 
 import ast
 import json
-import os
-import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -70,23 +68,6 @@ print(json.dumps({name: type(getattr(lc, name)).__name__ for name in names}))
         )
 
 
-def test_no_package_has_the_name_of_a_public_function():
-    """Imported late, it would replace the function as the package's attribute."""
-    tree = ast.parse(STUB.read_text())
-    functions = {
-        a.name
-        for node in tree.body
-        if isinstance(node, ast.ImportFrom) and node.module
-        for a in node.names
-    }
-    modules = {
-        path.stem
-        for path in STUB.parent.iterdir()
-        if path.suffix == ".py" or (path / "__init__.py").exists()
-    }
-    assert not functions & modules
-
-
 LOADED = "import json, sys\n{}\nprint(json.dumps(sorted(name for name in sys.modules)))"
 
 
@@ -114,30 +95,3 @@ LOADED = "import json, sys\n{}\nprint(json.dumps(sorted(name for name in sys.mod
 def test_what_is_not_asked_for_is_not_loaded(program, unneeded):
     loaded = fresh(LOADED.format(program))
     assert not set(loaded) & set(unneeded)
-
-
-def processor_time(*command):
-    """The least of some runs [s], of a process and those that it starts."""
-
-    def spent():
-        used = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return used.ru_utime + used.ru_stime
-
-    found = []
-    for _ in range(4):
-        before = spent()
-        subprocess.run(command, check=True, capture_output=True)
-        found.append(spent() - before)
-    return min(found)
-
-
-@pytest.mark.skipif(
-    "PYTHONDONTWRITEBYTECODE" in os.environ, reason="nothing would be compiled before"
-)
-def test_imports_take_little_time():
-    """In processor time, over that of what every mechanism needs."""
-    least = processor_time(sys.executable, "-c", "import casadi, numpy")
-    assert processor_time(sys.executable, "-c", "import lagrange_casadi") < 1.5 * least
-    asked = "import lagrange_casadi as lc; lc.Mechanism, lc.Scene, lc.evaluate"
-    assert processor_time(sys.executable, "-c", asked) < 2.5 * least
-    assert processor_time(sys.executable, "-m", "lagrange_casadi", "--help") < 2.0 * least

@@ -1,13 +1,12 @@
 """How many instructions an instant of each case takes: what all speed begins with."""
 
-import sys
 from itertools import pairwise
 
 import pytest
 from conftest import CASES
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, derive, load_case
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi import Scene, SpatialMechanism, derive, load_case
+from lagrange_casadi.motion import harmonic
 
 pytestmark = pytest.mark.quick
 
@@ -122,36 +121,3 @@ def test_instructions_grow_with_the_links_of_an_open_chain(wanted):
     counts = [derive(chain(links), wanted).instructions["instant"] for links in (6, 9, 12, 15)]
     steps = {later - earlier for earlier, later in pairwise(counts)}
     assert len(steps) == 1
-
-
-def planar(links):
-    """The same in a plane, its links' directions sums of all drives before them."""
-    m = Mechanism("chain")
-    end, laws = m.ground, {}
-    for k in range(links):
-        link = m.link(f"link{k}", length=0.3, mass=1.0)
-        m.revolute(f"J{k}", end, link)
-        end, laws[f"J{k}"] = link.tip, polynomial(0.1 * k, 1.0, 0.2)
-    return Scene(m, laws, t=(0.0, 1.0, 11), wanted=["motion", "effort"])
-
-
-@pytest.mark.parametrize("made", [planar, chain])
-def test_calls_of_a_derivation_grow_with_the_links_of_an_open_chain(made, fresh_cache):
-    """No pass over all links is made for each of them: counted, for no test is about time."""
-    derive(made(5))  # what is made once for all
-    counts = []
-    for links in (6, 18, 30):
-        calls = 0
-
-        def count(frame, event, called):
-            nonlocal calls
-            calls += event in ("call", "c_call")
-
-        sys.setprofile(count)
-        try:
-            derive(made(links))
-        finally:
-            sys.setprofile(None)
-        counts.append(calls)
-    first, second = (later - earlier for earlier, later in pairwise(counts))
-    assert second == pytest.approx(first, rel=0.02)

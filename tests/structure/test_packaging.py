@@ -33,12 +33,3 @@ def test_the_conda_recipe_is_yaml_and_has_the_dependencies_of_the_package():
     assert (ROOT / recipe["about"]["license_file"]).exists()
     (script,) = recipe["build"]["entry_points"]
     assert script == "lagrange-casadi = lagrange_casadi.cli:main"
-
-
-def test_metadata_is_complete():
-    about = metadata("lagrange_casadi")
-    assert about["License-Expression"] == "MIT"
-    assert about["Summary"]
-    assert len(about["Keywords"].split(",")) >= 5
-    least = about["Requires-Python"].removeprefix(">=")
-    assert f"Programming Language :: Python :: {least}" in about.get_all("Classifier")
