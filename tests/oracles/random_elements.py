@@ -224,7 +224,7 @@ def gear(d: Draft) -> bool | None:
     arm = -r1 if inside and r1 < r2 else r1
     off = -1.0 if not inside or r1 < r2 else 1.0  # off the teeth: a pinion inward, a ring outward
     force = teeth_between(first, second, abs(arm), math.copysign(1.0, arm), -off)
-    d.contacts[name] = _mesh(name, formula, force, angle, (first, second), carrier, (r1, r2))
+    d.contacts[name] = mesh(name, formula, force, angle, (first, second), carrier, (r1, r2))
     return None
 
 
@@ -248,7 +248,7 @@ def teeth_between(first: Spot, second: Spot, radius: float, sense: float, press:
     return force
 
 
-def _mesh(name: str, formula: Formula, force: Callable, angle: float, *axes) -> Contact:
+def mesh(name: str, formula: Formula, force: Callable, angle: float, *axes) -> Contact:
     """Teeth whose flanks lean by an angle [deg]: ``force(place, along, apart)`` lists what the
     force along the common tangent and the one that presses apart do.
     """
@@ -300,7 +300,7 @@ def rack(d: Draft) -> bool | None:
         body = (bar, *_seen(place, bar, (x.v + r * e[0], y.v + r * e[1])))
         return [(first.point, *f, r * along), (body, -f[0], -f[1], 0.0)]
 
-    d.contacts[name] = _mesh(name, formula, force, angle)
+    d.contacts[name] = mesh(name, formula, force, angle)
     return None
 
 

@@ -10,7 +10,7 @@ import math
 import oracle
 from random_draft import Draft, Place, Spot
 from random_elements import PARTS as ELEMENTS
-from random_elements import Contact, teeth_between
+from random_elements import mesh, teeth_between
 from random_formula import Measure
 from random_growth import anything, attempt, dyad
 
@@ -98,17 +98,11 @@ def _mesh(d, name, carrier, first: Spot, second: Spot, sizes, sense, meshes, ste
     }
     a, b, c = places
     formula = d.formula(f"{sizes[0]!r} * ({a} - {c}) + {sense * sizes[1]!r} * ({b} - {c})", places)
-    lean = math.tan(math.radians(steep))
 
     def all_of(place, along, apart):
         return [part for force in meshes for part in force(place, along, apart)]
 
-    d.contacts[name] = Contact(
-        formula,
-        lambda place: all_of(place, 1.0, 0.0),
-        lambda place, size: all_of(place, 0.0, abs(size) * lean),
-        lambda size: {f"{name}_tangential": size, f"{name}_radial": abs(size) * lean},
-    )
+    d.contacts[name] = mesh(name, formula, all_of, steep)
 
 
 def bushes(d: Draft) -> bool | None:

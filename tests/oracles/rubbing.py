@@ -84,40 +84,46 @@ class Rub:
         return -sign * mu * pressed - self.viscous * v
 
 
-def solve_rubbing(oracle: Oracle, rubs: Sequence[Rub], drives, guess) -> Result:
-    """The instant with friction. Fails where the iteration does not converge."""
-    rubbed = replace(oracle, loads=(*oracle.loads, *(rub.acts for rub in rubs)))
+def converge(balanced: Callable, laws: Sequence[Callable], a=DOUBLE) -> tuple[Any, Any]:
+    """What ``balanced`` returns for the forces that laws tell of its reactions, and these forces.
 
-    def balanced(forces):
-        for rub, force in zip(rubs, forces, strict=True):
-            rub.force = force
-        result = rubbed.solve(drives, guess)
-        return result, a.array([result.reactions[rub.joint.name] for rub in rubs])
-
-    a, n = oracle.arithmetic, len(rubs)
-    result, alone = balanced(a.zeros(n))
-    place = rubbed.places(result)
+    ``balanced(forces)`` is an instant, and the reactions of joints. Fails where the iteration does
+    not converge.
+    """
+    n = len(laws)
+    alone = balanced(a.zeros(n))[1]
     size = 1 + np.max(np.abs(alone))
     units = (a.array([size if j == k else 0 * size for j in range(n)]) for k in range(n))
     slopes = np.stack([(balanced(unit)[1] - alone) / size for unit in units], axis=-1)
     forces, left = a.zeros(n), None
     for _ in range(ROUNDS):
         for _ in range(PASSES):
-            before = forces
-            forces = a.array(
-                [rub.law(r, place) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)]
-            )
+            before, reactions = forces, alone + slopes @ forces
+            forces = a.array([law(r) for law, r in zip(laws, reactions, strict=True)])
             if np.max(np.abs(forces - before)) <= a.tolerance / 10 * size:
                 break
         result, reactions = balanced(forces)
-        left = max(
-            abs(rub.law(r, place) - rub.force) for rub, r in zip(rubs, reactions, strict=True)
-        )
+        left = max(abs(law(r) - x) for law, r, x in zip(laws, reactions, forces, strict=True))
         if left <= 1000 * a.tolerance * size:
-            return result
+            return result, forces
         # What presses gears apart has kinks, beside which reactions are linear.
         alone = reactions - slopes @ forces
     raise AssertionError(f"the friction of the oracle does not converge: {left}")
+
+
+def solve_rubbing(oracle: Oracle, rubs: Sequence[Rub], drives, guess) -> Result:
+    """The instant with friction."""
+    rubbed = replace(oracle, loads=(*oracle.loads, *(rub.acts for rub in rubs)))
+    place = oracle.places(oracle.move(drives, guess))
+
+    def balanced(forces):
+        for rub, force in zip(rubs, forces, strict=True):
+            rub.force = force
+        result = rubbed.solve(drives, guess)
+        return result, oracle.arithmetic.array([result.reactions[rub.joint.name] for rub in rubs])
+
+    laws = [lambda reaction, rub=rub: rub.law(reaction, place) for rub in rubs]
+    return converge(balanced, laws, oracle.arithmetic)[0]
 
 
 def solve(oracle: Oracle, m, values, drives, guess) -> Result:

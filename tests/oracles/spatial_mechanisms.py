@@ -296,7 +296,7 @@ def _planar(rng, slides):
     ]
     guess |= {("A", 0): lean - angle}
     mechanism = Mechanism([crank, coupler, last], joints, gravity=direction(rng) * 9.81)
-    return Drawn(mechanism, {("O", 0): law}, guess, span=0.5, plane=R.astype(float))
+    return Drawn(mechanism, {("O", 0): law}, guess, span=0.5)
 
 
 @steady

@@ -39,7 +39,7 @@ def differences(instant, found, weighed=False):
     }
     for rod, given in data.get("sections", {}).items():
         for one in given:
-            own, R = found.sections[rod].at(numbers(one["xi"]).item()), found.sections[rod].axes()
+            own, R = found.sections[rod].at(numbers(one["xi"]).item()), found.poses[rod].R
             compare("force", one["force"], R @ own[:3])
             compare("moment", one["moment"], R @ own[3:])
             local = numbers(one["local"])
