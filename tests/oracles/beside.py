@@ -149,15 +149,19 @@ def _pressed(heights, shares, force, held=""):
 def _andrews_squeezer(arithmetic, values):
     number = arithmetic.number
     foot, end = ("ground", number(0.014), number(0.072)), ("k3", number(0.018), number(0.02))
+    return {"loads": [_spring(arithmetic, foot, end, 4530, number(0.07785))]}
 
-    def spring(place):
-        (ax, ay, _), (bx, by, _) = place(foot), place(end)
-        dx, dy = bx.v - ax.v, by.v - ay.v
+
+def _spring(arithmetic, foot, end, stiffness, free):
+    """From the ground to a point of a body."""
+
+    def pull(place):
+        dx, dy = (b.v - a.v for a, b in zip(place(foot)[:2], place(end)[:2], strict=True))
         length = arithmetic.sqrt(dx * dx + dy * dy)
-        pull = 4530 * (length - number(0.07785)) / length
-        return [(end, -pull * dx, -pull * dy, 0)]
+        size = -stiffness * (length - free) / length
+        return [(end, size * dx, size * dy, 0)]
 
-    return {"loads": [spring]}
+    return pull
 
 
 def _sleigh(arithmetic, values):
@@ -322,13 +326,8 @@ def _planetary_gear(arithmetic, values):
 def _parallelogram_arm(arithmetic, values):
     """A spring from the base to the upper arm, and friction of both motors."""
     number, sqrt = arithmetic.number, arithmetic.sqrt
-    base, point = (-number(15) / 100, number(25) / 100), ("upper", number(2) / 10, 0)
-
-    def spring(place):
-        x, y = (at.v - of for at, of in zip(place(point)[:2], base, strict=True))
-        length = sqrt(x * x + y * y)
-        pull = number(values["k_balance"]) * (length - number(1) / 10) / length
-        return [(point, -pull * x, -pull * y, 0)]
+    base, point = ("ground", -number(15) / 100, number(25) / 100), ("upper", number(2) / 10, 0)
+    spring = _spring(arithmetic, base, point, number(values["k_balance"]), number(1) / 10)
 
     def friction(joint, link):
         viscous, dry = (number(values[f"{kind}_{joint}"]) for kind in ("viscous", "dry"))

@@ -14,6 +14,7 @@ from arithmetic import DOUBLE
 from spatial_bodies import GROUND, Rigid, Rod
 from spatial_draft import Drawn
 from spatial_motion import Motion, coordinates
+from spatial_oracle import REACTION
 from spatial_rubbing import Rub
 
 from lagrange_casadi import Scene, SpatialMechanism, density, motion
@@ -174,6 +175,20 @@ def postures(drawn: Drawn, t: float) -> dict[str, float]:
         for joint in drawn.mechanism.joints
         for k, value in enumerate(coordinates(joint, motion, poses))
     }
+
+
+def named(drawn, one):
+    """Efforts, multipliers and reactions by full name, and how the oracle calls each."""
+    found = {
+        f"effort:{coordinate(drawn.mechanism.joint(key[0]), key[1])}": (float(x), key)
+        for key, x in one.efforts.items()
+    }
+    for name, x in one.multipliers.items():
+        found[f"multiplier:{name}"] = float(x), (name, "multiplier")
+    for joint, reaction in one.reactions.items():
+        for member, x in zip(REACTION, reaction, strict=True):
+            found[f"reaction:{joint}:{member}"] = float(x), (joint, member)
+    return found
 
 
 def _body(m, body, pose=None, beam=None):

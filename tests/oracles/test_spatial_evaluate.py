@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 from internals import Output, forces
-from spatial_bridge import coordinate, postures
+from spatial_bridge import coordinate, named, postures
 from spatial_mechanisms import FAMILIES
-from spatial_oracle import REACTION, SECTION
+from spatial_oracle import SECTION
 from spatial_solutions import evaluated, residuals, scene_of
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case, motion, refine
@@ -77,20 +77,6 @@ def test_all_is_as_the_oracle_has_it_and_certified(name, seed):
     assert bool(solution.indeterminate) == any(bool(one.open) for one in true.values())
     assert solution.indeterminate or name not in OVER_CONSTRAINED
     compare_peaks(drawn, scene_of(name, seed)[1], solution, seed)
-
-
-def named(drawn, one):
-    """Efforts, multipliers and reactions by full name, and how the oracle calls each."""
-    found = {
-        f"effort:{coordinate(drawn.mechanism.joint(key[0]), key[1])}": (float(x), key)
-        for key, x in one.efforts.items()
-    }
-    for name, x in one.multipliers.items():
-        found[f"multiplier:{name}"] = float(x), (name, "multiplier")
-    for joint, reaction in one.reactions.items():
-        for member, x in zip(REACTION, reaction, strict=True):
-            found[f"reaction:{joint}:{member}"] = float(x), (joint, member)
-    return found
 
 
 def compare_peaks(drawn, scene, solution, seed):
