@@ -5,7 +5,6 @@ of points, as jets.
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -37,7 +36,6 @@ class Measure:
     kind: str
     of: Any
     rate: bool = False
-    wrapped: bool = False
 
     def jet(self, place) -> Jet:
         """Its value with its derivatives, from the places of points."""
@@ -100,8 +98,6 @@ class Formula:
         for name, measure in self.names.items():
             found = measure.jet(place)
             known[name] = Jet(found.d) if measure.rate else found
-            if measure.wrapped:
-                known[name] -= math.tau * math.ceil(float(found.v) / math.tau - 0.5)
         return self._value(known, Jet(arithmetic.number(t), 1.0), arithmetic)
 
     def effect(self, place, t, arithmetic=DOUBLE) -> list[tuple[Any, Any, Any, Any]]:
