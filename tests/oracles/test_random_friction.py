@@ -70,7 +70,7 @@ def keeps_peaks(made, monkeypatch):
 
     Section forces jump where load points pass each other: their panels are not few.
     """
-    scene, panels = made.scene(), []
+    scene, panels, interval = made.scene(), [], search._Search.interval
     parameters, (start, stop, _) = made.drawn.keywords.get("parameters"), made.drawn.grid
     try:
         solution, dense = (
@@ -83,19 +83,16 @@ def keeps_peaks(made, monkeypatch):
         return
     names = [*forces(solution), *(name for name in solution.names() if name.endswith(":loss"))]
     off = peaks_off(scene, solution, dense, names)
-    one = search._Search.interval
-    monkeypatch.setattr(search._Search, "interval", lambda *given: panels.append(1) or one(*given))
+    monkeypatch.setattr(
+        search._Search, "interval", lambda *given: panels.append(1) or interval(*given)
+    )
     refine(scene, solution, [name for name in names if not name.startswith("section:")])
     assert len(panels) < search.INTERVALS / 8
     assert not off, "\n".join([*off, made.source])
 
 
-@pytest.mark.parametrize("seed", [46, 80])
-def test_peaks_are_found_where_comparisons_are_rounding(seed, monkeypatch):
-    keeps_peaks(rubbed(seed), monkeypatch)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("seed", RUB)
+@pytest.mark.parametrize(
+    "seed", [pytest.param(seed, marks=[pytest.mark.long] * (seed not in (46, 80))) for seed in RUB]
+)
 def test_every_peak_is_found(seed, monkeypatch):
     keeps_peaks(rubbed(seed), monkeypatch)

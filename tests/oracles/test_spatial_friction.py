@@ -83,24 +83,6 @@ def on_a_ball(law):
     )
 
 
-def test_a_ball_rubs_as_a_pin_where_it_turns_about_one_line():
-    """A couple mu r |F| against the turning: RecurDyn and Adams have the same, by the radius of the
-    ball.
-    """
-    couple = 0.2 * 0.03 * math.hypot(7.0 * 9.81, 30.0)
-    for speed in (4.0, -4.0):
-        solution = evaluate(on_a_ball(polynomial(0.1, speed)))
-        assert solution.certified
-        assert solution.effort("ball:turn_1") == pytest.approx(
-            math.copysign(couple, speed), rel=1e-12
-        )
-        assert solution.series["friction:rub:along"] == pytest.approx(-couple, rel=1e-12)
-        assert solution.series["friction:rub:loss"] == pytest.approx(4.0 * couple, rel=1e-12)
-        assert solution.series["load:rub:mz"] == pytest.approx(
-            -math.copysign(couple, speed), rel=1e-12
-        )
-
-
 def test_a_ball_at_rest_is_open_and_where_it_turns_back_it_goes_on():
     still = evaluate(on_a_ball(polynomial(0.1)))
     assert still.resting.all()
