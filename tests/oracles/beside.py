@@ -67,6 +67,12 @@ def of_case(name, arithmetic, values):
     return _CASES[name](arithmetic, values) if name in _CASES else {}
 
 
+def _read(at, of, x):
+    """A table by straight lines."""
+    i = min(max(bisect.bisect_right(at, x), 1), len(at) - 1)
+    return of[i - 1] + (of[i] - of[i - 1]) / (at[i] - at[i - 1]) * (x - at[i - 1])
+
+
 def _engine(arithmetic, values):
     """The gas's force on the piston: the table over the crank's angle, which only grows."""
     number = arithmetic.number
@@ -75,9 +81,7 @@ def _engine(arithmetic, values):
 
     def gas(place):
         turned = (place(("crank", 0, 0))[2].v - pi / 2) % (4 * pi) * 180 / pi
-        i = min(bisect.bisect_right(angles, turned), len(angles) - 1)
-        slope = (pressures[i] - pressures[i - 1]) / (angles[i] - angles[i - 1])
-        pressure = 100_000 * (pressures[i - 1] + slope * (turned - angles[i - 1]))
+        pressure = 100_000 * _read(angles, pressures, turned)
         return [(("piston", 0, 0), 0, -pressure * pi / 4 * bore**2, 0)]
 
     return {"loads": [gas]}
@@ -135,9 +139,7 @@ def _pressed(heights, shares, force, held=""):
             _, y, _ = place(("ram", 0, 0))
             height = 1000 * (number(values["r"]) + number(values["l"]) + y.v)
             height = min(max(height, at[0]), at[-1])
-            i = min(max(bisect.bisect_right(at, height), 1), len(at) - 1)
-            share = of[i - 1] + (of[i] - of[i - 1]) / (at[i] - at[i - 1]) * (height - at[i - 1])
-            acts = share if y.d < 0 else number(0)
+            acts = _read(at, of, height) if y.d < 0 else number(0)
             weight = number(values[held]) * number(9.81) if held else number(0)
             return [(("ram", 0, 0), 0, number(values[force]) * acts + weight, 0)]
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import oracle
 from random_draft import Draft, Place, Spot
-from random_formula import Formula, Measure
+from random_formula import Formula, Measure, axis_of, seen
 from random_growth import MisfitError, anything, attempt, lead
 
 _AT_REST = 1e-3
@@ -280,13 +280,11 @@ def rack(d: Draft) -> None:
     joint = d.joints[slide]
 
     def force(place, along: float, apart: float):
-        own = place((carrier, 0.0, 0.0))[2].v
-        c, s = math.cos(own), math.sin(own)
-        ax, ay = (c * joint.axis[0] - s * joint.axis[1], s * joint.axis[0] + c * joint.axis[1])
+        ax, ay = (along.v for along in axis_of(joint, place))
         e = -side * ay, side * ax
         f = -e[1] * along - e[0] * apart, e[0] * along - e[1] * apart
         x, y, _ = place(first.point)
-        body = (bar, *_seen(place, bar, (x.v + r * e[0], y.v + r * e[1])))
+        body = (bar, *seen(place, bar, (x.v + r * e[0], y.v + r * e[1])))
         return [(first.point, *f, r * along), (body, -f[0], -f[1], 0.0)]
 
     d.contacts[name] = mesh(name, formula, force, angle)
@@ -486,10 +484,3 @@ PARTS = {gear: 4, rack: 2, belt: 3, cam: 3, cylinder: 3, bearings: 1}
 
 def _named(body: str) -> str:
     return "m.ground" if body == "ground" else body
-
-
-def _seen(place, body: str, at: Place) -> Place:
-    """A place in a body's axes."""
-    x, y, phi = place((body, 0.0, 0.0))
-    c, s, dx, dy = math.cos(phi.v), math.sin(phi.v), at[0] - x.v, at[1] - y.v
-    return c * dx + s * dy, c * dy - s * dx

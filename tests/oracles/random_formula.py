@@ -67,10 +67,15 @@ def axis_of(joint: oracle.Joint, place) -> tuple[Jet, Jet]:
 
 def under(joint: oracle.Joint, place) -> tuple[str, Any, Any]:
     """The point of a sliding joint's parent at which the child's point is."""
-    (bx, by, _), (cx, cy, _) = place((joint.parent[0], 0.0, 0.0)), place(joint.child)
-    x, y, _ = place((joint.parent[0], 1.0, 0.0))
-    c, s, dx, dy = x.v - bx.v, y.v - by.v, cx.v - bx.v, cy.v - by.v
-    return joint.parent[0], c * dx + s * dy, c * dy - s * dx
+    x, y, _ = place(joint.child)
+    return joint.parent[0], *seen(place, joint.parent[0], (x.v, y.v))
+
+
+def seen(place, body: str, at) -> tuple[Any, Any]:
+    """A place in a body's axes."""
+    (bx, by, _), (x, y, _) = place((body, 0.0, 0.0)), place((body, 1.0, 0.0))
+    c, s, dx, dy = x.v - bx.v, y.v - by.v, at[0] - bx.v, at[1] - by.v
+    return c * dx + s * dy, c * dy - s * dx
 
 
 def joint_coordinate(joint: oracle.Joint, place) -> Jet:

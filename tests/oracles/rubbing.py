@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from arithmetic import DOUBLE
 from oracle import Joint, Oracle, Result
+from random_formula import Measure, axis_of, joint_coordinate
 
 PASSES, ROUNDS = 20000, 30
 
@@ -37,34 +38,13 @@ class Rub:
 
     def acts(self, place: Callable) -> list:
         """What it does to the joint's child, and back to its parent, where the child's point is."""
-        parent, child = self.joint.parent[0], self.joint.child
-        if not self.joint.slides:
-            return [(child, 0.0, 0.0, self.force), (self.joint.parent, 0.0, 0.0, -self.force)]
-        x, y = self.axis(place)
-        (bx, by, turned), (cx, cy, _) = place((parent, 0.0, 0.0)), place(child)
-        c, s = self.arithmetic.cos(turned.v), self.arithmetic.sin(turned.v)
-        dx, dy = cx.v - bx.v, cy.v - by.v
-        there = (parent, c * dx + s * dy, c * dy - s * dx)
-        return [
-            (child, self.force * x, self.force * y, 0.0),
-            (there, -self.force * x, -self.force * y, 0.0),
-        ]
-
-    def axis(self, place: Callable) -> tuple[float, float]:
-        turned = place((self.joint.parent[0], 0.0, 0.0))[2].v
-        (x, y), c, s = self.joint.axis, self.arithmetic.cos(turned), self.arithmetic.sin(turned)
-        return c * x - s * y, s * x + c * y
+        return Measure("coordinate", self.joint).does(place, self.force)
 
     def rate(self, place: Callable) -> float:
         """The rate of the joint's coordinate: of the angle, or of the distance along the carried
         line.
         """
-        (px, py, turned), (cx, cy, other) = place(self.joint.parent), place(self.joint.child)
-        if not self.joint.slides:
-            return other.d - turned.d
-        x, y = self.axis(place)
-        dx, dy = cx.v - px.v, cy.v - py.v
-        return x * (cx.d - px.d) + y * (cy.d - py.d) + turned.d * (-y * dx + x * dy)
+        return joint_coordinate(self.joint, place).d
 
     def law(self, reaction, place: Callable) -> float:
         """What the law says of a reaction."""
@@ -72,7 +52,7 @@ class Rub:
         if not self.joint.slides:
             pressed, speed = self.radius * self.arithmetic.sqrt(fx * fx + fy * fy), v * self.radius
         else:
-            x, y = self.axis(place)
+            x, y = (along.v for along in axis_of(self.joint, place))
             normal, speed = -y * fx + x * fy, v
             pressed = abs(normal)
             if self.length is not None:
