@@ -67,6 +67,12 @@ def of_case(name, arithmetic, values):
     return _CASES[name](arithmetic, values) if name in _CASES else {}
 
 
+def _read(at, of, x):
+    """A table by straight lines."""
+    i = min(max(bisect.bisect_right(at, x), 1), len(at) - 1)
+    return of[i - 1] + (of[i] - of[i - 1]) / (at[i] - at[i - 1]) * (x - at[i - 1])
+
+
 def _engine(arithmetic, values):
     """The gas's force on the piston: the table over the crank's angle, which only grows."""
     number = arithmetic.number
@@ -75,9 +81,7 @@ def _engine(arithmetic, values):
 
     def gas(place):
         turned = (place(("crank", 0, 0))[2].v - pi / 2) % (4 * pi) * 180 / pi
-        i = min(bisect.bisect_right(angles, turned), len(angles) - 1)
-        slope = (pressures[i] - pressures[i - 1]) / (angles[i] - angles[i - 1])
-        pressure = 100_000 * (pressures[i - 1] + slope * (turned - angles[i - 1]))
+        pressure = 100_000 * _read(angles, pressures, turned)
         return [(("piston", 0, 0), 0, -pressure * pi / 4 * bore**2, 0)]
 
     return {"loads": [gas]}
@@ -135,9 +139,7 @@ def _pressed(heights, shares, force, held=""):
             _, y, _ = place(("ram", 0, 0))
             height = 1000 * (number(values["r"]) + number(values["l"]) + y.v)
             height = min(max(height, at[0]), at[-1])
-            i = min(max(bisect.bisect_right(at, height), 1), len(at) - 1)
-            share = of[i - 1] + (of[i] - of[i - 1]) / (at[i] - at[i - 1]) * (height - at[i - 1])
-            acts = share if y.d < 0 else number(0)
+            acts = _read(at, of, height) if y.d < 0 else number(0)
             weight = number(values[held]) * number(9.81) if held else number(0)
             return [(("ram", 0, 0), 0, number(values[force]) * acts + weight, 0)]
 
@@ -149,15 +151,19 @@ def _pressed(heights, shares, force, held=""):
 def _andrews_squeezer(arithmetic, values):
     number = arithmetic.number
     foot, end = ("ground", number(0.014), number(0.072)), ("k3", number(0.018), number(0.02))
+    return {"loads": [_spring(arithmetic, foot, end, 4530, number(0.07785))]}
 
-    def spring(place):
-        (ax, ay, _), (bx, by, _) = place(foot), place(end)
-        dx, dy = bx.v - ax.v, by.v - ay.v
+
+def _spring(arithmetic, foot, end, stiffness, free):
+    """From the ground to a point of a body."""
+
+    def pull(place):
+        dx, dy = (b.v - a.v for a, b in zip(place(foot)[:2], place(end)[:2], strict=True))
         length = arithmetic.sqrt(dx * dx + dy * dy)
-        pull = 4530 * (length - number(0.07785)) / length
-        return [(end, -pull * dx, -pull * dy, 0)]
+        size = -stiffness * (length - free) / length
+        return [(end, size * dx, size * dy, 0)]
 
-    return {"loads": [spring]}
+    return pull
 
 
 def _sleigh(arithmetic, values):
@@ -322,13 +328,8 @@ def _planetary_gear(arithmetic, values):
 def _parallelogram_arm(arithmetic, values):
     """A spring from the base to the upper arm, and friction of both motors."""
     number, sqrt = arithmetic.number, arithmetic.sqrt
-    base, point = (-number(15) / 100, number(25) / 100), ("upper", number(2) / 10, 0)
-
-    def spring(place):
-        x, y = (at.v - of for at, of in zip(place(point)[:2], base, strict=True))
-        length = sqrt(x * x + y * y)
-        pull = number(values["k_balance"]) * (length - number(1) / 10) / length
-        return [(point, -pull * x, -pull * y, 0)]
+    base, point = ("ground", -number(15) / 100, number(25) / 100), ("upper", number(2) / 10, 0)
+    spring = _spring(arithmetic, base, point, number(values["k_balance"]), number(1) / 10)
 
     def friction(joint, link):
         viscous, dry = (number(values[f"{kind}_{joint}"]) for kind in ("viscous", "dry"))

@@ -85,58 +85,36 @@ def linkage(rng, name, links, grounded, drives, *, decorate=None, swing=None, ma
     )
 
 
-def four_bar(rng):
-    return linkage(rng, "four_bar", ["OA", "AB", "CB"], "OC", ["OA"])
+def _named(name, *told, **more):
+    def drawn(rng):
+        return linkage(rng, name, *told, **more)
+
+    drawn.__name__ = name
+    return drawn
 
 
-def watt_one(rng):
-    return linkage(rng, "watt_one", ["OA", "ABD", "CBE", "DF", "EF"], "OC", ["OA"])
-
-
-def watt_two(rng):
-    return linkage(rng, "watt_two", ["OA", "AB", "CBD", "DF", "GF"], "OCG", ["OA"])
-
-
-def stephenson_one(rng):
-    return linkage(rng, "stephenson_one", ["OAD", "AB", "CBE", "DF", "EF"], "OC", ["OAD"])
-
-
-def stephenson_two(rng):
-    """No dyad: four directions at once."""
-    return linkage(rng, "stephenson_two", ["OA", "ABD", "CEF", "BE", "DF"], "OC", ["OA"])
-
-
-def stephenson_three(rng):
-    return linkage(rng, "stephenson_three", ["OA", "ABD", "CB", "DF", "GF"], "OCG", ["OA"])
-
-
-def stephenson_driven_last(rng):
-    """Driven where its dyads end: none is left."""
-    return linkage(rng, "stephenson_driven_last", ["GF", "FD", "CB", "OA", "ABD"], "OCG", ["GF"])
-
-
-def platform(rng):
-    """3-RRR: three drives."""
-    return linkage(
-        rng,
+four_bar, watt_one, watt_two, stephenson_one, stephenson_two = LINKAGES = (
+    _named("four_bar", ["OA", "AB", "CB"], "OC", ["OA"]),
+    _named("watt_one", ["OA", "ABD", "CBE", "DF", "EF"], "OC", ["OA"]),
+    _named("watt_two", ["OA", "AB", "CBD", "DF", "GF"], "OCG", ["OA"]),
+    _named("stephenson_one", ["OAD", "AB", "CBE", "DF", "EF"], "OC", ["OAD"]),
+    # No dyad: four directions at once.
+    _named("stephenson_two", ["OA", "ABD", "CEF", "BE", "DF"], "OC", ["OA"]),
+)
+stephenson_three, stephenson_driven_last, platform = MORE = (
+    _named("stephenson_three", ["OA", "ABD", "CB", "DF", "GF"], "OCG", ["OA"]),
+    # Driven where its dyads end: none is left.
+    _named("stephenson_driven_last", ["GF", "FD", "CB", "OA", "ABD"], "OCG", ["GF"]),
+    # 3-RRR: three drives.
+    _named(
         "platform",
         ["OA", "CB", "GF", "PQR", "AP", "BQ", "FR"],
         "OCG",
         ["OA", "CB", "GF"],
         swing=0.2,
-    )
-
-
-LINKAGES = (
-    four_bar,
-    watt_one,
-    watt_two,
-    stephenson_one,
-    stephenson_two,
-    stephenson_three,
-    stephenson_driven_last,
-    platform,
+    ),
 )
+LINKAGES += MORE
 
 
 def _crank(rng, name):

@@ -172,10 +172,5 @@ def combined(result, truth):
 
 
 def noisy(scene, truth, names, noise, seed=0, **columns):
-    exact = record(scene, truth, *names)
-    generator = np.random.default_rng(seed)
-    found = {
-        name: exact.columns[name] + noise * generator.standard_normal(exact.t.size)
-        for name in names
-    }
-    return Measurements(exact.t, {**exact.columns, **found, **columns})
+    found = record(scene, truth, *names, noise=noise, seed=seed)
+    return Measurements(found.t, {**found.columns, **columns})

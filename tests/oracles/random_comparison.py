@@ -59,13 +59,16 @@ def _places(exact: oracle.Result) -> dict[str, tuple[float, ...]]:
     return {name: tuple(x.v for x in q) for name, q in exact.q.items()}
 
 
+def _at(laws, name: str):
+    """Of a section's three forces at a ratio the one of this name."""
+    full, _, ratio = name.partition("@")
+    _, link, force = full.split(":")
+    return laws[link](float(ratio))[FORCES.index(force)]
+
+
 def _open(exact: oracle.Result, name: str) -> bool:
     """Whether equilibrium leaves a quantity open."""
-    full, _, ratio = name.partition("@")
-    if not ratio:
-        return full in exact.open
-    _, link, force = full.split(":")
-    return exact.open_sections[link](float(ratio))[FORCES.index(force)]
+    return _at(exact.open_sections, name) if "@" in name else name in exact.open
 
 
 class Comparison:
@@ -303,7 +306,8 @@ class Comparison:
             told = contact.outputs(exact.multipliers[name])
             named |= {f"output:{output}": x for output, x in told.items()}
         for name, (of, factor) in self.d.outputs.items():
-            named[f"output:{name}"] = factor * self._force(exact, of, named)
+            force = _at(exact.sections, of) if "@" in of else named[of]
+            named[f"output:{name}"] = factor * force
         named = {name: float(x) for name, x in named.items() if name in known}
         for link in self.solution.links_with_sections:
             for u in ratios[link]:
@@ -321,14 +325,6 @@ class Comparison:
         if contact:
             return f"multiplier:{contact}", 1.0
         return self.d.outputs.get(output, (name, 1.0))
-
-    def _force(self, exact, name, named) -> float:
-        """A force by its name; of a section at the ratio that is told."""
-        full, _, ratio = name.partition("@")
-        if not ratio:
-            return named[full]
-        _, link, force = full.split(":")
-        return exact.sections[link](float(ratio))[FORCES.index(force)]
 
     def _ratios(self, exact, place) -> dict[str, list[float]]:
         """Where to look at each link: its ends, anywhere, and beside its stations; not where a

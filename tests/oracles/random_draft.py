@@ -272,34 +272,22 @@ class Draft:
         x, y = self.place(spot)
         self.poses[spot.body] = (at[0] - x, at[1] - y, phi)
 
-    def bar(
-        self, a: Place, b: Place, matter=None, spread: float | None = 0.03
-    ) -> tuple[Spot, Spot]:
-        """A link through two places, and its points there: its ends, either
-        way round, or stations.
+    def bar(self, a: Place, b: Place) -> tuple[Spot, Spot]:
+        """A link through two places, and its points there: its ends, either way round, or
+        stations.
         """
         length, phi = math.dist(a, b), math.atan2(b[1] - a[1], b[0] - a[0])
-        if self.chance(0.25):
-            a, b, phi = b, a, math.remainder(phi + math.pi, math.tau)
-            second, first = self.bar_along(a, length, phi, matter, spread)
-        else:
-            first, second = self.bar_along(a, length, phi, matter, spread)
-        return first, second
-
-    def bar_along(
-        self, a: Place, length: float, phi: float, matter=None, spread: float | None = 0.03
-    ) -> tuple[Spot, Spot]:
-        """A link in a direction, and its points at a place and so far along."""
+        turned = self.chance(0.25)
+        start, phi = (b, math.remainder(phi + math.pi, math.tau)) if turned else (a, phi)
         if self.chance(0.8):
-            name = self.link(length, matter, spread)
+            name = self.link(length)
             first, second = self.base(name), self.tip(name)
         else:
             before = self.between(0.02, 0.1)
-            name = self.link(before + length + self.between(0.06, 0.1), matter, spread)
-            first = self.at(name, before, 0.0, spread)
-            second = self.at(name, before + length, 0.0, spread)
-        self.put(first, a, phi)
-        return first, second
+            name = self.link(before + length + self.between(0.06, 0.1))
+            first, second = self.at(name, before), self.at(name, before + length)
+        self.put(first, start, phi)
+        return (second, first) if turned else (first, second)
 
     # Joints
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import oracle
 from random_draft import Draft, Place, Spot
-from random_formula import Formula, Measure
-from random_growth import anything, attempt
+from random_formula import Formula, Measure, axis_of, seen
+from random_growth import MisfitError, anything, attempt, lead
 
 _AT_REST = 1e-3
 """Rates below are those of parts at rest, of which losses tell nothing [rad/s]."""
@@ -106,10 +106,10 @@ def lose(d: Draft, rng: np.random.Generator, motion: oracle.Result) -> None:
 # Parts
 
 
-def _axes(d: Draft) -> list[tuple[str, Spot, str]]:
-    """Pins about which a body turns on another: the pin, its point of the body, and the carrier.
+def _axis(d: Draft, *, grounded: bool = False) -> tuple[str, Spot, str]:
+    """A pin about which a body turns on another: the pin, its point of the body, and the carrier.
 
-    Those alone that no parameter moves: what is placed beside one would not fit other values.
+    Of those alone that no parameter moves: what is placed beside one would not fit other values.
     """
     found = []
     fixed = {
@@ -125,7 +125,10 @@ def _axes(d: Draft) -> list[tuple[str, Spot, str]]:
         for (body, x, y), (carrier, *_) in (ends, ends[::-1]):
             if body != "ground" and {body, carrier} <= {*fixed, "ground"}:
                 found.append((name, Spot(body, _written(d, body, x, y), x, y), carrier))
-    return found
+    found = [one for one in found if not grounded or d.joints[one[0]].parent[0] == "ground"]
+    if not found:
+        raise MisfitError
+    return found[int(d.rng.integers(len(found)))]
 
 
 def _written(d: Draft, body: str, x: float, y: float) -> str:
@@ -149,7 +152,7 @@ def _wheel(d: Draft, radius: float) -> str:
     return name
 
 
-def _beside(d: Draft, carrier: str, centre: Place, distance: float) -> Spot | None:
+def _beside(d: Draft, carrier: str, centre: Place, distance: float) -> Spot:
     """A point of a carrier so far from a place."""
     ways = [d.angle() for _ in range(3)]
     along = d.pose(carrier)[2]
@@ -157,20 +160,15 @@ def _beside(d: Draft, carrier: str, centre: Place, distance: float) -> Spot | No
         at = centre[0] + distance * math.cos(way), centre[1] + distance * math.sin(way)
         if (spot := d.meet(carrier, at)) is not None:
             return spot
-    return None
+    raise MisfitError
 
 
 def _second_wheel(d: Draft, distance: float, radius: float):
     """An axis that is there, and a wheel that turns on its carrier so far beside it: (pin, centre,
     pin, centre, carrier).
     """
-    axes = _axes(d)
-    if not axes:
-        return None
-    pin, first, carrier = axes[int(d.rng.integers(len(axes)))]
+    pin, first, carrier = _axis(d)
     hub = _beside(d, carrier, d.place(first), distance)
-    if hub is None:
-        return None
     body = _wheel(d, radius)
     second = d.base(body)
     d.put(second, d.place(hub), d.angle())
@@ -203,15 +201,12 @@ def _centres(place, first: Spot, second: Spot):
     return (dx / length, dy / length), (-dy / length, dx / length), length
 
 
-def gear(d: Draft) -> bool | None:
+def gear(d: Draft) -> None:
     """A wheel with teeth in those of a body that turns, outside or in a ring."""
     inside, r1 = d.chance(0.3), d.between(0.03, 0.1)
     r2 = d.between(0.03, 0.1) if not inside else r1 * d.choose(2.5, 0.4)
     distance = abs(r1 - r2) if inside else r1 + r2
-    found = _second_wheel(d, distance, r2)
-    if found is None:
-        return False
-    pin, first, other, second, carrier = found
+    pin, first, other, second, carrier = _second_wheel(d, distance, r2)
     name, angle = d.new("e"), d.between(10.0, 28.0)
     formula, offset = _couple(
         d, name, (pin, other), (first.body, second.body), (r1, -r2 if inside else r2)
@@ -224,8 +219,7 @@ def gear(d: Draft) -> bool | None:
     arm = -r1 if inside and r1 < r2 else r1
     off = -1.0 if not inside or r1 < r2 else 1.0  # off the teeth: a pinion inward, a ring outward
     force = teeth_between(first, second, abs(arm), math.copysign(1.0, arm), -off)
-    d.contacts[name] = _mesh(name, formula, force, angle, (first, second), carrier, (r1, r2))
-    return None
+    d.contacts[name] = mesh(name, formula, force, angle, (first, second), carrier, (r1, r2))
 
 
 def teeth_between(first: Spot, second: Spot, radius: float, sense: float, press: float) -> Callable:
@@ -248,7 +242,7 @@ def teeth_between(first: Spot, second: Spot, radius: float, sense: float, press:
     return force
 
 
-def _mesh(name: str, formula: Formula, force: Callable, angle: float, *axes) -> Contact:
+def mesh(name: str, formula: Formula, force: Callable, angle: float, *axes) -> Contact:
     """Teeth whose flanks lean by an angle [deg]: ``force(place, along, apart)`` lists what the
     force along the common tangent and the one that presses apart do.
     """
@@ -262,12 +256,9 @@ def _mesh(name: str, formula: Formula, force: Callable, angle: float, *axes) -> 
     )
 
 
-def rack(d: Draft) -> bool | None:
+def rack(d: Draft) -> None:
     """A bar that slides, with teeth in those of a body that turns."""
-    axes = _axes(d)
-    if not axes:
-        return False
-    pin, first, carrier = axes[int(d.rng.integers(len(axes)))]
+    pin, first, carrier = _axis(d)
     r, way, side = d.between(0.03, 0.1), d.angle(), d.choose(-1, 1)
     u = math.cos(way), math.sin(way)
     n = -side * u[1], side * u[0]
@@ -277,9 +268,7 @@ def rack(d: Draft) -> bool | None:
     bar = d.link(d.between(0.3, 0.5))
     on = d.at(bar, d.between(0.15, 0.25))
     d.put(on, at, math.remainder(way + d.choose(0.0, math.pi), math.tau))
-    slide = d.line("prismatic", carrier, on, way)
-    if slide is None:
-        return False
+    slide = lead(d, "prismatic", carrier, on, way)
     name, angle = d.new("e"), d.between(10.0, 28.0)
     # Of the pitch circle's way at the pitch point along the axis of sliding.
     formula, offset = _couple(d, name, (pin, slide), (first.body, bar), (r, float(side)))
@@ -291,27 +280,21 @@ def rack(d: Draft) -> bool | None:
     joint = d.joints[slide]
 
     def force(place, along: float, apart: float):
-        own = place((carrier, 0.0, 0.0))[2].v
-        c, s = math.cos(own), math.sin(own)
-        ax, ay = (c * joint.axis[0] - s * joint.axis[1], s * joint.axis[0] + c * joint.axis[1])
+        ax, ay = (along.v for along in axis_of(joint, place))
         e = -side * ay, side * ax
         f = -e[1] * along - e[0] * apart, e[0] * along - e[1] * apart
         x, y, _ = place(first.point)
-        body = (bar, *_seen(place, bar, (x.v + r * e[0], y.v + r * e[1])))
+        body = (bar, *seen(place, bar, (x.v + r * e[0], y.v + r * e[1])))
         return [(first.point, *f, r * along), (body, -f[0], -f[1], 0.0)]
 
-    d.contacts[name] = _mesh(name, formula, force, angle)
-    return None
+    d.contacts[name] = mesh(name, formula, force, angle)
 
 
-def belt(d: Draft) -> bool | None:
+def belt(d: Draft) -> None:
     """A wheel driven by a belt or a chain, open or crossed."""
     r1, r2, crossed = d.between(0.03, 0.1), d.between(0.03, 0.1), d.chance(0.4)
     distance = r1 + r2 + d.between(0.05, 0.2)
-    found = _second_wheel(d, distance, r2)
-    if found is None:
-        return False
-    pin, first, other, second, carrier = found
+    pin, first, other, second, carrier = _second_wheel(d, distance, r2)
     preload = d.choose(0.0, d.between(0.1, 100.0))
     name, pins, bodies = d.new("e"), (pin, other), (first.body, second.body)
     formula, offset = _couple(d, name, pins, bodies, (r1, r2 if crossed else -r2))
@@ -352,17 +335,13 @@ def belt(d: Draft) -> bool | None:
         lambda place, size: strands(place, [max(2 * preload, abs(size)) / 2] * 2),
         both,
     )
-    return None
 
 
-def cam(d: Draft) -> bool | None:
+def cam(d: Draft) -> None:
     """A disc cam on a body that turns on the ground, and its follower: a roller or a knife edge
     that slides or swings.
     """
-    axes = [one for one in _axes(d) if d.joints[one[0]].parent[0] == "ground"]
-    if not axes:
-        return False
-    pin, disc, _ = axes[int(d.rng.integers(len(axes)))]
+    pin, disc, _ = _axis(d, grounded=True)
     base, h = d.between(0.05, 0.1), d.between(0.002, 0.01)
     roller = d.choose(0.0, d.between(0.005, 0.02))
     first = d.coordinate(pin)
@@ -410,7 +389,6 @@ def cam(d: Draft) -> bool | None:
         ]
 
     d.contacts[name] = Contact(formula, acts, None, lambda size: {f"{name}_force": size})
-    return None
 
 
 def _slides(d: Draft, centre: Place, prime: float, rise: float):
@@ -447,15 +425,13 @@ def _swings(d: Draft, centre: Place, prime: float, rise: float):
     return side, d.tip(arm), lead, q, names
 
 
-def cylinder(d: Draft) -> bool | None:
+def cylinder(d: Draft) -> None:
     """A cylinder between points of two bodies."""
     rear, front = d.spot(anything(d, points=True)), d.spot(anything(d, points=True))
-    if rear.body == front.body:
-        return False
     (x, y), (u, v) = d.place(rear), d.place(front)
     reach, way = math.dist((x, y), (u, v)), math.atan2(v - y, u - x)
-    if reach < 0.15:
-        return False
+    if rear.body == front.body or reach < 0.15:
+        raise MisfitError
     name, closed = d.new("e"), float(f"{reach * d.rng.uniform(0.55, 0.9):.4g}")
     masses = [d.choose(0.0, d.between(0.1, 1.0)) for _ in range(2)]
     parts = [f"{name}_barrel", f"{name}_rod"]
@@ -477,10 +453,9 @@ def cylinder(d: Draft) -> bool | None:
     d.joints[pins[0]] = oracle.Joint(pins[0], "revolute", rear.point, (barrel, 0.0, 0.0))
     d.joints[name] = oracle.Joint(name, "prismatic", (barrel, 0.0, 0.0), (rod, 0.0, 0.0))
     d.joints[pins[1]] = oracle.Joint(pins[1], "revolute", (rod, closed, 0.0), front.point)
-    return None
 
 
-def bearings(d: Draft) -> bool | None:
+def bearings(d: Draft) -> None:
     """A shaft from the side, in a fixed and a floating bearing."""
     near = d.spot(anything(d))
     shaft, way = d.link(d.between(0.2, 0.5)), d.angle()
@@ -502,7 +477,6 @@ def bearings(d: Draft) -> bool | None:
     d.stations.setdefault(shaft, []).append(apart)
     if near.body != "ground":
         d.stations.setdefault(near.body, []).append(far[1])
-    return None
 
 
 PARTS = {gear: 4, rack: 2, belt: 3, cam: 3, cylinder: 3, bearings: 1}
@@ -510,10 +484,3 @@ PARTS = {gear: 4, rack: 2, belt: 3, cam: 3, cylinder: 3, bearings: 1}
 
 def _named(body: str) -> str:
     return "m.ground" if body == "ground" else body
-
-
-def _seen(place, body: str, at: Place) -> Place:
-    """A place in a body's axes."""
-    x, y, phi = place((body, 0.0, 0.0))
-    c, s, dx, dy = math.cos(phi.v), math.sin(phi.v), at[0] - x.v, at[1] - y.v
-    return c * dx + s * dy, c * dy - s * dx

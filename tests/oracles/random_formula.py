@@ -5,7 +5,6 @@ of points, as jets.
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -37,7 +36,6 @@ class Measure:
     kind: str
     of: Any
     rate: bool = False
-    wrapped: bool = False
 
     def jet(self, place) -> Jet:
         """Its value with its derivatives, from the places of points."""
@@ -69,10 +67,15 @@ def axis_of(joint: oracle.Joint, place) -> tuple[Jet, Jet]:
 
 def under(joint: oracle.Joint, place) -> tuple[str, Any, Any]:
     """The point of a sliding joint's parent at which the child's point is."""
-    (bx, by, _), (cx, cy, _) = place((joint.parent[0], 0.0, 0.0)), place(joint.child)
-    x, y, _ = place((joint.parent[0], 1.0, 0.0))
-    c, s, dx, dy = x.v - bx.v, y.v - by.v, cx.v - bx.v, cy.v - by.v
-    return joint.parent[0], c * dx + s * dy, c * dy - s * dx
+    x, y, _ = place(joint.child)
+    return joint.parent[0], *seen(place, joint.parent[0], (x.v, y.v))
+
+
+def seen(place, body: str, at) -> tuple[Any, Any]:
+    """A place in a body's axes."""
+    (bx, by, _), (x, y, _) = place((body, 0.0, 0.0)), place((body, 1.0, 0.0))
+    c, s, dx, dy = x.v - bx.v, y.v - by.v, at[0] - bx.v, at[1] - by.v
+    return c * dx + s * dy, c * dy - s * dx
 
 
 def joint_coordinate(joint: oracle.Joint, place) -> Jet:
@@ -100,8 +103,6 @@ class Formula:
         for name, measure in self.names.items():
             found = measure.jet(place)
             known[name] = Jet(found.d) if measure.rate else found
-            if measure.wrapped:
-                known[name] -= math.tau * math.ceil(float(found.v) / math.tau - 0.5)
         return self._value(known, Jet(arithmetic.number(t), 1.0), arithmetic)
 
     def effect(self, place, t, arithmetic=DOUBLE) -> list[tuple[Any, Any, Any, Any]]:

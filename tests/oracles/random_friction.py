@@ -7,7 +7,6 @@ import rubbing
 from random_mechanisms import draw
 from random_verdict import is_regular
 
-SEEDS = range(120)
 # fmt: off
 RUB = [
     0, 4, 7, 8, 11, 15, 16, 18, 19, 22, 26, 30, 31, 36, 38, 39, 41, 43, 46, 49, 54, 62, 65, 66, 67,

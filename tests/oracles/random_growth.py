@@ -4,6 +4,7 @@ a motion.
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import math
 from dataclasses import replace
@@ -15,6 +16,10 @@ _STEADY = 0.02
 """Of the gaps' slope: the least singular value that a part may leave."""
 
 LEAST = 1e-9
+
+
+class MisfitError(Exception):
+    """A part has no place here."""
 
 
 def frame(d: Draft):
@@ -52,7 +57,8 @@ def attempt(d: Draft, part, *, takes: int | None = None) -> bool:
         name: copy.copy(value) for name, value in vars(d).items() if name not in ("rng", "_counts")
     }
     before = freedom(d) if takes is not None else 0
-    if part(d) is not False:
+    with contextlib.suppress(MisfitError):
+        part(d)
         found = values(d)
         steady = found[found >= LEAST]
         taken = before - int(np.sum(found < LEAST))
@@ -95,17 +101,17 @@ def hang(d: Draft) -> None:
     (d.pin if kind == "pin" else d.weld)(near, far)
 
 
-def dyad(d: Draft) -> bool | None:
+def dyad(d: Draft) -> None:
     """Two links, or a link and a slide, between two points that are there:
     no freedom more or less.
     """
     a, b = (d.spot(anything(d)) for _ in range(2))
     if a.body == b.body:
-        return False
+        raise MisfitError
     at, to = d.place(a), d.place(b)
     middle = (at[0] + d.between(-0.6, 0.6), at[1] + d.between(-0.6, 0.6))
     if math.dist(at, middle) < 0.08 or math.dist(to, middle) < 0.08:
-        return False
+        raise MisfitError
     kind = d.choose("pins", "slider", "slot", "block", weights=[4, 3, 2, 2])
     if kind == "pins":
         ends = [d.bar(p, middle) for p in (at, to)]
@@ -115,36 +121,38 @@ def dyad(d: Draft) -> bool | None:
     elif kind in ("slider", "slot"):
         near, far = d.bar(at, middle)
         d.pin(a, near)
-        return _guide(d, b.body, far, d.angle(), direct=kind == "slot")
+        _guide(d, b.body, far, d.angle(), direct=kind == "slot")
     else:
         (near, far), (other, _) = d.bar(at, middle), d.bar(to, middle)
         d.pin(a, near)
         d.pin(b, other)
         direction = d.choose(d.pose(near.body)[2], d.angle())
-        return (
-            d.line("prismatic", *d.choose((near.body, other), (other.body, far)), direction)
-            is not None
-        )
-    return None
+        lead(d, "prismatic", *d.choose((near.body, other), (other.body, far)), direction)
 
 
-def _guide(d: Draft, carrier: str, pin: Spot, direction: float, direct: bool) -> bool:
+def lead(d: Draft, *told) -> str:
+    """A line of :meth:`Draft.line`, which has a place."""
+    joint = d.line(*told)
+    if joint is None:
+        raise MisfitError
+    return joint
+
+
+def _guide(d: Draft, carrier: str, pin: Spot, direction: float, direct: bool) -> None:
     """A pin in a slot, itself or by a point mass, or by a link that does not turn."""
-    if direct:
-        return d.line("slot", carrier, pin, direction) is not None
-    at = d.place(pin)
-    if d.chance(0.6):
-        mass = d.mass_point(at)
-        d.pin(pin, mass)
-        return d.line(d.choose("prismatic", "slot"), carrier, mass, direction) is not None
-    block = d.link(d.between(0.05, 0.1))
-    spot = d.base(block)
-    d.put(spot, at, d.angle())
-    d.pin(pin, spot)
-    return d.line("prismatic", carrier, spot, direction) is not None
+    kind, at, spot = "slot", d.place(pin), pin
+    if not direct and d.chance(0.6):
+        spot = d.mass_point(at)
+        d.pin(pin, spot)
+        kind = d.choose("prismatic", "slot")
+    elif not direct:
+        kind, spot = "prismatic", d.base(d.link(d.between(0.05, 0.1)))
+        d.put(spot, at, d.angle())
+        d.pin(pin, spot)
+    lead(d, kind, carrier, spot, direction)
 
 
-def twice(d: Draft) -> bool | None:
+def twice(d: Draft) -> None:
     """A joint or an equation once more, as a second bearing: the two share what one would bear."""
     joint = d.choose(*d.joints, *d.constraints)
     name = d.new("j" if joint in d.joints else "c")
@@ -167,38 +175,36 @@ def close(d: Draft) -> bool:
     return attempt(d, lambda d: _tie(d, kind), takes=kinds[kind])
 
 
-def _tie(d: Draft, kind: str) -> bool | None:
+def _tie(d: Draft, kind: str) -> None:
     if kind == "gear":
         joints = d.movable()
         if len(joints) < 2:
-            return False
+            raise MisfitError
         first, second = d.rng.choice(joints, 2, replace=False)
         d.gear(str(first), str(second), d.between(0.3, 2.0) * d.choose(-1, 1))
-        return None
-    if kind == "users":
-        return users(d)
+        return
     turning = [name for name in d.bodies if d.bodies[name].oriented]
     if not turning:
-        return False
+        raise MisfitError
+    if kind == "users":
+        users(d, turning)
+        return
     spot, other = d.spot(d.choose(*turning)), anything(d)
     if other == spot.body:
-        return False
-    if kind == "pin" or kind == "weld":
+        raise MisfitError
+    if kind in ("pin", "weld"):
         meets = d.meet(other, d.place(spot))
         if meets is None:
-            return False
+            raise MisfitError
         (d.pin if kind == "pin" else d.weld)(spot, meets)
-        return None
-    if kind == "line":
-        return d.line("prismatic", other, spot, d.angle()) is not None
-    return _guide(d, other, spot, d.choose(d.angle(), d.pose(other)[2]), direct=kind == "slot")
+    elif kind == "line":
+        lead(d, "prismatic", other, spot, d.angle())
+    else:
+        _guide(d, other, spot, d.choose(d.angle(), d.pose(other)[2]), direct=kind == "slot")
 
 
-def users(d: Draft) -> bool | None:
+def users(d: Draft, turning: list[str]) -> None:
     """An equation of a user's own, in places, directions, coordinates and time."""
-    turning = [name for name in d.bodies if d.bodies[name].oriented]
-    if not turning:
-        return False
     kind = d.choose(
         "distance",
         "root",
@@ -214,7 +220,7 @@ def users(d: Draft) -> bool | None:
     if kind in ("distance", "root", "middle"):
         other = d.spot(anything(d))
         if other.body == spot.body or math.dist(d.place(spot), d.place(other)) < 0.05:
-            return False
+            raise MisfitError
         names = d.measured("place", spot)
         x, y = names
         if other.body == "ground":
@@ -246,7 +252,7 @@ def users(d: Draft) -> bool | None:
         if kind == "directions":
             others = [name for name in turning if name != names[q].of[0]]
             if not others:
-                return False
+                raise MisfitError
             more = d.measured("direction", d.choose(*others))
             text, names = f"{q} + {d.between(-1.5, 1.5)!r} * {next(iter(more))}", names | more
         d.constraint(d.held(text, names))
@@ -257,12 +263,12 @@ def users(d: Draft) -> bool | None:
         ]
         joints = list(dict.fromkeys(joints))
         if len(joints) < 2:
-            return False
+            raise MisfitError
         pair = [str(j) for j in d.rng.choice(joints, 2, replace=False)]
         if (
             min(abs(d.coordinate(j)) for j in pair) < 0.05
         ):  # where their product is none, it may stay so in two ways
-            return False
+            raise MisfitError
         first, second = (d.measured("coordinate", j) for j in pair)
         (q,), (r,) = first, second
         text = d.choose(
@@ -271,4 +277,3 @@ def users(d: Draft) -> bool | None:
             f"sin({q}) - {d.between(0.2, 1)!r} * {r}",
         )
         d.constraint(d.held(text, first | second))
-    return None

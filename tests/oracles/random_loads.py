@@ -8,7 +8,7 @@ import math
 import numpy as np
 import oracle
 from random_draft import Draft, Spot
-from random_formula import Formula, joint_coordinate
+from random_formula import Formula, Measure, joint_coordinate
 from random_growth import anything
 from spread import Spread
 
@@ -236,4 +236,4 @@ def _spring(place, _, first: Spot, second: Spot, stiffness: float, length: float
 def _coil(place, _, joint: oracle.Joint, stiffness: float, angle: float, damping: float):
     bend = joint_coordinate(joint, place)
     couple = -stiffness * (bend.v - angle) - damping * bend.d
-    return [(joint.child, 0.0, 0.0, couple), (joint.parent, 0.0, 0.0, -couple)]
+    return Measure("coordinate", joint).does(place, couple)

@@ -10,12 +10,12 @@ import math
 import oracle
 from random_draft import Draft, Place, Spot
 from random_elements import PARTS as ELEMENTS
-from random_elements import Contact, teeth_between
+from random_elements import mesh, teeth_between
 from random_formula import Measure
 from random_growth import anything, attempt, dyad
 
 
-def planetary(d: Draft) -> bool | None:
+def planetary(d: Draft) -> None:
     """Planets that share the load between a sun and a ring, of which one may be held."""
     z, planets = d.choose(
         ((20, 16, 52), 3), ((24, 18, 60), 2), ((18, 24, 66), 3), ((31, 13, 57), 4)
@@ -87,7 +87,6 @@ def planetary(d: Draft) -> bool | None:
             steep,
         )
     _mesh(d, f"{name}_sun", carrier, spots["sun"], d.base(names[0]), sizes[:2], 1.0, meshes, steep)
-    return None
 
 
 def _mesh(d, name, carrier, first: Spot, second: Spot, sizes, sense, meshes, steep) -> None:
@@ -98,20 +97,14 @@ def _mesh(d, name, carrier, first: Spot, second: Spot, sizes, sense, meshes, ste
     }
     a, b, c = places
     formula = d.formula(f"{sizes[0]!r} * ({a} - {c}) + {sense * sizes[1]!r} * ({b} - {c})", places)
-    lean = math.tan(math.radians(steep))
 
     def all_of(place, along, apart):
         return [part for force in meshes for part in force(place, along, apart)]
 
-    d.contacts[name] = Contact(
-        formula,
-        lambda place: all_of(place, 1.0, 0.0),
-        lambda place, size: all_of(place, 0.0, abs(size) * lean),
-        lambda size: {f"{name}_tangential": size, f"{name}_radial": abs(size) * lean},
-    )
+    d.contacts[name] = mesh(name, formula, all_of, steep)
 
 
-def bushes(d: Draft) -> bool | None:
+def bushes(d: Draft) -> None:
     """A rod that slides in two bushes of another body."""
     body = anything(d)
     if body == "ground":
@@ -141,10 +134,9 @@ def bushes(d: Draft) -> bool | None:
     d.joints[pins[0]] = oracle.Joint(pins[0], "prismatic", base, (shoe, 0.0, 0.0), axis=axis)
     d.joints[pins[2]] = oracle.Joint(pins[2], "revolute", (shoe, 0.0, 0.0), near.point)
     d.joints[pins[1]] = oracle.Joint(pins[1], "slot", base, far.point, axis=axis)
-    return None
 
 
-def plate(d: Draft) -> bool | None:
+def plate(d: Draft) -> None:
     """A plate of three or four corners on a pin."""
     name, mass, near = d.new("b"), d.between(0.3, 2.0), d.spot(anything(d))
     corners = [
@@ -167,10 +159,9 @@ def plate(d: Draft) -> bool | None:
     spot = Spot(name, f"{name}_made.corner({k})", *corners[k])
     d.put(spot, d.place(near), d.angle())
     d.pin(near, spot)
-    return None
 
 
-def bent(d: Draft) -> bool | None:
+def bent(d: Draft) -> None:
     """A bar of two or three straight pieces on a pin at a corner."""
     name, mass, near = d.new("b"), d.between(0.3, 2.0), d.spot(anything(d))
     corners: list[Place] = [(0.0, 0.0)]
@@ -213,7 +204,6 @@ def bent(d: Draft) -> bool | None:
         d.lines.append(f'{bend} = m.joints["{bend}"]  # of {pieces[0]}')
     end = d.tip(pieces[k - 1]) if k else d.base(pieces[0])
     d.pin(near, Spot(end.body, f"{name}_made.corner({k})", end.x, end.y))
-    return None
 
 
 PARTS = {"planetary": planetary, "bushes": bushes, "plate": plate, "bent": bent}

@@ -78,13 +78,8 @@ def led_arm(d: Draft) -> list[str]:
         names = d.measured("place", spot)
         x = list(names)[axis if d.chance(0.8) else 1 - axis]
         law = d.choose("0.2 * t", "0.1 * sin(3.0 * t)", "0.3 * t**2", "0.1 * (cos(2.0 * t) - 1.0)")
-        attempt(
-            d,
-            lambda d, x=x, names=names, law=law: (
-                d.constraint(d.held(f"{x} - {law}", names)) and None
-            ),
-            takes=1,
-        )
+        held = d.held(f"{x} - {law}", names)
+        attempt(d, lambda d, held=held: d.constraint(held), takes=1)
     return []
 
 

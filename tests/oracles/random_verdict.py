@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import contextlib
 import math
-import re
 import signal
 import traceback
 import warnings
@@ -126,13 +125,6 @@ def peaks_off(scene, solution, dense, names) -> list[str]:
         if not least - 1e-9 * size <= abs(peak.value) <= many * 1.01 + 1e-2 * size:
             off.append(f"{peak}, {many} at one of many instants")
     return off
-
-
-def reason(why: str) -> str:
-    """A message without its names and numbers, to count alike ones."""
-    why = re.sub(r"(\b[bjcfrp]\d+\b(, | or | and )?)+", "X", re.sub(r"random_\d+", "X", why))
-    why = re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", why)
-    return re.sub(r"(joint|constraint) 'X'((, | and )(joint|constraint) 'X')*", "'X'", why)[:150]
 
 
 @contextlib.contextmanager

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from arithmetic import DOUBLE
 from oracle import Joint, Oracle, Result
+from random_formula import Measure, axis_of, joint_coordinate
 
 PASSES, ROUNDS = 20000, 30
 
@@ -37,34 +38,13 @@ class Rub:
 
     def acts(self, place: Callable) -> list:
         """What it does to the joint's child, and back to its parent, where the child's point is."""
-        parent, child = self.joint.parent[0], self.joint.child
-        if not self.joint.slides:
-            return [(child, 0.0, 0.0, self.force), (self.joint.parent, 0.0, 0.0, -self.force)]
-        x, y = self.axis(place)
-        (bx, by, turned), (cx, cy, _) = place((parent, 0.0, 0.0)), place(child)
-        c, s = self.arithmetic.cos(turned.v), self.arithmetic.sin(turned.v)
-        dx, dy = cx.v - bx.v, cy.v - by.v
-        there = (parent, c * dx + s * dy, c * dy - s * dx)
-        return [
-            (child, self.force * x, self.force * y, 0.0),
-            (there, -self.force * x, -self.force * y, 0.0),
-        ]
-
-    def axis(self, place: Callable) -> tuple[float, float]:
-        turned = place((self.joint.parent[0], 0.0, 0.0))[2].v
-        (x, y), c, s = self.joint.axis, self.arithmetic.cos(turned), self.arithmetic.sin(turned)
-        return c * x - s * y, s * x + c * y
+        return Measure("coordinate", self.joint).does(place, self.force)
 
     def rate(self, place: Callable) -> float:
         """The rate of the joint's coordinate: of the angle, or of the distance along the carried
         line.
         """
-        (px, py, turned), (cx, cy, other) = place(self.joint.parent), place(self.joint.child)
-        if not self.joint.slides:
-            return other.d - turned.d
-        x, y = self.axis(place)
-        dx, dy = cx.v - px.v, cy.v - py.v
-        return x * (cx.d - px.d) + y * (cy.d - py.d) + turned.d * (-y * dx + x * dy)
+        return joint_coordinate(self.joint, place).d
 
     def law(self, reaction, place: Callable) -> float:
         """What the law says of a reaction."""
@@ -72,7 +52,7 @@ class Rub:
         if not self.joint.slides:
             pressed, speed = self.radius * self.arithmetic.sqrt(fx * fx + fy * fy), v * self.radius
         else:
-            x, y = self.axis(place)
+            x, y = (along.v for along in axis_of(self.joint, place))
             normal, speed = -y * fx + x * fy, v
             pressed = abs(normal)
             if self.length is not None:
@@ -84,40 +64,46 @@ class Rub:
         return -sign * mu * pressed - self.viscous * v
 
 
-def solve_rubbing(oracle: Oracle, rubs: Sequence[Rub], drives, guess) -> Result:
-    """The instant with friction. Fails where the iteration does not converge."""
-    rubbed = replace(oracle, loads=(*oracle.loads, *(rub.acts for rub in rubs)))
+def converge(balanced: Callable, laws: Sequence[Callable], a=DOUBLE) -> tuple[Any, Any]:
+    """What ``balanced`` returns for the forces that laws tell of its reactions, and these forces.
 
-    def balanced(forces):
-        for rub, force in zip(rubs, forces, strict=True):
-            rub.force = force
-        result = rubbed.solve(drives, guess)
-        return result, a.array([result.reactions[rub.joint.name] for rub in rubs])
-
-    a, n = oracle.arithmetic, len(rubs)
-    result, alone = balanced(a.zeros(n))
-    place = rubbed.places(result)
+    ``balanced(forces)`` is an instant, and the reactions of joints. Fails where the iteration does
+    not converge.
+    """
+    n = len(laws)
+    alone = balanced(a.zeros(n))[1]
     size = 1 + np.max(np.abs(alone))
     units = (a.array([size if j == k else 0 * size for j in range(n)]) for k in range(n))
     slopes = np.stack([(balanced(unit)[1] - alone) / size for unit in units], axis=-1)
     forces, left = a.zeros(n), None
     for _ in range(ROUNDS):
         for _ in range(PASSES):
-            before = forces
-            forces = a.array(
-                [rub.law(r, place) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)]
-            )
+            before, reactions = forces, alone + slopes @ forces
+            forces = a.array([law(r) for law, r in zip(laws, reactions, strict=True)])
             if np.max(np.abs(forces - before)) <= a.tolerance / 10 * size:
                 break
         result, reactions = balanced(forces)
-        left = max(
-            abs(rub.law(r, place) - rub.force) for rub, r in zip(rubs, reactions, strict=True)
-        )
+        left = max(abs(law(r) - x) for law, r, x in zip(laws, reactions, forces, strict=True))
         if left <= 1000 * a.tolerance * size:
-            return result
+            return result, forces
         # What presses gears apart has kinks, beside which reactions are linear.
         alone = reactions - slopes @ forces
     raise AssertionError(f"the friction of the oracle does not converge: {left}")
+
+
+def solve_rubbing(oracle: Oracle, rubs: Sequence[Rub], drives, guess) -> Result:
+    """The instant with friction."""
+    rubbed = replace(oracle, loads=(*oracle.loads, *(rub.acts for rub in rubs)))
+    place = oracle.places(oracle.move(drives, guess))
+
+    def balanced(forces):
+        for rub, force in zip(rubs, forces, strict=True):
+            rub.force = force
+        result = rubbed.solve(drives, guess)
+        return result, oracle.arithmetic.array([result.reactions[rub.joint.name] for rub in rubs])
+
+    laws = [lambda reaction, rub=rub: rub.law(reaction, place) for rub in rubs]
+    return converge(balanced, laws, oracle.arithmetic)[0]
 
 
 def solve(oracle: Oracle, m, values, drives, guess) -> Result:

@@ -72,7 +72,6 @@ class Wrenches:
 
     found: dict[str, Any]
     null: list[dict[str, Any]]
-    vague: bool
 
 
 @dataclass(frozen=True)
@@ -264,9 +263,7 @@ class Balance:
             multipliers = {tie.name: column[c] for c, tie in enumerate(self.ties, 6 * len(joints))}
             return {j.name: column[6 * i : 6 * i + 6] for i, j in enumerate(joints)} | multipliers
 
-        return Wrenches(
-            named(found), [named(columns * column) for column in factored.null.T], factored.vague
-        )
+        return Wrenches(named(found), [named(columns * column) for column in factored.null.T])
 
     def split(self, joint: Joint, wrenches):
         """The efforts of a joint's pushed axes by index, and its reaction without them and

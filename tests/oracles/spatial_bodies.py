@@ -19,19 +19,23 @@ Law = Callable[[Any], Any] | Sequence[Any]
 GROUND = "ground"
 NIL = (0, 0, 0)
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
-_TURNS = {"spherical": 3, "slot": 3, "free": 3, "universal": 2, "prismatic": 0, "weld": 0}
-KINDS = (
-    "revolute",
-    "prismatic",
-    "cylindrical",
-    "universal",
-    "spherical",
-    "screw",
-    "planar",
-    "slot",
-    "weld",
-    "free",
-)
+_KINDS = {
+    "revolute": ("u turns",),
+    "prismatic": ("u slides",),
+    "cylindrical": ("u turns", "u slides"),
+    "universal": ("u turns", "v turns"),
+    "spherical": ("1 turns", "2 turns", "3 turns"),
+    "screw": ("u winds",),
+    "planar": ("u slides", "v slides", "w turns"),
+    "slot": ("u slides", "1 turns", "2 turns", "3 turns"),
+    "weld": (),
+    "free": ("1 slides", "2 slides", "3 slides", "1 turns", "2 turns", "3 turns"),
+}
+"""What a joint lets its child do in sequence: about or along its axis u, its second axis v, the
+third one w, or the directions of its frame.
+"""
+
+KINDS = tuple(_KINDS)
 
 
 @dataclass(frozen=True)
@@ -171,61 +175,28 @@ class Joint:
     @property
     def count(self) -> int:
         """How many coordinates it has."""
-        return {
-            "cylindrical": 2,
-            "universal": 2,
-            "spherical": 3,
-            "planar": 3,
-            "slot": 4,
-            "weld": 0,
-            "free": 6,
-        }.get(self.kind, 1)
+        return len(_KINDS[self.kind])
 
     @property
-    def turning(self) -> range:
+    def turning(self) -> list[int]:
         """The indices of its turns."""
-        if self.kind == "cylindrical":
-            return range(1)
-        turns = _TURNS.get(self.kind, 1)
-        return range(self.count - turns, self.count)
+        return [k for k, told in enumerate(_KINDS[self.kind]) if not told.endswith("slides")]
 
     def axes(self, arithmetic) -> list[Axis]:
         """Its axes, in the parent's axes at coordinates zero."""
         one = arithmetic.number(1)
-        first = unit(arithmetic, vector(arithmetic, self.axis))
-        second = None
+        frame = orthonormal(arithmetic, [*zip(*self.frame, strict=True)]).T
+        ways = {"u": unit(arithmetic, vector(arithmetic, self.axis))}
+        ways |= dict(zip("123", frame, strict=True))
         if self.axis2 is not None:
-            given = unit(arithmetic, vector(arithmetic, self.axis2))
-            assert abs(given @ first) < 1e-9, f"the axes of '{self.name}' are not at right angles"
-            second = unit(arithmetic, given - first * (given @ first))
-        frame = [*orthonormal(arithmetic, [*zip(*self.frame, strict=True)]).T]
-        turns = [Axis(e, True, 0 * one) for e in frame]
-        slides = [Axis(e, False, one) for e in frame]
-        match self.kind:
-            case "revolute":
-                return [Axis(first, True, 0 * one)]
-            case "prismatic":
-                return [Axis(first, False, one)]
-            case "cylindrical":
-                return [Axis(first, True, 0 * one), Axis(first, False, one)]
-            case "universal":
-                return [Axis(first, True, 0 * one), Axis(second, True, 0 * one)]
-            case "screw":
-                return [Axis(first, True, arithmetic.number(self.lead) / (2 * pi(arithmetic)))]
-            case "planar":
-                return [
-                    Axis(first, False, one),
-                    Axis(second, False, one),
-                    Axis(cross(first, second), True, 0 * one),
-                ]
-            case "spherical":
-                return turns
-            case "slot":
-                return [Axis(first, False, one), *turns]
-            case "free":
-                return [*slides, *turns]
-            case _:
-                return []
+            given, u = unit(arithmetic, vector(arithmetic, self.axis2)), ways["u"]
+            assert abs(given @ u) < 1e-9, f"the axes of '{self.name}' are not at right angles"
+            ways["v"] = unit(arithmetic, given - u * (given @ u))
+            ways["w"] = cross(u, ways["v"])
+        lead = arithmetic.number(self.lead) / (2 * pi(arithmetic))
+        kinds = {"turns": (True, 0 * one), "slides": (False, one), "winds": (True, lead)}
+        told = (words.split() for words in _KINDS[self.kind])
+        return [Axis(ways[way], *kinds[kind]) for way, kind in told]
 
 
 @dataclass(frozen=True)

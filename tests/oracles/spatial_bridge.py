@@ -10,13 +10,17 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+from arithmetic import DOUBLE
 from spatial_bodies import GROUND, Rigid, Rod
 from spatial_draft import Drawn
+from spatial_motion import Motion, coordinates
+from spatial_oracle import REACTION
 from spatial_rubbing import Rub
 
 from lagrange_casadi import Scene, SpatialMechanism, density, motion
 
 _SIZE = 0.3
+NO_TURN = np.eye(3)
 BESIDE = (0.3, 3.0, 0.0)
 """In a body's own axes, the direction by which its y axis is told."""
 NO_BEAMS: Mapping[str, Any] = MappingProxyType({})
@@ -69,14 +73,14 @@ def declared(
     one = drawn.mechanism
     m = SpatialMechanism("drawn")
     m.set_gravity(*map(float, one.gravity))
-    told = {
+    placed = {
         body for joint in one.joints if drawn.is_hard(joint) for body in (joint.parent, joint.child)
     }
-    told |= find_two_force_links(drawn) & {*beams}
+    placed |= find_two_force_links(drawn) & {*beams}
     parts = {GROUND: m.ground}
     for b in one.bodies:
         parts[b.name] = _body(
-            m, b, drawn.guess[b.name] if b.name in told else None, beams.get(b.name)
+            m, b, drawn.guess[b.name] if b.name in placed else None, beams.get(b.name)
         )
 
     def at(body, point):
@@ -84,10 +88,15 @@ def declared(
 
     for joint in one.joints:
         if drawn.is_hard(joint):
-            pose = drawn.guess.get(joint.parent, (np.zeros(3), np.eye(3)))
-            _join_at(m, joint, parts[joint.parent], parts[joint.child], *pose)
+            # By its place and directions in ground axes, which are not of length one.
+            r, R = drawn.guess.get(joint.parent, (np.zeros(3), NO_TURN))
+            ends = parts[joint.parent], parts[joint.child]
+            told = {"at": tuple(map(float, r + R @ np.array(joint.at_parent, float)))}
+            told |= _directions(joint, R, 7.0)
         else:
-            _join(m, joint, at(joint.parent, joint.at_parent), at(joint.child, joint.at_child))
+            ends = at(joint.parent, joint.at_parent), at(joint.child, joint.at_child)
+            told = _directions(joint) | {"turned": _turns(np.array(joint.orientation, float))}
+        getattr(m, joint.kind)(joint.name, *ends, **told)
     for k, load in enumerate(one.loads):
         for kind, vector in (("force", load.force), ("torque", load.torque)):
             given = dict(zip("xyz", map(float, vector), strict=True))
@@ -159,20 +168,26 @@ def postures(drawn: Drawn, t: float) -> dict[str, float]:
     """The coordinates at an instant, by the package's names, as they follow from the oracle's
     poses.
     """
-    found: dict[str, float] = {}
-    poses = {
-        name: (np.asarray(p.r, float), np.asarray(p.R, float))
-        for name, p in drawn.solve(t).poses.items()
+    motion = Motion(drawn.mechanism, drawn.laws, DOUBLE)
+    poses = drawn.solve(t).poses | {GROUND: motion.ground}
+    return {
+        coordinate(joint, k): float(value)
+        for joint in drawn.mechanism.joints
+        for k, value in enumerate(coordinates(joint, motion, poses))
     }
-    poses[GROUND] = np.zeros(3), np.eye(3)
-    for joint in drawn.mechanism.joints:
-        (r, R), (s, S) = poses[joint.parent], poses[joint.child]
-        turned = R.T @ S @ np.array(joint.orientation, float).T
-        apart = R.T @ (
-            s + S @ np.array(joint.at_child, float) - r - R @ np.array(joint.at_parent, float)
-        )
-        for k, value in enumerate(_coordinates(joint, turned, apart)):
-            found[coordinate(joint, k)] = float(value)
+
+
+def named(drawn, one):
+    """Efforts, multipliers and reactions by full name, and how the oracle calls each."""
+    found = {
+        f"effort:{coordinate(drawn.mechanism.joint(key[0]), key[1])}": (float(x), key)
+        for key, x in one.efforts.items()
+    }
+    for name, x in one.multipliers.items():
+        found[f"multiplier:{name}"] = float(x), (name, "multiplier")
+    for joint, reaction in one.reactions.items():
+        for member, x in zip(REACTION, reaction, strict=True):
+            found[f"reaction:{joint}:{member}"] = float(x), (joint, member)
     return found
 
 
@@ -228,52 +243,26 @@ def _lying(r, R, length):
     return {"between": (base, tip), "beside": aside}
 
 
-def _join(m, joint, start, end) -> None:
-    turned = _turns(np.array(joint.orientation, float))
-    axis = tuple(map(float, joint.axis))
-    second = None if joint.axis2 is None else tuple(map(float, joint.axis2))
-    u, v, _ = (tuple(map(float, direction)) for direction in joint.frame)
-    match joint.kind:
-        case "weld":
-            m.weld(joint.name, start, end, turned=turned)
-        case "spherical" | "free":
-            getattr(m, joint.kind)(joint.name, start, end, axis=u, second=v, turned=turned)
-        case "universal":
-            m.universal(joint.name, start, end, axis=axis, second=second, turned=turned)
-        case "screw":
-            m.screw(joint.name, start, end, axis=axis, lead=float(joint.lead), turned=turned)
-        case "planar":
-            m.planar(
-                joint.name,
-                start,
-                end,
-                axis=tuple(np.cross(axis, second)),
-                second=axis,
-                turned=turned,
-            )
-        case kind:
-            getattr(m, kind)(joint.name, start, end, axis=axis, turned=turned)
-
-
-def _join_at(m, joint, parent, child, r, R) -> None:
-    """By its place and directions in ground axes, which are not of length one."""
-    at = tuple(map(float, r + R @ np.array(joint.at_parent, float)))
+def _directions(joint, R=NO_TURN, scale=1.0) -> dict[str, Any]:
+    """What tells a joint's axes, which ``R`` turns, and its lead."""
     axis, second = (
-        None if x is None else 7.0 * (R @ np.array(x, float)) for x in (joint.axis, joint.axis2)
+        None if x is None else scale * (R @ np.array(x, float)) for x in (joint.axis, joint.axis2)
     )
     told = {"axis": axis}
     match joint.kind:
         case "weld":
             told = {}
         case "spherical" | "free":
-            told = {"axis": R @ joint.frame[0], "second": R @ joint.frame[1]}
+            told = {
+                "axis": R @ np.array(joint.frame[0], float),
+                "second": R @ np.array(joint.frame[1], float),
+            }
         case "universal":
             told |= {"second": second}
         case "planar":
             told = {"axis": np.cross(axis, second), "second": axis}
-    told = {name: tuple(map(float, vector)) for name, vector in told.items()}
     lead = {"lead": float(joint.lead)} if joint.kind == "screw" else {}
-    getattr(m, joint.kind)(joint.name, parent, child, at=at, **told, **lead)
+    return {name: tuple(map(float, way)) for name, way in told.items()} | lead
 
 
 def across_axis(axis):
@@ -293,41 +282,6 @@ def _turns(R):
     pitch = math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0]))
     roll = math.atan2(R[2, 1], R[2, 2])
     return [("z", yaw), ("y", pitch), ("x", roll)]
-
-
-def _coordinates(joint, turned, apart):
-    """A joint's coordinates from how its child is turned, and where its point is, on the parent's
-    axes.
-    """
-    u = np.array(joint.axis, float) / np.linalg.norm(np.array(joint.axis, float))
-    v = np.array(joint.axis2, float) if joint.axis2 is not None else np.array(across_axis(u)[1])
-    v = v - u * (v @ u)
-    v /= np.linalg.norm(v)
-    w = np.cross(u, v)
-    frame = np.array(joint.frame, float)
-    angle = math.atan2(w @ turned @ v, v @ turned @ v)
-    match joint.kind:
-        case "revolute" | "screw":
-            return (angle,)
-        case "prismatic":
-            return (apart @ u,)
-        case "cylindrical":
-            return angle, apart @ u
-        case "universal":
-            return angle, math.atan2(w @ turned.T @ u, u @ turned.T @ u)
-        case "planar":
-            about = math.atan2(v @ turned @ u, u @ turned @ u)
-            return apart @ u, apart @ v, about
-        case "weld":
-            return ()
-    M = frame @ turned @ frame.T
-    turns = (
-        math.atan2(-M[1, 2], M[2, 2]),
-        math.atan2(M[0, 2], math.hypot(M[0, 0], M[0, 1])),
-        math.atan2(-M[0, 1], M[0, 0]),
-    )
-    slides = {"slot": (apart @ u,), "free": tuple(frame @ apart)}.get(joint.kind, ())
-    return (*slides, *turns)
 
 
 def _rates(m, mechanism, row, parts):

@@ -67,10 +67,9 @@ class Drawn:
     """A mechanism, its laws by (joint, index), a guess at t = 0, and what bears efforts.
 
     It moves from 0 to ``span``, and is followed there in ``steps``. Numbers of the mechanism are
-    doubles, or of mpmath where a loop closes only by exact ones. A planar mechanism lies in the
-    ``plane`` of the first two columns of that matrix. So many spins are ``idle``: nothing holds
-    them. ``hard`` are bodies that are told by places: of the posture that is guessed, in which all
-    coordinates are zero.
+    doubles, or of mpmath where a loop closes only by exact ones. So many spins are ``idle``:
+    nothing holds them. ``hard`` are bodies that are told by places: of the posture that is guessed,
+    in which all coordinates are zero.
     """
 
     mechanism: Mechanism
@@ -80,7 +79,6 @@ class Drawn:
     span: float = 1.0
     steps: int = 8
     idle: int = 0
-    plane: np.ndarray | None = None
     hard: frozenset[str] = frozenset()
 
     def is_hard(self, joint: Joint) -> bool:

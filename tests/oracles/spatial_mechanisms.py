@@ -39,16 +39,16 @@ _EXACT.dps = 70
 _Z = (0, 0, 1)
 
 
-def steady(draw: Callable[[np.random.Generator], Drawn]) -> Callable[[int], Drawn]:
+def steady(draw: Callable[..., Drawn], name: str = "", *told) -> Callable[[int], Drawn]:
     """The first of a seed's draws that closes, is well away from singular all along, and has no
-    idle spin but its own.
+    idle spin but its own; ``told`` goes to the draw beside its generator.
     """
 
     @functools.cache
     def of(seed: int) -> Drawn:
         for attempt in range(100):
             try:
-                drawn = draw(np.random.default_rng([seed, attempt]))
+                drawn = draw(np.random.default_rng([seed, attempt]), *told)
                 slopes = [slope for _, slope in drawn.traced(drawn.span)]
             except OpenLoopError:
                 continue
@@ -59,7 +59,7 @@ def steady(draw: Callable[[np.random.Generator], Drawn]) -> Callable[[int], Draw
                 return drawn
         raise AssertionError(f"no draw of seed {seed} moves well")
 
-    of.__name__, of.__doc__ = draw.__name__, draw.__doc__
+    of.__name__, of.__doc__ = name or draw.__name__, draw.__doc__
     return of
 
 
@@ -171,28 +171,10 @@ def _loop(rng, universal, slides):
     )
 
 
-@steady
-def rssr(rng) -> Drawn:
-    """A four-bar of skew axes, its coupler between two spherical joints: it may spin."""
-    return _loop(rng, False, False)
-
-
-@steady
-def rsur(rng) -> Drawn:
-    """A four-bar of skew axes, its coupler held by a universal joint at the rocker."""
-    return _loop(rng, True, False)
-
-
-@steady
-def rssp(rng) -> Drawn:
-    """A spatial slider-crank, its coupler between two spherical joints: it may spin."""
-    return _loop(rng, False, True)
-
-
-@steady
-def rsup(rng) -> Drawn:
-    """A spatial slider-crank, its coupler held by a universal joint at the slider."""
-    return _loop(rng, True, True)
+# Four-bars and slider-cranks of skew axes, the coupler between two spherical joints, where it may
+# spin, or held by a universal joint at the end.
+rssr, rsur = (steady(_loop, name, name == "rsur", False) for name in ("rssr", "rsur"))
+rssp, rsup = (steady(_loop, name, name == "rsup", True) for name in ("rssp", "rsup"))
 
 
 @steady
@@ -296,19 +278,12 @@ def _planar(rng, slides):
     ]
     guess |= {("A", 0): lean - angle}
     mechanism = Mechanism([crank, coupler, last], joints, gravity=direction(rng) * 9.81)
-    return Drawn(mechanism, {("O", 0): law}, guess, span=0.5, plane=R.astype(float))
+    return Drawn(mechanism, {("O", 0): law}, guess, span=0.5)
 
 
-@steady
-def planar_four_bar(rng) -> Drawn:
-    """A planar four-bar of spatial pins, somewhere in space: three reactions are open."""
-    return _planar(rng, False)
-
-
-@steady
-def planar_slider_crank(rng) -> Drawn:
-    """A planar slider-crank of spatial pins, somewhere in space: three reactions are open."""
-    return _planar(rng, True)
+# Of spatial pins, somewhere in space: three reactions are open.
+planar_four_bar = steady(_planar, "planar_four_bar", False)
+planar_slider_crank = steady(_planar, "planar_slider_crank", True)
 
 
 def _ring(rng, lengths, twists, angles, law):

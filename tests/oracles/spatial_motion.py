@@ -254,7 +254,7 @@ class Motion:
         )
         for joint in self.mechanism.joints:
             if [key for key in self.free if key[0] == joint.name and key not in guess]:
-                found = _coordinates(joint, self, poses)
+                found = coordinates(joint, self, poses)
                 values |= {
                     (joint.name, k): (found[k], nil, nil)
                     for k in self.kept(joint)
@@ -294,7 +294,7 @@ def _between(a, b):
     return np.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]]) / 2
 
 
-def _coordinates(joint: Joint, motion: Motion, poses) -> list:
+def coordinates(joint: Joint, motion: Motion, poses) -> list:
     """Coordinates of a joint whose bodies have these poses, about, in doubles: exact where the
     poses fit the joint.
     """

@@ -15,15 +15,15 @@ one of three turns is a couple that has no power on the two others.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from spatial_algebra import arithmetic_of
+from spatial_algebra import arithmetic_of, vector
 from spatial_balance import Balance, Wrenches
 from spatial_bodies import Mechanism, Rod
 from spatial_motion import Motion, Pose, solve_motion
-from spatial_sections import Section, section
+from spatial_sections import Section
 
 REACTION = ("fx", "fy", "fz", "mx", "my", "mz")
 SECTION = ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")
@@ -40,11 +40,8 @@ class Result:
     or row, which act on its coordinates as efforts, times its coefficients, and on its points as
     forces; ``sections`` by rod.
 
-    Known in doubles only: ``loose_reactions`` (six, n) are the n ways in which ideal joints leave a
-    reaction open, ``loose_efforts`` (n) an effort, and ``loose_section(rod, xi)`` (six, n) a
-    section's forces; ``idle`` are the motions that the drives leave open, six a body (v, w) in
-    columns; ``steadiness`` is how far from singular the motion is; ``vague`` where a rank is not
-    clear. Numbers that are open are one choice of many.
+    ``idle`` are the motions that the drives leave open, six a body (v, w) in columns. Numbers that
+    are ``open`` are one choice of many. Both are known in doubles only.
     """
 
     poses: dict[str, Pose]
@@ -53,39 +50,48 @@ class Result:
     reactions: dict[str, np.ndarray]
     multipliers: dict
     sections: dict[str, Section]
-    loose_reactions: dict[str, np.ndarray]
-    loose_efforts: dict
-    loose_section: Callable
     idle: dict[str, np.ndarray]
-    steadiness: float
-    vague: bool
-    size: float
     balance: Balance
     wrenches: Wrenches
 
     @property
+    def size(self) -> float:
+        return self.balance.mechanism.size
+
+    @property
+    def units(self) -> np.ndarray:
+        """Of forces and moments."""
+        return np.array([1.0] * 3 + [self.size] * 3)
+
+    @cached_property
     def open(self) -> set:
         """What is open: (joint, member) of reactions, (joint, index) of efforts, and (name,
         "multiplier").
         """
-        unit = np.array([1.0] * 3 + [self.size] * 3)[:, None]
-        found = set()
-        for joint, ways in self.loose_reactions.items():
-            found |= {
-                (joint, m)
-                for m, row in zip(REACTION, ways / unit, strict=True)
-                if np.linalg.norm(row) > _OPEN
-            }
-        rows = self.loose_efforts | {
-            (name, "multiplier"): np.array([float(way[name]) for way in self.wrenches.null])
-            for name in self.multipliers
-        }
-        return found | {key for key, row in rows.items() if np.linalg.norm(row) > _OPEN * self.size}
+        sizes = dict.fromkeys(((name, "multiplier") for name in self.multipliers), 0.0)
+        for way in self.wrenches.null:
+            for name in self.multipliers:
+                sizes[name, "multiplier"] += float(way[name] / self.size) ** 2
+            for joint in self.balance.mechanism.joints:
+                efforts, reaction = self.balance.split(joint, way)
+                parts = dict(zip(REACTION, reaction / self.units, strict=True))
+                for member, x in (parts | {k: x / self.size for k, x in efforts.items()}).items():
+                    key = (joint.name, member)
+                    sizes[key] = sizes.get(key, 0.0) + float(x) ** 2
+        return {key for key, size in sizes.items() if size > _OPEN**2}
 
     def open_section(self, rod: str, xi) -> tuple[bool, ...]:
         """Which of a section's six forces are open."""
-        ways = self.loose_section(rod, xi) / np.array([1.0] * 3 + [self.size] * 3)[:, None]
-        return tuple(bool(x) for x in np.linalg.norm(ways, axis=1) > _OPEN)
+        ways = [
+            replace(self.sections[rod], acting=_on(rod, self.balance.passed(way)))
+            for way in self.wrenches.null
+        ]
+        found = np.array([one.at(xi, weight=False) for one in ways], float).reshape(-1, 6)
+        return tuple(bool(x) for x in np.linalg.norm(found / self.units, axis=0) > _OPEN)
+
+
+def _on(body, acting):
+    return [one for one in acting if one.body == body]
 
 
 def solve(mechanism: Mechanism, drives, guess=None, digits=None, pushed=None) -> Result:
@@ -106,45 +112,25 @@ def solve(mechanism: Mechanism, drives, guess=None, digits=None, pushed=None) ->
     balance = Balance(motion, poses, values, pushed)
     wrenches = balance.solve()
     acting = balance.given() + balance.passed(wrenches.found)
-    rods = [b for b in mechanism.bodies if isinstance(b, Rod)]
+    gravity = vector(arithmetic, mechanism.gravity)
     sections = {
-        rod.name: section(arithmetic, rod, poses[rod.name], mechanism.gravity, acting)
-        for rod in rods
+        rod.name: Section(arithmetic, rod, poses[rod.name], gravity, _on(rod.name, acting))
+        for rod in mechanism.bodies
+        if isinstance(rod, Rod)
     }
-    efforts, reactions, loose_efforts, loose_reactions = {}, {}, {}, {}
+    efforts, reactions = {}, {}
     for joint in mechanism.joints:
         own, reactions[joint.name] = balance.split(joint, wrenches.found)
         efforts |= {(joint.name, k): effort for k, effort in own.items()}
-        ways = [_floats(*balance.split(joint, way)) for way in wrenches.null]
-        loose_reactions[joint.name] = np.array([reaction for _, reaction in ways]).reshape(-1, 6).T
-        loose_efforts |= {(joint.name, k): np.array([own[k] for own, _ in ways]) for k in own}
-
-    def loose_section(rod, xi):
-        bare = (
-            section(arithmetic, sections[rod].rod, poses[rod], mechanism.gravity, balance.passed(w))
-            for w in wrenches.null
-        )
-        return np.array([one.at(xi, weight=False).astype(float) for one in bare]).reshape(-1, 6).T
-
     units = np.array([mechanism.size] * 3 + [1.0] * 3)[:, None]
     return Result(
-        poses={b.name: poses[b.name] for b in mechanism.bodies},
-        coordinates=values,
-        efforts=efforts,
-        reactions=reactions,
-        multipliers={tie.name: wrenches.found[tie.name] for tie in balance.ties},
-        sections=sections,
-        loose_reactions=loose_reactions,
-        loose_efforts=loose_efforts,
-        loose_section=loose_section,
-        idle={name: units * factored.null[c : c + 6] for name, c in motion.column.items()},
-        steadiness=factored.least,
-        vague=factored.vague or wrenches.vague,
-        size=mechanism.size,
-        balance=balance,
-        wrenches=wrenches,
+        {b.name: poses[b.name] for b in mechanism.bodies},
+        values,
+        efforts,
+        reactions,
+        {tie.name: wrenches.found[tie.name] for tie in balance.ties},
+        sections,
+        {name: units * factored.null[c : c + 6] for name, c in motion.column.items()},
+        balance,
+        wrenches,
     )
-
-
-def _floats(efforts, reaction):
-    return {k: float(x) for k, x in efforts.items()}, np.asarray(reaction, dtype=float)

@@ -13,11 +13,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from rubbing import converge
 from spatial_bodies import GROUND, Joint, Load
 from spatial_draft import Drawn
 from spatial_oracle import Result
-
-PASSES = 20000
 
 
 @dataclass(frozen=True)
@@ -105,7 +104,7 @@ class Rub:
             slides = [
                 found.coordinates[self.joint.name, k][1]
                 * (radius if k in self.joint.turning else 1.0)
-                for k in self.both
+                for k in range(self.joint.count)
             ]
             speed = math.hypot(*slides)
         if "static" in n:
@@ -113,16 +112,9 @@ class Rub:
         share = v * (radius if self.turns else 1.0) / speed
         return steady - share * mu * pressed * (radius if self.turns else 1.0)
 
-    @property
-    def both(self) -> range:
-        return range(self.joint.count)
-
 
 def solve_rubbing(drawn: Drawn, rubs: Sequence[Rub], t: float) -> tuple[Result, dict[str, float]]:
-    """The instant with friction, and the frictions' forces by name.
-
-    Fails where the iteration does not converge.
-    """
+    """The instant with friction, and the frictions' forces by name."""
     still = drawn.solve(t)
     guess = {name: (pose.r, pose.R) for name, pose in still.poses.items()} | {
         k: q for k, (q, *_) in still.coordinates.items()
@@ -138,22 +130,6 @@ def solve_rubbing(drawn: Drawn, rubs: Sequence[Rub], t: float) -> tuple[Result, 
         result = replace(drawn, mechanism=loaded).solve(t, guess=guess)
         return result, np.array([result.reactions[rub.joint.name] for rub in rubs])
 
-    n = len(rubs)
-    alone = balanced(np.zeros(n))[1]
-    size = 1.0 + np.max(np.abs(alone))
-    slopes = np.stack([(balanced(size * unit)[1] - alone) / size for unit in np.eye(n)], axis=-1)
-    forces = np.zeros(n)
-    for _ in range(PASSES):
-        before = forces
-        forces = np.array(
-            [rub.law(still, r) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)]
-        )
-        if np.max(np.abs(forces - before)) <= 1e-16 * size:
-            break
-    result, reactions = balanced(forces)
-    left = max(
-        abs(rub.law(still, r) - force)
-        for rub, r, force in zip(rubs, reactions, forces, strict=True)
-    )
-    assert left <= 1e-12 * size, "the friction of the spatial oracle does not converge"
+    laws = [lambda reaction, rub=rub: rub.law(still, reaction) for rub in rubs]
+    result, forces = converge(balanced, laws)
     return result, {rub.name: float(force) for rub, force in zip(rubs, forces, strict=True)}

@@ -1,5 +1,5 @@
 """What is inside a rod: the balance of its slices and of what acts on it, towards the tip of a
-section or towards its base.
+section.
 """
 
 from __future__ import annotations
@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from spatial_algebra import cross, vector
+from spatial_algebra import cross
 from spatial_balance import Acting, shares
 from spatial_bodies import Rod
 
@@ -22,64 +22,34 @@ class Section:
     gravity: np.ndarray
     acting: list[Acting]
 
-    def at(self, xi, from_base=False, weight=True):
+    def at(self, xi, weight=True):
         """[N, Vy, Vz, T, My, Mz], body axes: the part towards the tip on that towards the base, at
         a ratio.
 
         What acts at the section itself acts on the part towards the base; at the very tip beyond
-        it. ``from_base`` balances the part towards the base instead. Without ``weight`` the slices
-        are left out.
+        it. Without ``weight`` the slices are left out.
         """
         arithmetic, pose = self.arithmetic, self.pose
         xi, length = arithmetic.number(xi), arithmetic.number(self.rod.length)
         place = pose.at(arithmetic.array([xi * length, xi * 0, xi * 0]))
-        force = arithmetic.zeros(3) + xi * 0
-        moment = force
-        cut = xi * length
-        acting = [
-            one
-            for one in self.acting
-            if one.of is None and self._beyond(one, xi, length) != from_base
-        ]
+        force = moment = arithmetic.zeros(3) + xi * 0
+        acting = [one for one in self.acting if one.of is None and self._beyond(one, xi, length)]
         for spread in {id(one.of): one.of for one in self.acting if one.of is not None}.values():
             low, high = arithmetic.number(spread.start), arithmetic.number(spread.end)
-            acting += shares(
-                arithmetic,
-                spread,
-                pose,
-                *((low, min(high, cut)) if from_base else (max(low, cut), high)),
-            )
+            acting += shares(arithmetic, spread, pose, max(low, xi * length), high)
         for one in acting:
             force = force + one.force
             moment = moment + one.moment + cross(one.place - place, one.force)
-        if weight:
-            ends = (0, xi) if from_base else (xi, 1)
-            for x, mass, inertia in self.rod.slices(arithmetic, *map(arithmetic.number, ends)):
-                point = arithmetic.array([x, x * 0, x * 0])
-                needed = (pose.acceleration(point) - self.gravity) * mass
-                inertia = pose.R @ inertia @ pose.R.T
-                couple = inertia @ pose.alpha + cross(pose.w, inertia @ pose.w)
-                force = force - needed
-                moment = moment - couple - cross(pose.at(point) - place, needed)
-        found = np.concatenate([pose.R.T @ force, pose.R.T @ moment])
-        return -found if from_base else found
+        for x, mass, inertia in self.rod.slices(arithmetic, xi) if weight else ():
+            point = arithmetic.array([x, x * 0, x * 0])
+            needed = (pose.acceleration(point) - self.gravity) * mass
+            inertia = pose.R @ inertia @ pose.R.T
+            couple = inertia @ pose.alpha + cross(pose.w, inertia @ pose.w)
+            force = force - needed
+            moment = moment - couple - cross(pose.at(point) - place, needed)
+        return np.concatenate([pose.R.T @ force, pose.R.T @ moment])
 
     def _beyond(self, one, xi, length):
         x = (one.place - self.pose.r) @ self.pose.R[:, 0]
         near = 100 * self.arithmetic.tolerance * length
         return x > xi * length + near or (xi == 1 and x > length - near)
-
-    def axes(self):
-        """The rod's axes as columns, ground axes."""
-        return self.pose.R
-
-
-def section(arithmetic, rod, pose, gravity, acting) -> Section:
-    """The sections of a rod among everything that acts on any body."""
-    return Section(
-        arithmetic,
-        rod,
-        pose,
-        vector(arithmetic, gravity),
-        [one for one in acting if one.body == rod.name],
-    )

@@ -13,10 +13,17 @@ RATIOS = 5
 
 
 @functools.cache
+def scene_of(name, seed):
+    """What was drawn, and its scene."""
+    drawn = plain((FAMILIES | {"anyhow": anyhow, "wheel": wheel})[name](seed))
+    return drawn, declared(drawn, xi=(0, 1, RATIOS))
+
+
+@functools.cache
 def evaluated(name, seed):
     """What was drawn, and its solution."""
-    drawn = plain((FAMILIES | {"anyhow": anyhow, "wheel": wheel})[name](seed))
-    return drawn, evaluate(declared(drawn), xi=(0, 1, RATIOS))
+    drawn, scene = scene_of(name, seed)
+    return drawn, evaluate(scene)
 
 
 def residuals(certificate):

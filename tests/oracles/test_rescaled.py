@@ -99,8 +99,8 @@ def assert_drawn_the_same(seed):
     scene = drawn.scene()
     rescaling = Rescaling(units, scene)
     times = {
-        name: (*ends, last * MANY_DIGITS, count)
-        for name, (*ends, last, count) in drawn.keywords.items()
+        name: (*told[:-2], told[-2] * MANY_DIGITS, told[-1])
+        for name, told in drawn.keywords.items()
         if name in ("t", "over")
     }
     again = drawn.keywords | rescaling.timing(**times)

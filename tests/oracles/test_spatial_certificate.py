@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from declarations import declaration
-from internals import GROUND, NIL, Axes, Output, Vector, certify
+from internals import Output, certify
 from spatial_solutions import evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
@@ -19,14 +19,8 @@ WHOLE = {"closure", "balance", "power", "ends"}
 
 def disturbed(solution, name, change):
     """The residuals of a solution one of whose arrays is otherwise."""
-    output = Output.of(name)
-    return residuals(
-        certify(
-            replace(
-                solution, outputs={**solution.outputs, output: change(solution.outputs[output])}
-            )
-        )
-    )
+    outputs = solution.outputs | {Output.of(name): change(solution.array(name))}
+    return residuals(certify(replace(solution, outputs=outputs)))
 
 
 def off(values):
@@ -64,58 +58,16 @@ def test_what_is_wrong_is_seen(name, wrong):
     it.
     """
     _, solution = evaluated("rsur", 0)
-    clean = residuals(certify(solution))
-    assert max(clean.values()) < 1e-13
     found = disturbed(solution, name, off)
     assert all(found[kind] > 1e-5 for kind in wrong), found
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize(
-    "name",
-    [
-        "pose:bar2:y",
-        "pose:bar2:xx",
-        "pose:bar2:yz",
-        "reaction:H2:fy",
-        "effort:travel:slide_3",
-        "pose:hub:xz",
-    ],
-)
-def test_what_is_wrong_of_bars_is_seen(name):
+def test_mirrored_axes_of_a_bar_are_seen():
+    """Nothing but what is reported tells how its cross-section is turned."""
     _, solution = evaluated("suspension", 0)
-    assert max(disturbed(solution, name, off).values()) > 1e-5
-
-
-def test_mirrored_axes_are_seen():
-    """Of a bar too, of which nothing but what is reported tells how its cross-section is turned."""
-    _, solution = evaluated("suspension", 0)
-    axes = {
-        Output("pose", "bar1", f"z{x}"): -solution.outputs[Output("pose", "bar1", f"z{x}")]
-        for x in "xyz"
-    }
-    found = residuals(certify(replace(solution, outputs={**solution.outputs, **axes})))
+    axes = {Output("pose", "bar1", f"z{x}"): -solution.array(f"pose:bar1:z{x}") for x in "xyz"}
+    found = residuals(certify(replace(solution, outputs=solution.outputs | axes)))
     assert found["closure"] > 0.1
-
-
-def test_several_turns_of_a_drive_have_couples_that_are_reciprocal():
-    """A spherical joint whose three turns are driven: its effort about one axis does no work about
-    the others.
-    """
-    m = SpatialMechanism("top")
-    body = m.link(
-        "top", length=0.4, mass=1.2, centre=(0.2, 0.01, 0.02), inertia=(0.01, 0.03, 0.025)
-    )
-    m.spherical("S", m.ground, body, axis=(0, 0, 1), second=(1, 0, 0))
-    laws = [
-        motion.polynomial(0.2, 3.0),
-        motion.harmonic(0.4, 0.3, 1.0),
-        motion.polynomial(0.0, -5.0, 1.0),
-    ]
-    solution = evaluate(Scene(m, {"S": laws}, t=(0, 1, 21)))
-    assert set(residuals(solution.certificate)) == {"closure", "balance", "power"}
-    assert max(residuals(solution.certificate).values()) < 1e-14
-    assert disturbed(solution, "effort:S:turn_3", off)["balance"] > 1e-5
 
 
 def constrained():
@@ -178,43 +130,12 @@ def on_a_mass(m):
     return {"P": motion.harmonic(0, 0.1, 1.0)}, {"R": 0.1, "U:turn_1": 0.1, "U:turn_2": 0.1}
 
 
-def in_a_slot(m):
-    """A link's tip in a slot of another one, which closes the loop: its slide is told, its turns
-    are not.
-    """
-    a, b = m.link("a", length=0.6, mass=1.0), m.link("b", length=0.5, mass=1.0)
-    m.revolute("A", m.ground, a, axis=(0, 0.1, 1))
-    m.universal("B", m.ground.at(0.3, -0.4, 0.05), b, axis=(0, 0, 1), second=(0, 1, 0))
-    m.slot("S", a, b.tip, axis=(1, 0, 0))
-    return {"A": motion.harmonic(0.2, 0.1, 1.0)}, {"B:turn_1": 1.4, "B:turn_2": 0.1}
-
-
 def light(m):
     """A link without mass that carries a point mass."""
     a, b = m.link("a", length=0.6, mass=0.0), m.point_mass("b", 2.0)
     m.universal("A", m.ground, a, axis=(0, 0, 1), second=(0, 1, 0))
     m.spherical("B", a.tip, b)
     return {"A": [motion.polynomial(0, 1.0), motion.polynomial(0.2, 0.3)]}, {}
-
-
-def at_rest(m):
-    """A link that stands still: no rate to compare others with."""
-    m.universal("A", m.ground, m.link("a", length=0.6, mass=1.0), axis=(0, 0, 1), second=(0, 1, 0))
-    return {"A": [motion.polynomial(0.3), motion.polynomial(0.2)]}, {}
-
-
-def backward(m):
-    """A chain whose joints are declared from its end to the ground: a screw, a turn and a slide run
-    against the tree.
-    """
-    a, b = m.link("a", length=0.4, mass=1.0), m.link("b", length=0.3, mass=0.6)
-    m.screw("N", a, m.ground.at(0.1, 0.2, 0.3), axis=(0.6, 0, 0.8), lead=0.1, turned=[("x", 0.4)])
-    m.cylindrical("C", b.at(0.1, 0.02, 0), a.tip, axis=(1, 0, 0), turned=[("z", 0.7), ("y", 0.3)])
-    m.force("push", b.tip, y=5.0, turning=True)
-    return {
-        "N": motion.polynomial(0.1, 3.0),
-        "C": [motion.harmonic(0, 0.1, 1.0), motion.polynomial(0.2, -2.0, 1.0)],
-    }, {}
 
 
 def rolling_arm(m):
@@ -227,33 +148,13 @@ def rolling_arm(m):
     return {"A": motion.polynomial(0.1, 0.3), "B": motion.polynomial(0.0, 2.0)}, {}
 
 
-def lift(m):
-    """A screw that makes several turns: what it lifts goes on."""
-    m.screw(
-        "N",
-        m.ground,
-        m.link("nut", length=0.1, mass=1.0),
-        axis=(0.6, 0, 0.8),
-        lead=0.1,
-        turned=[("y", 0.3)],
-    )
-    return {"N": motion.polynomial(0.1, 20.0, 1.0)}, {}
-
-
-@pytest.mark.parametrize(
-    "declare", [hung_on_masses, on_a_mass, in_a_slot, light, at_rest, backward, rolling_arm, lift]
-)
+@pytest.mark.parametrize("declare", [hung_on_masses, on_a_mass, light, rolling_arm])
 def test_whatever_holds_the_bodies(declare):
     m = SpatialMechanism(declare.__name__)
     laws, posture = declare(m)
     solution = evaluate(Scene(m, laws, t=(0, 1, 11), posture=posture))
     assert set(residuals(solution.certificate)) == WHOLE
     assert max(residuals(solution.certificate).values()) < 1e-14
-    if declare is in_a_slot:
-        assert solution.description["unmeasured"] == [f"S:turn_{k}" for k in (1, 2, 3)]
-        assert disturbed(solution, "motion:S:slide", off)["closure"] > 1e-5
-    if declare is hung_on_masses:
-        assert solution.description["bars"] == ["bar"]
 
 
 def test_many_turns_do_not_blur_what_is_judged():
@@ -271,68 +172,3 @@ def test_many_turns_do_not_blur_what_is_judged():
     solution = evaluate(Scene(m, laws, t=(0, 1000, 101)))
     assert max(residuals(solution.certificate).values()) < 1e-11
     assert solution.certified
-
-
-def drawn(generator):
-    """A vector each of whose components is zero by structure, one number, or an array; and the same
-    as NumPy has it, (5, 3).
-    """
-    kinds = (
-        lambda: 0.0,
-        lambda: 1.0,
-        lambda: float(generator.normal()),
-        lambda: generator.normal(size=5),
-    )
-    vector = Vector(*(kinds[k]() for k in generator.integers(0, 4, 3)))
-    return vector, whole(vector)
-
-
-def whole(vector):
-    return np.stack([np.broadcast_to(component, 5) for component in vector.components], axis=1)
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_vectors_are_those_of_numpy(seed):
-    """Whatever of them is zero by structure."""
-    generator = np.random.default_rng(seed)
-    (a, p), (b, q) = drawn(generator), drawn(generator)
-    near = {"rtol": 1e-14, "atol": 1e-15}
-    np.testing.assert_allclose(whole(a + b), p + q, **near)
-    np.testing.assert_allclose(whole(a - b), p - q, **near)
-    np.testing.assert_allclose(whole(-a), -p, **near)
-    np.testing.assert_allclose(whole(a.cross(b)), np.cross(p, q), **near)
-    np.testing.assert_allclose(np.broadcast_to(a.dot(b), 5), np.sum(p * q, axis=1), **near)
-    np.testing.assert_allclose(np.broadcast_to(a.size, 5), np.linalg.norm(p, axis=1), **near)
-    axis = np.array([(0, 0, 1), (0.6, 0, 0.8), (2 / 3, -1 / 3, 2 / 3)][seed % 3], float)
-    angle = generator.normal(size=5)
-    axes = Axes.about(Vector(*axis.tolist()), angle)
-    turned = np.stack([rotation(axis, one) for one in angle])
-    np.testing.assert_allclose(whole(axes.turn(b)), (turned @ q[..., None])[..., 0], **near)
-    np.testing.assert_allclose(
-        whole(axes.resolve(b)), (np.swapaxes(turned, 1, 2) @ q[..., None])[..., 0], **near
-    )
-    np.testing.assert_allclose(whole(axes.carry(axes).x), (turned @ turned)[:, :, 0], **near)
-    np.testing.assert_allclose(whole(axes.inverse.turn(b)), whole(axes.resolve(b)), **near)
-    assert np.max(axes.under(axes).off(GROUND)) < 1e-15
-
-
-def rotation(axis, angle):
-    """The matrix of a turn, as the exponential of its generator, by its series."""
-    x, y, z = axis
-    generator = angle * np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    found, term = np.eye(3), np.eye(3)
-    for k in range(1, 40):
-        term = term @ generator / k
-        found = found + term
-    return found
-
-
-def test_nothing_is_computed_with_what_is_zero_by_structure():
-    """In a plane, z stays the number that it is."""
-    axes = Axes.about(Vector(0.0, 0.0, 1.0), np.ones(3))
-    arm, spin = axes.turn(Vector(0.3, 0.2, 0.0)), np.ones(3) * Vector(0.0, 0.0, 1.0)
-    for vector in (arm, spin.cross(arm), spin.cross(spin.cross(arm)), arm + spin.cross(arm)):
-        assert type(vector.z) is float
-        assert vector.z == 0.0
-    assert type(arm.cross(spin.cross(arm)).x) is float
-    assert NIL.size == 0.0
