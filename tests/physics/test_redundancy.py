@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mechanisms import parallelogram
 
-from lagrange_casadi import Mechanism, Scene, evaluate, prepare
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare
 from lagrange_casadi.errors import AssemblyError, MobilityError
 from lagrange_casadi.motion import polynomial
 
