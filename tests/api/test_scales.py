@@ -45,12 +45,3 @@ def test_hdf5_finds_the_scales_and_goes_on_with_them(tmp_path):
         file["more"].dims[1].attach_scale(file["t"])
         assert len(file["xi"].attrs["REFERENCE_LIST"]) == len(over["xi"]) - 1
         assert len(file["t"].attrs["REFERENCE_LIST"]) == len(over["t"]) + 1
-
-
-def test_a_file_grows_as_its_mechanism_does(tmp_path):
-    """Four times the links, four times the bytes, or a little less."""
-    sizes = []
-    for links in (10, 40):
-        save(chain(links), tmp_path / "x.h5")
-        sizes.append((tmp_path / "x.h5").stat().st_size)
-    assert sizes[1] < 4 * sizes[0]

@@ -8,7 +8,6 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, motion
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.figures import default_figures
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -200,15 +199,3 @@ def test_what_equilibrium_leaves_open_leaves_them_open():
 def test_misuse_is_told(declare, error, told):
     with pytest.raises(error, match=told):
         engine(more=declare)
-
-
-def test_a_figure_and_an_error_say_their_names():
-    found = evaluate(engine(t=(0, 1, 21)), wanted=["output:power"])
-    spec = next(spec for spec in default_figures(found) if spec.name == "output_power")
-    (axes,) = spec.draw(found).axes
-    assert (axes.get_ylabel(), axes.get_title()) == ("power [W]", "engine: power")
-    with pytest.raises(UnknownNameError, match=r"output:power"):
-        evaluate(engine(), wanted=["output:powr"])
-    says = r"unknown user-defined output of the mechanism 'powr' .*valid: power"
-    with pytest.raises(UnknownNameError, match=says):
-        found.output("powr")
