@@ -1,15 +1,13 @@
 """Files damaged at random and sealed anew, so that HDF5 sees the damage, each read in a process of
 its own.
 
-``python tests resealing FILE SEED COUNT`` prints how each reading ended, a line each; of a journal
-too, whose lines get new checksums.
+``python tests resealing FILE SEED COUNT`` prints how each reading ended, a line each.
 """
 
 from __future__ import annotations
 
 import hashlib
 import importlib
-import json
 import os
 import random
 import resource
@@ -18,13 +16,12 @@ import signal
 import subprocess
 import sys
 import time
-import zlib
 from collections.abc import Container
 from pathlib import Path
 
 import h5py
 from damaging import damaged
-from internals import SCHEMA, kept
+from internals import SCHEMA
 from internals import base_seal as seal
 
 import lagrange_casadi.cli  # noqa: F401
@@ -93,18 +90,6 @@ def read_file(path: Path, out: int, original: str, once: Container[str]) -> None
     os.write(out, word.encode())
 
 
-def read_journal(path: Path, out: int, identity: object) -> None:
-    """Go on with a search's journal; how that ended."""
-    try:
-        with kept(path.with_suffix(""), identity, resume=True, force=False):
-            word = "accepted"
-    except LagrangeCasadiError as error:
-        word = "refused" if "\n" not in str(error) else f"traceback {error!r}"
-    except Exception as error:
-        word = f"traceback {error!r}"
-    os.write(out, word.encode())
-
-
 def ending(read, *arguments: object) -> str:
     """How a reading ended that was given a process of its own."""
     out, into = os.pipe()
@@ -158,34 +143,17 @@ def checked(path: Path) -> str:
     return "told" if one else f"unnoticed: {done.returncode} {done.stdout}{done.stderr}"
 
 
-def summed(content: bytes) -> bytes:
-    """A journal whose lines have checksums that fit."""
-    lines = [line.partition(b" ")[2] for line in content.split(b"\n") if line]
-    return b"".join(f"{zlib.crc32(line):08x} ".encode() + line + b"\n" for line in lines)
-
-
 def run(source: Path, seed: int, count: int) -> None:
     """Damage, seal and read so many times."""
-    chance, content, journal = random.Random(seed), source.read_bytes(), source.suffix == ".journal"
-    path = Path("damaged.h5.journal" if journal else "damaged.h5").absolute()
-    if journal:
-        identity = json.loads(content.split(b"\n")[0].partition(b" ")[2])["identity"]
-    else:
-        kind, content = seal.kind_of(source), content[: -seal.SIZE]
-        known = contents(source, ONCE[kind])
+    chance, path = random.Random(seed), Path("damaged.h5").absolute()
+    kind, content = seal.kind_of(source), source.read_bytes()[: -seal.SIZE]
+    known = contents(source, ONCE[kind])
     for number in range(count):
-        wrong = content
-        while wrong == content:
-            wrong = damaged(content, chance)
-        if journal:
-            path.write_bytes(summed(wrong) if number % 2 else wrong)
-            word = ending(read_journal, path, identity)
-        else:
-            path.write_bytes(wrong)
-            seal.seal(path, kind)
-            word = ending(read_file, path, known, ONCE[kind])
-            if word.startswith(("hang", "crash")):
-                word += f" {checked(path)}"
+        path.write_bytes(damaged(content, chance))
+        seal.seal(path, kind)
+        word = ending(read_file, path, known, ONCE[kind])
+        if word.startswith(("hang", "crash")):
+            word += f" {checked(path)}"
         print(number, word, flush=True)
 
 

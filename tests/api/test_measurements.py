@@ -5,8 +5,7 @@ import pytest
 from measured_machines import ARM, PLATE, platform, record, rubbing, two_links
 
 from lagrange_casadi import Measurements, excite, identify, read_measurements
-from lagrange_casadi.cli import main
-from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
+from lagrange_casadi.errors import AssemblyError, DeclarationError
 
 
 def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
@@ -54,24 +53,6 @@ def test_each_encoder_has_its_counts(tmp_path):
     ):
         with pytest.raises(DeclarationError, match=words):
             read_measurements(path, names={"B": "slow"}, counts_per_turn=wrong)
-
-
-def test_heads_and_units_of_a_file_may_stand_in_two_lines(tmp_path):
-    path = tmp_path / "log.csv"
-    rows = [f"{k},{k},{10 * k}" for k in range(9)]
-    path.write_text("\n".join(["t,A,effort:A", "ms,deg,(N m)", *rows]))
-    given = read_measurements(path, noise={"A": 1.0})
-    assert given.t[3] == pytest.approx(0.003)
-    assert given.columns["A"][3] == pytest.approx(np.radians(3.0))
-    assert given.units == {"t": "ms", "A": "deg", "effort:A": "N m"}
-    path.write_text("\n".join(rows))
-    with pytest.raises(DeclarationError, match="expected names of columns in the first line"):
-        read_measurements(path)
-    path.write_text("\n".join(["time,A,effort:A", *rows]))
-    with pytest.raises(UnknownNameError, match="unknown column of times 't'"):
-        read_measurements(path)
-    with pytest.raises(DeclarationError, match="noise of 'A': expected a number that is not neg"):
-        read_measurements(path, noise={"A": -1.0}, time="time")
 
 
 def test_a_drive_at_rest_and_a_wrong_sign_are_said():
@@ -268,13 +249,3 @@ def test_a_measured_rate_does_not_keep_a_coordinate_from_being_smoothed(arm_reco
     motion = Measurements(given.t, {**given.columns, "A": rough}, {"A": 1e-3}).motion(["A", "B"])
     assert np.sqrt(np.mean((motion.d[:, 0] - given.columns["A"]) ** 2)) < 7e-4
     np.testing.assert_array_equal(motion.rate[:, 0], given.columns["A_rate"])
-
-
-def test_the_command_refuses_counts_that_are_none(capsys):
-    for counts, words in (
-        (["4096", "motor=9"], "one NUMBER for all columns in counts, or NAME=NUMBER for each"),
-        (["motor=x"], "expected NUMBER or NAME=NUMBER, as in 4096 or O=4096, got 'motor=x'"),
-    ):
-        options = [word for number in counts for word in ("--counts-per-turn", number)]
-        assert main(["identify", "parallelogram_arm", "run.csv", *options]) == 2
-        assert words in capsys.readouterr().err

@@ -7,18 +7,15 @@ import random
 import re
 import subprocess
 import sys
-import time
 from functools import partial
 from pathlib import Path
 
 import model_parts
 import numpy as np
 import pytest
-from conftest import CASES
-from drawn_models import law, text_of
+from drawn_models import text_of
 from internals import case_of
 from model_files import (
-    LARGE,
     SMALL,
     joint,
     link,
@@ -167,30 +164,6 @@ def test_what_new_writes_gives_the_numbers_of_read(here, capfd):
         "error: --like and --from exclude each other",
         "error: Missing option '--out' or '--model'.",
     ]
-
-
-def test_shipped_cases_are_what_is_read_of_their_files():
-    """The leg has motions beside; the press, declared by hand in the plane, a force too."""
-    leg = load_case("parallel_leg").scene
-    there = efforts(leg, laws=leg.motion, t=leg.t)
-    found = efforts(read(CASES / "parallel_leg" / "leg.urdf"), laws=leg.motion, t=leg.t)
-    assert_same(found, there, 1e-12)
-    m = Mechanism("by_hand")
-    crank = m.link("crank", length=0.04, mass=1.6, centre=(0.012, 0.0), inertia=1.6 / 12 * 0.0117)
-    rod = m.link("rod", length=0.22, mass=0.9, centre=(0.1, 0.0), inertia=0.9 / 12 * 0.0585)
-    ram = m.link("ram", length=0.1, mass=6.5, centre=(0.05, 0.0), inertia=0.01)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, ram)
-    m.prismatic("guide", m.ground, ram, axis=(0.0, -1.0), angle="-90 deg")
-    m.force("work", ram.tip, y=900.0)
-    asked = {"t": (0.0, 0.25, 11)}
-    by_hand = Scene(m, {"O": polynomial(0.0, 8 * np.pi)}, posture={"rod": "-100 deg"}, **asked)
-    found = evaluate(load_case("cad_press").scene, **asked).effort("Bearing")
-    assert_same(found, evaluate(by_hand).effort("O"))
-    told = evaluate(read(CASES / "cad_press" / "press.asmt"), **asked)
-    work = 900.0 * told.motion("Guide").rate / (8 * np.pi)
-    assert_same(found, told.effort("Bearing") - work)
 
 
 def test_names_and_notes_of_a_file_are_no_code(file):
@@ -604,14 +577,6 @@ def test_without_mujoco_a_model_is_refused_by_name(body, words, file, tmp_path, 
         read(file("xml", mjcf(MJCF_PLAIN)))
 
 
-def test_every_attribute_that_names_files_is_looked_at():
-    """MuJoCo's own list of attributes: of later versions too."""
-    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
-    found = re.findall(r"\b\w*(?:file|dir|path|uri|url)\w*", mujoco.mj_printSchema(False, False))
-    known = {name for name in found if name.startswith("file")} | {"assetdir", "meshdir"}
-    assert set(found) - known == {"texturedir", "dir", "directional", "strippath"}
-
-
 @pytest.mark.parametrize("seed", range(40))
 def test_laws_have_the_values_of_their_texts(seed, file):
     """Python's own, as far as all parts without t are numbers of a machine."""
@@ -620,19 +585,6 @@ def test_laws_have_the_values_of_their_texts(seed, file):
     for t, found in zip((0.3, 1.7), moved(file, text), strict=True):
         there = eval(text.replace("^", "**"), names | {"t": t})
         assert abs(found - there) < 1e-9 * (abs(there) + 1.0), text
-
-
-def test_no_law_hangs_or_ends_in_a_traceback(file, pytestconfig):
-    """Each is refused, or is a text that Python compiles inside a case."""
-    accepted = 0
-    for seed in range(20_000 if pytestconfig.getoption("--long") else 300):
-        try:
-            text = case_of(file("json", own_arm(motions={"hinge": law(random.Random(seed))})))
-        except errors.ModelFileError:
-            continue
-        compile(text, "case", "exec")
-        accepted += 1
-    assert accepted > 50
 
 
 @pytest.mark.parametrize("what", FAR_TERMS)
@@ -646,95 +598,22 @@ def test_laws_of_many_terms_come_back(what, file, tmp_path):
     assert_same(back - back[0], there - there[0], 1e-6)
 
 
-def seconds(path):
-    """The processor time that the case of a file takes, the least of two."""
-    found = []
-    for _ in range(2):
-        start = time.process_time()
-        case_of(path)
-        found.append(time.process_time() - start)
-    return min(found)
+PARTS = [pytest.param(300 * k, marks=pytest.mark.long) for k in range(1, 10)]
 
 
-def check_growth(file, name, few, many):
-    """Check that many parts take as much longer as these are more, but for half of that; a square
-    law would take as much again.
-    """
-    ending = name.rpartition(".")[2]
-    small = seconds(file(ending, LARGE[name](few)))
-    large = seconds(file(ending, LARGE[name](many)))
-    assert large < 1.6 * many / few * small
-    return large
-
-
-@pytest.mark.parametrize("name", LARGE)
-def test_time_grows_as_the_file_does(name, file):
-    check_growth(file, name, 40, 240)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", LARGE)
-def test_three_thousand_links_take_seconds(name, file):
-    large = check_growth(file, name, 600, 3000)
-    assert name in ("bars.asmt", "arms.xml") or large < 5.0
-
-
-PARTS = {
-    "loop.json": ["crank", "rocker", "O", "A", "B", "C"],
-    "kinds.json": ["b0", "b1", "b3", "j0", "j1", "j3", "j4", "base", "tip", "gear"],
-    "gears.asmt": ["crank", "rocker", "sun", "wheel", "O", "S", "V", "teeth", "rod"],
-    "arm.urdf": ["one", "two", "three", "lump", "j1", "j2", "j3"],
-    "loop.urdf": ["crank", "rod", "rocker", "O", "A", "C"],
-    "cell.urdf": ["crank0", "rod0", "rocker0", "O0", "A0", "B0", "C0"],
-    "arm.sdf": ["one", "two", "three", "four", "j1", "j2", "j3", "j4"],
-    "arm.xml": ["two", "three", "j_one", "j_two", "j_three"],
-}
-
-
-@pytest.mark.parametrize("name", SMALL)
-def test_parts_may_have_the_names_that_a_case_uses(name, file):
-    """All of them in turn: the efforts are those of the file before, whatever they are called."""
-    told, parts, ending = SMALL[name], PARTS[name], name.rpartition(".")[2]
-    path = file(ending, told)
-    words = {"ground", *re.findall(r"\w+", told)}
-    found = set(re.findall(r"[A-Za-z_]\w*", re.sub(r"#.*|\"[^\"]*\"", "", case_of(path))))
-    names = sorted(found - words)
-    there = np.sort(efforts(read(path), 3), axis=None)
-    assert {"Scene", "SpatialMechanism"} <= set(names)
-    for k in range(0, len(names), len(parts)):
-        text = told
-        for old, new in zip(parts, names[k : k + len(parts)], strict=False):
-            text = re.sub(rf"(?<!\w){old}(?!\w)", new, text)
-        back = np.sort(efforts(read(file(ending, text)), 3), axis=None)
-        assert np.allclose(back, there, rtol=1e-12, atol=1e-12), names[k:]
-
-
-def draw(kind, first, count, folder):
-    """Draw and read so many files in a program of its own; what it said, a line each."""
-    folder.mkdir()
-    program = [sys.executable, str(TESTS), "drawn_models", kind]
-    wrong, accepted, last, most = [], 0, first + count, 60.0 + 25.0 * count
+@pytest.mark.parametrize("first", [0, *PARTS])
+def test_hostile_files_are_read_or_refused(first, tmp_path):
+    """In a program of its own, which says a line of whatever is neither."""
+    wrong, accepted, last = [], 0, first + (300 if first else 110)
     while first < last:
-        program[4:] = [str(first), str(last - first)]
-        done = subprocess.run(program, cwd=folder, capture_output=True, text=True, timeout=most)
+        program = [sys.executable, str(TESTS), "drawn_models", str(first), str(last - first)]
+        done = subprocess.run(program, cwd=tmp_path, capture_output=True, text=True, timeout=3000)
         said = done.stdout.splitlines()
-        reached = [int(line) for line in said if line.isdigit()]
         accepted += said.count("accepted")
         wrong += [line for line in said if not line.isdigit() and line != "accepted"]
+        reached = [int(line) for line in said if line.isdigit()]
         if done.returncode:
             wrong.append(f"{reached[-1:]} ended with {done.returncode}: {done.stderr[-300:]}")
         first = reached[-1] + 1 if reached else last
-    assert accepted > count // 20
-    return wrong
-
-
-@pytest.mark.parametrize(("kind", "count"), [("hostile", 110), ("damaged", 40)])
-def test_files_are_read_or_refused(kind, count, tmp_path):
-    assert draw(kind, 0, count, tmp_path / kind) == []
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("kind", "count"), [("hostile", 300), ("damaged", 100)])
-@pytest.mark.parametrize("part", range(10))
-def test_many_files_are_read_or_refused(kind, count, part, tmp_path):
-    assert draw(kind, count * part, count, tmp_path / kind) == []
+    assert wrong == []
+    assert accepted > 5

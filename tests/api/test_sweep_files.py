@@ -3,7 +3,6 @@ sweep was cut and goes on, and what is never overwritten.
 """
 
 import contextlib
-import gc
 import json
 import os
 import random
@@ -223,15 +222,3 @@ def test_one_writer_at_a_time(whole, tmp_path):
                 run(path, **words)
     assert os.listdir(tmp_path) == ["x.h5"]
     assert threading.active_count() < 10
-
-
-def test_without_a_file_it_lives_as_long_as_the_sweep():
-    found = sweep(sweeps.scene(), {"l": [0.2, 0.3]}, **ASKED)
-    path, part = found.path, found.select(l=0.2)
-    assert part["peak:effort:O"].shape == (1,)
-    del found
-    gc.collect()
-    assert path.exists()
-    del part
-    gc.collect()
-    assert not path.exists()
