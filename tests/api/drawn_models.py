@@ -113,7 +113,7 @@ def text_of(chance, depth=0):
     ][kind]
 
 
-def numbers(text, chance, told):
+def numbers(text, chance, told, _):
     """Some numbers in a text, hostile ones."""
     places = [*re.finditer(r"(?<![\w.])-?\d+(\.\d*)?(e-?\d+)?(?![\w.])", text)]
     for found in sorted(
@@ -158,7 +158,7 @@ def piece(text, chance):
     return places[start], places[min(start + chance.choice([1, 1, 2, 9]), len(places) - 1)]
 
 
-def nested(text, chance, told):
+def nested(text, chance, told, _):
     """An element inside itself many times."""
     start, stop = piece(text, chance)
     inner, many = text[start:stop], int(10 ** chance.uniform(1, 4.5))
@@ -171,7 +171,7 @@ def nested(text, chance, told):
     return text[:start] + f"<{name}>" * many + inner + f"</{name}>" * many + text[stop:]
 
 
-def long(text, chance, told):
+def long(text, chance, *_):
     """A text with a place that is long: of blanks, or of a comment."""
     start, stop = piece(text, chance)
     at = chance.choice([start, stop])
@@ -179,7 +179,7 @@ def long(text, chance, told):
     return text[:at] + fill * (int(10 ** chance.uniform(3, 6.3)) // len(fill)) + text[at:]
 
 
-def hostile_law(text, chance, told):
+def hostile_law(text, chance, told, names):
     """A law of a text, another one."""
     new = law(chance)
     new = json.dumps(new)[1:-1] if told == ".json" else new
@@ -187,36 +187,33 @@ def hostile_law(text, chance, told):
         r'(?<=": ")[^"]*\bt(ime)?\b[^"]*(?=")' if told == ".json" else r"(?<=\t)[^\t\n]*time[^\n]*"
     )
     if not (found := [*re.finditer(pattern, text)]):
-        return numbers(text, chance, told)
+        return numbers(text, chance, told, names)
     at = chance.choice(found)
     return text[: at.start()] + new + text[at.end() :]
 
 
+def doctype(text, chance, *_):
+    """A text with a declaration of its own somewhere."""
+    start = chance.choice([piece(text, chance)[0], text.find("<", 1)])
+    return text[:start] + chance.choice(DOCTYPES) + text[start:]
+
+
+def encoded(text, chance, *_):
+    """A text that says of itself that it is of some encoding."""
+    head = f'<?xml version="1.0" encoding="{chance.choice(ENCODINGS)}"?>\n'
+    return head + text.partition("?>\n")[2]
+
+
+HARMS = [*[numbers] * 3, *[renamed] * 2, nested, long, *[hostile_law] * 3]
+
+
 def hostile(text, chance, told, names):
     """The content of a file that somebody made to do harm."""
-    xml, many = told not in (".json", ".asmt"), chance.choice([1, 1, 1, 2, 3])
-    for _ in range(many):
-        kind = chance.randrange(12)
-        if kind < 3:
-            text = numbers(text, chance, told)
-        elif kind < 5:
-            text = renamed(text, chance, told, names)
-        elif kind == 5:
-            text = nested(text, chance, told)
-        elif kind == 6:
-            text = long(text, chance, told)
-        elif kind < 10 or (kind == 10 and not xml):
-            text = hostile_law(text, chance, told)
-        elif kind == 10:
-            start = piece(text, chance)[chance.randrange(2)]
-            start = chance.choice([start, text.find("<", 1)])
-            text = text[:start] + chance.choice(DOCTYPES) + text[start:]
-        else:
-            told_as, real = chance.choice(ENCODINGS), chance.choice(ENCODINGS[:6])
-            if xml and chance.random() < 0.7:
-                text = f'<?xml version="1.0" encoding="{told_as}"?>\n' + text.partition("?>\n")[2]
-            if chance.random() < 0.5:
-                return codecs.encode(text, real, "replace") if real != "rot13" else text.encode()
+    harms = HARMS if told in (".json", ".asmt") else [*HARMS, doctype, encoded]
+    for _ in range(chance.choice([1, 1, 1, 2, 3])):
+        text = chance.choice(harms)(text, chance, told, names)
+    if chance.random() < 0.05:
+        return codecs.encode(text, chance.choice(ENCODINGS[1:6]), "replace")
     return text.encode(errors="surrogatepass")
 
 

@@ -97,11 +97,9 @@ def test_a_file_and_a_run_of_a_result_that_fails_are_marked(here, capsys, monkey
         save(broken(), "wrong.h5")
     save(evaluate(slider_crank()), "right.h5")
     for name, certified in (("wrong", False), ("right", True)):
-        with h5py.File(f"{name}.h5") as file:
-            assert bool(file.attrs["certified"]) is certified
         assert load(f"{name}.h5").certified is certified
-    assert not check("right.h5")
-    assert any("worse than the tolerance" in finding for finding in check("wrong.h5"))
+        told = [finding for finding in check(f"{name}.h5") if "worse than the tolerance" in finding]
+        assert bool(told) is not certified
     assert command("run CASE --backend c --flags=-Dsin=cos --no-figures") == 1
     told = capsys.readouterr()
     assert "slider_crank.h5 is marked as not certified" in told.err.splitlines()[-1]

@@ -205,10 +205,6 @@ def test_parameters_with_a_corner_are_refused_by_every_way(scene, tmp_path):
     made, says = scene(), PLACES[scene]
     assert evaluate(made).certified
     f = prepare(made, wanted=["effort"])
-    (name,) = f.outputs
-    kept = f(k=0.0)[name].copy()
-    f.peaks(k=0.0)
-    np.testing.assert_array_equal(f(k=0.0)[name], kept)
     for refused in (
         lambda: evaluate(made, parameters={"k": 1.0}),
         *(lambda asked=asked: asked(k=1.0) for asked in (f, f.peaks, f.gradient)),
@@ -219,8 +215,7 @@ def test_parameters_with_a_corner_are_refused_by_every_way(scene, tmp_path):
     assert not (tmp_path / "c").exists()
     found = f.designs([[0.0], [1.0], [0.0]], histories=True)
     assert (found.status != 0).tolist() == [False, True, False]
-    assert np.isnan(found.value[1]).all()
-    assert np.isnan(found.series[1]).all()
+    assert np.isnan([*found.value[1], *found.series[1].ravel()]).all()
     assert np.isfinite(found.value[::2]).all()
     assert (sweep(made, {"k": [0.0, 1.0]}, wanted=["effort"])["status"] != 0).tolist() == [0, 1]
 

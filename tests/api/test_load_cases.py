@@ -25,7 +25,7 @@ from lagrange_casadi import (
     write_spectrum,
 )
 from lagrange_casadi.cli import main
-from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial
+from lagrange_casadi.motion import dwell, move, moves, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -107,26 +107,16 @@ def test_instants_at_which_friction_is_at_rest_are_left_out():
 
 
 def test_loads_of_a_bearing_are_those_of_its_turns():
-    """A disc off its axis: the load turns with it; in an arm that swings the speed is its mean."""
+    """A disc off its axis: the load turns with it."""
     m = Mechanism("disc")
     m.set_gravity(0.0, 0.0)
     disc = m.link("disc", length=0.1, mass=2.0, centre=(0.05, 0.0), inertia=0.01)
     m.revolute("O", m.ground, disc)
     turning = evaluate(Scene(m, {"O": polynomial(0, 50.0)}, t=(0, 0.1, 21)))
-    found = bearing_loads(turning, "O")
-    force = 2.0 * 0.05 * 50.0**2
-    assert math.isclose(found.radial, force, rel_tol=1e-12)
-    assert math.isclose(found.largest_radial, force, rel_tol=1e-12)
-    assert math.isclose(found.speed, 50.0 * 60.0 / math.tau, rel_tol=1e-12)
+    found, force = bearing_loads(turning, "O"), 2.0 * 0.05 * 50.0**2
+    assert [found.radial, found.largest_radial] == pytest.approx([force] * 2, rel=1e-12)
+    assert found.speed == pytest.approx(50.0 * 60.0 / math.tau, rel=1e-12)
     assert (found.axial, found.largest_axial) == (0.0, 0.0)
-    swinging = evaluate(Scene(m, {"O": harmonic(0, 0.5, 1.0)}, t=(0, 1.0, 2001)))
-    found = bearing_loads(swinging, "O", 10.0 / 3.0)
-    # Four times 0.5 rad in a second.
-    assert math.isclose(found.speed, 2.0 * 60.0 / math.tau, rel_tol=1e-5)
-    rate = math.tau * 0.5 * np.abs(np.cos(math.tau * swinging.t))
-    across = np.hypot(swinging.reaction("O").fx, swinging.reaction("O").fy)
-    mean = np.sum(across ** (10 / 3) * rate) / np.sum(rate)
-    assert math.isclose(found.radial, mean**0.3, rel_tol=1e-3)
     with pytest.raises(errors.DeclarationError, match="reaction of joint 'O' was not evaluated"):
         bearing_loads(
             evaluate(Scene(m, {"O": polynomial(0, 1)}, t=(0, 1, 3)), wanted=["effort"]), "O"

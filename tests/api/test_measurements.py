@@ -70,26 +70,31 @@ def test_a_drive_at_rest_and_a_wrong_sign_are_said():
     assert not rest.opposite
 
 
-def test_a_unit_of_another_quantity_is_refused(tmp_path):
-    scene, path = two_links(), tmp_path / "run.csv"
-    given = record(scene, ARM, "effort:A", "effort:B")
+HEADS = "t [s],A [rad],B [rad],effort:A [N m]"
+
+
+def written(given, heads, path):
+    """A record as a file under some heads."""
     columns = [given.t, *(given.columns[name] for name in ("A", "B", "effort:A"))]
     rows = [",".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True)]
+    path.write_text("\n".join([heads, *rows]))
+    return rows
 
-    def read(*heads):
-        path.write_text("\n".join([",".join(heads), *rows]))
-        return read_measurements(path)
 
-    good = ("t [s]", "A [rad]", "B", "effort:A [N m]")
-    found = identify(scene, read(*good), ["J2"])
-    for k, head, unit in ((1, "A [mm]", "rad"), (3, "effort:A [mm]", "N m")):
-        wrong = read(*(head if k == place else one for place, one in enumerate(good)))
-        name, word = head[:-1].split(" [")
-        for refused in (lambda given: identify(scene, given), found.validate):
-            with pytest.raises(DeclarationError, match=f"'{name}' is in {word}; expected {unit}"):
-                refused(wrong)
-    with pytest.raises(DeclarationError, match="'t' is in deg; expected s"):
-        read("t [deg]", *good[1:])
+@pytest.mark.parametrize(
+    ("column", "head", "says"),
+    [
+        (1, "A [mm]", "'A' is in mm; expected rad"),
+        (3, "effort:A [mm]", "'effort:A' is in mm; expected N m"),
+        (0, "t [deg]", "'t' is in deg; expected s"),
+    ],
+)
+def test_a_unit_of_another_quantity_is_refused(arm_record, tmp_path, column, head, says):
+    scene, given = arm_record
+    heads = [head if k == column else one for k, one in enumerate(HEADS.split(","))]
+    written(given, ",".join(heads), tmp_path / "run.csv")
+    with pytest.raises(DeclarationError, match=says):
+        identify(scene, read_measurements(tmp_path / "run.csv"), ["J2"])
 
 
 @pytest.mark.parametrize(
@@ -117,11 +122,9 @@ def test_a_unit_of_another_quantity_is_refused(tmp_path):
 )
 def test_rows_that_are_wrong_are_refused(tmp_path, change, says):
     scene, path = two_links(), tmp_path / "run.csv"
-    given = record(scene, ARM, "effort:A")
-    columns = [given.t, *(given.columns[name] for name in ("A", "B", "effort:A"))]
-    rows = [",".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True)]
+    rows = written(record(scene, ARM, "effort:A"), HEADS, path)
 
-    def found(rows, heads="t [s],A [rad],B [rad],effort:A [N m]"):
+    def found(rows, heads=HEADS):
         path.write_text("\n".join([heads, *rows]))
         return identify(scene, read_measurements(path), ["J2"], parameters=ARM)
 

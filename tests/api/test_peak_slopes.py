@@ -3,9 +3,7 @@ differences of the peaks themselves and of their slopes; and peaks that tie.
 """
 
 import itertools
-import math
 
-import casadi as ca
 import mpmath
 import numpy as np
 import pytest
@@ -179,29 +177,6 @@ def test_a_peak_at_an_end_goes_with_the_end(asked):
     assert slopes["l"] == pytest.approx(2 * gradient.value[k] / 0.4, rel=1e-12)
     assert bends["speed"]["speed"] == pytest.approx(size * twice, rel=1e-11, abs=1e-9)
     assert bends["speed"]["l"] == pytest.approx(size * by_both / 0.4, rel=1e-11)
-
-
-def test_a_jump_of_the_users_own():
-    """A force that sets in at an angle: the peak of the effort is where it does, and the time of
-    that goes with two parameters.
-    """
-    m, speed, _ = rotor()
-    onset = m.parameter("onset", 1.0, "rad")
-    arm = m.bodies["arm"]
-    m.torque("brake", arm, -5.0 * (m.direction(arm) > onset) * ca.exp(-3.0 * m.time))
-    f = prepare(Scene(m, {"O": polynomial(0.0, speed)}, t=(0.0, 0.1, 41)), wanted=["effort"])
-    gradient = f.gradient()
-    assert gradient.kinds[0] == SWITCH
-    at = 1.0 / 20.0
-    assert gradient.t[0] == pytest.approx(at, rel=1e-9)
-    exact = 5.0 * math.exp(-3.0 * at)
-    assert gradient.value[0] == pytest.approx(exact, rel=1e-9)
-    assert gradient["effort:O"]["onset"] == pytest.approx(-3.0 * exact / 20.0, rel=1e-9)
-    assert gradient["effort:O"]["speed"] == pytest.approx(3.0 * exact * at / 20.0, rel=1e-9)
-    bends = f.curvature()["effort:O"]
-    assert bends["onset"]["onset"] == pytest.approx(9 * exact / 400, rel=1e-8)
-    assert bends["onset"]["speed"] == pytest.approx(exact * (3 - 9 * at) / 400, rel=1e-8)
-    assert bends["speed"]["speed"] == pytest.approx(exact * (9 * at**2 - 6 * at) / 400, rel=1e-8)
 
 
 @pytest.mark.parametrize("asked", ["times", "over"])

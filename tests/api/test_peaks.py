@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mechanisms import LENGTH, MASS, G, parallelogram, pendulum
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, motion, save
+from lagrange_casadi import Mechanism, Scene, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.peaks import forces, refine, shortfall
 
@@ -43,26 +43,6 @@ def test_peaks_of_a_turning_pendulum_are_exact():
     assert axial.t == pytest.approx((1.5 * math.pi - 0.1) / speed, abs=1e-12 * step)
     assert axial.value > solution.peak("section:arm:axial").value * (1 + 1e-6)
     assert peaks["motion:pin"] == solution.peak("motion:pin")
-
-
-def test_a_peak_at_the_knot_of_a_spline():
-    """Without gravity the effort is I theta'', which a cubic spline makes a polygon: its peak is
-    the knot's, a kink.
-    """
-    times = np.linspace(0, 2, 9)
-    law = motion.samples(times, np.sin(2.3 * times))
-    scene = pendulum(law, gravity=0.0, t=(0, 2, 24))
-    bends = np.array([float(derive(scene).motion(t, [])[2]) for t in times])
-    # Away from the ends, where the polygon has no kink.
-    inner = pendulum(law, gravity=0.0, t=(0.3, 1.9, 24))
-    solution = evaluate(inner)
-    peaks = refined(inner, solution)
-    k = 1 + int(np.argmax(np.abs(bends[1:-1])))
-    assert abs(solution.peak("effort:pin").value) < MASS * LENGTH**2 / 3 * abs(bends[k]) * (
-        1 - 1e-3
-    )
-    assert peaks["effort:pin"].value == pytest.approx(MASS * LENGTH**2 / 3 * bends[k], rel=1e-12)
-    assert peaks["effort:pin"].t == pytest.approx(times[k], abs=1e-12 * solution.t[-1])
 
 
 def test_a_pole_is_infinite():

@@ -20,11 +20,6 @@ from lagrange_casadi.motion import polynomial
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 
-@pytest.fixture(scope="module")
-def solution():
-    return evaluate(load_case("slider_crank").scene)
-
-
 @pytest.mark.parametrize("case", ["slider_crank", "quick_return", "engine"])
 def test_section_forces_are_never_beyond_their_smallest_and_largest(case):
     """Also beside a pin that slides along its link, on either side of it; and the places have these

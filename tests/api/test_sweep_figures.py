@@ -1,26 +1,59 @@
 """Figures of a sweep: each draws what it says, from the file's arrays, and says what it omits."""
 
 import numpy as np
-import plotted
 import pytest
 import sweeps
-from internals import Front, Peaks, Scatter, best, default_plots, draw_sweep, sweep
+from forging import forging
+from internals import Front, Peaks, Scatter, Sweep, best, default_plots, draw_sweep, sweep
+from internals import ListingListed as Listed
 from internals import PlotsAlong as Along
 from internals import scale_number as number
-from plotted import BENDING, EFFORT, REACH, legend, lines, plain, rewritten
 
+from lagrange_casadi import Sweep, best, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
+
+BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
+
+REACH = "no result: the iterated loops did not converge"
+
+
+def rewritten(found, name, change):
+    """The sweep with a column that is changed in its file."""
+    with forging(found.path) as file:
+        file[name.replace(":", "/")][...] = change(file[name.replace(":", "/")][()])
+    return Sweep.open(found.path)
+
+
+def plain(text):
+    """Words without what keeps or breaks their lines."""
+    return text.replace("\N{NO-BREAK SPACE}", " ").replace("\n", " ")
+
+
+def lines(axes, marker):
+    return [line for line in axes.get_lines() if line.get_marker() == marker]
+
+
+def legend(figure):
+    return [plain(text.get_text()) for text in figure.legends[0].get_texts()]
 
 
 @pytest.fixture
 def swept(monkeypatch, tmp_path):
-    return plotted.grid_of(monkeypatch, tmp_path)
+    """A grid of three parameters, swept by plain formulas."""
+    sweeps.use(monkeypatch)
+    grid = {"l": (0.15, 0.4, 9), "r": [0.05, 0.1, 0.07], "m1": [0.1, 0.2]}
+    return sweep(sweeps.scene(), grid, out=tmp_path / "x.h5", xi=(0, 1, 5))
 
 
 @pytest.fixture
 def listed(monkeypatch, tmp_path):
-    return plotted.list_of(monkeypatch, tmp_path)
+    """A list of fifty designs, swept likewise."""
+    sweeps.use(monkeypatch)
+    rows = np.column_stack(
+        [np.random.default_rng(3).uniform(0.1, 0.3, (50, 2)), np.repeat([0.1, 0.2], 25)]
+    )
+    return sweep(sweeps.scene(), Listed(("l", "r", "m1"), rows), out=tmp_path / "y.h5")
 
 
 def test_maps_over_two_parameters_in_either_order(swept):

@@ -7,7 +7,7 @@ from balance import assert_balanced
 from mechanisms import crank_and_rod
 from prepared import prepared
 
-from lagrange_casadi import Mechanism, Scene, density, evaluate, sweep, table
+from lagrange_casadi import Mechanism, Scene, density, sweep, table
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
 
@@ -82,18 +82,6 @@ def test_all_programs_draw_the_same_line(name, tmp_path):
         found = sweep(scene, {"c": VALUES}, wanted=wanted, backend=backend)
         impossible = [found.statuses[int(k)][0] == "impossible" for k in found["status"]]
         assert [not one for one in impossible] == expected
-
-
-@pytest.mark.parametrize("root", [1 / 3, 0.1, 0.7, 0.9])
-def test_what_touches_zero_is_possible(root):
-    """Rounding does not make it negative: neither of a square nor of a table that ends at zero."""
-    scene = arm(rod(lambda c: (root * root * c, -2 * root * c, c)), ["c"], default=1.0)
-    assert accepted(scene, [1.0, 7.0, 1e6, 0.3]) == [True] * 4
-    for value in (1.0, 3.0, 0.1, 1 / 7):
-        table = density.tabulated([0.0, root, 1.0], [2 * value, value, 0.0])
-        arm(
-            lambda m, c, table=table: m.link("arm", length=0.5, density=table), ["c"]
-        ).mechanism.values()
 
 
 @pytest.mark.parametrize(
@@ -198,15 +186,3 @@ def test_impossible_links_are_named(matter, says):
     m.revolute("J", m.ground, m.link("a", length=1, **matter))
     with pytest.raises(ParameterError, match=says):
         Scene(m, {"J": polynomial(0)})
-
-
-def test_a_station_outside_its_link_is_named():
-    m = Mechanism("m")
-    a = m.link("a", length=1, mass=1)
-    m.revolute("J", m.ground, a)
-    m.weld("W", a.at(m.parameter("x", 0.5, "m")), m.point_mass("p", 1))
-    scene = Scene(m, {"J": polynomial(0)})
-    with pytest.raises(
-        ParameterError, match=r"joint 'W': its point at 1\.5 m is outside link 'a', 0 to 1 m"
-    ):
-        evaluate(scene, parameters={"x": 1.5})
