@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sweeps
 from forging import forging
-from internals import Front, Peaks, Scatter, Sweep, best, default_plots, draw_sweep, sweep
+from internals import Front, Peaks, Scatter, default_plots, draw_sweep
 from internals import ListingListed as Listed
 from internals import PlotsAlong as Along
 from internals import scale_number as number
