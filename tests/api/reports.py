@@ -136,10 +136,3 @@ def held(text):
         return block[place["at"] : place["at"] + place["count"]]
 
     return found, array
-
-
-def to_polygon(place, corners):
-    """Distance of a place (2,) to the edge of a polygon (n, 2)."""
-    ways = np.roll(corners, -1, axis=0) - corners
-    shares = np.clip(np.sum((place - corners) * ways, axis=1) / np.sum(ways * ways, axis=1), 0, 1)
-    return np.hypot(*(place - corners - shares[:, None] * ways).T).min()

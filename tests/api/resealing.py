@@ -1,36 +1,34 @@
 """Files damaged at random and sealed anew, so that HDF5 sees the damage, each read in a process of
 its own.
 
-``python tests resealing FILE SEED COUNT`` prints how each reading ended, a line each; of a journal
-too, whose lines get new checksums.
+``python tests resealing FILE SEED COUNT`` prints how each reading ended, a line each.
 """
 
 from __future__ import annotations
 
 import hashlib
 import importlib
-import json
+import multiprocessing
 import os
 import random
 import resource
-import select
-import signal
 import subprocess
 import sys
-import time
-import zlib
 from collections.abc import Container
+from contextlib import suppress
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 import h5py
 from damaging import damaged
-from internals import SCHEMA, kept
+from internals import SCHEMA
 from internals import base_seal as seal
 
 import lagrange_casadi.cli  # noqa: F401
 from lagrange_casadi.errors import LagrangeCasadiError
 
 SECONDS, MEMORY = 10.0, 8 << 30
+FORK = multiprocessing.get_context("fork")
 found_in = importlib.import_module("lagrange_casadi.cli.check").found_in
 
 LISTS = ("DIMENSION_LIST", "REFERENCE_LIST")
@@ -76,7 +74,7 @@ def contents(path: Path, once: Container[str]) -> str:
     return hashlib.sha256("\n".join(said).encode(errors="replace")).hexdigest()
 
 
-def read_file(path: Path, out: int, original: str, once: Container[str]) -> None:
+def read_file(path: Path, original: str, once: Container[str], out: Connection) -> None:
     """Check a file; how that ended."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (1, 2):
@@ -90,48 +88,22 @@ def read_file(path: Path, out: int, original: str, once: Container[str]) -> None
         word = "refused"
     except Exception as error:
         word = f"traceback {error!r}"
-    os.write(out, word.encode())
+    out.send(word)
 
 
-def read_journal(path: Path, out: int, identity: object) -> None:
-    """Go on with a search's journal; how that ended."""
-    try:
-        with kept(path.with_suffix(""), identity, resume=True, force=False):
-            word = "accepted"
-    except LagrangeCasadiError as error:
-        word = "refused" if "\n" not in str(error) else f"traceback {error!r}"
-    except Exception as error:
-        word = f"traceback {error!r}"
-    os.write(out, word.encode())
-
-
-def ending(read, *arguments: object) -> str:
+def ending(*arguments: object) -> str:
     """How a reading ended that was given a process of its own."""
-    out, into = os.pipe()
-    child = os.fork()
-    if child == 0:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        os.close(out)
-        read(arguments[0], into, *arguments[1:])
-        os._exit(0)
-    os.close(into)
-    told = b"" if not select.select([out], [], [], SECONDS)[0] else os.read(out, 1 << 16)
-    os.close(out)
-    until = time.monotonic() + (1.0 if told else 0.0)
-    done, status = os.waitpid(child, os.WNOHANG)
-    while not done and time.monotonic() < until:
-        time.sleep(0.001)
-        done, status = os.waitpid(child, os.WNOHANG)
-    if not done and not told:
-        time.sleep(0.2)  # a pipe that closed because the process ends
-        done, status = os.waitpid(child, os.WNOHANG)
-    if not done:
-        os.kill(child, signal.SIGKILL)
-        os.waitpid(child, 0)
+    told, out = FORK.Pipe(duplex=False)
+    child, word = FORK.Process(target=read_file, args=(*arguments, out)), ""
+    child.start()
+    out.close()
+    with suppress(EOFError):
+        word = told.recv() if told.poll(SECONDS) else ""
+    child.join(1.0)
+    if child.exitcode is None:
+        child.kill()
         return "hang"
-    if os.WIFSIGNALED(status):
-        return f"crash {os.WTERMSIG(status)}"
-    return told.decode() or f"traceback status {status}"
+    return f"crash {-child.exitcode}" if child.exitcode < 0 else word or "traceback"
 
 
 def checked(path: Path) -> str:
@@ -158,34 +130,17 @@ def checked(path: Path) -> str:
     return "told" if one else f"unnoticed: {done.returncode} {done.stdout}{done.stderr}"
 
 
-def summed(content: bytes) -> bytes:
-    """A journal whose lines have checksums that fit."""
-    lines = [line.partition(b" ")[2] for line in content.split(b"\n") if line]
-    return b"".join(f"{zlib.crc32(line):08x} ".encode() + line + b"\n" for line in lines)
-
-
 def run(source: Path, seed: int, count: int) -> None:
     """Damage, seal and read so many times."""
-    chance, content, journal = random.Random(seed), source.read_bytes(), source.suffix == ".journal"
-    path = Path("damaged.h5.journal" if journal else "damaged.h5").absolute()
-    if journal:
-        identity = json.loads(content.split(b"\n")[0].partition(b" ")[2])["identity"]
-    else:
-        kind, content = seal.kind_of(source), content[: -seal.SIZE]
-        known = contents(source, ONCE[kind])
+    chance, path = random.Random(seed), Path("damaged.h5").absolute()
+    kind, content = seal.kind_of(source), source.read_bytes()[: -seal.SIZE]
+    known = contents(source, ONCE[kind])
     for number in range(count):
-        wrong = content
-        while wrong == content:
-            wrong = damaged(content, chance)
-        if journal:
-            path.write_bytes(summed(wrong) if number % 2 else wrong)
-            word = ending(read_journal, path, identity)
-        else:
-            path.write_bytes(wrong)
-            seal.seal(path, kind)
-            word = ending(read_file, path, known, ONCE[kind])
-            if word.startswith(("hang", "crash")):
-                word += f" {checked(path)}"
+        path.write_bytes(damaged(content, chance))
+        seal.seal(path, kind)
+        word = ending(path, known, ONCE[kind])
+        if word.startswith(("hang", "crash")):
+            word += f" {checked(path)}"
         print(number, word, flush=True)
 
 

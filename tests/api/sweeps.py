@@ -20,7 +20,6 @@ CASE = Path(__file__).parents[2] / "cases" / "slider_crank"
 ASKED = "sweep CASE --t 0:0.08:21 --want effort --want section:rod"
 BENDING = "peak:section:rod:bending"
 GRID = {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 7)}
-SIZE = 420
 
 
 class Formula:

@@ -13,8 +13,8 @@ from commands import command
 from mechanisms import slider_crank
 from stepped import iterated
 
-from lagrange_casadi import evaluate, sweep
-from lagrange_casadi.errors import DeclarationError, SizeError
+from lagrange_casadi import evaluate
+from lagrange_casadi.errors import SizeError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -119,14 +119,6 @@ def test_a_number_that_cannot_be_meant_is_one_line(here, limited, capfd, line, s
     assert error.startswith("error: ")
     assert all(note.startswith("note: ") for note in notes)
     assert list(here.iterdir()) == []
-
-
-@pytest.mark.parametrize("keywords", [{"threads": 1025}, {"threads": 10**30}, {"newton": 10**30}])
-def test_python_refuses_them_too(keywords):
-    with pytest.raises(DeclarationError, match="expected a "):
-        evaluate(slider_crank(), **keywords)
-    with pytest.raises(DeclarationError, match="workers: expected a whole number from 1 to 1024"):
-        sweep(slider_crank(), {"l": (0.2, 0.3, 3)}, workers=1025)
 
 
 def test_what_takes_long_is_said_before_it_starts(monkeypatch):

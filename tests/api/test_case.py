@@ -109,11 +109,15 @@ def test_broken_cases_are_one_line(tmp_path, text, error, says):
         load_case(path)
 
 
-def test_what_is_no_case(tmp_path):
-    with pytest.raises(CaseError, match=r"has no case\.py"):
-        load_case(tmp_path)
-    with pytest.raises(CaseError, match="no such file"):
-        load_case(tmp_path / "nothing")
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        (".", r"has no case\.py"),
+        ("nothing", "no such file"),
+        ("x.txt", r"a Python file ending in \.py"),
+    ],
+)
+def test_what_is_no_case(tmp_path, name, says):
     (tmp_path / "x.txt").write_text("")
-    with pytest.raises(CaseError, match=r"a Python file ending in \.py"):
-        load_case(tmp_path / "x.txt")
+    with pytest.raises(CaseError, match=says):
+        load_case(tmp_path / name)

@@ -1,15 +1,16 @@
 """The certificate: for every scene, by what was declared, and with consequences."""
 
+import functools
+
 import h5py
 import numpy as np
 import pytest
 from commands import command
-from mechanisms import ladder, parallelogram, slider_crank
+from mechanisms import double_crank, ladder, parallelogram, slider_crank
 
-from lagrange_casadi import Mechanism, Scene, Solution, check, evaluate, export, load, save
+from lagrange_casadi import Solution, check, evaluate, export, load, save
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import CertificateError, CertificateWarning
-from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -24,38 +25,12 @@ def residuals(solution):
     }
 
 
-def trammel():
-    """A bar between two point masses on crossing lines: no joint gives its direction's rate, and
-    its pins do.
-    """
-    m = Mechanism("trammel")
-    bar, a, b = m.link("bar", length=0.5, mass=1.0), m.point_mass("a", 0.2), m.point_mass("b", 0.3)
-    m.prismatic("A", m.ground, a, axis=(1, 0))
-    m.prismatic("B", m.ground, b, axis=(0.3, 1))
-    m.revolute("P", a, bar)
-    m.revolute("Q", b, bar.tip)
-    m.torsion_spring(
-        "none", m.revolute("R", bar.at(0.2), m.link("flap", length=0.1, mass=0.1)), stiffness=0.0
-    )
-    return Scene(
-        m,
-        {"A": harmonic(0.3, 0.1, 1.0), "R": polynomial(0.2, 1.0)},
-        t=(0, 1, 21),
-        posture={"bar": 2.2},
-    )
-
-
-def geared():
-    m = Mechanism("geared")
-    a, b = m.link("a", length=0.2, mass=1.0), m.link("b", length=0.3, mass=2.0)
-    first, second = m.revolute("A", m.ground, a), m.revolute("B", m.ground.at(1, 0), b)
-    m.gear("mesh", first, second, ratio=-2.0)
-    return Scene(m, {"A": polynomial(0.1, 9.0)}, posture={"b": -0.2}, t=(0, 3, 31))
+geared = functools.partial(double_crank, 0.1)
 
 
 @pytest.mark.sampled(7)
 @pytest.mark.quick
-@pytest.mark.parametrize("made", [ladder, trammel, geared, slider_crank, parallelogram])
+@pytest.mark.parametrize("made", [ladder, geared, slider_crank, parallelogram])
 def test_it_is_whole_for_every_scene(made):
     """Whatever holds the bodies: point masses, users' equations, gears; and where equilibrium
     leaves reactions open.
@@ -107,24 +82,13 @@ def test_a_sweep_ends_with_a_status_where_a_certificate_fails(here, capsys):
     assert capsys.readouterr().err == said
 
 
-def test_what_has_no_motion_to_tell_is_evaluated_without_it():
-    """A structure of welds alone, of which only a reaction is wanted: no body's place is told, so
-    there is nothing to check.
-    """
-    m = Mechanism("bracket")
-    m.weld("A", m.ground, m.link("arm", length=1.0, mass=1.0))
-    solution = evaluate(Scene(m, {}, t=(0, 0, 1)), wanted=["reaction:A"])
-    assert solution.reaction("A").mz[0] == pytest.approx(9.81 / 2)
-    assert not solution.certificate
-
-
 def test_it_is_whole_whatever_is_wanted():
     """Loops alone where no force is wanted of all parts; multipliers that were not wanted too."""
     for wanted in (["effort"], ["effort", "reaction:guide"]):
         solution = evaluate(slider_crank(), wanted=wanted)
         assert residuals(solution)["closure"] < 1e-15
         assert solution.certified
-    wanted = ["motion", "effort", "reaction:A", "reaction:B", "section:a", "section:b"]
+    wanted = ["motion", "effort", "reaction", "section"]
     assert set(residuals(evaluate(geared(), wanted=wanted))) == WHOLE
 
 
@@ -133,11 +97,9 @@ def test_a_file_and_a_run_of_a_result_that_fails_are_marked(here, capsys, monkey
         save(broken(), "wrong.h5")
     save(evaluate(slider_crank()), "right.h5")
     for name, certified in (("wrong", False), ("right", True)):
-        with h5py.File(f"{name}.h5") as file:
-            assert bool(file.attrs["certified"]) is certified
         assert load(f"{name}.h5").certified is certified
-    assert not check("right.h5")
-    assert any("worse than the tolerance" in finding for finding in check("wrong.h5"))
+        told = [finding for finding in check(f"{name}.h5") if "worse than the tolerance" in finding]
+        assert bool(told) is not certified
     assert command("run CASE --backend c --flags=-Dsin=cos --no-figures") == 1
     told = capsys.readouterr()
     assert "slider_crank.h5 is marked as not certified" in told.err.splitlines()[-1]

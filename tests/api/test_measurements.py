@@ -5,8 +5,7 @@ import pytest
 from measured_machines import ARM, PLATE, platform, record, rubbing, two_links
 
 from lagrange_casadi import Measurements, excite, identify, read_measurements
-from lagrange_casadi.cli import main
-from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
+from lagrange_casadi.errors import AssemblyError, DeclarationError
 
 
 def test_columns_of_a_file_have_units_counts_and_gaps(tmp_path):
@@ -56,24 +55,6 @@ def test_each_encoder_has_its_counts(tmp_path):
             read_measurements(path, names={"B": "slow"}, counts_per_turn=wrong)
 
 
-def test_heads_and_units_of_a_file_may_stand_in_two_lines(tmp_path):
-    path = tmp_path / "log.csv"
-    rows = [f"{k},{k},{10 * k}" for k in range(9)]
-    path.write_text("\n".join(["t,A,effort:A", "ms,deg,(N m)", *rows]))
-    given = read_measurements(path, noise={"A": 1.0})
-    assert given.t[3] == pytest.approx(0.003)
-    assert given.columns["A"][3] == pytest.approx(np.radians(3.0))
-    assert given.units == {"t": "ms", "A": "deg", "effort:A": "N m"}
-    path.write_text("\n".join(rows))
-    with pytest.raises(DeclarationError, match="expected names of columns in the first line"):
-        read_measurements(path)
-    path.write_text("\n".join(["time,A,effort:A", *rows]))
-    with pytest.raises(UnknownNameError, match="unknown column of times 't'"):
-        read_measurements(path)
-    with pytest.raises(DeclarationError, match="noise of 'A': expected a number that is not neg"):
-        read_measurements(path, noise={"A": -1.0}, time="time")
-
-
 def test_a_drive_at_rest_and_a_wrong_sign_are_said():
     scene = two_links()
     given = record(scene, ARM, "effort:A")
@@ -89,26 +70,31 @@ def test_a_drive_at_rest_and_a_wrong_sign_are_said():
     assert not rest.opposite
 
 
-def test_a_unit_of_another_quantity_is_refused(tmp_path):
-    scene, path = two_links(), tmp_path / "run.csv"
-    given = record(scene, ARM, "effort:A", "effort:B")
+HEADS = "t [s],A [rad],B [rad],effort:A [N m]"
+
+
+def written(given, heads, path):
+    """A record as a file under some heads."""
     columns = [given.t, *(given.columns[name] for name in ("A", "B", "effort:A"))]
     rows = [",".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True)]
+    path.write_text("\n".join([heads, *rows]))
+    return rows
 
-    def read(*heads):
-        path.write_text("\n".join([",".join(heads), *rows]))
-        return read_measurements(path)
 
-    good = ("t [s]", "A [rad]", "B", "effort:A [N m]")
-    found = identify(scene, read(*good), ["J2"])
-    for k, head, unit in ((1, "A [mm]", "rad"), (3, "effort:A [mm]", "N m")):
-        wrong = read(*(head if k == place else one for place, one in enumerate(good)))
-        name, word = head[:-1].split(" [")
-        for refused in (lambda given: identify(scene, given), found.validate):
-            with pytest.raises(DeclarationError, match=f"'{name}' is in {word}; expected {unit}"):
-                refused(wrong)
-    with pytest.raises(DeclarationError, match="'t' is in deg; expected s"):
-        read("t [deg]", *good[1:])
+@pytest.mark.parametrize(
+    ("column", "head", "says"),
+    [
+        (1, "A [mm]", "'A' is in mm; expected rad"),
+        (3, "effort:A [mm]", "'effort:A' is in mm; expected N m"),
+        (0, "t [deg]", "'t' is in deg; expected s"),
+    ],
+)
+def test_a_unit_of_another_quantity_is_refused(arm_record, tmp_path, column, head, says):
+    scene, given = arm_record
+    heads = [head if k == column else one for k, one in enumerate(HEADS.split(","))]
+    written(given, ",".join(heads), tmp_path / "run.csv")
+    with pytest.raises(DeclarationError, match=says):
+        identify(scene, read_measurements(tmp_path / "run.csv"), ["J2"])
 
 
 @pytest.mark.parametrize(
@@ -136,11 +122,9 @@ def test_a_unit_of_another_quantity_is_refused(tmp_path):
 )
 def test_rows_that_are_wrong_are_refused(tmp_path, change, says):
     scene, path = two_links(), tmp_path / "run.csv"
-    given = record(scene, ARM, "effort:A")
-    columns = [given.t, *(given.columns[name] for name in ("A", "B", "effort:A"))]
-    rows = [",".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True)]
+    rows = written(record(scene, ARM, "effort:A"), HEADS, path)
 
-    def found(rows, heads="t [s],A [rad],B [rad],effort:A [N m]"):
+    def found(rows, heads=HEADS):
         path.write_text("\n".join([heads, *rows]))
         return identify(scene, read_measurements(path), ["J2"], parameters=ARM)
 
@@ -268,13 +252,3 @@ def test_a_measured_rate_does_not_keep_a_coordinate_from_being_smoothed(arm_reco
     motion = Measurements(given.t, {**given.columns, "A": rough}, {"A": 1e-3}).motion(["A", "B"])
     assert np.sqrt(np.mean((motion.d[:, 0] - given.columns["A"]) ** 2)) < 7e-4
     np.testing.assert_array_equal(motion.rate[:, 0], given.columns["A_rate"])
-
-
-def test_the_command_refuses_counts_that_are_none(capsys):
-    for counts, words in (
-        (["4096", "motor=9"], "one NUMBER for all columns in counts, or NAME=NUMBER for each"),
-        (["motor=x"], "expected NUMBER or NAME=NUMBER, as in 4096 or O=4096, got 'motor=x'"),
-    ):
-        options = [word for number in counts for word in ("--counts-per-turn", number)]
-        assert main(["identify", "parallelogram_arm", "run.csv", *options]) == 2
-        assert words in capsys.readouterr().err

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, curve, evaluate, prepare, refine
-from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError, UnknownNameError
 from lagrange_casadi.motion import (
     dwell,
@@ -24,13 +23,6 @@ from lagrange_casadi.motion import (
 )
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
-
-CYCLE = [
-    move("60 deg", time=0.4, law="modified_sine"),
-    dwell(0.2),
-    move(0.0, time=0.5, law="s_curve"),
-    dwell(0.1),
-]
 
 
 def derivatives(law, t):
@@ -50,33 +42,6 @@ def write(path, heads, rows, delimiter=",", comma=False):
     text = "\n".join([*([delimiter.join(heads)] if heads else []), *lines])
     path.write_text(text.replace(".", ",") if comma else text)
     return path
-
-
-@pytest.mark.parametrize("smoothing", [0.001, "estimated"])
-@pytest.mark.parametrize("points", [None, 150])
-def test_smoothing_takes_the_noise_out_of_accelerations(here, smoothing, points):
-    """0.001 deg of noise at a millisecond; what is left is a hundredth, in the root mean square, of
-    what it makes.
-    """
-    true = moves(CYCLE, cyclic=True)
-    t = np.arange(1201) / 1000.0
-    clean = derivatives(true, t)
-    noisy = np.degrees(clean[0]) + 0.001 * np.random.default_rng(3).normal(size=t.size)
-    noisy[-1] = noisy[0]
-    path = write(here / "axis.csv", ["t", "q"], np.column_stack([t, noisy]))
-    options = {"unit": "deg", "periodic": True}
-    rough, smooth = (
-        read_samples(path, **options),
-        read_samples(path, smoothing=smoothing, points=points, **options),
-    )
-    errors = [np.sqrt(np.mean((derivatives(law, t)[2] - clean[2]) ** 2)) for law in (rough, smooth)]
-    assert errors[0] > 2.0 * np.abs(clean[2]).max()
-    assert errors[1] < 0.01 * errors[0]
-    assert errors[1] < 0.02 * np.abs(clean[2]).max()
-    assert "smoothed by 0.00" in smooth.description
-    distance = np.degrees(derivatives(smooth, t)[0]) - np.round(noisy, 13)
-    if points is None:
-        assert np.sqrt(np.mean(distance[:-1] ** 2)) == pytest.approx(0.001, rel=0.1)
 
 
 def test_a_cycle_goes_on_smoothly_over_its_seam(here):
@@ -105,9 +70,6 @@ def test_a_cycle_goes_on_smoothly_over_its_seam(here):
         2 * np.pi * (at / 0.8 + 0.05 * np.sin(2 * np.pi * at / 0.8)), abs=1e-6
     )
     assert rate.mean() == pytest.approx(2 * np.pi / 0.8, rel=1e-4)
-
-
-RAMP = [[0.1 * k, 1.0 * k * k] for k in range(8)]
 
 
 def same(one, other, at):
@@ -152,38 +114,14 @@ def test_several_joints_are_read_with_the_units_of_the_file(here, layout):
     same(chosen["right"], curve(TIMES, 2.0 * math.tau * HIP), AT)
 
 
-def test_units_of_a_file_are_those_of_a_motion_too(here):
-    """In the head, whose column is called with it or without it, or in a row below."""
-    file = write(here / "axis.csv", ["t [ms]", "q [deg]"], np.column_stack([1e3 * TIMES, KNEE]))
-    expected = curve(TIMES, np.radians(np.round(KNEE, 13)))
-    for value in (2, "q", "q [deg]"):
-        same(read_samples(file, value=value), expected, AT)
-    file.write_text(file.read_text().replace("t [ms],q [deg]", "t,q\nms,deg"))
-    same(read_samples(file), expected, AT)
-    with pytest.raises(DeclarationError, match=r"axis\.csv: expected one column 'q', got 2"):
-        read_samples(write(file, ["t", "q", "q"], np.column_stack([TIMES, KNEE, KNEE])), value="q")
-
-
-def test_counts_of_encoders_are_turns(here):
-    """And a column is what read_samples makes of it."""
-    rows = np.column_stack([TIMES, np.round(4096 / 360 * KNEE), np.round(1000 / 360 * HIP)])
-    file = write(here / "encoders.csv", ["t", "a [counts]", "b [counts]"], rows)
-    turns, options = {"a": 4096, "b": 1000}, {"ratio": 0.1, "stretch": 1.5}
-    found = read_motion(file, counts_per_turn=turns, **options)
-    one = read_samples(file, value="b", counts_per_turn=1000, **options)
-    for law, place in ((found["a"], 1), (found["b"], 2), (one, 2)):
-        counts = (0, 4096, 1000)[place]
-        same(law, curve(1.5 * TIMES, 0.1 * math.tau / counts * rows[:, place]), 1.5 * AT)
-
-
-RAMP_ROWS = "\n".join(f"{t},{q}" for t, q in RAMP)
+RAMP_ROWS = "\n".join(f"{0.1 * k:g},{1.0 * k * k}" for k in range(8))
 
 
 REFUSED = {
     "column": ("t,q", RAMP_ROWS, {"value": "w"}, r"unknown column 'w'; valid: t, q"),
     "number": ("t,q", RAMP_ROWS, {"value": 3}, "column 3 is not one of its 2 columns, numbered"),
     "two columns": (
-        "t,q,q", "\n".join(f"{t},{q},{q}" for t, q in RAMP), {"value": "q"},
+        "t,q,q", RAMP_ROWS.replace("\n", ",0\n") + ",0", {"value": "q"},
         "expected one column 'q', got 2",
     ),
     "unit": ("t,q", RAMP_ROWS, {"unit": "grad"}, "unknown unit 'grad'.*; valid: rad, deg"),
@@ -215,41 +153,6 @@ REFUSED = {
     "empty": ("# nothing", "", {}, "it has no rows"),
     "short": ("t;q", "0;1\n1;2\n# why\n2;", {}, "line 5: expected a finite number, got ''"),
 }  # fmt: skip
-
-
-@pytest.mark.parametrize("what", REFUSED)
-def test_misuse_is_named(here, what):
-    head, rows, options, says = REFUSED[what]
-    (here / "axis.csv").write_text(f"{head}\n{rows}\n")
-    with pytest.raises((DeclarationError, UnknownNameError), match=rf"axis\.csv.*{says}|^{says}"):
-        read_samples(here / "axis.csv", **options)
-
-
-def test_misuse_of_motions_is_named(here):
-    rows = np.column_stack([TIMES, KNEE])
-    for heads, options, says in (
-        (["t", "a [deg]"], {"columns": ["b"]}, "two.csv: unknown column 'b'; valid: t, a"),
-        (["t", "a"], {"unit": {"b": "deg"}}, "unknown coordinate of unit= 'b'; valid: a"),
-        (["t", "a [counts]"], {}, "two.csv: column a is in counts; expected counts_per_turn="),
-        (
-            ["t", "a [counts]"],
-            {"unit": {"a": "deg"}, "counts_per_turn": {"a": 9}},
-            "column a is in deg; expected counts, of which",
-        ),
-        (["t", "a"], {"columns": []}, "two.csv: columns= expected at least one coordinate"),
-        ([], {}, "two.csv: the file has no column heads; name the columns with columns="),
-        (["t", "a"], {"smoothing": {"a": -1.0}}, "column a: smoothing expected the noise"),
-    ):
-        with pytest.raises((DeclarationError, UnknownNameError), match=says):
-            read_motion(write(here / "two.csv", heads, rows), **options)
-    for name, error, says in (
-        ("walk.sto", DeclarationError, "expected a header that ends in the line 'endhead"),
-        ("none.mot", PathError, r"none\.mot"),
-    ):
-        if name == "walk.sto":
-            write(here / name, ["time", "knee"], rows)
-        with pytest.raises(error, match=says):
-            read_motion(here / name)
 
 
 def geared(law, **keywords):
@@ -301,54 +204,104 @@ def test_laws_scaled_by_parameters_are_those_of_scaled_numbers(name):
         assert abs(value - peak.value) <= 1e-9 * abs(peak.value)
 
 
+TWO = {
+    "two.csv: unknown column 'b'; valid: t, a": ("t,a [deg]", {"columns": ["b"]}),
+    "unknown coordinate of unit= 'b'; valid: a": ("t,a", {"unit": {"b": "deg"}}),
+    "column a is in counts; expected counts_per_turn=": ("t,a [counts]", {}),
+    "column a is in deg; expected counts, of which": (
+        "t,a [counts]",
+        {"unit": {"a": "deg"}, "counts_per_turn": {"a": 9}},
+    ),
+    "two.csv: columns= expected at least one coordinate": ("t,a", {"columns": []}),
+    "the file has no column heads; name the columns with columns=": ("0,0", {}),
+    "column a: smoothing expected the noise": ("t,a", {"smoothing": {"a": -1.0}}),
+}
+
+
+@pytest.mark.parametrize("what", [*REFUSED, *TWO])
+def test_misuse_is_named(here, what):
+    name, read = ("axis", read_samples) if what in REFUSED else ("two", read_motion)
+    (head, options), rows, says = TWO.get(what, ("", {})), RAMP_ROWS, what
+    if what in REFUSED:
+        head, rows, options, says = REFUSED[what]
+    (here / f"{name}.csv").write_text(f"{head}\n{rows}\n")
+    with pytest.raises((DeclarationError, UnknownNameError), match=says):
+        read(f"{name}.csv", **options)
+
+
+def test_headers_of_opensim_are_needed(here):
+    write(here / "walk.sto", ["time", "knee"], np.column_stack([TIMES, KNEE]))
+    with pytest.raises(DeclarationError, match="expected a header that ends in the line 'endhead"):
+        read_motion("walk.sto")
+    with pytest.raises(PathError, match=r"none\.mot"):
+        read_motion("none.mot")
+
+
+@pytest.mark.parametrize("smoothing", [0.001, "estimated"])
+@pytest.mark.parametrize("points", [None, 150])
+def test_smoothing_takes_the_noise_out_of_accelerations(here, smoothing, points):
+    """0.001 deg of noise at a millisecond; what is left is a hundredth, in the root mean square, of
+    what it makes.
+    """
+    rise = move("60 deg", time=0.4, law="modified_sine")
+    fall = move(0.0, time=0.5, law="s_curve")
+    t = np.arange(1201) / 1000.0
+    clean = derivatives(moves([rise, dwell(0.2), fall, dwell(0.1)], cyclic=True), t)
+    noisy = np.degrees(clean[0]) + 0.001 * np.random.default_rng(3).normal(size=t.size)
+    noisy[-1] = noisy[0]
+    path = write(here / "axis.csv", ["t", "q"], np.column_stack([t, noisy]))
+    asked = ({}, {"smoothing": smoothing, "points": points})
+    rough, smooth = (read_samples(path, unit="deg", periodic=True, **more) for more in asked)
+    off = [np.sqrt(np.mean((derivatives(law, t)[2] - clean[2]) ** 2)) for law in (rough, smooth)]
+    assert off[0] > 2.0 * np.abs(clean[2]).max()
+    assert off[1] < min(0.01 * off[0], 0.02 * np.abs(clean[2]).max())
+    assert "smoothed by 0.00" in smooth.description
+
+
+def test_units_of_a_file_are_those_of_a_motion_too(here):
+    """In the head, whose column is called with it or without it, or in a row below; counts of
+    encoders are turns.
+    """
+    file = write(here / "axis.csv", ["t [ms]", "q [deg]"], np.column_stack([1e3 * TIMES, KNEE]))
+    expected = curve(TIMES, np.radians(np.round(KNEE, 13)))
+    for value in (2, "q", "q [deg]"):
+        same(read_samples(file, value=value), expected, AT)
+    file.write_text(file.read_text().replace("t [ms],q [deg]", "t,q\nms,deg"))
+    same(read_samples(file), expected, AT)
+    counts, options = np.round(1000 / 360 * HIP), {"ratio": 0.1, "stretch": 1.5}
+    write(file, ["t", "a [counts]"], np.column_stack([TIMES, counts]))
+    exact = curve(1.5 * TIMES, 0.1 * math.tau / 1000 * counts)
+    same(read_motion(file, counts_per_turn={"a": 1000}, **options)["a"], exact, 1.5 * AT)
+    same(read_samples(file, value="a", counts_per_turn=1000, **options), exact, 1.5 * AT)
+
+
 def test_scaled_samples_end_and_are_scaled_together():
-    says = r"motion of joint 'J': .* outside the curve's range at t = 0\.5"
-    with pytest.raises(DeclarationError, match=says):
-        evaluate(geared(SCALED["times"]), parameters={"duration": 0.5})
     p, q = ca.SX.sym("p"), ca.SX.sym("q")
     for law, says in (
-        (
-            lambda: samples([0, 1, 2, 3], [0, p, q, p * p]),
-            "values: parameters may only scale",
-        ),
+        (lambda: samples([0, 1, 2, 3], [0, p, q, p * p]), "values: parameters may only scale"),
         (lambda: samples([0, p, 0.5 * p, 2 * p], [0, 1, 2, 3]), "places must increase"),
+        (lambda: evaluate(geared(lambda *_: samples(POINTS, p * ANGLES))), "depends on 'p', not"),
         (
-            lambda: evaluate(geared(lambda *_: samples(POINTS, p * ANGLES))),
-            "depends on 'p', not",
+            lambda: evaluate(geared(SCALED["times"]), parameters={"duration": 0.5}),
+            r"motion of joint 'J': .* outside the curve's range at t = 0\.5",
         ),
     ):
         with pytest.raises(DeclarationError, match=says):
             law()
 
 
-def test_a_scene_moves_by_a_recording_scaled_by_parameters(here, capsys):
-    """A length does not turn a joint; info tells what a motion is from."""
+def test_a_scene_moves_by_a_recording_scaled_by_parameters(here):
+    """A length does not turn a joint."""
     t = np.linspace(0.0, 1.0, 60)
     path = write(here / "axis.csv", ["t", "X [mm]"], np.column_stack([t, 50.0 * t**3]))
-    m = Mechanism("slide")
+    m, arm = Mechanism("slide"), Mechanism("arm")
     names = ("ratio", "offset", "stretch")
     given = {name: m.parameter(name, float(name != "offset")) for name in names}
     m.prismatic("X", m.ground, m.point_mass("p", 2.0), axis=(1, 0))
-    scene = Scene(m, {"X": read_samples(path, **given)}, t=(0, 1, 11))
-    found = evaluate(scene, parameters={"ratio": 3.0, "offset": 0.2, "stretch": 2.0}, t=(0, 2, 21))
+    scene, values = Scene(m, {"X": read_samples(path, **given)}, t=(0, 2, 21)), (3.0, 0.2, 2.0)
+    found = evaluate(scene, parameters=dict(zip(names, values, strict=True)))
     assert found.motion("X").value == pytest.approx(0.2 + 0.15 * (found.t / 2) ** 3, abs=1e-11)
     assert found.effort("X") == pytest.approx(2.0 * 0.15 * 6 * found.t / 8, abs=1e-8)
-    arm = Mechanism("arm")
     arm.revolute("X", arm.ground, arm.link("upper", length=0.4, mass=1.0))
-    says = "motion of 'X': the law is in m, but the coordinate is"
-    with pytest.raises(DeclarationError, match=says):
+    with pytest.raises(DeclarationError, match="'X': the law is in m, but the coordinate is"):
         evaluate(Scene(arm, read_motion(path), t=(0, 1, 11)))
-    (here / "arm.py").write_text(CASE)
-    assert main(["info", "arm.py"]) == 0
-    assert "  drive J: 60 samples of axis.csv from 0 to 1 s, at most 0 " in capsys.readouterr().out
-
-
-CASE = """
-from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.motion import read_samples
-
-def scene():
-    m = Mechanism("arm")
-    m.prismatic("J", m.ground, m.link("a", length=0.6, mass=2.0), axis=(1, 0))
-    return Scene(m, {"J": read_samples("axis.csv")}, t=(0, 0.7, 11))
-"""

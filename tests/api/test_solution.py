@@ -1,6 +1,5 @@
 """Solutions: names, shapes, units, peaks, sections, poses, notes; in the plane and in space."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,16 +11,12 @@ from spatial_scenes import beams
 from lagrange_casadi import (
     Mechanism,
     Scene,
-    SpatialMechanism,
-    check,
     evaluate,
     load,
-    prepare,
-    refine,
     save,
 )
 from lagrange_casadi.errors import UnknownNameError
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -51,23 +46,6 @@ def test_names_lead_to_arrays(solution, spatial):
     assert solution.pose("slider").angle is None
 
 
-def test_resultants_and_axes_in_space(spatial):
-    reaction, section = spatial.reaction("A"), spatial.section("beam")
-    for name, parts in (("resultant", "fx fy fz"), ("moment", "mx my mz")):
-        size = np.linalg.norm([getattr(reaction, part) for part in parts.split()], axis=0)
-        np.testing.assert_allclose(spatial.array(f"reaction:A:{name}"), size)
-        np.testing.assert_array_equal(getattr(reaction, name), spatial.array(f"reaction:A:{name}"))
-    bent = np.hypot(section.bending_y, section.bending_z)
-    np.testing.assert_allclose(section.bending, bent, rtol=1e-14)
-    found = spatial.statistics("section:beam:bending")
-    assert 0.0 <= found.smallest.value <= np.min(section.bending)
-    assert found.largest.value >= np.max(section.bending)
-    pose = evaluate(beams(), wanted=["motion"], certificate=False).pose("bead")
-    assert (pose.angle, pose.axes.shape) == (None, (61, 3, 3))
-    square = pose.axes @ np.swapaxes(pose.axes, 1, 2)
-    np.testing.assert_allclose(square, np.broadcast_to(np.eye(3), (61, 3, 3)), atol=1e-14)
-
-
 @pytest.mark.parametrize(
     ("name", "unit"),
     [
@@ -86,53 +64,6 @@ def test_units(solution, name, unit):
     assert solution.unit(name) == unit
 
 
-def test_names_of_parts_may_look_like_members():
-    """No two outputs have one name: joints and links that are called as members are."""
-    m = Mechanism("m")
-    law, swing = m.link("law", length=1.0, mass=1.0), m.link("swing", length=1.0, mass=1.0)
-    m.revolute("O", m.ground, law)
-    m.revolute("O_rate", law.tip, swing)
-    laws = {"O": polynomial(0.1, 2.0, 3.0), "O_rate": polynomial(0.4, 5.0, 6.0)}
-    found = evaluate(Scene(m, laws, t=(0.0, 0.0, 1)))
-    assert len(set(found.names())) == len(list(found.names()))
-    for name, value in (("O", 0.1), ("O_rate.coordinate", 0.4), ("O_rate_rate", 5.0)):
-        assert found.array(f"motion:{name}")[0] == pytest.approx(value)
-    assert (found.motion("O").rate[0], found.motion("O_rate").value[0]) == (2.0, 0.4)
-    assert found.section("law").bending.shape == (1, found.xi.size)
-
-
-def test_peaks_are_those_of_a_fine_grid(solution, slider_crank):
-    fine = evaluate(slider_crank.scene, xi=(0, 1, 4001), wanted=["section:rod"])
-    for force in sorted(PLANAR):
-        peak, grid = solution.peak(f"section:rod:{force}"), fine.array(f"section:rod:{force}")
-        i, j = np.unravel_index(np.argmax(np.abs(grid)), grid.shape)
-        assert peak.value == pytest.approx(grid[i, j], rel=1e-7)
-        assert abs(peak.value) >= abs(grid[i, j]) * (1 - 1e-14)
-        assert (peak.t, peak.xi) == pytest.approx((fine.t[i], fine.xi[j]), abs=3e-4)
-    peak = solution.peak("effort:O")
-    assert abs(peak.value) == np.max(np.abs(solution.effort("O")))
-    assert solution.effort("O")[np.searchsorted(solution.t, peak.t)] == peak.value
-    assert (peak.unit, peak.xi) == ("N m", None)
-
-
-def test_extremes_are_the_largest_along_the_link(solution):
-    values, places = solution.extremes("section:rod:bending")
-    section = solution.section("rod")
-    assert np.all(np.abs(values) >= np.abs(section.bending).max(axis=1) * (1 - 1e-14))
-    at = section.law.at("bending", places[:, None])[:, 0]
-    np.testing.assert_allclose(values, at, rtol=1e-14)
-    values, places = solution.extremes("effort:O")
-    assert (values is solution.effort("O"), places) == (True, None)
-
-
-def test_angles_are_continuous(slider_crank):
-    turns = evaluate(slider_crank.scene, t=(0, 0.8, 2001), wanted=["motion"])
-    crank = turns.pose("crank").angle
-    assert np.max(np.abs(np.diff(crank))) < 0.1
-    np.testing.assert_allclose(crank, turns.motion("O").value, atol=1e-12)
-    np.testing.assert_allclose(turns.motion("A").value, turns.pose("rod").angle - crank, atol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("asked", "says"),
     [
@@ -147,22 +78,6 @@ def test_angles_are_continuous(slider_crank):
 def test_unknown_names_list_the_valid(solution, asked, says):
     with pytest.raises(UnknownNameError, match=says):
         asked(solution)
-
-
-def test_a_section_is_made_when_asked_for(slider_crank):
-    """The law is seven numbers an instant; a grid of xi costs nothing until somebody looks."""
-    asked = {"t": (0, 0.08, 11), "xi": (0, 1, 100_000), "wanted": ["section:rod"]}
-    found = evaluate(slider_crank.scene, **asked)
-    assert sum(values.size for values in found.series.values()) == 7 * 11
-    assert found.section("rod").bending.shape == (11, 100_000)
-
-
-def test_to_xarray(solution):
-    dataset = solution.to_xarray()
-    assert dataset["section:rod:bending"].dims == ("t", "xi")
-    assert dataset["section:rod:bending"].attrs["units"] == "N m"
-    assert "tension" in dataset["section:rod:axial"].attrs["sign"]
-    assert float(dataset["effort:O"].sel(t=0.03, method="nearest")) == solution.effort("O")[300]
 
 
 def test_what_is_shown_is_a_line(solution, slider_crank):
@@ -183,38 +98,6 @@ def test_what_is_shown_is_a_line(solution, slider_crank):
         (Mechanism("new"), "<Mechanism new: no body yet; joints: none yet>"),
     ):
         assert repr(shown) == words
-
-
-def test_a_file_is_the_solution_to_the_last_bit(spatial, tmp_path):
-    save(spatial, tmp_path / "beams.h5")
-    assert check(tmp_path / "beams.h5") == []
-    again = load(tmp_path / "beams.h5")
-    assert list(again.series) == list(spatial.series)
-    for name in spatial.names():
-        assert again.array(name).tobytes() == spatial.array(name).tobytes(), name
-
-
-def test_slides_that_stand_still_are_rounding_beside_what_turns():
-    """A loop that cannot move is carried about: no length changes, so no other length tells how
-    little rounding is.
-    """
-    m = SpatialMechanism("carried")
-    told = {"centre": (0.1, 0.2, 0.0), "inertia": (0.1, 0.1, 0.15)}
-    a, b = m.link("a", length=0.5, mass=1.0), m.link("b", length=0.4, mass=2.0, **told)
-    m.universal("U", m.ground, a, axis=(0.3, 0.5, 1.0), second=(1.0, 0.4, -0.5))
-    m.cylindrical("C", a.tip, b, axis=(0.2, 1.0, -0.4))
-    m.planar("P", a.at(0.1, 0.2, 0.1), b.at(0.3, 0.1, -0.2), axis=(1.0, -0.3, 0.5))
-    laws = {"U": (polynomial(0.0, 0.7, 0.2), polynomial(0.0, -0.5, 0.1))}
-    scene = Scene(m, laws, t=(0, 0.3, 9), posture={"C:slide": 0.0, "C:turn": 0.0})
-    peaks = refine(scene, evaluate(scene, wanted=["motion"]))
-    found = [(peak.name, peak.value) for peak in peaks]
-    prepared = prepare(scene, wanted=["motion"])
-    found += zip(prepared.quantities, prepared.peaks().value, strict=True)
-    for name, value in found:
-        if name.startswith(("motion:C:slide", "motion:P:slide")) and name.endswith(
-            ("rate", "tion")
-        ):
-            assert abs(value) < 1e-13, name
 
 
 # Points that slide beyond the end of a link: the forces are those of a bracket, and it is said.
@@ -254,14 +137,6 @@ def test_it_is_said_which_joint_leaves_when_and_how_far(scene, wanted, says, tmp
     assert all(note.startswith(says + LEAVES) for note in found.notes)
 
 
-def test_an_end_missed_by_rounding_is_no_leaving():
-    m = Mechanism("m")
-    arm, p = m.link("arm", length=0.3, mass=1.0), m.point_mass("p", 2.0)
-    m.revolute("J", m.ground, arm)
-    m.prismatic("S", arm, p, axis=(1, 0))
-    assert evaluate(Scene(m, {"J": polynomial(0, 1), "S": polynomial(0.1 + 0.2)})).notes == ()
-
-
 @pytest.mark.parametrize("t", [0.0, 0.25, 0.75])
 @pytest.mark.parametrize("scene", [bracket, slotted])
 def test_forces_beyond_the_ends_are_those_of_newton(scene, t):
@@ -269,19 +144,35 @@ def test_forces_beyond_the_ends_are_those_of_newton(scene, t):
     assert_balanced(scene(), t=t)
 
 
-@pytest.mark.parametrize(("reach", "lever", "side"), [(0.9, 1.15, 1), (-0.9, 0.65, -1)])
-def test_nothing_vanishes_before_the_base_or_beyond_the_tip(reach, lever, side):
-    """A mass 1.15 m from the base of an arm of 0.5 m, or 0.65 m before its base; the joint bears
-    the arm at u = 0.2.
-    """
-    m = Mechanism("still")
-    arm, p = m.link("arm", length=0.5, mass=0.0), m.point_mass("p", 2.0)
-    m.revolute("J", m.ground, arm.at(0.1))
-    m.prismatic("S", arm, p, axis=(1, 0))
-    laws = {"J": polynomial(0.0), "S": harmonic(0.25, reach, 0.0, math.pi / 2)}
-    section = evaluate(Scene(m, laws, t=(0, 1, 2), xi=(0, 1, 11))).section("arm")
-    u, weight = np.linspace(0, 1, 11), 2.0 * 9.81
-    borne = u >= 0.2 if side > 0 else u < 0.2
-    np.testing.assert_allclose(section.shear[0], np.where(borne, -side * weight, 0.0), atol=1e-12)
-    bending = -weight * (lever - side * 0.5 * u)
-    np.testing.assert_allclose(section.bending[0], np.where(borne, bending, 0.0), atol=1e-12)
+def test_resultants_axes_and_turns(spatial, slider_crank):
+    reaction = spatial.reaction("A")
+    for name, parts in (("resultant", "fx fy fz"), ("moment", "mx my mz")):
+        size = np.linalg.norm([getattr(reaction, part) for part in parts.split()], axis=0)
+        np.testing.assert_allclose(spatial.array(f"reaction:A:{name}"), size)
+    section = spatial.section("beam")
+    bent = np.hypot(section.bending_y, section.bending_z)
+    np.testing.assert_allclose(section.bending, bent, rtol=1e-14)
+    axes = evaluate(beams(), wanted=["motion"], certificate=False).pose("bead").axes
+    square = axes @ np.swapaxes(axes, 1, 2)
+    np.testing.assert_allclose(square, np.broadcast_to(np.eye(3), (61, 3, 3)), atol=1e-14)
+    turns = evaluate(slider_crank.scene, t=(0, 0.8, 2001), wanted=["motion"])
+    crank = turns.pose("crank").angle
+    np.testing.assert_allclose(crank, turns.motion("O").value, atol=1e-12)
+    np.testing.assert_allclose(turns.motion("A").value, turns.pose("rod").angle - crank, atol=1e-12)
+
+
+def test_peaks_are_those_of_a_fine_grid(solution, slider_crank):
+    """In time and along the link, whose largest values are those of its law at their places."""
+    fine = evaluate(slider_crank.scene, xi=(0, 1, 4001), wanted=["section:rod"])
+    for name in sorted(f"section:rod:{force}" for force in PLANAR):
+        peak, grid = solution.peak(name), fine.array(name)
+        i, j = np.unravel_index(np.argmax(np.abs(grid)), grid.shape)
+        assert peak.value == pytest.approx(grid[i, j], rel=1e-7)
+        assert (peak.t, peak.xi) == pytest.approx((fine.t[i], fine.xi[j]), abs=3e-4)
+        values, places = solution.extremes(name)
+        assert np.all(np.abs(values) >= np.abs(grid).max(axis=1) * (1 - 1e-14))
+        at = solution.section("rod").law.at(name.rpartition(":")[2], places[:, None])[:, 0]
+        np.testing.assert_allclose(values, at, rtol=1e-14)
+    peak, effort = solution.peak("effort:O"), solution.effort("O")
+    assert (abs(peak.value), peak.unit, peak.xi) == (np.max(np.abs(effort)), "N m", None)
+    assert effort[np.searchsorted(solution.t, peak.t)] == peak.value

@@ -1,14 +1,11 @@
 """Means, smallest and largest values, resultants, and solutions as rows."""
 
-import csv
 import math
-import sys
 from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 import pytest
-from commands import words
 from mechanisms import slider_crank
 
 from lagrange_casadi import (
@@ -16,18 +13,11 @@ from lagrange_casadi import (
     Scene,
     evaluate,
     load_case,
-    refine,
 )
-from lagrange_casadi.cli import main
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
-
-
-@pytest.fixture(scope="module")
-def solution():
-    return evaluate(load_case("slider_crank").scene)
 
 
 @pytest.mark.parametrize("case", ["slider_crank", "quick_return", "engine"])
@@ -64,27 +54,11 @@ def test_resultants(solution):
     np.testing.assert_array_equal(solution.array("reaction:guide:resultant"), reaction.resultant)
     assert solution.unit("reaction:guide:resultant") == "N"
     assert solution.peak("reaction:guide:resultant").value == reaction.resultant.max()
-    assert (
-        solution.statistics("reaction:guide:resultant").smallest.value == reaction.resultant.min()
-    )
     assert "reaction:guide:resultant" not in list(solution.names())
     with pytest.raises(UnknownNameError, match="unknown quantity 'reaction:nowhere:resultant'"):
         solution.peak("reaction:nowhere:resultant")
     with pytest.raises(UnknownNameError, match="unknown quantity 'reaction:guide:resultant'"):
         evaluate(slider_crank(), wanted=["effort"]).statistics("reaction:guide:resultant")
-
-
-def test_peaks_of_resultants_between_instants():
-    """From few instants as exact as from many: the peaks of A and B lie within the cycle or at its
-    end.
-    """
-    scene = load_case("slider_crank").scene
-    few, many = (evaluate(scene, t=(0, 0.08, count), wanted=["reaction"]) for count in (41, 40_001))
-    names = [f"reaction:{joint}:resultant" for joint in ("O", "A", "B", "guide")]
-    for peak in refine(scene, few, names):
-        near = many.peak(peak.name)
-        assert near.value * (1 - 1e-14) <= peak.value <= near.value * (1 + 1e-6)
-        assert peak.t == pytest.approx(near.t, abs=3e-6)
 
 
 def test_to_pandas(solution):
@@ -99,43 +73,6 @@ def test_to_pandas(solution):
         len(table.columns)
         == sum(1 for name in solution.names() if not name.startswith("section")) + 2 * 3 * 2
     )
-
-
-def test_run_writes_rows(here, capsys, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    arguments = words("--no-figures --t 0:0.08:5 --xi 0:1:3 --want effort --want section:rod")
-    assert main(["run", "slider_crank", *arguments, "--csv", "rows.csv"]) == 0
-    assert "wrote slider_crank.h5, and rows.csv" in capsys.readouterr().out
-    with open("rows.csv", newline="") as file:
-        head, *rows = csv.reader(file)
-    assert head[:2] == ["t [s]", "effort:O [N m]"]
-    assert head[-1] == "section:rod:bending xi/l=1 [N m]"
-    found = evaluate(load_case("slider_crank").scene, t=(0, 0.08, 5), wanted=["effort"])
-    assert [float(row[0]) for row in rows] == found.t.tolist()
-    assert [float(row[1]) for row in rows] == found.effort("O").tolist()
-    assert {len(row) for row in rows} == {len(head)} == {2 + 3 * 3}
-
-
-def test_rows_have_a_place_of_their_own(here, capfd):
-    assert main(["run", "slider_crank", "--no-figures", "--csv", "./slider_crank.h5"]) == 2
-    assert "--csv slider_crank.h5: expected another place than the file's" in capfd.readouterr().err
-    assert main(["run", "slider_crank", "--csv", "nowhere/rows.csv"]) == 2
-    assert not list(here.iterdir())
-
-
-def test_run_tells_resultants_and_statistics(here, capsys):
-    assert main(["run", "slider_crank", "--no-figures"]) == 0
-    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
-    head = next(k for k, row in enumerate(rows) if row[:1] == ["peak"])
-    joined = [" ".join(row) for row in rows]
-    assert joined[head] == "peak t [s] xi/l min max mean rms"
-    assert joined[head + 1] == "effort:O 8.31361 N m 0.0076 -8.15166 8.31361 3.63742e-05 4.65909"
-    assert "section:rod:bending 0.941724 N m 0.0692 0.4527 -0.896639 0.941724" in joined
-    (resultant,) = (row for row in rows if row[:1] == ["reaction:guide:resultant"])
-    assert resultant[1] == "35.7198"
-    assert main(["run", "slider_crank", "--no-figures", "--t", "0:0.08:21", "--refine-peaks"]) == 0
-    refined = capsys.readouterr().out
-    assert "  reaction:guide:resultant   35.7199 " in refined
 
 
 def test_a_sine_over_its_turn():

@@ -1,5 +1,5 @@
 """Sweeps from the command line: what they write and say, and the one line and status of every
-mistake.
+mistake, of searches, trades and runs too.
 """
 
 import re
@@ -28,7 +28,39 @@ def test_sweep_takes_options(here, capfd):
     ]
 
 
+SEARCH = "optimise CASE --minimise peak:effort:O --over l=0.12:0.8 --starts 2"
+RUN = "run CASE --no-figures"
 MISTAKES = [
+    (f"{SEARCH} --over r=0.3", 2, "expected NAME=LEAST:LARGEST, as in l=0.15:0.4, got 'r=0.3'"),
+    (f"{SEARCH} --over l=0.1:0.2", 2, "--over: parameter 'l' is listed twice"),
+    (f"{SEARCH} --over k=0.1:0.2", 2, "unknown parameter 'k'; valid: r, l"),
+    (f"{SEARCH} --subject-to peak:effort:O", 2, "expected a constraint such as"),
+    (f"{SEARCH} --figure x.txt", 2, "expected a name that ends in .png or .pdf or .svg"),
+    (f"{SEARCH} --set l=0.2", 2, "parameter 'l' is in over= and set to a value as well"),
+    (f"{SEARCH} --out notes.txt", 2, "--out notes.txt: expected a name that ends in .h5 or .hdf5"),
+    (f"{SEARCH} --out nowhere/x.h5", 2, "folder nowhere does not exist"),
+    (f"{RUN} --newton 0", 2, "newton: expected a number of steps, from 1 to 1000 (after some ten"),
+    (f"{RUN} --newton two", 2, "Invalid value for '--newton': 'two' is not a valid integer"),
+    (f"{RUN} --table 3", 2, "table: expected a number of nodes, at least 8, or an accuracy betwee"),
+    (f"{RUN} --table few", 2, "expected a number of nodes or an accuracy, as in 128 or 1e-6, got"),
+    (f"{RUN} --precision half", 2, "'half' is not one of 'double', 'single'"),
+    (f"{RUN} --backend vm --flags -O1", 2, "backend 'vm' compiles nothing; flags '-O1' need lanes"),
+    (
+        f"{RUN} --newton 1",
+        2,
+        "newton: no loop of 'slider_crank' is iterated; leave newton out",
+    ),
+    (
+        f"{RUN} --csv ./slider_crank.h5",
+        2,
+        "slider_crank.h5: expected another place",
+    ),
+    (f"{RUN} --csv nowhere/rows.csv", 2, "folder nowhere does not exist"),
+    ("trade CASE --figure x.txt", 2, "x.txt: expected a name that ends in .png"),
+    ("trade CASE --out x.png", 2, "x.png: expected a name that ends in .json"),
+    ("trade CASE --out nowhere/x.json", 2, "cannot write nowhere/x.json: folder nowhere does not"),
+    ("trade CASE --accuracy 0", 2, "accuracy: expected a finite number above 0, got 0.0"),
+    ("trade CASE --accuracy nan", 2, "accuracy: expected a finite number above 0, got nan"),
     ("--grid q=0.1:0.2:3", 2, "unknown parameter 'q'; valid: r, l, m1, m2, m3"),
     ("--grid l=0.4:0.1:3", 2, "l: STOP must be after START, got 0.4:0.1:3: the range is reversed"),
     ("--grid l=0.1:0.4:0", 2, "l: COUNT must be at least 1, got 0.1:0.4:0: the range is empty"),
@@ -135,7 +167,7 @@ def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, monkeypatch, opti
     }
     for name, text in files.items():
         (here / name).write_text(text)
-    assert command(f"{ASKED} {options}") == status
+    assert command(options if "CASE" in options else f"{ASKED} {options}") == status
     out, err = capfd.readouterr()
     assert err.startswith("error: ")
     assert err.count("\n") == 1

@@ -1,49 +1,59 @@
 """Figures of a sweep: each draws what it says, from the file's arrays, and says what it omits."""
 
 import numpy as np
-import plotted
 import pytest
 import sweeps
-from internals import Front, Peaks, Scatter, best, default_plots, draw_sweep, sweep
+from forging import forging
+from internals import Front, Peaks, Scatter, default_plots, draw_sweep
+from internals import ListingListed as Listed
 from internals import PlotsAlong as Along
 from internals import scale_number as number
-from plotted import BENDING, EFFORT, REACH, legend, lines, plain, rewritten
 
+from lagrange_casadi import Sweep, best, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
+
+BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
+
+REACH = "no result: the iterated loops did not converge"
+
+
+def rewritten(found, name, change):
+    """The sweep with a column that is changed in its file."""
+    with forging(found.path) as file:
+        file[name.replace(":", "/")][...] = change(file[name.replace(":", "/")][()])
+    return Sweep.open(found.path)
+
+
+def plain(text):
+    """Words without what keeps or breaks their lines."""
+    return text.replace("\N{NO-BREAK SPACE}", " ").replace("\n", " ")
+
+
+def lines(axes, marker):
+    return [line for line in axes.get_lines() if line.get_marker() == marker]
+
+
+def legend(figure):
+    return [plain(text.get_text()) for text in figure.legends[0].get_texts()]
 
 
 @pytest.fixture
 def swept(monkeypatch, tmp_path):
-    return plotted.grid_of(monkeypatch, tmp_path)
+    """A grid of three parameters, swept by plain formulas."""
+    sweeps.use(monkeypatch)
+    grid = {"l": (0.15, 0.4, 9), "r": [0.05, 0.1, 0.07], "m1": [0.1, 0.2]}
+    return sweep(sweeps.scene(), grid, out=tmp_path / "x.h5", xi=(0, 1, 5))
 
 
 @pytest.fixture
 def listed(monkeypatch, tmp_path):
-    return plotted.list_of(monkeypatch, tmp_path)
-
-
-def test_curves_over_a_parameter(swept):
-    figure = Peaks("x", (EFFORT, BENDING), ("l",), at={"r": 0.1}).draw(swept)
-    assert len(figure.axes) == 2
-    for axes, name in zip(figure.axes, (EFFORT, BENDING), strict=True):
-        values = np.abs(swept[name][:, 1, 0])
-        (line,), (star,), (crosses,) = (lines(axes, marker) for marker in (".", "*", "x"))
-        np.testing.assert_array_equal(line.get_xdata(), np.linspace(0.15, 0.4, 9))
-        np.testing.assert_array_equal(line.get_ydata(), values)
-        k = np.nanargmin(values)
-        assert (star.get_xdata()[0], star.get_ydata()[0]) == (swept["l"][k], values[k])
-        np.testing.assert_array_equal(crosses.get_xdata(), swept["l"][np.isnan(values)])
-        assert (
-            plain(axes.get_title(loc="left")) == f"★ {number(values[k])} at l = {swept['l'][k]:.4g}"
-        )
-    assert figure.axes[1].get_xlabel() == "l [m]"
-    assert plain(figure.axes[1].get_ylabel()) == "rod bending, |peak| [N m]"
-    assert (
-        plain(figure.get_suptitle())
-        == "slider_crank: peak over time of each design at r = 0.1 m, m1 = 0.1 kg"
+    """A list of fifty designs, swept likewise."""
+    sweeps.use(monkeypatch)
+    rows = np.column_stack(
+        [np.random.default_rng(3).uniform(0.1, 0.3, (50, 2)), np.repeat([0.1, 0.2], 25)]
     )
-    assert legend(figure) == [REACH, "smallest of those drawn"]
+    return sweep(sweeps.scene(), Listed(("l", "r", "m1"), rows), out=tmp_path / "y.h5")
 
 
 def test_maps_over_two_parameters_in_either_order(swept):
@@ -89,111 +99,6 @@ def test_section_forces_along_the_link(swept, sized):
         plain(cells.colorbar.ax.get_xlabel())
         == f"rod bending, {'|peak|' if sized else 'peak'} [N m]"
     )
-
-
-def test_the_front_and_all_designs(swept):
-    figure = Front("x", EFFORT, BENDING).draw(swept)
-    dots, _, front = (
-        lines(figure.axes[0], "o")[0],
-        *lines(figure.axes[0], "None"),
-        lines(figure.axes[0], "o")[1],
-    )
-    both = ~np.isnan(swept[EFFORT]).ravel()
-    assert np.isfinite(dots.get_xdata()).sum() == both.sum()
-    designs = best(swept, minimise=[EFFORT, BENDING])
-    np.testing.assert_array_equal(
-        front.get_ydata(), [abs(design.values[BENDING]) for design in designs]
-    )
-    (low, high), axes = figure.axes[0].get_xlim(), figure.axes[0]
-    assert low < front.get_xdata().min()
-    assert front.get_xdata().max() < high
-    assert plain(figure.get_suptitle()) == "slider_crank: designs and their front"
-    keys = list(legend(figure)[2:])
-    named = [
-        ", ".join(
-            f"{name} = {design.values[name]:.4g} {unit}" for name, unit in swept.parameters.items()
-        )
-        for design in designs
-    ]
-    assert keys
-    assert keys[0] == named[0]
-    assert keys[-1] == named[-1]
-    assert set(keys) <= set(named)
-    for k, words in enumerate(keys, 1):
-        ((x, y),) = lines(axes, f"${k}$")[0].get_xydata()
-        design = designs[named.index(words)]
-        assert (x, y) == (abs(design.values[EFFORT]), abs(design.values[BENDING]))
-        assert any((ring.get_xydata() == [x, y]).all() for ring in lines(axes, "o")[2:])
-    some = Front("x", EFFORT, "l", {"m1": 0.2}).draw(swept)
-    assert (
-        np.isfinite(lines(some.axes[0], "o")[0].get_xdata()).sum()
-        == (~np.isnan(swept[EFFORT][:, :, 1])).sum()
-    )
-    assert some.axes[0].get_ylabel() == "l [m]"
-    assert plain(some.get_suptitle()).endswith("at m1 = 0.2 kg")
-    assert all(words.startswith("l = ") and "m1" not in words for words in legend(some)[2:])
-
-
-@pytest.mark.sampled(2)
-def test_the_usual_figures(swept, tmp_path):
-    names = [spec.name for spec in default_plots(swept)]
-    assert names == [
-        "peak_effort",
-        "peak_reactions",
-        "peak_section_rod",
-        "along_rod",
-        f"front_{EFFORT}_{BENDING}".replace(":", "-"),
-    ]
-    assert (default_plots(swept)[0].over, default_plots(swept, over=["m1"])[0].family) == (
-        ("l", "r"),
-        "l",
-    )
-    assert default_plots(swept, over=["m1"], at={"l": 0.4})[0].family == "r"
-    drawn = list(draw_sweep(swept, default_plots(swept, over=["m1"]), tmp_path))
-    assert [(path.stem, why) for path, why in drawn] == [(name, "") for name in names]
-    before = [path.read_bytes() for path, _ in drawn[-2:]]
-    assert [
-        path.read_bytes()
-        for path, _ in draw_sweep(swept, default_plots(swept, over=["m1"])[-2:], tmp_path)
-    ] == before
-
-
-@pytest.mark.long
-def test_a_list_is_drawn_over_each_parameter(listed, tmp_path):
-    specs = default_plots(listed)
-    assert [spec.name for spec in specs if isinstance(spec, Scatter)] == [
-        "peak_effort",
-        "peak_reactions",
-        "peak_section_rod",
-    ]
-    figure = specs[2].draw(listed)
-    assert len(figure.axes) == 9
-    for k, axes in enumerate(figure.axes):
-        (dots,), (crosses,), (star,) = (lines(axes, marker) for marker in "ox*")
-        values = np.abs(listed[specs[2].columns[k // 3]])
-        x = listed[("l", "r", "m1")[k % 3]]
-        np.testing.assert_array_equal(dots.get_xdata(), x)
-        np.testing.assert_array_equal(dots.get_ydata(), values)
-        np.testing.assert_array_equal(crosses.get_xdata(), x[np.isnan(values)])
-        assert star.get_xdata()[0] == x[np.nanargmin(values)]
-    assert (
-        figure.axes[0]
-        .get_title(loc="left")
-        .endswith(f", design {np.nanargmin(np.abs(listed[specs[2].columns[0]]))}")
-    )
-    assert default_plots(listed, over=["r"])[0].over == ("r",)
-    at = default_plots(listed, at={"m1": 0.2})[0]
-    assert at.over == ("l", "r")
-    np.testing.assert_array_equal(
-        lines(at.draw(listed).axes[0], "o")[0].get_xdata(), listed["l"][25:]
-    )
-    assert (
-        at.draw(listed)
-        .axes[0]
-        .get_title(loc="left")
-        .endswith(f"design {25 + np.nanargmin(np.abs(listed[EFFORT][25:]))}")
-    )
-    assert [why for _, why in draw_sweep(listed, specs, tmp_path)] == [""] * 4
 
 
 def test_what_cannot_be_drawn_is_named(swept, listed, monkeypatch, tmp_path):
@@ -277,3 +182,53 @@ def test_the_command_writes_figures_or_nothing(swept, tmp_path, capsys):
         "(54 x a loop cannot be closed: its links do not reach): there is nothing to draw\n"
     )
     assert not (tmp_path / "none").exists()
+
+
+def test_curves_over_a_parameter(swept):
+    """The smallest has a star, what has no result a cross."""
+    figure = Peaks("x", (EFFORT, BENDING), ("l",), at={"r": 0.1}).draw(swept)
+    for axes, name in zip(figure.axes, (EFFORT, BENDING), strict=True):
+        values = np.abs(swept[name][:, 1, 0])
+        (line,), (star,), (crosses,) = (lines(axes, marker) for marker in (".", "*", "x"))
+        np.testing.assert_array_equal(line.get_xydata().T, [swept["l"], values])
+        k = np.nanargmin(values)
+        assert star.get_xydata().tolist() == [[swept["l"][k], values[k]]]
+        np.testing.assert_array_equal(crosses.get_xdata(), swept["l"][np.isnan(values)])
+        told = f"★ {number(values[k])} at l = {swept['l'][k]:.4g}"
+        assert plain(axes.get_title(loc="left")) == told
+    assert figure.axes[1].get_xlabel() == "l [m]"
+    assert plain(figure.axes[1].get_ylabel()) == "rod bending, |peak| [N m]"
+    told = "slider_crank: peak over time of each design at r = 0.1 m, m1 = 0.1 kg"
+    assert plain(figure.get_suptitle()) == told
+    assert legend(figure) == [REACH, "smallest of those drawn"]
+
+
+def test_the_front_and_all_designs(swept):
+    figure = Front("x", EFFORT, BENDING).draw(swept)
+    dots, front, *_ = lines(figure.axes[0], "o")
+    assert np.isfinite(dots.get_xdata()).sum() == np.isfinite(swept[EFFORT]).sum()
+    designs = best(swept, minimise=[EFFORT, BENDING])
+    expected = [[abs(design.values[name]) for name in (EFFORT, BENDING)] for design in designs]
+    np.testing.assert_array_equal(front.get_xydata(), expected)
+    keys = legend(figure)[2:]
+    for design, words in ((designs[0], keys[0]), (designs[-1], keys[-1])):
+        values = (f"{name} = {design.values[name]:.4g} {u}" for name, u in swept.parameters.items())
+        assert words == ", ".join(values)
+    some = Front("x", EFFORT, "l", {"m1": 0.2}).draw(swept)
+    shown = np.isfinite(lines(some.axes[0], "o")[0].get_xdata()).sum()
+    assert shown == np.isfinite(swept[EFFORT][:, :, 1]).sum()
+    assert plain(some.get_suptitle()).endswith("at m1 = 0.2 kg")
+
+
+def test_the_usual_figures_of_a_grid_and_of_a_list(swept, listed, tmp_path):
+    front = f"front_{EFFORT}_{BENDING}".replace(":", "-")
+    names = ["peak_effort", "peak_reactions", "peak_section_rod", "along_rod", front]
+    assert [spec.name for spec in default_plots(swept)] == names
+    drawn = list(draw_sweep(swept, default_plots(swept, over=["m1"]), tmp_path))
+    assert [(path.stem, why) for path, why in drawn] == [(name, "") for name in names]
+    specs = default_plots(listed)
+    assert [spec.name for spec in specs if isinstance(spec, Scatter)] == names[:3]
+    axes = default_plots(listed, at={"m1": 0.2})[0].draw(listed).axes[0]
+    np.testing.assert_array_equal(lines(axes, "o")[0].get_xdata(), listed["l"][25:])
+    least = 25 + np.nanargmin(np.abs(listed[EFFORT][25:]))
+    assert axes.get_title(loc="left").endswith(f"design {least}")

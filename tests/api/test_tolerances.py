@@ -7,11 +7,10 @@ import math
 
 import numpy as np
 import pytest
-from commands import words
+from commands import command
 from conftest import CASES
 
-from lagrange_casadi import Mechanism, Scene, load_case, prepare, tolerances
-from lagrange_casadi.cli import main
+from lagrange_casadi import Mechanism, Scene, load_case, tolerances
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
@@ -51,26 +50,6 @@ def test_spreads_are_those_of_the_closed_form():
     assert found.failed == 0
 
 
-@pytest.mark.long
-def test_what_is_drawn_is_what_sweeps_have():
-    """The largest that was drawn lies between the nominal peak and that of the worst corner; the
-    same in every run.
-    """
-    scene = load_case(CASES / "slider_crank").scene
-    within = {"l": 1e-3, "m3": 5e-3}
-    first, second = (tolerances(scene, within, wanted=["effort"], samples=300) for _ in range(2))
-    spread = first.peaks["effort:O"]
-    f = prepare(scene, wanted=["effort"])
-    values = scene.mechanism.values()
-    corner = max(
-        abs(f.peaks(l=values["l"] + i * 1e-3, m3=values["m3"] + j * 5e-3).value[0])
-        for i in (-1, 1)
-        for j in (-1, 1)
-    )
-    assert abs(spread.nominal) < spread.high <= corner
-    assert spread.high == second.peaks["effort:O"].high
-
-
 def test_designs_without_a_result_are_counted():
     scene = load_case(CASES / "slider_crank").scene
     found = tolerances(scene, {"l": 0.02}, parameters={"l": 0.11}, wanted=["effort"], samples=200)
@@ -107,45 +86,40 @@ def test_what_is_no_tolerance_of_a_length(value):
         tolerances(rotor(), {"l": value})
 
 
-def test_mistakes():
-    with pytest.raises(UnknownNameError, match="parameter"):
-        tolerances(rotor(), {"k": 0.1})
-    with pytest.raises(ParameterError, match="out of its range"):
-        tolerances(rotor(), {"l": 0.5})
-    with pytest.raises(DeclarationError, match="expected tolerances by parameter"):
-        tolerances(rotor(), {})
-    with pytest.raises(DeclarationError, match="samples: expected a whole number"):
-        tolerances(rotor(), {"l": 0.001}, samples=1)
-    with pytest.raises(DeclarationError, match="expected a Scene"):
-        tolerances(None, {"l": 0.001})
+@pytest.mark.parametrize(
+    ("given", "words", "error", "says"),
+    [
+        ({"k": 0.1}, {}, UnknownNameError, "unknown parameter 'k'"),
+        ({"l": 0.5}, {}, ParameterError, "out of its range"),
+        ({}, {}, DeclarationError, "expected tolerances by parameter"),
+        ({"l": 0.001}, {"samples": 1}, DeclarationError, "samples: expected a whole number"),
+        ({"l": 0.001}, {"scene": None}, DeclarationError, "expected a Scene"),
+    ],
+)
+def test_mistakes(given, words, error, says):
+    with pytest.raises(error, match=says):
+        tolerances(**{"scene": rotor(), "within": given, **words})
 
 
-def test_the_command_ranks_and_writes(tmp_path, monkeypatch, capfd):
-    monkeypatch.chdir(tmp_path)
-    asked = [
-        "tolerances",
-        str(CASES / "slider_crank"),
-        *words("--want effort,section:rod --samples 100"),
-    ]
-    assert main([*asked, "--tolerance", "l=0.1mm", "--tolerance", "m3=1%", "--csv", "x.csv"]) == 0
+MISTAKES = {
+    "expected NAME=VALUE": "--tolerance l",
+    "tolerance of 'l'": "--tolerance l=1deg",
+    "listed twice": "--tolerance l=1mm --tolerance l=1mm",
+}
+
+
+def test_the_command_ranks_and_writes(here, capfd):
+    line = "tolerances CASE --want effort,section:rod --samples 100"
+    assert command(f"{line} --tolerance l=0.1mm --tolerance m3=1% --csv x.csv") == 0
     out, err = capfd.readouterr()
-    assert err == ""
+    assert (err, "m3 100%" in out) == ("", True)
     assert out.startswith("slider_crank: 100 designs drawn; sigma and worst to first order")
-    assert "  effort:O " in out
-    assert "m3 100%" in out
-    rows = list(csv.DictReader((tmp_path / "x.csv").read_text().splitlines()))
-    assert [row["quantity"] for row in rows if row["unit"] == "N m"] == [
-        "effort:O",
-        "section:rod:bending",
-    ]
-    assert all(
-        float(row["share of l"]) + float(row["share of m3"]) == pytest.approx(1.0) for row in rows
-    )
-    mistakes = {
-        "expected NAME=VALUE": ["l"],
-        "tolerance of 'l'": ["l=1deg"],
-        "listed twice": ["l=1mm", "l=1mm"],
-    }
-    for said, given in mistakes.items():
-        assert main([*asked, *(word for each in given for word in ("--tolerance", each))]) == 2
-        assert said in capfd.readouterr().err
+    rows = list(csv.DictReader((here / "x.csv").read_text().splitlines()))
+    told = [row["quantity"] for row in rows if row["unit"] == "N m"]
+    assert told == ["effort:O", "section:rod:bending"]
+    for row in rows:
+        shares = float(row["share of l"]) + float(row["share of m3"])
+        assert shares == pytest.approx(1.0)
+    for says, given in MISTAKES.items():
+        assert command(f"{line} {given}") == 2
+        assert says in capfd.readouterr().err

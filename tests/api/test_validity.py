@@ -2,13 +2,12 @@
 line; and links of any density and shape are in balance.
 """
 
-import numpy as np
 import pytest
 from balance import assert_balanced
-from mechanisms import INSTANT, MOTION, crank_and_rod
+from mechanisms import crank_and_rod
 from prepared import prepared
 
-from lagrange_casadi import Mechanism, Scene, density, evaluate, sweep, table
+from lagrange_casadi import Mechanism, Scene, density, sweep, table
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
 
@@ -85,38 +84,6 @@ def test_all_programs_draw_the_same_line(name, tmp_path):
         assert [not one for one in impossible] == expected
 
 
-@pytest.mark.parametrize("root", [1 / 3, 0.1, 0.7, 0.9])
-def test_what_touches_zero_is_possible(root):
-    """Rounding does not make it negative: neither of a square nor of a table that ends at zero."""
-    scene = arm(rod(lambda c: (root * root * c, -2 * root * c, c)), ["c"], default=1.0)
-    assert accepted(scene, [1.0, 7.0, 1e6, 0.3]) == [True] * 4
-    for value in (1.0, 3.0, 0.1, 1 / 7):
-        table = density.tabulated([0.0, root, 1.0], [2 * value, value, 0.0])
-        arm(
-            lambda m, c, table=table: m.link("arm", length=0.5, density=table), ["c"]
-        ).mechanism.values()
-
-
-def test_what_bears_a_load_may_be_massless():
-    """Forces are then those of statics: by virtual power, the drive gives what the load takes."""
-    m = Mechanism("press")
-    work = m.parameter("work", 80e3, "N")
-    upper = m.link("upper", length=0.3, mass=0.0)
-    lower = m.link("lower", length=0.3, mass=0.0)
-    ram = m.point_mass("ram", 0.0)
-    m.revolute("top", m.ground.at(0.0, 0.6), upper)
-    m.revolute("knee", upper.tip, lower)
-    m.revolute("elbow", lower.tip, ram)
-    m.prismatic("way", m.ground, ram, axis=(0, -1))
-    m.force("pressed", ram, y=work)
-    scene = Scene(m, {"top": polynomial(-1.8, 0.2)}, posture={"lower": -1.3}, t=(0, 0.9, 7))
-    solution = evaluate(scene)
-    assert solution.certified
-    taken = 80e3 * solution.motion("way").rate
-    assert np.abs(0.2 * solution.effort("top") - taken).max() < 1e-12 * np.abs(taken).max()
-    assert sweep(scene, {"work": [80e3, 0.0]})["status"].tolist() == [0, 0]
-
-
 @pytest.mark.parametrize(
     "rod",
     [
@@ -129,43 +96,6 @@ def test_what_bears_a_load_may_be_massless():
 )
 def test_links_of_every_density(rod):
     assert_balanced(crank_and_rod(rod))
-
-
-def test_lumps_and_branches_at_stations():
-    """Point masses welded on and beside the axis, a lever welded at an angle, and a pinned
-    pendulum, on one link.
-    """
-    m = Mechanism("branched")
-    a = m.link("a", length=0.6, mass=0.8)
-    b = m.link("b", length=0.2, mass=0.2)
-    c = m.link("c", length=0.3, mass=0.3)
-    m.revolute("O", m.ground, a.at(0.15, 0.02))
-    m.weld("on", a.at(0.3), m.point_mass("on_axis", 0.5))
-    m.weld("beside", a.at(0.45, -0.1), m.point_mass("beside_axis", 0.4))
-    m.weld("lever", a.at(0.5, 0.05), b, angle=0.7)
-    m.revolute("pin", b.tip, c)
-    m.weld("end", a.tip, m.point_mass("end_mass", 0.2))
-    m.weld("base", a.base, m.point_mass("base_mass", 0.3))
-    assert_balanced(Scene(m, {"O": MOTION, "pin": polynomial(0.3, -4.0, 2.0)}, t=(INSTANT, 1, 2)))
-
-
-def test_one_sided_values_at_a_station():
-    """A lump's weight is the jump of shear; both sides are there, and the grid takes the tip's
-    side.
-    """
-    m = Mechanism("shelf")
-    a = m.link("a", length=1.0, mass=0.0)
-    m.weld("wall", m.ground, a)
-    m.weld("lump", a.at(0.25), m.point_mass("mass", 2.0))
-    solution = evaluate(Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5)))
-    law = solution.section("a").law
-    at = np.array([[0.25]])
-    assert law.at("shear", at, side="base")[0, 0] == pytest.approx(-2.0 * 9.81)
-    assert law.at("shear", at, side="tip")[0, 0] == 0.0
-    assert solution.section("a").shear[0].tolist() == pytest.approx([-19.62, 0, 0, 0, 0])
-    assert law.at("bending", np.array([[0.0]]))[0, 0] == pytest.approx(-2.0 * 9.81 * 0.25)
-    peak = solution.peak("section:a:shear")
-    assert (peak.value, peak.xi) == pytest.approx((-19.62, 0.0))
 
 
 @pytest.mark.parametrize(
@@ -256,43 +186,3 @@ def test_impossible_links_are_named(matter, says):
     m.revolute("J", m.ground, m.link("a", length=1, **matter))
     with pytest.raises(ParameterError, match=says):
         Scene(m, {"J": polynomial(0)})
-
-
-def test_a_station_outside_its_link_is_named():
-    m = Mechanism("m")
-    a = m.link("a", length=1, mass=1)
-    m.revolute("J", m.ground, a)
-    m.weld("W", a.at(m.parameter("x", 0.5, "m")), m.point_mass("p", 1))
-    scene = Scene(m, {"J": polynomial(0)})
-    with pytest.raises(
-        ParameterError, match=r"joint 'W': its point at 1\.5 m is outside link 'a', 0 to 1 m"
-    ):
-        evaluate(scene, parameters={"x": 1.5})
-
-
-def test_a_slider_may_leave_its_link():
-    """What is beyond the base acts on the base's side of every section: the rest hangs on it as on
-    a bracket.
-    """
-    m = Mechanism("boom")
-    a, p = m.link("a", length=0.5, mass=1.0), m.point_mass("p", 2.0)
-    m.revolute("J", m.ground.at(0, 0), a)
-    m.prismatic("S", a, p, axis=(1, 0))
-    scene = Scene(m, {"J": MOTION, "S": polynomial(-0.3, 1.0)}, t=(0, 1, 11))
-    for t in (0.0, 0.5, 1.0):
-        assert_balanced(scene, t=t)
-    assert np.max(evaluate(scene).certificate["ends"]) < 1e-14
-
-
-def test_links_between_point_masses_have_a_certificate():
-    """A trammel: a rod whose ends are pinned to two sliders."""
-    m = Mechanism("trammel")
-    rod, p, q = m.link("rod", length=1.0, mass=2.0), m.point_mass("p", 0.3), m.point_mass("q", 0.4)
-    m.prismatic("X", m.ground, p, axis=(1, 0))
-    m.prismatic("Y", m.ground, q, axis=(0, 1))
-    m.revolute("P", p, rod)
-    m.revolute("Q", q, rod.tip)
-    scene = Scene(m, {"X": polynomial(0.5, 0.3, -0.2)}, posture={"rod": 2.0}, t=(0, 1, 11))
-    assert_balanced(scene, t=0.4)
-    certificate = evaluate(scene).certificate
-    assert max(np.max(certificate[k]) for k in ("balance", "power", "ends", "closure")) < 1e-13
