@@ -112,7 +112,7 @@ def drawn(r, kind):
     step = math.radians(math.exp(r.uniform(math.log(0.1), math.log(30.0))))
     which = int(r.integers(1, COUNT - 2))
     beside = r.choice([-1, 1]) * (
-        10 ** r.uniform(-10, -2) if r.random() < 0.6 else step * r.uniform(0.0, 1.0)
+        min(10 ** r.uniform(-10, -2), step) if r.random() < 0.6 else step * r.uniform(0.0, 1.0)
     )
     way, does = r.choice([-1, 1]), r.choice(["passes", "touches", "near"])
     if does == "touches":
