@@ -1,6 +1,4 @@
-"""Live pages: the engine's package, pages whose inner parts a test can reach, and a scene of which
-every number may change.
-"""
+"""Live pages: the engine's package, and pages whose inner parts a test can reach."""
 
 import importlib.util
 import os
@@ -10,9 +8,6 @@ from pathlib import Path
 
 import browser
 import pytest
-
-from lagrange_casadi import Mechanism, Scene, density
-from lagrange_casadi.motion import polynomial
 
 THERE = importlib.util.find_spec("ziglang") is not None
 
@@ -54,34 +49,3 @@ def wait(one, condition):
     while not one.run(condition):
         assert time.monotonic() < end, (condition, one.complaints)
         time.sleep(0.02)
-
-
-def sheller(over=True):
-    """A machine in the plane: a plate on a rod, a load that slides along a rocker, loads along
-    links, a spring, a turned guide.
-    """
-    m = Mechanism("sheller")
-    r = m.parameter("r", 0.1, "m", low=0.0)
-    l = m.parameter("l", 0.45, "m")
-    b = m.parameter("b", 0.12, "m")
-    mass = m.parameter("m", 1.5, "kg")
-    snow = m.parameter("snow", 40.0, "N/m")
-    tilt = m.parameter("tilt", 0.1, "rad")
-    turn, rpm = m.parameter("turn", 6.2, "rad"), m.parameter("rpm", 60.0, "1/min")
-    crank = m.link("crank", length=r, mass=mass)
-    rod = m.link("rod", length=l, mass=2.0)
-    ram = m.point_mass("ram", 3.0 * mass)
-    rocker = m.link("rocker", length=1.1 * l + b, density=density.polynomial(2.0, b, 1.0))
-    drive = m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, ram)
-    m.prismatic("guide", m.ground.at(0.0, b / 4), ram, axis=(1.0, tilt))
-    m.revolute("C", m.ground.at(0.1, -2.0 * b), rocker)
-    m.slot("way", rocker, crank.at(0.5 * r, 0.1 * b), axis=(1.0, 0.0))
-    m.spring("coil", m.ground.at(0.2, b), rod.at(0.3 * l, b), stiffness=200.0, length=0.1)
-    m.line_load("snow", rod, y=(-snow, 0.5 * snow), between=(0.2 * l, 0.7 * l))
-    m.path("eye", rod.at(0.5 * l, -b))
-    m.output("power", m.results.effort(drive) * m.rate(drive), unit="W")
-    law = polynomial(0.3, 0.1047197551196597 * rpm, 0.5)
-    asked = {"over": ("O", 0.3, 0.3 + turn, 61)} if over else {"t": (0.0, turn / 6.0, 61)}
-    return Scene(m, {"O": law}, posture={"rod": 0.0, "rocker": 1.0}, **asked)

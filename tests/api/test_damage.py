@@ -102,7 +102,6 @@ def source(kind, folder, slider_crank, monkeypatch):
 
 
 KINDS = ["run", "sweep", "search"]
-_SECONDS = 20.0
 
 
 READERS = {

@@ -23,7 +23,6 @@ from lagrange_casadi import (
 
 STEEL = beams.material("C45+QT")
 BAR = beams.rectangle(height=0.03, width=0.01)
-ROUND = beams.round_bar(diameter=0.02)
 NOTCH = beams.Notch(0.5, bending=1.5)
 TURN = motion.harmonic(0.0, 0.6, 1.0)
 SPAN = (0.0, 1.0, 5)

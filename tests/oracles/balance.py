@@ -149,21 +149,6 @@ def settle(program, t, p, start):
     return z
 
 
-def section_forces(law, m, l, u):
-    """Axial, shear and bending from a law's coefficients, by the moments of a uniform rod as they
-    are defined.
-    """
-    mu0, mu1, mu2, xi = m * (1 - u), m * l / 2 * (1 - u**2), m * l**2 / 3 * (1 - u**3), u * l
-    return (
-        law["n0"] + law["n1"] * mu0 + law["n2"] * mu1,
-        law["f0"] + law["f1"] * mu0 + law["f2"] * mu1,
-        law["m0"]
-        + law["f0"] * (l - xi)
-        + law["f1"] * (mu1 - xi * mu0)
-        + law["f2"] * (mu2 - xi * mu1),
-    )
-
-
 def oracle_of(m, values, arithmetic=DOUBLE, **beside):
     """The oracle of a mechanism: its numbers, and nothing else of the package."""
 

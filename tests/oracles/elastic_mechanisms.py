@@ -1,9 +1,6 @@
 """Mechanisms that are over-constrained, of links that give way."""
 
-import functools
-
 import numpy as np
-import pytest
 from internals import Compliance, Member, nodes
 
 from lagrange_casadi import (
@@ -11,9 +8,8 @@ from lagrange_casadi import (
     Scene,
     SpatialMechanism,
     beams,
-    evaluate,
 )
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.motion import harmonic
 
 STEEL = beams.material("S235")
 LIGHT = STEEL.but(density=1e-9)
@@ -21,30 +17,6 @@ LIGHT = STEEL.but(density=1e-9)
 
 def made(shape, material=STEEL):
     return beams.Beam(shape, material)
-
-
-def sections_of(**links):
-    """Properties, E, G and mass per length of links, by their beams."""
-    found = {}
-    for name, beam in links.items():
-        p = beam.course.cells[0][0].properties()
-        found[name] = (
-            p,
-            beam.material.elasticity,
-            beam.material.shear_modulus,
-            beam.material.density * p.area,
-        )
-    return found
-
-
-def agrees(solution, i, reactions, tolerance=1e-8):
-    """Every reaction of a solution is that of a frame, in all components that it has."""
-    size = max(np.abs(row).max() for row in reactions.values())
-    for joint, row in reactions.items():
-        found = solution.reaction(joint)
-        for k, member in enumerate(("fx", "fy", "fz", "mx", "my", "mz")):
-            if (values := getattr(found, member, None)) is not None:
-                assert values[i] == pytest.approx(row[k], abs=tolerance * size), (joint, k)
 
 
 def work(first, second, links):
@@ -99,12 +71,3 @@ def three_cranks(beam, bar=None, elastic=True):
         m.revolute(f"B{k}", link.tip, (bar.base, bar.at(0.5), bar.tip)[k])
     posture = {"a": 1.2, "b": 1.2, "c": 1.2, "bar": 0.0}
     return Scene(m, {"G0": harmonic(1.2, 0.3, 1.0)}, posture=posture, t=(0, 1, 5), elastic=elastic)
-
-
-@functools.cache
-def moving():
-    """The four-bar in motion, completed by elasticity: mechanism and solution."""
-    m = four_bar()
-    law = {"O": polynomial(0.2, 30.0, 40.0)}
-    scene = Scene(m, law, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9), elastic=True)
-    return m, evaluate(scene)
