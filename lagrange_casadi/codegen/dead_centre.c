@@ -9,11 +9,11 @@ static int centre_passes(const centre_step* step, int which, centre_real limit) 
     centre_path(step, which, x, square, rate, slope);
     least = 0;
     for (k = 0; k < $points; ++k) {
-      if (square[k] < -$noise*limit) return 1;
+      if (square[k] < -limit) return 1;
       if (!(square[k] == square[k])) square[k] = 0;
       if (square[k] < square[least]) least = k;
     }
-    touches |= square[least] <= $noise*limit;
+    touches |= square[least] <= limit;
     a = rate[least] < 0 ? least : least - 1;
     b = a + 1;
     while (a > 0 && square[a] <= $far*limit) --a;

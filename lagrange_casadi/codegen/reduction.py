@@ -14,7 +14,7 @@ from ..arithmetic.compensated import DTYPES
 from ..base.status import Status
 from ..base.vocabulary import Precision
 from ..declare.limits import END
-from ..equations.dead_centres import CLOSURES, FAR, NOISE, POINTS, ROUNDS, TOUCHES
+from ..equations.dead_centres import CLOSURES, FAR, POINTS, ROUNDS, TOUCHES
 from ..equations.program import Program
 from ..peak_search.between import Flags
 from ..peak_search.intervals import TOPS
@@ -147,7 +147,7 @@ def centre(slopes: int) -> str:
     """C of the rule of dead centres (:func:`.passes`), for so many slopes of a loop; the types
     ``centre_real`` and ``centre_step``, and ``centre_path``, stand before it.
     """
-    values = {"points": POINTS, "rounds": ROUNDS, "far": int(FAR), "noise": int(NOISE)}
+    values = {"points": POINTS, "rounds": ROUNDS, "far": int(FAR)}
     values |= {"slopes": slopes, "least_order": int(TOUCHES[0]), "most_order": int(TOUCHES[1])}
     return Template(written("dead_centre.c")).substitute(values)
 

@@ -45,11 +45,6 @@ POINTS, ROUNDS = 8, 20
 FAR = 16.0
 """Share of the limit of C above which C and C' have digits enough for n."""
 
-NOISE = 3.0
-"""Share of the limit of C within which C at a dead centre may be, by rounding: in space more is
-added up in C than in the plane.
-"""
-
 TOUCHES = 3.0, 10.0
 """Range of n of a loop that touches its dead centre and turns back. Where n is above, the loop
 rests at its dead centre, or its links do not reach there.
@@ -109,11 +104,11 @@ def passes(path: Path, limit: float) -> bool:
     for _ in range(ROUNDS):
         x = np.linspace(low, high, POINTS)
         square, rate, slopes = path(x)
-        if (square < -NOISE * limit).any():
+        if (square < -limit).any():
             return True
         square = np.where(np.isnan(square), 0.0, square)
         least = int(np.argmin(square))
-        touches |= bool(square[least] <= NOISE * limit)
+        touches |= bool(square[least] <= limit)
         a = least if rate[least] < 0.0 else least - 1
         b = a + 1
         while a > 0 and square[a] <= FAR * limit:

@@ -129,6 +129,10 @@ def _spanned(
     """A bar's end that turns about one axis, or slides along one: two points of a circle or a line
     are so far from another one.
 
+    The closure is the square of the sine between the bar and the arm that turns. That between the
+    arm and the line from its axis to the bar's other end would be zero at the same instants, but
+    that line may be short: it is a difference, and its rounding by far the larger.
+
     What turns may also lie askew, and its distance from an axis be given: a sine, or a cosine, of
     either sign, and both ways round.
     """
@@ -144,12 +148,16 @@ def _spanned(
         if not vanish(curvature[0, 0] - curvature[1, 1], coordinates, curvature):
             return _askew(phi, coordinate, curvature, coordinates)
         # Where the squares of cosine and sine have one factor, they are one number.
-        straight = phi - curvature[0, 0] * (ca.sumsqr(symbols) - 1) / 2
+        square = curvature[0, 0]
+        straight = phi - square * (ca.sumsqr(symbols) - 1) / 2
         slope, rest = (
             ca.substitute(e, symbols, ca.SX.zeros(2))
             for e in (ca.jacobian(straight, symbols), straight)
         )
-        solved = _direction_on_line(slope @ symbols + rest, coordinate, branch)
+        # For an arm c, a line d to the bar's other end and a bar b, Phi = (X X - b b)/2, this is
+        # c c d d + c c (c c - (d d + c c - b b)) = (b c)^2.
+        largest = ca.sumsqr(slope) + square * (square - 2 * rest)
+        solved = _direction_on_line(slope @ symbols + rest, coordinate, branch, largest)
         return solved and ClosedForm((_variables(solved[0]),), solved[1], (branch,))
     slope, rest = (ca.substitute(e, symbols, 0) for e in (ca.jacobian(phi, symbols), phi))
     # The slope of Phi at its zeros, which is the cosine between bar and slide.

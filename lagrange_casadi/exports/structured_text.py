@@ -16,7 +16,7 @@ from ..arithmetic.interpret import INFIX, codes, operation_name, steps
 from ..arithmetic.lookups import Lookup
 from ..base.status import Status
 from ..codegen.emit import NEWTON_STEPS, newton_rule
-from ..equations.dead_centres import FAR, NOISE, POINTS, ROUNDS, TOUCHES
+from ..equations.dead_centres import FAR, POINTS, ROUNDS, TOUCHES
 from ..errors import DeclarationError
 from ..portable.calls import CALLS, INSTANT, PREPARE
 from ..portable.contract import Member
@@ -206,7 +206,7 @@ class _Block:
         point += ["square[j] := squares[which];", "rate[j] := rates[which];"]
         point += [f"rate[j] := rate[j] + (gone[0] - 1.0) * slopes[{width} * which];"]
         point += _loop("i", 0, drives, [f"slope[{width} * j + i] := slopes[{width} * which + i];"])
-        below = f"IF square[j] < -{_number(NOISE)} * zero[which] THEN"
+        below = "IF square[j] < -zero[which] THEN"
         point += [below, "crossed := TRUE;", "END_IF;"]
         if "loops" in exported.functions:
             point += [f"IF NOT (size < {done}) THEN", "square[j] := 0.0;", "END_IF;"]
@@ -217,7 +217,6 @@ class _Block:
             rounds=ROUNDS,
             end=POINTS - 1,
             far=_number(FAR),
-            noise=_number(NOISE),
             low=_number(TOUCHES[0]),
             high=_number(TOUCHES[1]),
             slopes=width,
