@@ -3,83 +3,44 @@
 # ruff: noqa: F401
 
 from lagrange_casadi.arithmetic.boxes import boxed
-from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING, Pair, Pairs
+from lagrange_casadi.arithmetic.compensated import Pair, Pairs
 from lagrange_casadi.arithmetic.interpret import interpret, numpy_arithmetic
 from lagrange_casadi.base import cache, symbolic
 from lagrange_casadi.base import seal as base_seal
-from lagrange_casadi.base.quantities import FORCES, Output
-from lagrange_casadi.base.seal import SIZE
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.tables import QUANTITIES, SPATIAL_QUANTITIES
 from lagrange_casadi.base.threads import in_threads
-from lagrange_casadi.base.vocabulary import PRECISIONS
-from lagrange_casadi.beams.profiles import Profile
-from lagrange_casadi.cli.report import Row as ReportRow
-from lagrange_casadi.cli.report import Rows as ReportRows
 from lagrange_casadi.codegen import compiler, find_compiler, library, printer
 from lagrange_casadi.codegen.printer import print_functions
 from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
 from lagrange_casadi.declare import laws
 from lagrange_casadi.declare.declared import Declared
-from lagrange_casadi.declare.density import Density
-from lagrange_casadi.declare.directions import Reference
 from lagrange_casadi.declare.even_points import points
-from lagrange_casadi.declare.joints import Axis, Joint
 from lagrange_casadi.declare.kinks import Smooth
-from lagrange_casadi.declare.limits import END
-from lagrange_casadi.declare.measures import Measure, Measures
-from lagrange_casadi.declare.meshes import Mesh, Transmission, Wrench
-from lagrange_casadi.declare.parts import (
-    Constraint,
-    Force,
-    Friction,
-    Ground,
-    LineLoad,
-    Link,
-    Path,
-    Point,
-    PointMass,
-    RigidMass,
-    Roller,
-    Spring,
-    Torque,
-)
-from lagrange_casadi.declare.parts import Row as NonHolonomicRow
 from lagrange_casadi.declare.scene import Wanted
 from lagrange_casadi.declare.stated import Stated
 from lagrange_casadi.elastic.compliance import Compliance, nodes
 from lagrange_casadi.elastic.deflection import deflection
-from lagrange_casadi.elements.cam import disc_cam
-from lagrange_casadi.equations import assembly, blocks, friction, loops, mobility
+from lagrange_casadi.equations import assembly, blocks, loops
 from lagrange_casadi.equations.fingerprint import fingerprint
 from lagrange_casadi.equations.integrability import Course, no_rates
-from lagrange_casadi.equations.model_data import template
 from lagrange_casadi.formats import case_of
 from lagrange_casadi.instants import backends, cycle_table, grids
-from lagrange_casadi.instants import refusal as instants_refusal
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.instants.refusal import refusal as refusal_refusal
-from lagrange_casadi.instants.solution import Provenance, Solution
+from lagrange_casadi.instants.solution import Provenance
 from lagrange_casadi.methods import METHODS as METHODS_METHODS
-from lagrange_casadi.peak_search import search
 from lagrange_casadi.portable.statuses import ANSWERS, SHARED, STATUSES
 from lagrange_casadi.store.attributes import SCHEMA_VERSION
-from lagrange_casadi.store.runs import SCHEMA
 from lagrange_casadi.strength.member import Member
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
 from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of
-from lagrange_casadi.studies.optimise.sobol import MOST_DIMENSIONS, sobol
-from lagrange_casadi.studies.peaks import forces, rates
-from lagrange_casadi.studies.sizing import size
-from lagrange_casadi.studies.sweep import sweep
-from lagrange_casadi.studies.sweep.default_figures import default_plots
-from lagrange_casadi.studies.sweep.listing import Listed as ListingListed
-from lagrange_casadi.studies.sweep.plots import Along as PlotsAlong
-from lagrange_casadi.studies.sweep.plots import Front, Peaks, Scatter, draw_sweep
-from lagrange_casadi.studies.sweep.scale import number as scale_number
+from lagrange_casadi.studies.optimise.sobol import sobol
+from lagrange_casadi.studies.peaks import rates
 from lagrange_casadi.verification.certificate import certify
 from lagrange_casadi.verification.disturbed import TRIALS, Instants, effects
-from lagrange_casadi.verification.reference import DIGITS, arithmetic, reference
+from lagrange_casadi.verification.reference import arithmetic, reference
 from lagrange_casadi.verification.roundings import rounding_error

@@ -130,12 +130,10 @@ class Rows:
             )
         missing = [row.output for row in self.rows if row.peak and row.peak.least is not None]
         if missing:
-            loads = dict.fromkeys(f"'{one.part}'" for one in missing if one.group == "load")
-            what = f"load {', '.join(loads)}" if loads else "a comparison or a remainder"
             yield (
                 f"note: >= marks a peak that was not found between the instants ({missing[0]}):"
-                f" {what} switches too often there, or has no bound; smooth what switches, as by"
-                " tanh in place of sign"
+                " a comparison or a remainder switches too often there, or has no bound; smooth"
+                " what switches, as by tanh in place of sign"
             )
 
     @cached_property

@@ -8,13 +8,10 @@ import subprocess
 import numpy as np
 import pytest
 from compiled import HEADER
-from internals import PRECISIONS
 
 from lagrange_casadi import codegen
 
 pytestmark = pytest.mark.usefixtures("released")
-
-both = pytest.mark.parametrize("precision", PRECISIONS)
 
 
 PROGRAM = r"""

@@ -4,8 +4,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from internals import DesignEngine, EvaluationMethod, Solution, Status, blocks, loops
-from internals import instants_refusal as refusal
+from internals import DesignEngine, EvaluationMethod, Status, blocks, loops
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export
 from lagrange_casadi.errors import AssemblyError
@@ -15,8 +14,8 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def mistaken(monkeypatch):
-    """A scene whose equations are taken for two circles, which they are not: as a pattern that
-    nobody verified.
+    """A scene whose equations are taken for two circles, as a pattern that nobody verified: so they
+    are where both are of the tip, as by default.
     """
     monkeypatch.setattr(loops, "_turns", lambda *_: True)
     monkeypatch.setattr(blocks, "solves", lambda *_: True)
@@ -27,8 +26,8 @@ def mistaken(monkeypatch):
     m.prismatic(
         "S", m.ground.at(0, -1), m.point_mass("s", m.parameter("mass", 1.0, "kg")), axis=(1, 0)
     )
+    m.constraint("middle", m.place(b.at(m.parameter("station", 0.5, "m")))[0] - 0.7)
     m.constraint("height", m.place(b.tip)[1] - 0.471)
-    m.constraint("middle", m.place(b.at(0.25))[0] - 0.7)
     return Scene(m, {"S": polynomial(0.0, 0.1)}, t=(0, 1, 41), posture={"a": 0.9, "b": -0.1})
 
 
@@ -49,23 +48,21 @@ def test_what_does_not_close_a_loop_is_refused(method, monkeypatch, fresh_cache)
     for wanted in (["all"], ["effort"]):
         with pytest.raises(
             AssemblyError,
-            match=r"of the loop closed by constraint 'middle' does not close it at t = 0 s",
+            match=r"of the loop closed by constraint 'height' does not close it at t = 0 s",
         ):
-            evaluate(scene, wanted=wanted, **told)
-    outcome = DesignEngine.of(scene, ["effort"], method=method).evaluate(np.ones((2, 1)))
-    assert outcome.status.tolist() == [Status.NOT_CLOSED] * 2
-    assert np.isnan(outcome.value).all()
+            evaluate(scene, wanted=wanted, parameters={"station": 0.25}, **told)
+    designs = DesignEngine.of(scene, ["effort"], method=method)
+    outcome = designs.evaluate(np.array([[1.0, 0.25], [1.0, 0.5]]))
+    assert outcome.status.tolist() == [Status.NOT_CLOSED, Status.OK]
+    assert (np.isnan(outcome.value).all(axis=1) == [True, False]).all()
 
 
 def test_exported_c_refuses_what_does_not_close_a_loop(monkeypatch, fresh_cache, tmp_path):
-    """Made as if nobody looked: evaluation and the certificate would not let it through."""
-    scene = mistaken(monkeypatch)
-    monkeypatch.setattr(refusal, "refusal", lambda *_: None)
-    monkeypatch.setattr(Solution, "failed", {})
-    export(scene, tmp_path / "c")
+    export(mistaken(monkeypatch), tmp_path / "c")
     (tmp_path / "c" / "look.c").write_text(
-        '#include <stdio.h>\n#include "mistaken.h"\nint main(void) {\n  mistaken_model model;\n '
-        " mistaken_inputs in;\n  mistaken_outputs out;\n  mistaken_prepare(&model, 0);\n "
+        '#include <stdio.h>\n#include "mistaken.h"\nint main(void) {\n  mistaken_model model;\n'
+        "  mistaken_parameters p = mistaken_defaults;\n  mistaken_inputs in;\n"
+        "  mistaken_outputs out;\n  p.station = 0.25;\n  mistaken_prepare(&model, &p);\n "
         ' mistaken_motion(&model, 0.0, &in);\n  printf("%s",'
         " mistaken_message(mistaken_evaluate(&model, &in, &out)));\n  return 0;\n}\n"
     )

@@ -21,7 +21,6 @@ from pathlib import Path
 
 import h5py
 from damaging import damaged
-from internals import SCHEMA
 from internals import base_seal as seal
 
 import lagrange_casadi.cli  # noqa: F401
@@ -36,9 +35,9 @@ LISTS = ("DIMENSION_LIST", "REFERENCE_LIST")
 
 _MADE_BY = {"schema_version", "versions", "backend", "precision", "compiler", "flags", "rung"}
 ONCE = {
-    SCHEMA: _MADE_BY | {"figures", "error_estimate"},
-    f"{SCHEMA}-sweep": _MADE_BY | {"keep", "sources", "scene"},
-    f"{SCHEMA}-optimum": {
+    "lagrange-casadi": _MADE_BY | {"figures", "error_estimate"},
+    "lagrange-casadi-sweep": _MADE_BY | {"keep", "sources", "scene"},
+    "lagrange-casadi-optimum": {
         "case",
         "minimised",
         "unit",

@@ -12,8 +12,9 @@ from pathlib import Path
 
 import mechanisms
 import numpy as np
-from internals import DesignEngine, Outcome, Provenance, sweep
+from internals import DesignEngine, Outcome, Provenance
 
+from lagrange_casadi import sweep
 from lagrange_casadi.version import __version__
 
 CASE = Path(__file__).parents[2] / "cases" / "slider_crank"

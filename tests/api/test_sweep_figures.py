@@ -1,20 +1,21 @@
 """Figures of a sweep: each draws what it says, from the file's arrays, and says what it omits."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import sweeps
 from forging import forging
-from internals import Front, Peaks, Scatter, default_plots, draw_sweep
-from internals import ListingListed as Listed
-from internals import PlotsAlong as Along
-from internals import scale_number as number
+from matplotlib import figure
 
 from lagrange_casadi import Sweep, best, sweep
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.studies.sweep import Listed
 
 BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
 
+FRONT = f"front_{EFFORT}_{BENDING}".replace(":", "-")
+USUAL = ["peak_effort", "peak_reactions", "peak_section_rod", "along_rod", FRONT]
 REACH = "no result: the iterated loops did not converge"
 
 
@@ -32,6 +33,26 @@ def plain(text):
 
 def lines(axes, marker):
     return [line for line in axes.get_lines() if line.get_marker() == marker]
+
+
+@pytest.fixture
+def plot(monkeypatch, tmp_path):
+    """A function of a sweep and of options gives the figures that the command draws, by name."""
+    save = figure.Figure.savefig
+
+    def plotted(found, *asked, status=0):
+        drawn, out = {}, tmp_path / "drawn"
+
+        def kept(one, file, **told):
+            drawn[Path(getattr(file, "name", file)).stem] = one
+            save(one, file, **told | {"dpi": 20})
+
+        with monkeypatch.context() as patch:
+            patch.setattr(figure.Figure, "savefig", kept)
+            assert main(["plot", str(found.path), *asked, "--out", str(out)]) == status
+        return drawn
+
+    return plotted
 
 
 def legend(figure):
@@ -56,7 +77,7 @@ def listed(monkeypatch, tmp_path):
     return sweep(sweeps.scene(), Listed(("l", "r", "m1"), rows), out=tmp_path / "y.h5")
 
 
-def test_maps_over_two_parameters_in_either_order(swept):
+def test_maps_over_two_parameters_in_either_order(swept, plot):
     """Values that are not in order on the grid are in order on the map; what has no result is
     masked, and shaded instead.
     """
@@ -64,20 +85,22 @@ def test_maps_over_two_parameters_in_either_order(swept):
     assert 0 < np.isnan(sizes).sum() < sizes.size
     l, r = np.unravel_index(np.nanargmin(sizes), sizes.shape)
     for over, expected in ((("l", "r"), sizes.T), (("r", "l"), sizes)):
-        figure = Peaks("x", (BENDING,), over, at={"m1": 0.2}).draw(swept)
-        axes, bar = figure.axes
+        asked = ["--over", over[0], "--over", over[1], "--at", "m1=0.2"]
+        shown = plot(swept, *asked)["peak_section_rod"]
+        bar = next(bar for bar in shown.axes if "rod bending" in plain(bar.get_xlabel()))
+        axes = shown.axes[shown.axes.index(bar) - 3]
         cells, shade = axes.collections
         np.testing.assert_array_equal(np.ma.filled(cells.get_array(), np.nan), expected)
         np.testing.assert_array_equal(np.ma.getmaskarray(shade.get_array()), ~np.isnan(expected))
         (star,) = lines(axes, "*")
         place = {"l": swept["l"][l], "r": np.sort(swept["r"])[r]}
         assert (star.get_xdata()[0], star.get_ydata()[0]) == tuple(place[name] for name in over)
-        assert legend(figure) == [REACH, "smallest of those drawn"]
+        assert legend(shown) == [REACH, "smallest of those drawn"]
         assert plain(bar.get_xlabel()) == "rod bending, |peak| [N m]"
 
 
 @pytest.mark.parametrize("sized", [False, True])
-def test_section_forces_along_the_link(swept, sized):
+def test_section_forces_along_the_link(swept, plot, sized):
     """With their sign, unless it alternates from cell to cell, where it is that of rounding."""
 
     def signed(values):
@@ -86,10 +109,10 @@ def test_section_forces_along_the_link(swept, sized):
         return np.abs(values) * (alternating if sized else steady)
 
     found = rewritten(swept, "peak_at:section:rod:bending", signed)
-    figure = Along("x", "rod", "l", {"r": 0.1, "m1": 0.2}).draw(found)
+    shown = plot(found, "--over", "l", "--at", "r=0.1", "--at", "m1=0.2")["along_rod"]
     values = found["peak_at:section:rod:bending"][:, 1, 1].T
     assert np.nanmin(values) < 0.0 < np.nanmax(values)
-    cells, shade = figure.axes[2].collections
+    cells, shade = shown.axes[2].collections
     np.testing.assert_array_equal(
         np.ma.filled(cells.get_array(), np.nan), np.abs(values) if sized else values
     )
@@ -101,134 +124,100 @@ def test_section_forces_along_the_link(swept, sized):
     )
 
 
-def test_what_cannot_be_drawn_is_named(swept, listed, monkeypatch, tmp_path):
-    cases = [
-        ({"over": ["q"]}, UnknownNameError, "unknown swept parameter 'q'; valid: l, r, m1"),
-        ({"at": {"q": 1.0}}, UnknownNameError, "unknown swept parameter 'q'; valid: l, r, m1"),
-        (
-            {"over": ["l", "r", "m1"]},
-            DeclarationError,
-            "a grid is drawn over one parameter or two, got 3: l, r, m1",
-        ),
-        ({"over": ["l", "l"]}, DeclarationError, "over: parameter 'l' is listed twice"),
-        (
-            {"over": ["l"], "at": {"l": 0.4}},
-            DeclarationError,
-            r"parameter 'l' cannot be drawn over and stay at 0\.4 as well",
-        ),
-        ({"at": {"r": 0.08}}, DeclarationError, r"no design has r = 0\.08; nearest: 0\.07, 0\.1"),
-        ({"against": [(EFFORT, "bending")]}, UnknownNameError, "unknown column 'bending'"),
-        (
-            {"against": [(EFFORT, EFFORT)]},
-            DeclarationError,
-            f"expected two columns to draw against each other, got '{EFFORT}' twice",
-        ),
-        (
-            {"against": [(EFFORT, "peak_at:section:rod:axial")]},
-            DeclarationError,
-            "has no single value of a design",
-        ),
-    ]
-    for asked, kind, words in cases:
-        with pytest.raises(kind, match=words):
-            default_plots(swept, **asked)
-    assert len(default_plots(listed, over=["l", "r", "m1"])[0].over) == 3
+REFUSED = {
+    "--over q": "unknown swept parameter 'q'; valid: l, r, m1",
+    "--at q=1": "unknown swept parameter 'q'; valid: l, r, m1",
+    "--over l --over r --over m1": "a grid is drawn over one parameter or two, got 3: l, r, m1",
+    "--over l --over l": "over: parameter 'l' is listed twice",
+    "--over l --at l=0.4": "parameter 'l' cannot be drawn over and stay at 0.4 as well",
+    "--at r=0.08": "no design has r = 0.08; nearest: 0.07, 0.1",
+    "--at l=0.2": "no design has l = 0.2; nearest: 0.2125, 0.18125",
+    "--at l=0.4 --at l=0.15": "--at: a parameter stays at one value, got two for 'l'",
+    f"--against {EFFORT} bending": "unknown column 'bending'",
+    f"--against {EFFORT} {EFFORT}": f"to draw against each other, got '{EFFORT}' twice",
+    f"--against {EFFORT} peak_at:section:rod:axial": "has no single value of a design",
+}
+
+
+def test_what_cannot_be_drawn_is_named(swept, plot, monkeypatch, tmp_path, capsys):
     one = sweep(sweeps.scene(), {"l": (0.2, 0.3, 5), "r": [0.1]}, out=tmp_path / "z.h5")
-    with pytest.raises(
-        DeclarationError,
-        match=r"'r' cannot be drawn over: it is 0\.1 in all designs; those that vary: l",
-    ):
-        default_plots(one, over=["r"])
-    with pytest.raises(DeclarationError, match="there is nothing to draw: it has only one design"):
-        default_plots(one, at={"l": 0.2})
     engine = sweeps.use(monkeypatch)
     engine.quantities, engine.efforts = ("pose:rod:x",), ()
     poses = sweep(sweeps.scene(), {"l": (0.2, 0.3, 5)}, out=tmp_path / "p.h5")
-    with pytest.raises(
-        DeclarationError, match="there is nothing to draw: it keeps no peak of an effort"
-    ):
-        default_plots(poses)
+    cases = [(swept, asked, words) for asked, words in REFUSED.items()]
+    cases += [
+        (one, "--over r", "'r' cannot be drawn over: it is 0.1 in all designs; those that vary: l"),
+        (one, "--at l=0.2", "there is nothing to draw: it has only one design"),
+        (poses, "", "there is nothing to draw: it keeps no peak of an effort"),
+    ]
+    for found, asked, words in cases:
+        assert not plot(found, *asked.split(), status=2), asked
+        assert words in capsys.readouterr().err, asked
+    assert not (tmp_path / "drawn").exists()
 
 
-def test_the_command_writes_figures_or_nothing(swept, tmp_path, capsys):
+def test_the_command_writes_figures_or_nothing(swept, plot, tmp_path, capsys):
     """What shows nothing is a note beside the others, and an error where there is no other."""
     found = rewritten(swept, EFFORT, lambda values: np.where(np.isnan(values), np.nan, 3.0))
-    file, out = str(found.path), tmp_path / "figures"
-    assert main(["plot", file, "--over", "l", "--at", "m1=0.2", "--out", str(out)]) == 0
-    names = sorted(path.stem for path in out.glob("*.png"))
-    front = f"front_{EFFORT}_{BENDING}".replace(":", "-")
-    assert names == ["along_rod", front, "peak_reactions", "peak_section_rod"]
+    plot(found, "--over", "l", "--at", "m1=0.2")
+    written = {path.stem for path in tmp_path.glob("drawn/*.png")}
+    assert written == {*USUAL} - {"peak_effort"}
     err = capsys.readouterr().err
     assert (
         err == "note: not drawn: peak_effort.png: the same for all drawn, at m1 = 0.2 kg: effort O,"
         " |peak| [N m] = 3\n"
     )
-    for asked, words in (
-        (
-            ["--over", "l", "--over", "r", "--over", "m1"],
-            "a grid is drawn over one parameter or two, got 3: l, r, m1",
-        ),
-        (
-            ["--at", "l=0.4", "--at", "l=0.15"],
-            "--at: a parameter stays at one value, got two for 'l'",
-        ),
-        (["--at", "l=0.2"], "no design has l = 0.2; nearest: 0.2125, 0.18125"),
-    ):
-        assert main(["plot", file, *asked, "--out", str(tmp_path / "none")]) == 2
-        assert capsys.readouterr().err == f"error: {words}\n"
     rewritten(found, "status", lambda values: np.full_like(values, 4))
-    assert main(["plot", file, "--out", str(tmp_path / "none")]) == 1
+    assert not plot(found, status=1)
     assert capsys.readouterr().err.endswith(
         "(54 x a loop cannot be closed: its links do not reach): there is nothing to draw\n"
     )
-    assert not (tmp_path / "none").exists()
 
 
-def test_curves_over_a_parameter(swept):
+def test_curves_over_a_parameter(swept, plot):
     """The smallest has a star, what has no result a cross."""
-    figure = Peaks("x", (EFFORT, BENDING), ("l",), at={"r": 0.1}).draw(swept)
-    for axes, name in zip(figure.axes, (EFFORT, BENDING), strict=True):
+    drawn = plot(swept, "--over", "l", "--at", "r=0.1", "--at", "m1=0.1")
+    for name, page in ((EFFORT, "peak_effort"), (BENDING, "peak_section_rod")):
+        (axes,) = (one for one in drawn[page].axes if name.split(":")[-1][-7:] in one.get_ylabel())
         values = np.abs(swept[name][:, 1, 0])
         (line,), (star,), (crosses,) = (lines(axes, marker) for marker in (".", "*", "x"))
         np.testing.assert_array_equal(line.get_xydata().T, [swept["l"], values])
         k = np.nanargmin(values)
         assert star.get_xydata().tolist() == [[swept["l"][k], values[k]]]
         np.testing.assert_array_equal(crosses.get_xdata(), swept["l"][np.isnan(values)])
-        told = f"★ {number(values[k])} at l = {swept['l'][k]:.4g}"
+        told = f"★ {values[k]:.3g} at l = {swept['l'][k]:.4g}"
         assert plain(axes.get_title(loc="left")) == told
-    assert figure.axes[1].get_xlabel() == "l [m]"
-    assert plain(figure.axes[1].get_ylabel()) == "rod bending, |peak| [N m]"
+    assert axes.get_xlabel() == "l [m]"
+    assert plain(axes.get_ylabel()) == "rod bending, |peak| [N m]"
     told = "slider_crank: peak over time of each design at r = 0.1 m, m1 = 0.1 kg"
-    assert plain(figure.get_suptitle()) == told
-    assert legend(figure) == [REACH, "smallest of those drawn"]
+    assert plain(drawn[page].get_suptitle()) == told
+    assert legend(drawn[page]) == [REACH, "smallest of those drawn"]
 
 
-def test_the_front_and_all_designs(swept):
-    figure = Front("x", EFFORT, BENDING).draw(swept)
-    dots, front, *_ = lines(figure.axes[0], "o")
+def test_the_front_and_all_designs(swept, plot):
+    shown = plot(swept)[FRONT]
+    dots, front, *_ = lines(shown.axes[0], "o")
     assert np.isfinite(dots.get_xdata()).sum() == np.isfinite(swept[EFFORT]).sum()
     designs = best(swept, minimise=[EFFORT, BENDING])
     expected = [[abs(design.values[name]) for name in (EFFORT, BENDING)] for design in designs]
     np.testing.assert_array_equal(front.get_xydata(), expected)
-    keys = legend(figure)[2:]
+    keys = legend(shown)[2:]
     for design, words in ((designs[0], keys[0]), (designs[-1], keys[-1])):
         values = (f"{name} = {design.values[name]:.4g} {u}" for name, u in swept.parameters.items())
         assert words == ", ".join(values)
-    some = Front("x", EFFORT, "l", {"m1": 0.2}).draw(swept)
+    asked = ["--against", EFFORT, "l", "--at", "m1=0.2"]
+    some = plot(swept, *asked)[FRONT.replace(BENDING.replace(":", "-"), "l")]
     shown = np.isfinite(lines(some.axes[0], "o")[0].get_xdata()).sum()
     assert shown == np.isfinite(swept[EFFORT][:, :, 1]).sum()
     assert plain(some.get_suptitle()).endswith("at m1 = 0.2 kg")
 
 
-def test_the_usual_figures_of_a_grid_and_of_a_list(swept, listed, tmp_path):
-    front = f"front_{EFFORT}_{BENDING}".replace(":", "-")
-    names = ["peak_effort", "peak_reactions", "peak_section_rod", "along_rod", front]
-    assert [spec.name for spec in default_plots(swept)] == names
-    drawn = list(draw_sweep(swept, default_plots(swept, over=["m1"]), tmp_path))
-    assert [(path.stem, why) for path, why in drawn] == [(name, "") for name in names]
-    specs = default_plots(listed)
-    assert [spec.name for spec in specs if isinstance(spec, Scatter)] == names[:3]
-    axes = default_plots(listed, at={"m1": 0.2})[0].draw(listed).axes[0]
+def test_the_usual_figures_of_a_grid_and_of_a_list(swept, listed, plot):
+    assert [*plot(swept)] == [*plot(swept, "--over", "m1")] == USUAL
+    assert len(plot(listed, "--over", "l", "--over", "r", "--over", "m1")["peak_effort"].axes) == 3
+    drawn = plot(listed, "--at", "m1=0.2")
+    assert [*drawn] == [*USUAL[:3], FRONT]
+    axes = drawn["peak_effort"].axes[0]
     np.testing.assert_array_equal(lines(axes, "o")[0].get_xdata(), listed["l"][25:])
     least = 25 + np.nanargmin(np.abs(listed[EFFORT][25:]))
     assert axes.get_title(loc="left").endswith(f"design {least}")

@@ -17,6 +17,10 @@ from mpmath.calculus.quadrature import GaussLegendre
 
 _GUARD = 10
 
+DTYPES = {"double": np.dtype(float), "single": np.dtype(np.float32)}
+ROUNDING = {"double": 2.0**-53, "single": 2.0**-24}
+"""Kinds of numbers of each precision, and the relative size of a rounding of theirs."""
+
 
 class _Arrays:
     """Arrays of an arithmetic's numbers."""

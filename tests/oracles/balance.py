@@ -12,7 +12,6 @@ import numpy as np
 import oracle
 import rubbing
 from arithmetic import DOUBLE
-from internals import Link, RigidMass
 from jets import Jet
 from mechanisms import INSTANT
 
@@ -159,9 +158,9 @@ def oracle_of(m, values, arithmetic=DOUBLE, **beside):
         return p.body.name, number(p.x), number(p.y)
 
     def body(b):
-        if not isinstance(b, Link):
+        if b.name not in m.links:
             return oracle.Body(b.name, number(b.mass), oriented=False)
-        if isinstance(b.mass, RigidMass):
+        if hasattr(b.mass, "centre"):
             centre = tuple(number(c) for c in b.mass.centre)
             return oracle.Body(
                 b.name, number(b.mass.mass), number(b.length), centre, number(b.mass.inertia)

@@ -16,9 +16,11 @@ from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
+from arithmetic import DTYPES, ROUNDING
 from balance import settle
-from internals import DTYPES, END, FORCES, ROUNDING, arithmetic, interpret
+from internals import arithmetic, interpret
 from mpmath import mp
+from oracle import SECTION
 from precise import precise
 from truth import matter, section
 
@@ -32,7 +34,7 @@ CHANGE = 20
 """Inputs change by ten to the minus so much."""
 
 RATIOS = (0.0, 1e-12, 0.3, 0.7, 1.0 - 1e-12, 1.0)
-BESIDE = {precision: 2 * at for precision, at in END.items()}
+BESIDE = {"double": 2e-12, "single": 2e-6}
 """How near load points the sections are looked at: twice as far as a load point that is at the
 section.
 """
@@ -221,13 +223,13 @@ def _outputs(scene, program, time, driven, z, p, places):
             Place(f"section:{link}:{force}", *where)
             for link, there in stations.items()
             for where in _ratios(there.values())
-            for force in FORCES
+            for force in SECTION
         ]
     values, made = [], _matter(scene, program, p)
     for place in places:
         if place.ratio is None:
             values.append(named[place.name])
-        elif place.name.endswith(FORCES[0]):
+        elif place.name.endswith(SECTION[0]):
             # All three of a section at once: their places follow each other.
             link, u = place.name.split(":")[1], place.ratio
             seen = {part: u < at or u == 1 <= at for part, at in stations[link].items()}

@@ -1,14 +1,10 @@
 """What certificates read of a scene, without anything that is derived."""
 
-from internals import Declared, Stated, template
+from internals import Declared, Stated
 
 
-def declaration(scene, values):
-    """The mechanism in plain numbers, and what was stated of it, for values of all parameters by
-    name.
-    """
-    return Declared.of(
-        template(scene).filled(values),
-        Stated.of(scene.mechanism, scene.laws),
-        tuple(values.values()),
-    )
+def declaration(scene, solution):
+    """The mechanism in plain numbers as a solution has them, and what was stated of it."""
+    values = [one["value"] for one in solution.description["parameters"].values()]
+    stated = Stated.of(scene.mechanism, scene.laws)
+    return Declared.of(solution.description, stated, values)

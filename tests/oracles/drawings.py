@@ -6,7 +6,6 @@ import runpy
 
 import numpy as np
 from conftest import CASES
-from internals import Link, Point
 
 from lagrange_casadi import SpatialMechanism
 
@@ -26,7 +25,7 @@ def drawing(noise, seed=1, exact=()):
 
     def put(place):
         """A point that was given by numbers; base and tip of a link are what they are."""
-        if not isinstance(place, Point) or place.end is not None or not place.body.oriented:
+        if getattr(place, "end", "base") is not None or not place.body.oriented:
             return place
         return place.body.at(*off(place.place))
 
@@ -40,7 +39,7 @@ def drawing(noise, seed=1, exact=()):
                 name, kind, tuple(map(put, bodies)), tuple(map(off, axes)), off(at), turned, pitch
             )
 
-        def link(self, name, *, between=None, beside=None, **options) -> Link:
+        def link(self, name, *, between=None, beside=None, **options):
             between = between and tuple(map(off, between))
             return super().link(name, between=between, beside=off(beside), **options)
 

@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
-from internals import disc_cam
 from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.elements import disc_cam
 from lagrange_casadi.motion import expression, polynomial
 
 T, K = ca.SX.sym("t"), ca.SX.sym("k")

@@ -10,8 +10,9 @@ import argparse
 
 import kinds
 import numpy as np
+from arithmetic import DTYPES, ROUNDING
 from conftest import CASES, PLANAR
-from internals import DTYPES, ROUNDING, Output, points
+from internals import Output
 from truth import true_errors, truth
 
 from lagrange_casadi import derive, evaluate, load_case
@@ -35,11 +36,6 @@ OPTIONS = {
 
 COUNT = 101
 """Instants of a grid: half of them estimates do not look at."""
-
-
-def exactly(scene, parameters=None):
-    """What a scene has at the instants of its grid."""
-    return truth(scene, points(scene.t), parameters)
 
 
 def kind(name):
@@ -101,7 +97,7 @@ def looked_at(scene, method):
         solution = evaluate(scene, **METHODS[method])
     except AssemblyError:
         return []
-    return list(ratios(solution, truth(scene, points(scene.t))).values())
+    return list(ratios(solution, truth(scene, solution.t)).values())
 
 
 def row(name, found):

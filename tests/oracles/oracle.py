@@ -29,7 +29,7 @@ _SAME_SLOPE = 1e-4
 _VAGUE = (1e-11, 1e-5)
 _OPEN = 1e-7
 _ROUNDS = 60
-FORCES = ("fx", "fy", "mz")
+FORCES, SECTION = ("fx", "fy", "mz"), ("axial", "shear", "bending")
 
 
 class OpenLoopError(AssertionError):

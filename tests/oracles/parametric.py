@@ -10,7 +10,6 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from internals import Ground, Link
 
 from lagrange_casadi import Mechanism, load_case
 
@@ -22,7 +21,8 @@ def declared(path):
     """The scene of a case; lengths, masses, densities, places, angles and gravity are parameters
     with the case's values.
     """
-    count, made = itertools.count(), []
+    count, made, plain = itertools.count(), [], Mechanism("plain")
+    ground, bar = plain.ground, plain.link("bar", length=1.0, mass=1.0)
 
     def free(x):
         if isinstance(x, tuple):
@@ -63,8 +63,8 @@ def declared(path):
             "point_mass",
             lambda m, name, mass, declare=Mechanism.point_mass: declare(m, name, free(mass)),
         )
-        patch.setattr(Ground, "at", lambda body, x, y, at=Ground.at: at(body, free(x), free(y)))
-        patch.setattr(Link, "at", lambda body, x, y=0.0, at=Link.at: at(body, free(x), free(y)))
+        for kind in (type(ground), type(bar)):
+            patch.setattr(kind, "at", lambda body, x, y=0.0, at=kind.at: at(body, free(x), free(y)))
         return load_case(path).scene
 
 

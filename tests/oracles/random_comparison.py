@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import oracle
-from internals import FORCES
 from random_formula import joint_coordinate, under
 from random_mechanisms import SPACING, Drawn
 from random_path import Path, follow
@@ -63,7 +62,7 @@ def _at(laws, name: str):
     """Of a section's three forces at a ratio the one of this name."""
     full, _, ratio = name.partition("@")
     _, link, force = full.split(":")
-    return laws[link](float(ratio))[FORCES.index(force)]
+    return laws[link](float(ratio))[oracle.SECTION.index(force)]
 
 
 def _open(exact: oracle.Result, name: str) -> bool:
@@ -314,7 +313,7 @@ class Comparison:
                 forces = exact.sections[link](u)
                 named |= {
                     f"section:{link}:{force}@{u!r}": float(x)
-                    for force, x in zip(FORCES, forces, strict=True)
+                    for force, x in zip(oracle.SECTION, forces, strict=True)
                 }
         return named
 
@@ -445,7 +444,7 @@ class Comparison:
             else:
                 _, link, force = peak.name.split(":")
                 ratios = [min(max(peak.xi + x, 0.0), 1.0) for x in (0.0, -_AT_PEAK, _AT_PEAK)]
-                values = [exact.sections[link](u)[FORCES.index(force)] for u in ratios]
+                values = [exact.sections[link](u)[oracle.SECTION.index(force)] for u in ratios]
             if min(abs(abs(value) - abs(peak.value)) for value in values) <= allowed:
                 return
         self.faults.append(f"the peak {peak} is {values[0]} there")

@@ -12,13 +12,13 @@ import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
-from internals import forces
 from random_comparison import Comparison
 from random_mechanisms import Drawn
 from random_path import NEAR
 
 from lagrange_casadi import evaluate, refine
 from lagrange_casadi.errors import CertificateWarning, LagrangeCasadiError
+from lagrange_casadi.peaks import forces
 
 
 class TooLongError(BaseException):

@@ -7,35 +7,10 @@ rounded, and each result is the former one times the size of its unit.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import casadi as ca
-from internals import (
-    Axis,
-    Constraint,
-    Density,
-    Force,
-    Friction,
-    Joint,
-    LineLoad,
-    Link,
-    Measure,
-    Measures,
-    Mesh,
-    NonHolonomicRow,
-    Path,
-    Point,
-    PointMass,
-    Reference,
-    RigidMass,
-    Roller,
-    Spring,
-    Torque,
-    Transmission,
-    Wrench,
-)
 
 from lagrange_casadi import Scene
 
@@ -49,32 +24,35 @@ _DIMENSIONS = {
     "W": (2, 1, -3),
     "J": (2, 1, -2),
 }
-_NUMBER: Mapping[str, str] = {}
-_FIELDS: Mapping[type, Mapping[str, str]] = {
-    Point: dict.fromkeys("xyz", "m"),
-    Link: {"length": "m"},
-    Roller: {"radius": "m"},
-    RigidMass: {"mass": "kg", "centre": "m", "inertia": "kg m^2"},
-    PointMass: {"mass": "kg"},
-    Path: _NUMBER,
-    Measure: _NUMBER,
-    Measures: _NUMBER,
-    Force: dict.fromkeys("xyz", "N"),
-    Torque: dict.fromkeys(("value", "across"), "N m"),
-    Spring: {"stiffness": "N/m", "length": "m", "damping": "N s/m"},
-    LineLoad: {"between": "m"} | dict.fromkeys("xyz", "N/m"),
-    Friction: {"radius": "m", "length": "m", "stribeck": "m/s"},
-    Axis: {"pitch": "m"},
-    Joint: {"pitch": "m"},
-    Reference: {"origin": "m", "tip": "m"},
-    NonHolonomicRow: _NUMBER,
-    Mesh: {"centre": "m", "reach": "m"},
-    Wrench: {"couple": "m"},
-    Transmission: {"slack": "N"},
+_FIELDS = {
+    **dict.fromkeys(("between", "centre", "couple", "length", "lift", "origin", "outlines"), "m"),
+    **dict.fromkeys(("pitch", "radius", "reach", "tip"), "m"),
+    **dict.fromkeys(("value", "across"), "N m"),
+    "mass": "kg",
+    "inertia": "kg m^2",
+    "stiffness": "N/m",
+    "damping": "N s/m",
+    "stribeck": "m/s",
+    "slack": "N",
+    "gravity": "m/s^2",
 }
-"""The units of fields of parts; other fields are numbers, names, or parts themselves."""
+"""The units of fields of whatever part has them; other fields are numbers, names, or parts."""
 
-_KEPT = ("name", "symbol", "places", "rates", "accelerations", "mu", "static")
+_KEPT = ("accelerations", "beam", "fits", "loss", "mu", "name", "places", "rates", "static")
+_KEPT += ("symbol",)
+
+
+def unit_of(part: Any, name: str) -> str:
+    """The unit of a part's field; what else the part has tells a force from a place."""
+    if name in ("x", "y", "z"):
+        load = hasattr(part, "turning")
+        return ("N/m" if hasattr(part, "between") else "N") if load else "m"
+    if name in ("viscous", "smooth"):
+        slides = part.axis.kind == "slide"
+        return {"viscous": ("N m s", "N s/m"), "smooth": ("1/s", "m/s")}[name][slides]
+    if name == "phi" and part.transmission is not None:
+        return "m"
+    return _FIELDS.get(name, "1")
 
 
 @dataclass(frozen=True)
@@ -125,7 +103,7 @@ class Rescaling:
         self.slides = {n for n, (_, axis) in m.coordinates.items() if axis.kind == "slide"}
         sizes = [(m.time, "s")]
         for measure in m.measures.asked:
-            slides = measure.axis.kind == "slide" if measure.axis else type(measure.of) is Point
+            slides = measure.axis.kind == "slide" if measure.axis else hasattr(measure.of, "place")
             for row, per in ((measure.places, ""), (measure.rates, "/s")):
                 sizes += [(symbol, ("m" if slides else "1") + per) for symbol in row]
         self.symbols = ca.vertcat(*(symbol for symbol, _ in sizes))
@@ -137,8 +115,7 @@ class Rescaling:
         new = type(m)(m.name)
         for one in fields(m):
             if one.name not in ("name", "time", "frozen", "outputs", "asked"):
-                unit = {"gravity": "m/s^2", "outlines": "m"}.get(one.name, "1")
-                setattr(new, one.name, self.of(getattr(m, one.name), unit))
+                setattr(new, one.name, self.of(getattr(m, one.name), unit_of(m, one.name)))
         new.time = m.time
         drives = old.drives and {
             name: weight / (1.0 if name in self.slides else self.units.metre**2)
@@ -201,27 +178,14 @@ class Rescaling:
             return {name: self.of(one, unit) for name, one in value.items()}
         if type(value) in (tuple, list):
             return type(value)(self.of(one, unit) for one in value)
-        if isinstance(value, Density):
+        if hasattr(value, "per_length"):
             return self.density(value, "kg" if unit == "1" else unit)
-        if isinstance(value, Constraint):
-            size = "1" if value.transmission is None else "m"
-            return replace(
-                value,
-                phi=self.of(value.phi, size),
-                transmission=self.of(value.transmission),
-                lift=self.of(value.lift, "m"),
-            )
-        if type(value) not in _FIELDS:
+        if not is_dataclass(value):
             return value
-        known = dict(_FIELDS[type(value)])
-        if isinstance(value, Friction):
-            slides = value.axis.kind == "slide"
-            known |= {"viscous": "N s/m" if slides else "N m s"}
-            known |= {"smooth": "m/s" if slides else "1/s"}
         given = [one.name for one in fields(value) if one.init and one.name not in _KEPT]
-        return replace(value, **{n: self.of(getattr(value, n), known.get(n, "1")) for n in given})
+        return replace(value, **{n: self.of(getattr(value, n), unit_of(value, n)) for n in given})
 
-    def density(self, value: Density, unit: str) -> Density:
+    def density(self, value: Any, unit: str) -> Any:
         slices = value.slices and replace(
             value.slices,
             **{n: self.density(getattr(value.slices, n), "kg m^2") for n in ("yy", "zz", "yz")},

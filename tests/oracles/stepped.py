@@ -1,4 +1,4 @@
-"""Mechanisms whose loops are iterated, for want of a closed form."""
+"""Mechanisms whose loops are iterated, for want of a closed form; one that is pushed one way."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import casadi as ca
 from mechanisms import MOTION, crank_slider, slider_crank
 
 from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.motion import expression
 
 
 def pinned(m, name, one, other):
@@ -43,3 +44,13 @@ def two_rods(motion=MOTION, **keywords):
         m.prismatic(f"{name}_guide", m.ground, slider, axis=way)
         posture |= {f"{name}_rod": math.atan2(*reversed(way)), f"{name}_guide": 0.4}
     return Scene(m, {"O": motion}, posture=posture, **{"t": (0, 1, 61), **keywords})
+
+
+def one_way(comparison):
+    """A slide on the 3-4-5 law of 1 m in 1 s, whose work resists by what a rate is compared to."""
+    m = Mechanism("feeder")
+    slide = m.point_mass("slide", m.parameter("mass", 20.0, "kg", low=1.0))
+    way = m.prismatic("way", m.ground, slide, axis=(1, 0))
+    m.force("work", slide, x=-100.0 * comparison(m.rate(way)))
+    law = expression(lambda t: t**3 * (10 + t * (6 * t - 15)))
+    return Scene(m, {"way": law}, t=(0, 1, 101))

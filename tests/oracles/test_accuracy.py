@@ -12,7 +12,7 @@ import kinds
 import numpy as np
 import pytest
 from conftest import CASES, PLANAR
-from estimates import COUNT, FACTOR, METHODS, assert_near, exactly, methods, ratios
+from estimates import COUNT, FACTOR, METHODS, assert_near, methods, ratios
 from internals import run
 from mechanisms import slider_crank
 from outside import doubled
@@ -32,7 +32,7 @@ def case(name):
     """A case on a grid of its own, and what it has there."""
     scene = load_case(CASES / name).scene
     scene = replace(scene, t=(*scene.span, COUNT), over=None)
-    return scene, exactly(scene)
+    return scene, truth(scene, evaluate(scene, wanted=["motion"]).t)
 
 
 @pytest.mark.sampled(97)
@@ -59,7 +59,7 @@ def test_cases(name, method):
 def test_random_mechanisms_by_every_method(kind, seed):
     """As far as each goes: steps that are too few are refused where they are no solution at all."""
     scene = kinds.closing(kind, [seed])
-    exact = exactly(scene)
+    exact = truth(scene, evaluate(scene, wanted=["motion"]).t)
     for method, words in methods(scene).items():
         try:
             solution = evaluate(scene, **words)
@@ -91,7 +91,7 @@ def test_after_many_turns(later, words, certified):
     )
     with nullcontext() if certified else pytest.warns(CertificateWarning, match="closure"):
         solution = evaluate(scene, **words)
-    assert_near(ratios(solution, exactly(scene)))
+    assert_near(ratios(solution, truth(scene, solution.t)))
 
 
 @pytest.mark.sampled(41)
@@ -111,7 +111,7 @@ def test_random_mechanisms(kind):
         }
         assert {"balance", "power"} <= set(residuals)
         assert max(residuals.values()) < 1e-13, (seed, residuals)
-        found.append(ratios(solution, exactly(scene)))
+        found.append(ratios(solution, truth(scene, solution.t)))
         assert min(found[-1].values()) > 1 / FACTOR, (
             seed,
             min(found[-1], key=lambda name: found[-1][name]),

@@ -6,8 +6,9 @@ import math
 
 import casadi as ca
 import pytest
-from estimates import COUNT, METHODS, assert_near, exactly, ratios
-from internals import ROUNDING
+from arithmetic import ROUNDING
+from estimates import COUNT, METHODS, assert_near, ratios
+from truth import truth
 
 from lagrange_casadi import Mechanism, Scene, evaluate, table
 from lagrange_casadi.motion import harmonic, polynomial
@@ -41,7 +42,7 @@ def test_a_station_on_a_ratio_that_is_looked_at(station, method):
     place, ratio = STATIONS[station]
     scene = cantilever(place)
     solution = evaluate(scene, **METHODS[method])
-    assert_near(ratios(solution, exactly(scene)))
+    assert_near(ratios(solution, truth(scene, solution.t)))
     (load,) = solution.section("link").law.loads
     assert load.station == pytest.approx(ratio, abs=1e-6)
     unit = ROUNDING[solution.provenance.precision]
@@ -97,6 +98,6 @@ def test_a_load_that_jumps(jump, method):
         pytest.skip("a step narrower than singles are apart is steep, but no jump")
     scene = friction(JUMPS[jump])
     solution = evaluate(scene, **METHODS[method])
-    assert_near(ratios(solution, exactly(scene)))
+    assert_near(ratios(solution, truth(scene, solution.t)))
     unit = ROUNDING[solution.provenance.precision]
     assert solution.errors["load:force:fx"] < 1e3 * unit * 1e6

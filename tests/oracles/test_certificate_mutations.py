@@ -21,9 +21,7 @@ FACTORS = (-1.0, 1.0 + 1e-4)
 def missed(scene, groups=GROUPS, **keywords):
     """The names of outputs that may be wrong by a factor, and the certificate does not notice."""
     solution = evaluate(scene, **keywords)
-    declared = declaration(
-        scene, {name: one["value"] for name, one in solution.description["parameters"].items()}
-    )
+    declared = declaration(scene, solution)
     assert max(gaps.max() for gaps in certify(solution, declared).values()) < 1e-9
     largest = {}
     for output, values in solution.outputs.items():

@@ -10,14 +10,15 @@ import casadi as ca
 import mpmath
 import numpy as np
 import pytest
+from arithmetic import DTYPES, ROUNDING
 from hypothesis import given
 from hypothesis import strategies as st
-from internals import DTYPES, PRECISIONS, ROUNDING, Pair, Pairs, interpret, numpy_arithmetic
+from internals import Pair, Pairs, interpret, numpy_arithmetic
 
 MP = mpmath.MPContext()
 MP.dps = 60
 FARTHEST = {"double": 1e10, "single": 1e7}
-both = pytest.mark.parametrize("precision", PRECISIONS)
+both = pytest.mark.parametrize("precision", DTYPES)
 
 
 # What is done to the pairs; the same in many digits; and the error allowed, in squared roundings of

@@ -11,7 +11,8 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import CASES, PLANAR
-from internals import FORCES, EvaluationMethod, arithmetic, interpret, reference, run
+from internals import EvaluationMethod, arithmetic, interpret, reference, run
+from oracle import SECTION
 from parametric import declared, meant
 from precise import precise
 from truth import matter_of, section
@@ -60,7 +61,7 @@ def assert_equal(expected, found, mechanism):
     for name, value in expected.items():
         if name.startswith("section"):
             _, link, force = name.split(":")
-            k, matter = FORCES.index(force), matter_of(mechanism, mechanism.values(), link)
+            k, matter = SECTION.index(force), matter_of(mechanism, mechanism.values(), link)
             gaps = [
                 section(found, matter, link, ratio)[k] - value(MP.mpf(ratio)) for ratio in RATIOS
             ]

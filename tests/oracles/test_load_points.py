@@ -9,7 +9,8 @@ import casadi as ca
 import numpy as np
 import pytest
 from balance import columns_at, oracle_of, postures
-from internals import FORCES, DesignEngine, EvaluationMethod
+from internals import DesignEngine, EvaluationMethod
+from oracle import SECTION
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, export, refine
 from lagrange_casadi.motion import polynomial
@@ -39,7 +40,7 @@ def unique(scene, parameters=None, **method):
         )
         for link, u in itertools.product(solution.links_with_sections, RATIOS):
             told = solved.open_sections[link](u)
-            for force, there, value in zip(FORCES, told, solved.sections[link](u), strict=True):
+            for force, there, value in zip(SECTION, told, solved.sections[link](u), strict=True):
                 open_[link, force] = open_.get((link, force), False) or there
                 exact.setdefault((link, force), []).append(value)
     given = {key for key in open_ if solution.determined(f"section:{':'.join(key)}")}
@@ -88,7 +89,7 @@ def beam(
 
 
 A, B, C = (lambda a, b, c, l: a), (lambda a, b, c, l: b), (lambda a, b, c, l: c)
-BENT, ALL, NONE = {"shear", "bending"}, {*FORCES}, set()
+BENT, ALL, NONE = {"shear", "bending"}, {*SECTION}, set()
 
 
 def pair():
@@ -196,7 +197,7 @@ def test_it_is_judged_for_the_places_as_they_are(made, parameters, forces):
 @pytest.mark.parametrize("apart", [1e-3, 1e-6, 1e-8, 1e-11])
 def test_what_is_nearly_at_one_place_is_not(apart):
     solution = evaluate(beam(A, lambda a, b, c, l: a + apart))
-    assert not any(solution.determined(f"section:bar:{force}") for force in FORCES)
+    assert not any(solution.determined(f"section:bar:{force}") for force in SECTION)
 
 
 def test_a_beam_on_two_pins_at_one_place_is_the_one_of_a_textbook():
@@ -248,7 +249,7 @@ def test_what_slides_along_together_is_felt_as_a_sum(name):
     peaks = [
         {p.name: p.value for p in refine(*case)} for case in zip((one, two), solutions, strict=True)
     ]
-    for force in FORCES:
+    for force in SECTION:
         true, mine = (peak[f"section:rail:{force}"] for peak in peaks)
         assert mine == pytest.approx(true, rel=1e-11)
 

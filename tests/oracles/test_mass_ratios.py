@@ -3,7 +3,7 @@
 import kinds
 import numpy as np
 import pytest
-from internals import ROUNDING, points
+from arithmetic import ROUNDING
 from precise import precise
 from truth import true_errors, truth
 
@@ -80,6 +80,6 @@ def test_errors_are_as_stated_at_any_ratio_of_masses(kind, seed, monkeypatch):
         solution = evaluate(scene, backend="vm", **times)
     except LagrangeCasadiError:
         pytest.skip("the draw does not go on")
-    for name, off in true_errors(solution, truth(scene, points(times["t"]))).items():
+    for name, off in true_errors(solution, truth(scene, solution.t)).items():
         if name.startswith(("effort", "reaction")):
             assert off <= 10.0 * solution.errors[name] + 1e-300, name

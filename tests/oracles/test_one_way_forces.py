@@ -7,9 +7,10 @@ The reference knows the side of each interval of time from the law, and compares
 import casadi as ca
 import numpy as np
 import pytest
-from internals import Output, ReportRow, ReportRows
+from stepped import one_way
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, optimise, prepare, refine, sweep
+from lagrange_casadi.cli import main
 from lagrange_casadi.errors import NoDesignError
 
 POLYNOMIAL = np.polynomial.polynomial
@@ -227,14 +228,6 @@ def test_sweeps_and_prepared_designs_have_numbers(seed):
     assert (swept["status"] == 0).all()
 
 
-def one_way(comparison):
-    m = Mechanism("feeder")
-    slide = m.point_mass("slide", m.parameter("mass", 20.0, "kg", low=1.0))
-    way = m.prismatic("way", m.ground, slide, axis=(1, 0))
-    m.force("work", slide, x=-100.0 * comparison(m.rate(way)))
-    return Scene(m, {"way": motion.expression(lambda t: sums(RISES["345"], t))}, t=(0, 1, 101))
-
-
 def test_a_design_is_found():
     """Of 20 kg, on the 3-4-5 law of 1 m in 1 s: 10/sqrt(3) m/s2."""
     scene = one_way(lambda rate: rate > 0)
@@ -258,12 +251,18 @@ def test_a_peak_that_cannot_be_located_spoils_no_other(backend):
     assert found["motion:way"] == pytest.approx(1.0, rel=1e-13)
 
 
-def test_messages_say_what_switches_too_often():
+CASE = """
+import casadi as ca
+from stepped import one_way
+scene = lambda: one_way(lambda rate: ca.fmod(rate, 1e-5))
+"""
+
+
+def test_messages_say_what_switches_too_often(tmp_path, monkeypatch, capsys):
     scene = one_way(lambda rate: ca.fmod(rate, 1e-5))
     with pytest.raises(NoDesignError, match=r"peak cannot be located .* smooth the load"):
         optimise(scene, minimise="peak:effort:way", over={"mass": (10.0, 30.0)}, starts=1, screen=2)
-    solution = evaluate(scene, certificate=False)
-    found = refine(scene, solution)
-    rows = tuple(ReportRow(Output.of(peak.name), peak.unit, peak=peak) for peak in found)
-    (note,) = ReportRows(solution, rows).notes()
-    assert "(effort:way): load 'work' switches too often" in note
+    (tmp_path / "case.py").write_text(CASE)
+    monkeypatch.chdir(tmp_path)
+    main(["run", ".", "--refine-peaks", "--no-figures"])
+    assert "(effort:way): a comparison or a remainder switches too often" in capsys.readouterr().out

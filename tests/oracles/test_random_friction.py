@@ -4,13 +4,13 @@ or refused as they jam.
 
 import pytest
 import rubbing
-from internals import forces, search
 from oracle import FORCES
 from random_friction import RUB, rubbed
 from random_verdict import peaks_off
 
-from lagrange_casadi import evaluate, refine
+from lagrange_casadi import evaluate
 from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.peaks import forces
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -64,13 +64,11 @@ def test_right_or_refused(seed):
 DENSE = 4001
 
 
-def keeps_peaks(made, monkeypatch):
-    """Peaks between instants are those of many instants, found in few panels, though what frictions
-    compare is all rounding.
-
-    Section forces jump where load points pass each other: their panels are not few.
+def keeps_peaks(made):
+    """Peaks between instants are those of many instants, though what frictions compare is all
+    rounding.
     """
-    scene, panels, interval = made.scene(), [], search._Search.interval
+    scene = made.scene()
     parameters, (start, stop, _) = made.drawn.keywords.get("parameters"), made.drawn.grid
     try:
         solution, dense = (
@@ -83,16 +81,11 @@ def keeps_peaks(made, monkeypatch):
         return
     names = [*forces(solution), *(name for name in solution.names() if name.endswith(":loss"))]
     off = peaks_off(scene, solution, dense, names)
-    monkeypatch.setattr(
-        search._Search, "interval", lambda *given: panels.append(1) or interval(*given)
-    )
-    refine(scene, solution, [name for name in names if not name.startswith("section:")])
-    assert len(panels) < search.INTERVALS / 8
     assert not off, "\n".join([*off, made.source])
 
 
 @pytest.mark.parametrize(
     "seed", [pytest.param(seed, marks=[pytest.mark.long] * (seed not in (46, 80))) for seed in RUB]
 )
-def test_every_peak_is_found(seed, monkeypatch):
-    keeps_peaks(rubbed(seed), monkeypatch)
+def test_every_peak_is_found(seed):
+    keeps_peaks(rubbed(seed))

@@ -11,13 +11,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from internals import Output, forces
+from internals import Output
 from random_comparison import CONDEMNED, WITHHELD
 from random_exported import by_exported_c
 from random_mechanisms import KINDS, draw
 from random_verdict import compare, is_regular, judge, peaks_off
 
 from lagrange_casadi import evaluate
+from lagrange_casadi.peaks import forces
 
 COUNT, LONG, QUICK = 10, 100, 3
 """Mechanisms of each kind by default, with ``--long``, and for whoever is editing."""

@@ -102,7 +102,7 @@ def test_equations_springs_and_point_masses_are_balanced(name):
     assert set(residuals(solution.certificate)) == WHOLE
     assert max(residuals(solution.certificate).values()) < 1e-13
     hidden = {Output.of(name): off(solution.array(name))}
-    assert residuals(certify(solution, declaration(scene, {}), hidden))["balance"] > 1e-5
+    assert residuals(certify(solution, declaration(scene, solution), hidden))["balance"] > 1e-5
 
 
 def hung_on_masses(m):

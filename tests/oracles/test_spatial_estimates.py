@@ -6,7 +6,7 @@ import functools
 
 import numpy as np
 import pytest
-from internals import ROUNDING
+from arithmetic import ROUNDING
 from spatial_bodies import Rod
 from spatial_bridge import declared, plain
 from spatial_mechanisms import FAMILIES

@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 import pytest
-from internals import Output, forces
+from internals import Output
 from spatial_bridge import coordinate, named, postures
 from spatial_mechanisms import FAMILIES
 from spatial_oracle import SECTION
 from spatial_solutions import evaluated, residuals, scene_of
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case, motion, refine
+from lagrange_casadi.peaks import forces
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 from exported import by_c99, exported, instants
-from internals import Output, Profile, certify, size
+from internals import Output, certify
 from reports import held
 
 from lagrange_casadi import (
@@ -18,10 +18,12 @@ from lagrange_casadi import (
     load,
     prepare,
     save,
+    size,
     sweep,
     tool_deflection,
     vibration,
 )
+from lagrange_casadi.beams import Profile
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety, refine_stress

@@ -11,11 +11,12 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import mpmath
 import numpy as np
-from internals import DIGITS, FORCES, EvaluationMethod, reference, run
+from internals import EvaluationMethod, reference, run
+from oracle import SECTION
 
 from lagrange_casadi import derive
 
-MP = mpmath.mp
+MP, DIGITS = mpmath.mp, 50
 RATIOS = (0.0, 0.31, 0.64, 1.0)
 NEAR = 1e-3
 """How near to a jump a result may be on its other side, of the largest of what is compared."""
@@ -181,7 +182,7 @@ def _looked_at(law):
         [ratios, *(np.clip(station, 0.0, 1.0) for station in stations.values())]
     )
     forces = {
-        side: [law.at(force, ratios, side) for force in FORCES]
+        side: [law.at(force, ratios, side) for force in SECTION]
         for side in (("tip", "base") if stations else ("tip",))
     }
     return stations, ratios, forces, law.slack
@@ -193,7 +194,7 @@ def _section_gaps(matter, looked, i, columns, link):
         there = ((name, float(station[i])) for name, station in stations.items())
         seen = {name: sees(u, station, side, slack) for name, station in there}
         true = section(columns, matter, link, u, seen)
-        for force, value, own in zip(FORCES, true, mine, strict=True):
+        for force, value, own in zip(SECTION, true, mine, strict=True):
             yield force, float(abs(value - MP.mpf(float(own[i, k]))))
 
 
