@@ -11,7 +11,7 @@ from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.tables import QUANTITIES, SPATIAL_QUANTITIES
 from lagrange_casadi.base.threads import in_threads
-from lagrange_casadi.codegen import compiler, find_compiler, library, printer
+from lagrange_casadi.codegen import compiler, library
 from lagrange_casadi.codegen.printer import print_functions
 from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
 from lagrange_casadi.declare import laws
@@ -32,12 +32,9 @@ from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.instants.refusal import refusal as refusal_refusal
 from lagrange_casadi.instants.solution import Provenance
 from lagrange_casadi.methods import METHODS as METHODS_METHODS
-from lagrange_casadi.portable.statuses import ANSWERS, SHARED, STATUSES
-from lagrange_casadi.store.attributes import SCHEMA_VERSION
 from lagrange_casadi.strength.member import Member
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.outcome import Outcome
-from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of
 from lagrange_casadi.studies.optimise.sobol import sobol
 from lagrange_casadi.studies.peaks import rates
 from lagrange_casadi.verification.certificate import certify

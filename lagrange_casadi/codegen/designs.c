@@ -204,6 +204,7 @@ static casadi_int designs_passed(const designs_now* now, int check) {
   }
 #endif
   (void) check;
+  (void) designs_closed;
   return now->n;
 }
 

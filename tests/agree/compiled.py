@@ -6,50 +6,9 @@ import stat
 import subprocess
 from importlib import resources
 
-import numpy as np
-from internals import compensated, plain
-from mechanisms import four_bar, slider_crank, spline_arm, truss_platform
-
-from lagrange_casadi import codegen
-
 HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
-SCENES = {
-    "slider_crank": slider_crank,
-    "effort_alone": lambda: slider_crank(wanted=["effort"]),
-    "four_bar": four_bar,
-    "iterated": truss_platform,
-    "spline": spline_arm,
-}
-
 PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
 STRICT = [*PEDANTIC, "-Wdouble-promotion", "-Wfloat-conversion"]
-
-
-def columns(program, t, language, threads=1, extra=(), precision="double"):
-    """Every column by the compiled code, into arrays that held NaN."""
-    return filled(built(program, language, extra, precision), program, t, threads, precision)
-
-
-def built(program, language, extra=(), precision="double"):
-    stages = plain(program) if precision == "double" else compensated(program, precision)
-    return codegen.load(codegen.emit(program, stages), codegen.find_compiler(language), extra)
-
-
-def filled(library, program, t, threads=1, precision="double", out=None):
-    """The columns by a library that is built, in ``out`` where given."""
-    p, dtype = program.data.defaults, np.dtype("float32" if precision == "single" else float)
-    guess = np.array(program.newton.guess if program.newton else (), dtype)
-    z, status = np.full((guess.size, t.size), np.nan, dtype), np.full(t.size, -1, dtype=np.int32)
-    out = np.empty((len(program.columns), t.size), dtype) if out is None else out
-    out[...] = np.nan
-    if precision == "single":
-        p, whole = np.array([dtype.type(p), p - dtype.type(p)], dtype), t
-        t = np.empty((2, out.strides[0] // out.itemsize), dtype)[:, : t.size]
-        t[:] = dtype.type(whole), whole - dtype.type(whole)
-    library.evaluation(t, p, guess, z, out, status, threads)()
-    assert np.all(status == 0)
-    assert np.isfinite(out).all()
-    return out
 
 
 def fake_compiler(folder, monkeypatch, script, variable="CC"):

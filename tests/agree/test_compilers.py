@@ -10,7 +10,7 @@ from compiled import fake_compiler
 from internals import cache, compiler
 from mechanisms import slider_crank
 
-from lagrange_casadi import codegen, evaluate
+from lagrange_casadi import evaluate
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import CompilerError
 
@@ -87,7 +87,7 @@ def test_another_that_hangs_at_its_version_is_passed_over(tmp_path, monkeypatch)
     monkeypatch.setenv(compiler.VARIABLE, "4")
     says = r"the compiler cc is passed over: it did not report its version within 0\.2 s"
     with pytest.warns(UserWarning, match=says):
-        found = codegen.find_compiler()
+        found = compiler.find_compiler()
     assert found is None or found.command != ("cc",)
     sweeps.wait_for(lambda: gone(pid))
 

@@ -8,16 +8,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from internals import (
-    ANSWERS,
-    QUANTITIES,
-    SCHEMA_VERSION,
-    SHARED,
-    SPATIAL_QUANTITIES,
-    STATUSES,
-    Status,
-    find_compiler,
-)
+from internals import QUANTITIES, SPATIAL_QUANTITIES, Status
 
 import lagrange_casadi
 from lagrange_casadi import errors, export, load_case
@@ -74,7 +65,6 @@ def test_a_notebook_has_the_code_and_the_pictures_of_its_page(name, tmp_path):
 
 @pytest.mark.parametrize("page", ["README.md", "docs/export.md"])
 def test_the_exported_c_is_called_as_shown(page, tmp_path):
-    compiler = find_compiler("c")
     (block,) = re.findall(r"```c\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     export(load_case(ROOT / "cases" / "slider_crank").scene, tmp_path)
     body = block.replace("slider_crank_prepare(", "slider_crank_status s = slider_crank_prepare(")
@@ -90,7 +80,7 @@ def test_the_exported_c_is_called_as_shown(page, tmp_path):
     )
     (tmp_path / "shown.c").write_text(program)
     command = [
-        *compiler.command,
+        "cc",
         "-std=c99",
         tmp_path / "shown.c",
         tmp_path / "slider_crank.c",
@@ -176,7 +166,6 @@ def test_the_schema_lists_every_quantity(request):
     if request.config.getoption("--update"):
         page.write_text(new)
     assert page.read_text() == new
-    assert f"schema version {SCHEMA_VERSION}" in text
 
 
 def test_the_reference_has_every_public_name():
@@ -211,7 +200,7 @@ def rows_of(page):
     ]
 
 
-def test_every_error_and_every_status_has_a_cure():
+def test_every_error_and_every_status_has_a_cure(tmp_path):
     cells = {row[0]: row[1:] for row in rows_of("docs/reference/errors.md")}
     for name, error in vars(errors).items():
         if (
@@ -221,15 +210,21 @@ def test_every_error_and_every_status_has_a_cure():
         ):
             assert cells[name][0] == str(error.exit_status)
             assert all(cells[name])
+    export(load_case(ROOT / "cases" / "slider_crank").scene, tmp_path)
+    header = (tmp_path / "slider_crank.h").read_text().partition("_status;")[0]
+    answers = re.findall(r"SLIDER_CRANK_([A-Z_]+) = (\d+) /\* (.*) \*/", header)
+    sentences = {name: said for name, _, said in answers}
     for status in Status:
         number, meaning, cure, exported = cells[status.name]
         assert number == str(status.value)
         assert meaning
         assert cure or status == Status.OK
-        assert exported == ("OK" if status == Status.OK else ANSWERS.get(status, "-"))
-    for number, name in enumerate(STATUSES):
-        if name not in {"OK", *SHARED}:
-            assert cells[name][0] == str(number)
+        assert status.meaning in sentences.get(exported, status.meaning)
+        assert exported in sentences or (exported, status.meaning in sentences.values()) == ("-", 0)
+    told = {cells[status.name][3] for status in Status}
+    for name, number, _ in answers:
+        if name not in told:
+            assert cells[name][0] == number
             assert all(cells[name])
 
 

@@ -17,7 +17,7 @@ from internals import DesignEngine, EvaluationMethod, Status, run
 from internals import refusal_refusal as refusal
 from structured import blocks
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, codegen, evaluate, export
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export
 from lagrange_casadi.errors import AssemblyError
 from lagrange_casadi.motion import expression, polynomial
 
@@ -312,10 +312,9 @@ def test_exported_c_has_the_same_rule(tmp_path):
     folder, r = tmp_path / "c", np.random.default_rng(5)
     export(four_bar(), folder)
     (folder / "between.c").write_text(MAIN.replace("COUNT", str(COUNT)))
-    compiler = codegen.find_compiler()
     strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"]
     sources = [folder / "between.c", folder / "four_bar.c", "-o", folder / "between", "-lm"]
-    subprocess.run([*compiler.command, *strict, *sources], check=True)
+    subprocess.run(["cc", *strict, *sources], check=True)
     some = [drawn(r, kind) for kind in ("parallelogram", "kite", "change") for _ in range(60)]
     lines = "\n".join(" ".join(map(repr, map(float, (*l, *m)))) for l, m, _ in some)
     told = subprocess.run(
