@@ -5,7 +5,6 @@ number fails all the same.
 import math
 
 import casadi as ca
-import kinds
 import numpy as np
 import pytest
 from declarations import declaration
@@ -20,8 +19,22 @@ MILLIONTH = 1.0 + 1e-6
 
 
 def scissors():
-    """Five stages of links of a microgram under a meganewton on either side."""
-    return kinds.lift(5, 1e-9, 1.0, (1e6, 1e6), 61)
+    """Five stages of crossed links of a microgram under a meganewton on either side."""
+    m, mass = Mechanism("scissors"), 1e-9
+    foot = m.point_mass("foot", mass)
+    m.prismatic("slide", m.ground, foot, axis=(1, 0))
+    left, right, posture = m.ground, foot, {}
+    for i in range(5):
+        a, b = m.link(f"a{i}", length=1.0, mass=mass), m.link(f"b{i}", length=1.0, mass=mass)
+        m.revolute(f"L{i}", left, a)
+        m.revolute(f"R{i}", right, b)
+        m.revolute(f"M{i}", a.at(0.5), b.at(0.5))
+        posture |= {a.name: 0.6, b.name: math.pi - 0.6}
+        left, right = b.tip, a.tip
+    m.force("left", left, y=-1e6)
+    m.force("right", right, y=-1e6)
+    law = {"slide": harmonic(0.8, 0.15, 0.5)}
+    return Scene(m, law, posture=posture, t=(0.0, 1.0, 61))
 
 
 def pendulum(mass=1e-9, load=1e6):
@@ -127,17 +140,10 @@ def wrong(scene, solution, name):
     return max(float(gaps.max()) for gaps in residuals.values())
 
 
-@pytest.mark.sampled(5)
-@pytest.mark.parametrize(
-    "made",
-    [
-        *(pytest.param(lambda k=k: kinds.closing(k, [2, 0]), id=k.__name__) for k in kinds.KINDS),
-        *(pytest.param(RIGHT[name][0], id=name) for name in SEEN),
-    ],
-)
-def test_a_millionth_of_any_large_force_fails(made):
+@pytest.mark.parametrize("name", SEEN)
+def test_a_millionth_of_any_large_force_fails(name):
     """Of every one that is no less than a hundredth of the largest reaction."""
-    scene = made()
+    scene = RIGHT[name][0]()
     solution = evaluate(scene, backend="vm")
     assert solution.certified
     peaks = {name: np.max(np.abs(values)) for name, values in solution.series.items()}

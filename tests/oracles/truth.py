@@ -77,7 +77,7 @@ def true_errors(solution, exact):
     """The largest error of every output over the instants, by full name; angles up to whole turns.
 
     A section force is looked at at :data:`RATIOS` and on both sides of stations, where each station
-    is seen as in the solution.
+    is seen as in the solution; that of a link along which a load is spread is not.
     """
     names = [
         name for name in exact.sides[0][0] if name in solution.series and solution.determined(name)
@@ -85,7 +85,9 @@ def true_errors(solution, exact):
     angles = {name for name in names if _is_angle(solution, name)}
     size = {name: float(np.max(np.abs(solution.series[name]))) or 1.0 for name in names}
     gaps = {}
-    looked = {link: _looked_at(solution.section(link).law) for link in solution.links_with_sections}
+    spread = {name.split(":")[1] for name in solution.series if ":q" in name or ":c0" in name}
+    links = [link for link in solution.links_with_sections if link not in spread]
+    looked = {link: _looked_at(solution.section(link).law) for link in links}
     matter = {link: matter_of(exact.mechanism, exact.values, link) for link in looked}
     for i, sides in enumerate(exact.sides):
         found = [
