@@ -73,7 +73,7 @@ def truth(scene, t, parameters=None):
 
 
 @MP.workdps(DIGITS)
-def true_errors(solution, exact):
+def true_errors(solution, exact, sections=True):
     """The largest error of every output over the instants, by full name; angles up to whole turns.
 
     A section force is looked at at :data:`RATIOS` and on both sides of stations, where each station
@@ -86,7 +86,7 @@ def true_errors(solution, exact):
     size = {name: float(np.max(np.abs(solution.series[name]))) or 1.0 for name in names}
     gaps = {}
     spread = {name.split(":")[1] for name in solution.series if ":q" in name or ":c0" in name}
-    links = [link for link in solution.links_with_sections if link not in spread]
+    links = [link for link in solution.links_with_sections if sections and link not in spread]
     looked = {link: _looked_at(solution.section(link).law) for link in links}
     matter = {link: matter_of(exact.mechanism, exact.values, link) for link in looked}
     for i, sides in enumerate(exact.sides):
