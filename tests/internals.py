@@ -13,7 +13,7 @@ from lagrange_casadi.base.tables import QUANTITIES, SPATIAL_QUANTITIES
 from lagrange_casadi.base.threads import in_threads
 from lagrange_casadi.codegen import compiler, library
 from lagrange_casadi.codegen.printer import print_functions
-from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
+from lagrange_casadi.codegen.stages import compensated, controlled, plain
 from lagrange_casadi.declare import laws
 from lagrange_casadi.declare.declared import Declared
 from lagrange_casadi.declare.even_points import points
@@ -24,7 +24,6 @@ from lagrange_casadi.elastic.compliance import Compliance, nodes
 from lagrange_casadi.elastic.deflection import deflection
 from lagrange_casadi.equations import assembly, blocks, loops
 from lagrange_casadi.equations.fingerprint import fingerprint
-from lagrange_casadi.equations.integrability import Course, no_rates
 from lagrange_casadi.formats import case_of
 from lagrange_casadi.instants import backends, cycle_table, grids
 from lagrange_casadi.instants.backends import run

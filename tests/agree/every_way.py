@@ -225,7 +225,7 @@ def spatial(family, seed):
 
 
 PLANAR = (3, 4, 6, 7, 1, 5, 12, 21)
-SPATIAL = [("tree", 3), ("loop", 1), ("rssr", 1), ("suspension", 0), ("stewart", 0), ("anyhow", 3)]
+SPATIAL = [("tree", 3), ("loop", 1), ("rssr", 1), ("suspension", 0), ("anyhow", 3)]
 RANDOM = {f"random-{seed}": lambda seed=seed: planar(seed) for seed in PLANAR} | {
     f"{family}-{seed}": lambda family=family, seed=seed: spatial(family, seed)
     for family, seed in SPATIAL

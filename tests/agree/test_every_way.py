@@ -153,13 +153,12 @@ def test_every_way_gives_the_same_within_its_errors(name, way, tmp_path):
 def test_designs_have_the_peaks_of_the_api(name):
     scene = SCENES[name]()
     scene = replace(scene, wanted=SOUGHT.get(name, ["all"]))
-    for backend in ("c", "lanes"):
+    p = around(scene, 2)
+    for row, backend in enumerate(("c", "lanes")):
         designs = prepare(scene, t=(*scene.span, 97), backend=backend)
-        p = around(scene, 2)
         outcome = designs.designs(p)
         assert outcome.status.tolist() == [0] * 2
-        for row in range(2):
-            assert_refined(scene, designs, outcome, row, p[row])
+        assert_refined(scene, designs, outcome, row, p[row])
 
 
 @pytest.mark.sampled(13)

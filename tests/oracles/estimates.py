@@ -54,11 +54,11 @@ def ratios(solution, exact):
     assert all(name.startswith("section:") for name in {*solution.errors} ^ {*true})
     precision = "single" if solution.provenance.precision == "single" else "double"
     unit, least = ROUNDING[precision], float(np.finfo(DTYPES[precision]).tiny)
-    size = {}
-    for name in solution.series:
-        size[kind(name)] = max(
-            size.get(kind(name), 0.0), float(np.max(np.abs(solution.series[name])))
-        )
+    size, units = {}, {}
+    for name, values in solution.series.items():
+        peak = float(np.max(np.abs(values)))
+        size[kind(name)] = max(size.get(kind(name), 0.0), peak)
+        units.setdefault(solution.unit(name), []).append(peak)
     found = {}
     for name, error in true.items():
         scale = max(
@@ -68,9 +68,9 @@ def ratios(solution, exact):
         if error > unit**2 * scale:
             found[name] = solution.errors[name] / error
         else:
-            # What is nil by itself is measured by all else.
-            nil = unit**2 * max(size.values(), default=0.0)
-            assert solution.errors[name] <= 100 * unit * scale + nil + least, name
+            # A motion that is nil by itself is measured by those of its unit.
+            scale = scale or max(units.get(solution.unit(name), [0.0]))
+            assert solution.errors[name] <= 100 * unit * scale + least, name
     return found
 
 

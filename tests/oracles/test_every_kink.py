@@ -34,24 +34,6 @@ def judged(seed):
     )
 
 
-def kinks(seeds):
-    """Look at expressions by themselves."""
-    many = {True: 0, False: 0}
-    for seed in seeds:
-        case = judged(seed)
-        if case is None:
-            continue
-        program, k, broken, _ = case
-        smooth = Smooth.of(program, T, K)
-        kink = None if smooth is None else smooth.kink(TIMES, (k,))
-        told = kink is not None
-        assert told == broken or (told and shown(program, k, kink.at["t"])), (
-            f"seed {seed}: {kink}, of {program} with k = {k}"
-        )
-        many[broken] += 1
-    return many
-
-
 def lifted(law):
     """A lift of something that runs from 0 to 1 as the cam turns by half a turn."""
     return cam(lambda x, k: law((1 + ca.sin(x)) / 2, k), turn=polynomial("-90 deg", np.pi))
@@ -111,13 +93,7 @@ def parts(few, first, size, count):
     return [pytest.param(few, id="few"), *(pytest.param(s, marks=pytest.mark.long) for s in more)]
 
 
-# The last of which jumps beside a pole.
-@pytest.mark.parametrize("seeds", parts([*range(20), 2187], 1000, 200, 10))
-def test_expressions_of_all_operations_have_a_kink_where_halving_finds_one(seeds):
-    assert min(kinks(seeds).values()) >= 4
-
-
-@pytest.mark.parametrize("seeds", parts(range(100, 105), 5000, 50, 4))
+@pytest.mark.parametrize("seeds", parts([*range(100, 107), 2187], 5000, 50, 4))
 @pytest.mark.parametrize("scene", [slide, constraint, lifted])
 def test_scenes_refuse_what_has_a_kink_and_nothing_else(scene, seeds):
     assert min(refused(scene, seeds).values()) >= 1
