@@ -142,21 +142,3 @@ def test_bounds_hold(seeds):
                 values = function(ca.DM([low, high, *r.uniform(low, high, 60)]).T, k).full()
                 assert ((least <= values) & (values <= most)).all(), (seed, low, high, k)
     assert told > 0.6 * 4 * len(seeds)
-
-
-@pytest.mark.parametrize("seeds", parts(range(80), 2000, 500, 4))
-def test_what_is_clear_has_no_kink(seeds):
-    many = 0
-    for seed in seeds:
-        r = np.random.default_rng(seed)
-        smooth = Smooth.of(drawn(r), T, K)
-        if smooth is None:
-            continue
-        start = r.uniform(-1, 1)
-        paths = np.linspace(start, start + 10 ** r.uniform(-2, 0), 1001)[None, None]
-        p = np.array([[float(r.choice([0.0, 0.3, 1.0]))]])
-        span = paths.min(axis=2), paths.max(axis=2)
-        if not smooth.clearance.near(*span, p, lambda _, paths=paths: paths)[0]:
-            many += 1
-            assert not smooth.broken(paths, p)[0], f"seed {seed}"
-    assert many > 0.2 * len(seeds)

@@ -10,7 +10,7 @@ from internals import Output
 from spatial_bridge import coordinate, named, postures
 from spatial_mechanisms import FAMILIES
 from spatial_oracle import SECTION
-from spatial_solutions import evaluated, residuals, scene_of
+from spatial_solutions import RATIOS, evaluated, residuals, scene_of
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case, motion, refine
 from lagrange_casadi.peaks import forces
@@ -84,13 +84,23 @@ def test_all_is_as_the_oracle_has_it_and_certified(name, seed):
 
 def compare_errors(drawn, solution, force, moment):
     """None is more than ten times what is stated, beside the oracle in 30 digits."""
-    one = drawn.solve(float(solution.t[SOME[1]]), 30)
-    for full, (value, key) in named(drawn, one).items():
-        own = solution.outputs.get(Output.of(full))
-        if own is not None and key not in one.open and np.isfinite(own).all():
-            size = force if full.startswith("reaction") and ":f" in full else moment
-            allowed = FACTOR * solution.errors.get(full, 0.0) + 1e-3 * EPS * size
-            assert abs(own[SOME[1]] - value) <= allowed, full
+    k = SOME[1]
+    one = drawn.solve(float(solution.t[k]), 30)
+    told = {full: value for full, (value, key) in named(drawn, one).items() if key not in one.open}
+    own = {full: solution.outputs.get(Output.of(full), np.full(k + 1, np.nan))[k] for full in told}
+    for rod in {*drawn.rods} - {*solution.description["bars"]}:
+        for i in range(1, RATIOS - 1):  # ends have sides
+            there = one.sections[rod].at(float(solution.xi[i]))
+            for member, value in zip(SECTION, there, strict=True):
+                full = f"section:{rod}:{member}"
+                told[full, i], own[full, i] = value, getattr(solution.section(rod), member)[k, i]
+    for full, value in told.items():
+        name = full if isinstance(full, str) else full[0]
+        if np.isfinite(own[full]):
+            size = force if solution.unit(name) == "N" else moment
+            rounding = EPS / 2 if name.startswith("section") else 1e-3 * EPS
+            allowed = FACTOR * solution.errors.get(name, 0.0) + rounding * size
+            assert abs(own[full] - value) <= allowed, full
 
 
 def compare_peaks(drawn, scene, solution, seed):
