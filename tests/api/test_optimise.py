@@ -98,33 +98,6 @@ def test_a_largest_and_a_smallest_value_are_held():
     assert highest.value == pytest.approx(0.32, rel=1e-6)
 
 
-def test_the_motion_of_least_rms_torque_is_the_cubic():
-    """Of inertia alone, from rest to rest: the rms torque is sqrt(12) I h/T^2, by the calculus of
-    variations.
-    """
-    m = Mechanism("index")
-    m.set_gravity(0.0, 0.0)
-    c = [m.parameter(f"c{k}", value, "1") for k, value in enumerate((3.0, -5.0))]
-    m.revolute("O", m.ground, m.link("arm", length=0.6, mass=1.5))
-
-    def law(t):
-        s = t / 0.4
-        return 1.2 * (3 * s**2 - 2 * s**3 + s**2 * (1 - s) ** 2 * (c[0] + c[1] * (s - 0.5)))
-
-    scene = Scene(m, {"O": expression(law)}, t=(0.0, 0.4, 401), wanted=["effort"])
-    found = optimise(
-        scene,
-        minimise="rms:effort:O",
-        over={"c0": (-8.0, 8.0), "c1": (-8.0, 8.0)},
-        starts=2,
-        screen=8,
-    )
-    assert found.converged
-    assert found.curvature > 0.0
-    assert found.objective == pytest.approx(math.sqrt(12) * 1.5 * 0.36 / 3 * 1.2 / 0.4**2, rel=1e-5)
-    assert [found.values[name] for name in ("c0", "c1")] == pytest.approx([0.0, 0.0], abs=1e-3)
-
-
 def swinging(amplitude):
     """A rod that swings: its largest torque goes with the amplitude, an expression of c."""
     m = Mechanism("swing")

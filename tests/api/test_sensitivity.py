@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import CASES
+from derivatives import steps
 from forging import edit
 from mechanisms import pendulum, slider_crank
 from reports import wound
@@ -31,13 +32,6 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
-
-
-def steps(values_at, x, share=1e-4):
-    """The derivative of what is told of a number, by four values about it."""
-    step = share * (abs(x) or 1.0)
-    four = {k: values_at(x + k * step) for k in (-2, -1, 1, 2)}
-    return (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)
 
 
 def loaded():

@@ -277,10 +277,6 @@ def test_designs_with_instants_of_their_own(tmp_path, asked):
     np.testing.assert_allclose(found[axis], np.arange(37) / 36 * (math.tau if words else 1.0))
     times = found["history:t"][:, 0]
     np.testing.assert_allclose(times, [np.arange(37) / 36, np.arange(37) / 360], rtol=1e-14)
-    one = evaluate(scene, over=("O", 0, math.tau, 37), parameters={"rpm": 60.0, "l": 0.4})
-    np.testing.assert_allclose(found["history:effort:O"][0, 1], one.effort("O"), atol=1e-11)
-    (peak,) = refine(scene, one, ["effort:O"])
-    assert found[EFFORT][0, 1] == pytest.approx(peak.value, rel=1e-9)
     assert found.to_xarray()["history:effort:O"].dims == ("rpm", "l", axis)
     if words:
         angle = found["peak_t:effort:O"] * math.tau * np.array([[1.0], [10.0]])
