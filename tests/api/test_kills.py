@@ -131,8 +131,8 @@ def exported(folder, later):
 
 
 def drawn(folder, later):
-    """Other figures than before; pictures are quickly drawn here."""
-    wanted = ["motion"] if later else ["effort"]
+    """Other figures than before, none of which takes long."""
+    wanted = ["reaction"] if later else ["effort"]
     path = folder.parent / f"{later}.h5"
     save(evaluate(arm(wanted), backend="vm"), path)
     with contextlib.redirect_stderr(io.StringIO()) as said:

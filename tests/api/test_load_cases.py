@@ -23,7 +23,6 @@ from lagrange_casadi import (
     write_load_cases,
     write_spectrum,
 )
-from lagrange_casadi.cli import main
 from lagrange_casadi.motion import dwell, move, moves, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -163,22 +162,6 @@ def test_node_sets_have_names_of_the_mesh_and_are_told_apart(crank_rod, tmp_path
     assert (x[sets[base]], x[sets[tip]]) == (0.0, 0.4)
     assert 0.0 < x[sets[within]] < 0.4
     assert abs(x[sets["base"]] - 0.13) < 1e-12
-
-
-def test_the_command_writes_load_cases(here, capfd):
-    asked = ["loads", "slider_crank", "--link", "rod", "--out", "loads"]
-    assert main([*asked, "--t", "0:0.08:5", "--every", "--format", "csv"]) == 0
-    printed = capfd.readouterr().out
-    assert "rod at t = 0.04 s, residual" in printed
-    assert "wrote loads: 5 load cases in 2 files" in printed
-    assert main([*asked[:3], "rood", *asked[4:]]) == 2
-    assert "unknown link 'rood'" in capfd.readouterr().err
-    asked = ["loads", "slider_crank", "--spectrum", "section:rod:bending@0.5", "--bearing", "A"]
-    assert main([*asked, "--out", "spectra"]) == 0
-    found = sorted(path.name for path in (here / "spectra").iterdir())
-    assert found == ["bearings.csv", "section_rod_bending_0.5.csv"]
-    assert main(["loads", "slider_crank", "--out", "none"]) == 2
-    assert "expected --link, --spectrum or --bearing" in capfd.readouterr().err
 
 
 def first_of(solution):

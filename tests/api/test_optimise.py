@@ -5,10 +5,8 @@ slopes; fronts of several objectives; what is said of an optimum, written, and r
 import math
 
 import casadi as ca
-import h5py
 import numpy as np
 import pytest
-from commands import command
 from conftest import CASES
 from scipy.optimize import minimize_scalar
 
@@ -314,40 +312,3 @@ def test_mistakes(words, error, said):
             case("slider_crank"),
             **{"minimise": "peak:effort:O", "over": {"l": (0.2, 0.3)}, **words},
         )
-
-
-SOUGHT = "optimise CASE --minimise peak:effort:O"
-
-ASKED = f"{SOUGHT} --over l=0.12:0.8 --starts 2"
-
-
-def test_the_command_writes_a_file_and_a_picture(here, capfd):
-    limit = "peak:section:rod:bending <= 1.2"
-    line = f"{ASKED} --subject-to '{limit}' --out a.h5 --figure a.svg"
-    assert command(line) == 0
-    out, err = capfd.readouterr()
-    assert err == ""
-    assert out.startswith("slider_crank: peak:effort:O = 7.1794")
-    assert f"  {limit}: 1.2, active; the objective falls by " in out
-    assert "  2 of 2 starts converged, " in out
-    assert out.endswith("wrote a.h5 and a.svg\n")
-    assert (here / "a.svg").read_text().lstrip().startswith("<?xml")
-    assert command("check a.h5") == 0
-    assert command("info a.h5") == 1
-    assert "but that of a search for designs, which the command" in capfd.readouterr().err
-    with h5py.File("a.h5") as file:
-        assert file.attrs["feasible"]
-        assert file.attrs["converged"]
-        assert file.attrs["residual"] <= 1e-8
-        assert file["history"].shape[1] == len(file["history"].attrs["columns"]) == 5
-        assert file["limits/0"].attrs["active"]
-        # The file tells the design, and that has this peak.
-        peak = prepare(case("slider_crank"), wanted=["effort"]).peaks(l=file["parameters/l"][()])
-        assert abs(peak.value[0]) == pytest.approx(file.attrs["objective"], rel=1e-12)
-    written = (here / "a.h5").read_bytes()
-    assert command(line) == 0
-    assert (here / "a.h5").read_bytes() == written
-    capfd.readouterr()
-    limit = "--subject-to peak:section:rod:bending<=0.01"
-    assert command(f"{SOUGHT} --over l=0.2:0.3 --starts 1 {limit}") == 1
-    assert "VIOLATED by 0.9317" in capfd.readouterr().out

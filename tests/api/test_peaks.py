@@ -88,7 +88,7 @@ def test_peaks_over_a_drive_are_those_over_time(speed, start, sign, count):
     assert (np.diff(found.over.values) * sign > 0).all()
 
 
-@settings(max_examples=200)
+@settings(max_examples=20)
 @given(st.floats(0.0, 0.1), st.floats(0.3, 5.0), st.floats(0.0, 2.0))
 def test_a_range_may_begin_at_the_first_sample_of_another_drive(first, rate, start):
     """The time of its start is that of the sample but for rounding."""

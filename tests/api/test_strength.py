@@ -8,7 +8,6 @@ import re
 import numpy as np
 import pytest
 from commands import command
-from places import FOLDERS
 from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import (
@@ -212,32 +211,6 @@ def test_the_lightest_that_does_not_tire_and_is_stiff_is_found():
     found = optimise(scene, **asked, subject_to=["peak:deflection:rod:across <= 5e-5"])
     fine = evaluate(scene, parameters=found.values, t=(0, ONE_CYCLE, 1025), **QUIET)
     assert abs(fine.deflection("rod").peak().value) == pytest.approx(5e-5, rel=1e-4)
-
-
-CASE = """
-import sys
-sys.path[:0] = {folders!r}
-from strong import press
-from lagrange_casadi import beams
-def scene():
-    return press(beams.rectangle(0.012, {width}), [beams.Notch(0.3, bending=1.8)])
-"""
-
-
-def test_run_tells_what_governs_and_that_a_part_fails(here, capsys):
-    line = "run case.py --no-figures --no-certificate --backend vm --want safety,life:rod"
-    for width in (0.0005, 0.006):
-        (here / "case.py").write_text(CASE.format(folders=FOLDERS, width=width))
-        assert command(f"{line},stress:rod") == 0
-        out = capsys.readouterr().out
-        assert (" governs, FAILS\n" in out) is (width == 0.0005)
-    found = evaluate(press(BAR, [beams.Notch(0.3, bending=1.8)]), **QUIET)
-    safety, peak = found.safety("rod"), found.stress("rod").peak("von_mises")
-    told = f"{peak.value / 1e6:>13.6g} MPa  at t = {peak.t:.5g} s, xi/l = {round(peak.xi, 4):g}"
-    assert f"  stress:rod:von_mises        {told}" in out
-    assert f"{safety.utilisation:>8.4g} |" in out
-    assert f"| {safety.governs.against} governs" in out
-    assert "lives, 0.20944 s repeated:\n  life:rod " in out
 
 
 def test_pictures_show_what_is_told():

@@ -108,7 +108,7 @@ def swept_arm(grid, **words):
     return sweep(ARM, grid, backend="vm", **words)
 
 
-@settings(max_examples=15)
+@settings(max_examples=6)
 @given(st.integers(-(10**6), 10**6), st.integers(1, 10**6), st.integers(2, 90), st.integers(0, 6))
 def test_decimals_of_a_range_are_rounded_once(first, step, count, digits):
     """Against the decimals themselves, read one by one; the same values are one sweep."""
