@@ -87,7 +87,8 @@ def test_a_largest_and_a_smallest_value_are_held():
         minimise="l",
         over={"l": (0.15, 0.5), "r": (0.02, 0.1)},
         subject_to=["min:pose:slider:x >= 0.2", "max:pose:slider:x <= 0.4", "r >= 0.06"],
-        starts=2,
+        t=(0, 0.08, 41),
+        **TWO,
     )
     assert found.feasible
     assert found.values["l"] == pytest.approx(0.26, rel=1e-6)

@@ -23,7 +23,7 @@ from lagrange_casadi.motion import (
     samples,
 )
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def write(path, heads, rows, delimiter=",", comma=False):

@@ -20,7 +20,7 @@ from lagrange_casadi.errors import (
     UnknownNameError,
 )
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 H, B, TW, TF = 0.05, 0.03, 0.004, 0.006
 
