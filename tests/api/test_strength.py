@@ -33,6 +33,16 @@ ONE_CYCLE = 0.2094395
 QUIET = {"backend": "vm", "certificate": False}
 
 
+def test_a_notch_counts_in_fatigue_by_its_sensitivity():
+    """K_f = 1 + q (K_t - 1): as a notch of this factor would that counts in full."""
+    notches = [NOTCH], [beams.Notch(0.3, axial=1.8, bending=1.64)], []
+    one, other, plain = (
+        evaluate(press(BAR, notch), **QUIET).safety("rod").against("fatigue") for notch in notches
+    )
+    assert one == pytest.approx(other, rel=1e-12)
+    assert one < 0.99 * plain
+
+
 I_SECTION = beams.i_section(0.04, 0.03, 0.004, 0.005)
 
 LINKS = {
