@@ -31,7 +31,7 @@ from lagrange_casadi import (
     read,
 )
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 file = model_parts.file
 

@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from commands import command
-from mechanisms import double_crank, ladder, parallelogram, slider_crank
+from mechanisms import double_crank, slider_crank
 
 from lagrange_casadi import Solution, check, evaluate, export, load, save
 from lagrange_casadi.cli import main
@@ -26,20 +26,6 @@ def residuals(solution):
 
 
 geared = functools.partial(double_crank, 0.1)
-
-
-@pytest.mark.sampled(7)
-@pytest.mark.quick
-@pytest.mark.parametrize("made", [ladder, geared, slider_crank, parallelogram])
-def test_it_is_whole_for_every_scene(made):
-    """Whatever holds the bodies: point masses, users' equations, gears; and where equilibrium
-    leaves reactions open.
-    """
-    solution = evaluate(made())
-    found = residuals(solution)
-    assert set(found) == WHOLE
-    assert max(found.values()) < 1e-12
-    assert solution.certified
 
 
 def broken():

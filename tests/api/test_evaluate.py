@@ -107,30 +107,6 @@ def test_steps_are_of_iterated_loops_alone():
     assert gap["closed"] < 1e-15 < 1e-9 < gap["stepped"]
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("backend", ["auto", "c", "vm"])
-def test_calls_are_the_rows_of_designs_to_the_last_byte(backend):
-    """Whatever was asked for before, and by name or in a mapping; parameters that are not told have
-    their defaults.
-    """
-    scene = slider_crank()
-    f = prepare(
-        scene, t=(*scene.span, 33), wanted=["effort", "section:rod", "motion"], backend=backend
-    )
-    rows = np.tile(list(scene.mechanism.values().values()), (3, 1))
-    rows[1, f.parameters.index("l")], rows[2, f.parameters.index("r")] = 0.25, 0.06
-    assert tuple(f()) == f.outputs
-    np.testing.assert_array_equal(f.t, evaluate(scene, t=(*scene.span, 33)).t)
-    found = f.designs(rows, histories=True)
-    for k, values in enumerate([{}, {"l": 0.25}, {"r": 0.06}]):
-        told = {name: np.array(row) for name, row in (f(values) if k % 2 else f(**values)).items()}
-        for output, row in zip(f.outputs, found.series[k], strict=True):
-            np.testing.assert_array_equal(told[output], row)
-        peaks = f.peaks(**values)
-        for name in ("value", "t", "xi", "mean", "rms"):
-            np.testing.assert_array_equal(getattr(peaks, name), getattr(found, name)[k])
-
-
 TURN = math.tau
 
 

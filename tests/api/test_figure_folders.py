@@ -8,8 +8,6 @@ import pytest
 
 from lagrange_casadi.cli import main
 
-pytestmark = pytest.mark.quick
-
 RUN = ["run", "four_bar", "--t", "0:0.1:11", "--want", "effort"]
 
 SWEEP = ["sweep", "four_bar", "--grid", "a=0.1:0.12:3", "--t", "0:0.1:11", "--want", "effort"]

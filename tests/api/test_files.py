@@ -33,16 +33,6 @@ def file(solution, tmp_path):
     return path
 
 
-def test_round_trip(solution, file):
-    back = load(file)
-    assert list(back.names()) == list(solution.names())
-    for name in solution.names():
-        np.testing.assert_array_equal(back.array(name), solution.array(name), err_msg=name)
-    assert back.description == solution.description
-    assert back.provenance == solution.provenance
-    assert back.peak("section:rod:bending") == solution.peak("section:rod:bending")
-
-
 def test_the_same_run_gives_the_same_bytes(slider_crank, tmp_path):
     for name in ("one.h5", "two.h5"):
         save(evaluate(slider_crank.scene, t=(0, 0.08, 11)), tmp_path / name)

@@ -131,8 +131,8 @@ def exported(folder, later):
 
 
 def drawn(folder, later):
-    """Other figures than before; pictures are quickly drawn here."""
-    wanted = ["motion"] if later else ["effort"]
+    """Other figures than before, none of which takes long."""
+    wanted = ["reaction"] if later else ["effort"]
     path = folder.parent / f"{later}.h5"
     save(evaluate(arm(wanted), backend="vm"), path)
     with contextlib.redirect_stderr(io.StringIO()) as said:
@@ -183,7 +183,10 @@ def limited(size):
 LINES = {
     "run CASE --t 0:0.08:5 --want effort --no-figures --out x.h5 --csv x.csv": (0, 100, 9000),
     "sweep CASE --t 0:0.08:5 --grid l=0.2:0.4:40 --want effort --out x.h5": (500, 2900, 12_000),
-    "optimise CASE --t 0:0.08:5 --minimise l --over l=0.2:0.4 --out x.h5 --figure x.svg": (0, 100),
+    "optimise CASE --t 0:0.08:5 --minimise l --over l=.2:.4 --starts 1 --out x.h5 --figure x.svg": (
+        0,
+        100,
+    ),
     "export CASE --out x": (0, 5000),
     "report CASE --out x.html": (5000,),
     "table before.h5 --csv x.csv": (0, 100),

@@ -42,7 +42,7 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.motion import harmonic
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 file = model_parts.file
 

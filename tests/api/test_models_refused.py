@@ -58,7 +58,7 @@ from lagrange_casadi import (
 from lagrange_casadi.cli import main
 from lagrange_casadi.motion import harmonic, polynomial
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 file = model_parts.file
 

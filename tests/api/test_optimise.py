@@ -5,10 +5,8 @@ slopes; fronts of several objectives; what is said of an optimum, written, and r
 import math
 
 import casadi as ca
-import h5py
 import numpy as np
 import pytest
-from commands import command
 from conftest import CASES
 from scipy.optimize import minimize_scalar
 
@@ -89,40 +87,14 @@ def test_a_largest_and_a_smallest_value_are_held():
         minimise="l",
         over={"l": (0.15, 0.5), "r": (0.02, 0.1)},
         subject_to=["min:pose:slider:x >= 0.2", "max:pose:slider:x <= 0.4", "r >= 0.06"],
-        starts=2,
+        t=(0, 0.08, 41),
+        **TWO,
     )
     assert found.feasible
     assert found.values["l"] == pytest.approx(0.26, rel=1e-6)
     lowest, highest, _ = found.limits
     assert (lowest.active, highest.active) == (True, False)
     assert highest.value == pytest.approx(0.32, rel=1e-6)
-
-
-def test_the_motion_of_least_rms_torque_is_the_cubic():
-    """Of inertia alone, from rest to rest: the rms torque is sqrt(12) I h/T^2, by the calculus of
-    variations.
-    """
-    m = Mechanism("index")
-    m.set_gravity(0.0, 0.0)
-    c = [m.parameter(f"c{k}", value, "1") for k, value in enumerate((3.0, -5.0))]
-    m.revolute("O", m.ground, m.link("arm", length=0.6, mass=1.5))
-
-    def law(t):
-        s = t / 0.4
-        return 1.2 * (3 * s**2 - 2 * s**3 + s**2 * (1 - s) ** 2 * (c[0] + c[1] * (s - 0.5)))
-
-    scene = Scene(m, {"O": expression(law)}, t=(0.0, 0.4, 401), wanted=["effort"])
-    found = optimise(
-        scene,
-        minimise="rms:effort:O",
-        over={"c0": (-8.0, 8.0), "c1": (-8.0, 8.0)},
-        starts=2,
-        screen=8,
-    )
-    assert found.converged
-    assert found.curvature > 0.0
-    assert found.objective == pytest.approx(math.sqrt(12) * 1.5 * 0.36 / 3 * 1.2 / 0.4**2, rel=1e-5)
-    assert [found.values[name] for name in ("c0", "c1")] == pytest.approx([0.0, 0.0], abs=1e-3)
 
 
 def swinging(amplitude):
@@ -341,40 +313,3 @@ def test_mistakes(words, error, said):
             case("slider_crank"),
             **{"minimise": "peak:effort:O", "over": {"l": (0.2, 0.3)}, **words},
         )
-
-
-SOUGHT = "optimise CASE --minimise peak:effort:O"
-
-ASKED = f"{SOUGHT} --over l=0.12:0.8 --starts 2"
-
-
-def test_the_command_writes_a_file_and_a_picture(here, capfd):
-    limit = "peak:section:rod:bending <= 1.2"
-    line = f"{ASKED} --subject-to '{limit}' --out a.h5 --figure a.svg"
-    assert command(line) == 0
-    out, err = capfd.readouterr()
-    assert err == ""
-    assert out.startswith("slider_crank: peak:effort:O = 7.1794")
-    assert f"  {limit}: 1.2, active; the objective falls by " in out
-    assert "  2 of 2 starts converged, " in out
-    assert out.endswith("wrote a.h5 and a.svg\n")
-    assert (here / "a.svg").read_text().lstrip().startswith("<?xml")
-    assert command("check a.h5") == 0
-    assert command("info a.h5") == 1
-    assert "but that of a search for designs, which the command" in capfd.readouterr().err
-    with h5py.File("a.h5") as file:
-        assert file.attrs["feasible"]
-        assert file.attrs["converged"]
-        assert file.attrs["residual"] <= 1e-8
-        assert file["history"].shape[1] == len(file["history"].attrs["columns"]) == 5
-        assert file["limits/0"].attrs["active"]
-        # The file tells the design, and that has this peak.
-        peak = prepare(case("slider_crank"), wanted=["effort"]).peaks(l=file["parameters/l"][()])
-        assert abs(peak.value[0]) == pytest.approx(file.attrs["objective"], rel=1e-12)
-    written = (here / "a.h5").read_bytes()
-    assert command(line) == 0
-    assert (here / "a.h5").read_bytes() == written
-    capfd.readouterr()
-    limit = "--subject-to peak:section:rod:bending<=0.01"
-    assert command(f"{SOUGHT} --over l=0.2:0.3 --starts 1 {limit}") == 1
-    assert "VIOLATED by 0.9317" in capfd.readouterr().out

@@ -2,12 +2,10 @@
 differences of the peaks themselves and of their slopes; and peaks that tie.
 """
 
-import itertools
-
-import mpmath
 import numpy as np
 import pytest
 from conftest import CASES
+from derivatives import steps
 from strong import slider
 
 from lagrange_casadi import (
@@ -23,15 +21,8 @@ from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial, samples
 
-SMOOTH, END, SWITCH, UNKNOWN, LINK_END = range(5)
+_, END, _, UNKNOWN, _ = range(5)
 """Kinds of a peak's place."""
-
-
-def steps(values_at, x, share):
-    """The derivative of what is told of a number, by four values about it."""
-    step = share * (abs(x) or 1.0)
-    four = {k: values_at(x + k * step).copy() for k in (-2, -1, 1, 2)}
-    return (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)
 
 
 FORCES, STRENGTH = ["effort", "reaction", "section"], ["stress", "safety", "deflection"]
@@ -110,47 +101,6 @@ def test_a_turning_link_has_the_slopes_of_its_closed_form(backend):
     assert bends["l"]["l"] == pytest.approx(2 * w**2 * MOMENT, rel=1e-13)
     with pytest.raises(UnknownNameError, match="quantity with a peak"):
         curvature["effort:O"]
-
-
-def test_a_smooth_peak_has_the_slopes_of_its_exact_place():
-    """A search by values knows the place to 1e-9 s; an oscillation's effort changes there with its
-    frequency at 30 N m/Hz/s.
-
-    Second derivatives are those of the exact peak, whose place moves with every parameter.
-    """
-    m = Mechanism("arm")
-    l = m.parameter("l", 0.7, "m")
-    swing = m.parameter("swing", 0.6, "rad")
-    beat = m.parameter("beat", 1.3, "Hz")
-    m.revolute("O", m.ground, m.link("arm", length=l, mass=2.0))
-    f = prepare(Scene(m, {"O": harmonic(0.2, swing, beat)}, t=(0, 0.7, 40)), wanted=["effort"])
-    gradient, curvature = f.gradient(), f.curvature()
-
-    def effort(t, l, swing, beat):
-        w = 2 * mpmath.mp.pi * beat
-        angle = mpmath.mpf(0.2) + swing * mpmath.sin(w * t)
-        acceleration = -swing * w * w * mpmath.sin(w * t)
-        return 2 * l**2 / 3 * acceleration + mpmath.mpf(9.81) * l * mpmath.cos(angle)
-
-    def place(*p):
-        near = mpmath.mpf(float(gradient.t[0]))
-        return mpmath.findroot(lambda t: mpmath.diff(lambda x: effort(x, *p), t), near)
-
-    def derivative(function, *by):
-        orders = tuple(by.count(k) for k in range(3))
-        return float(mpmath.diff(function, at, orders))
-
-    with mpmath.workdps(40):
-        at = [mpmath.mpf(0.7), mpmath.mpf(0.6), mpmath.mpf(1.3)]
-        t, exact = place(*at), np.empty((3, 3))
-        first = [derivative(lambda *p: effort(t, *p), k) for k in range(3)]
-        for i, k in itertools.combinations_with_replacement(range(3), 2):
-            exact[i, k] = exact[k, i] = derivative(lambda *p: effort(place(*p), *p), i, k)
-    np.testing.assert_allclose(gradient.slopes[0], first, rtol=1e-11)
-    np.testing.assert_allclose(
-        curvature.bends[0], exact, rtol=1e-10, atol=1e-10 * np.abs(exact).max()
-    )
-    assert curvature["effort:O"]["l"]["beat"] == curvature.bends[0, 0, 2]
 
 
 @pytest.mark.parametrize("asked", ["times", "over", "samples"])

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import CASES, PLANAR
+from conftest import CASES
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mechanisms import LENGTH, MASS, G, parallelogram, pendulum
@@ -59,42 +59,6 @@ def test_a_pole_is_infinite():
     assert all(0 <= row.sampled_worst < 1 for row in shortfall(scene, [50], efforts))
 
 
-@pytest.mark.sampled(29)
-@pytest.mark.parametrize("name", [*PLANAR, "rssr", "spatial_slider_crank"])
-def test_peaks_are_those_of_far_finer_instants(name):
-    """To rounding: an ulp of the largest quantity of the same unit, from which small ones are left
-    over.
-    """
-    scene = load_case(CASES / name).scene
-    solution = vm(scene)
-    names = forces(solution)
-    peaks = refined(scene, solution, names)
-    start, stop, count = scene.t
-    dense = vm(scene, t=(start, stop, 8 * count))
-    improved, least = [], {}
-    for name in names:
-        unit = solution.unit(name)
-        least[unit] = max(
-            least.get(unit, 1e-12), np.finfo(float).eps * abs(solution.peak(name).value)
-        )
-    for k, name in enumerate(names):
-        peak, sampled, rounding = peaks[name], solution.peak(name), least[solution.unit(name)]
-        assert abs(peak.value) >= abs(sampled.value)
-        assert start <= peak.t <= stop
-        improved.append(abs(peak.value) > abs(sampled.value))
-        if math.isinf(peak.value):
-            continue
-        assert abs(peak.value) >= abs(dense.peak(name).value) * (1 - 1e-13) - rounding, name
-        # All are compared with eight times as many instants, and some with far more about the peak.
-        if k % 3 == 0:
-            reach = (stop - start) / (count - 1) / 50
-            low, high = max(start, peak.t - reach), min(stop, peak.t + reach)
-            fine = vm(scene, t=(low, high, 2001)).peak(name)
-            assert peak.value == pytest.approx(fine.value, rel=1e-6, abs=rounding), name
-    # Of the sleigh, which is led at one speed, most forces stand still.
-    assert np.mean(improved) > (0.25 if scene.mechanism.name == "sleigh" else 0.4)
-
-
 def test_the_shortfall_of_a_cosine():
     """The effort is a cosine: what its instants miss is known exactly."""
     speed, start = 3.0, 0.1
@@ -124,7 +88,7 @@ def test_peaks_over_a_drive_are_those_over_time(speed, start, sign, count):
     assert (np.diff(found.over.values) * sign > 0).all()
 
 
-@settings(max_examples=200)
+@settings(max_examples=20)
 @given(st.floats(0.0, 0.1), st.floats(0.3, 5.0), st.floats(0.0, 2.0))
 def test_a_range_may_begin_at_the_first_sample_of_another_drive(first, rate, start):
     """The time of its start is that of the sample but for rounding."""

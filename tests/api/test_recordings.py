@@ -7,6 +7,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from derivatives import derivatives
 
 from lagrange_casadi import Mechanism, Scene, curve, evaluate, prepare, refine
 from lagrange_casadi.errors import DeclarationError, PathError, UnknownNameError
@@ -22,19 +23,7 @@ from lagrange_casadi.motion import (
     samples,
 )
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
-
-
-def derivatives(law, t):
-    """Value, rate and acceleration at times."""
-    x = ca.SX.sym("t")
-    rows = [law(x)]
-    rows += [ca.jacobian(rows[-1], x)]
-    rows += [ca.jacobian(rows[-1], x)]
-    return [
-        row.full().ravel()
-        for row in ca.Function("law", [x], [ca.densify(row) for row in rows])(np.asarray(t)[None])
-    ]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def write(path, heads, rows, delimiter=",", comma=False):

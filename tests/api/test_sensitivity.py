@@ -4,7 +4,6 @@ what has none.
 
 import functools
 import math
-import re
 from dataclasses import replace
 
 import casadi as ca
@@ -12,6 +11,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import CASES
+from derivatives import steps
 from forging import edit
 from mechanisms import pendulum, slider_crank
 from reports import wound
@@ -31,13 +31,6 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
-
-
-def steps(values_at, x, share=1e-4):
-    """The derivative of what is told of a number, by four values about it."""
-    step = share * (abs(x) or 1.0)
-    four = {k: values_at(x + k * step) for k in (-2, -1, 1, 2)}
-    return (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)
 
 
 def loaded():
@@ -196,25 +189,6 @@ def test_files_and_tables_have_them(tmp_path, capsys, solution):
         "sensitivity/r/effort/O: units differs from the schema",
         "sensitivity/l/effort/O: values that are not finite",
     ]
-
-
-def test_run_writes_them(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    asked = ["run", "slider_crank", "--t", "0:0.08:9", "--no-figures", "--out", "a.h5"]
-    assert main([*asked, "--want", "effort,sensitivity:r", "--csv", "a.csv"]) == 0
-    told = capsys.readouterr().out
-    assert re.search(r"derivatives of peaks.*\n +r \[m\]\n  effort:O +212\.\d+\n", told)
-    assert re.search(
-        r"derivatives of means over time.*\n  mean:effort:O +-?\d.*\n  rms:effort:O +[1-9]", told
-    )
-    assert load("a.h5").sensitivities.parameters == ("r",)
-    assert "sensitivity:r:effort:O [N m/m]" in (tmp_path / "a.csv").read_text().splitlines()[0]
-    capsys.readouterr()
-    assert main([*asked, "--want", "sensitivity:r"]) == 2
-    assert (
-        "sensitivities need other outputs; add some to wanted, such as effort"
-        in capsys.readouterr().err
-    )
 
 
 def test_a_derivative_that_is_none_is_told(tmp_path):

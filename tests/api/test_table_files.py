@@ -318,22 +318,3 @@ def test_csv_has_every_digit_and_is_a_list_of_designs_again(file, capfd):
     assert command(f"{ASKED} --designs list.csv --set m3=0.2 --out again.h5") == 0
     there = file["status"] == 0
     np.testing.assert_array_equal(Sweep.open("again.h5")[BENDING], file[BENDING][there])
-
-
-def test_info_check_and_plot_know_sweeps(file, capfd):
-    assert command("info s.h5") == 0
-    out = capfd.readouterr().out
-    for words in (
-        "swept l: 0.06:0.36:4",
-        "\n7 designs: there is a result\n1 design: a loop cannot",
-    ):
-        assert words in out
-    assert command("check s.h5") == 0
-    assert capfd.readouterr().out == "s.h5: whole and consistent\n"
-    assert command("run CASE --t 0:0.08:5 --no-figures --out run.h5") == 0
-    capfd.readouterr()
-    assert command("plot run.h5 --out figures --over l") == 2
-    assert "--over, --at and --against go with a sweep's file" in capfd.readouterr().err
-    for asked in ("best run.h5 --minimise l", "table run.h5"):
-        assert command(asked) == 1
-        assert "run.h5: not the file of a sweep, but that of a run" in capfd.readouterr().err

@@ -2,12 +2,10 @@
 says, and its mistakes.
 """
 
-import csv
 import math
 
 import numpy as np
 import pytest
-from commands import command
 from conftest import CASES
 
 from lagrange_casadi import Mechanism, Scene, load_case, tolerances
@@ -99,27 +97,3 @@ def test_what_is_no_tolerance_of_a_length(value):
 def test_mistakes(given, words, error, says):
     with pytest.raises(error, match=says):
         tolerances(**{"scene": rotor(), "within": given, **words})
-
-
-MISTAKES = {
-    "expected NAME=VALUE": "--tolerance l",
-    "tolerance of 'l'": "--tolerance l=1deg",
-    "listed twice": "--tolerance l=1mm --tolerance l=1mm",
-}
-
-
-def test_the_command_ranks_and_writes(here, capfd):
-    line = "tolerances CASE --want effort,section:rod --samples 100"
-    assert command(f"{line} --tolerance l=0.1mm --tolerance m3=1% --csv x.csv") == 0
-    out, err = capfd.readouterr()
-    assert (err, "m3 100%" in out) == ("", True)
-    assert out.startswith("slider_crank: 100 designs drawn; sigma and worst to first order")
-    rows = list(csv.DictReader((here / "x.csv").read_text().splitlines()))
-    told = [row["quantity"] for row in rows if row["unit"] == "N m"]
-    assert told == ["effort:O", "section:rod:bending"]
-    for row in rows:
-        shares = float(row["share of l"]) + float(row["share of m3"])
-        assert shares == pytest.approx(1.0)
-    for says, given in MISTAKES.items():
-        assert command(f"{line} {given}") == 2
-        assert says in capfd.readouterr().err

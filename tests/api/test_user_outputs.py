@@ -6,32 +6,20 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, motion
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, motion
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
-RATIOS = {"a": 0.0, "b": 0.2, "c": 0.4, "d": 0.75, "e": 1.0}
 
-
-LAWS = {"bending": "N m", "axial": "N", "shear": "N"}
-
-
-DENSITIES = {
-    "uniform": {"mass": 1.1},
-    "tapered": {"density": density.polynomial(4.0, -1.5, 0.7)},
-    "tabulated": {"density": density.tabulated([0.0, 0.3, 0.6, 1.0], [4.0, 2.0, 5.0, 1.0])},
-}
-
-
-def engine(rod=None, wanted=("all",), more=lambda m, parts: None, **keywords):
+def engine(wanted=("all",), more=lambda m, parts: None):
     """A crank, a rod with a lump beside a station, a piston under a spring of gas; outputs of
     everything that there is.
     """
     m = Mechanism("engine")
-    r, place = m.parameter("r", 0.1, "m"), m.parameter("place", 0.4)
+    r = m.parameter("r", 0.1, "m")
     crank = m.link("crank", length=r, mass=0.8)
-    rod = m.link("rod", length=0.25, **(rod or {"mass": 1.1}))
+    rod = m.link("rod", length=0.25, mass=1.1)
     piston = m.point_mass("piston", 0.6)
     main = m.revolute("main", m.ground, crank)
     pin = m.revolute("pin", crank.tip, rod)
@@ -44,10 +32,6 @@ def engine(rod=None, wanted=("all",), more=lambda m, parts: None, **keywords):
     m.output(
         "pin_load", ca.sqrt(found.reaction(pin).fx ** 2 + found.reaction(pin).fy ** 2), unit="N"
     )
-    for name, ratio in (*RATIOS.items(), ("p", place)):
-        section = found.section(rod, ratio)
-        for force, unit in LAWS.items():
-            m.output(f"{force}_{name}", getattr(section, force), unit=unit)
     m.output("vx", m.velocity(rod.at(0.125, 0.02))[0], unit="m/s")
     m.output("ax", found.acceleration(rod.at(0.125, 0.02))[0], unit="m/s^2")
     m.output("stroke_acceleration", found.acceleration(bore), unit="m/s^2")
@@ -61,24 +45,8 @@ def engine(rod=None, wanted=("all",), more=lambda m, parts: None, **keywords):
         {"main": motion.polynomial(0.3, 10, 2.0)},
         wanted,
         posture={"rod": 0.0},
-        **({"t": (0, 1, 201)} | keywords),
+        t=(0, 1, 201),
     )
-
-
-@pytest.mark.parametrize("rod", DENSITIES)
-def test_sections_at_a_ratio_are_those_of_the_law(rod):
-    """At stations too, on the tip's side; at a ratio that is a parameter."""
-    scene = engine(DENSITIES[rod], t=(0, 1, 21))
-    for place in (0.4, 0.05, 1.0, 0.0):
-        found = evaluate(scene, parameters={"place": place})
-        law = found.section("rod").law
-        for name, ratio in (*RATIOS.items(), ("p", place)):
-            for force in LAWS:
-                size = 1e-15 * law.bound(force, np.array([ratio]))
-                at = law.at(force, np.full((21, 1), ratio))[:, 0]
-                np.testing.assert_allclose(
-                    found.output(f"{force}_{name}"), at, rtol=0, atol=4 * size
-                )
 
 
 def test_they_are_what_they_are_made_of():

@@ -3,8 +3,6 @@ line; and links of any density and shape are in balance.
 """
 
 import pytest
-from balance import assert_balanced
-from mechanisms import crank_and_rod
 from prepared import prepared
 
 from lagrange_casadi import Mechanism, Scene, density, sweep, table
@@ -82,20 +80,6 @@ def test_all_programs_draw_the_same_line(name, tmp_path):
         found = sweep(scene, {"c": VALUES}, wanted=wanted, backend=backend)
         impossible = [found.statuses[int(k)][0] == "impossible" for k in found["status"]]
         assert [not one for one in impossible] == expected
-
-
-@pytest.mark.parametrize(
-    "rod",
-    [
-        {"density": density.polynomial(2.0, -1.5)},
-        {"density": density.polynomial(1.0, 3.0, -2.0, 0.5)},
-        {"density": density.tabulated([0, 0.2, 0.25, 0.9, 1], [1.0, 3.0, 0.5, 0.5, 4.0])},
-        {"mass": 0.7, "centre": (0.12, -0.03), "inertia": 0.011},
-    ],
-    ids=["tapered", "cubic", "table", "rigid"],
-)
-def test_links_of_every_density(rod):
-    assert_balanced(crank_and_rod(rod))
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,6 @@ def play(line, stated, folder, capfd):
     assert set(os.listdir(folder)) - before - {"__pycache__"} == {*shlex.split(added)}
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("title", TRANSCRIPTS)
 def test_a_command_prints_what_its_transcript_has(here, capfd, title):
     for step in re.split(r"^(?=\$ |file )", TRANSCRIPTS[title], flags=re.MULTILINE):
@@ -158,7 +157,6 @@ def test_cases_of_two_versions_write_files_of_their_own(here, interpreted):
     assert {*os.listdir(here)} == {"cases", *own}
 
 
-@pytest.mark.quick
 def test_copies_of_cases_are_whole_and_come_before_those_of_the_package(here):
     assert command("cases --copy mine") == 0
     for name in NAMES:

@@ -20,7 +20,7 @@ from lagrange_casadi.errors import (
     UnknownNameError,
 )
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 H, B, TW, TF = 0.05, 0.03, 0.004, 0.006
 
@@ -73,6 +73,15 @@ def shapes():
         "ellipse": beams.ellipse(H, B),
         "tube": beams.tube(H, TW),
     }
+
+
+def test_a_round_ellipse_is_a_tube_without_a_bore():
+    ellipse, tube = (shape.properties() for shape in (beams.ellipse(H, H), beams.tube(H, H / 2)))
+    around = [fibre for fibre in ellipse.fibres if fibre.name != "centre"]
+    told = [tube.shear_y, tube.shear_z, tube.torsion, *np.ravel([f.along_z for f in tube.fibres])]
+    found = [ellipse.shear_y, ellipse.shear_z, ellipse.torsion]
+    found += [*np.ravel([fibre.along_z for fibre in around])]
+    assert found == pytest.approx(told, rel=1e-12, abs=1e-12 * max(told))
 
 
 @pytest.mark.parametrize("kind", ["i_section", "t_section", "c_section", "box"])

@@ -9,6 +9,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from derivatives import derivatives
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import cylindrical_cam
@@ -80,15 +81,6 @@ def rotation(turns):
     return found
 
 
-def values_of(lift, angle):
-    """A law's value, slope and bend."""
-    x = ca.SX.sym("x")
-    rows = [ca.SX(lift(x))]
-    rows += [ca.jacobian(rows[-1], x)]
-    rows += [ca.jacobian(rows[-1], x)]
-    return ca.Function("law", [x], [ca.densify(ca.vertcat(*rows))])(angle[None]).full()
-
-
 ARM = rotation([("z", 70)]).T @ [-(0.15 - RADIUS), 0.0, 0.03]
 """The roller of the carriage, in its axes.
 """
@@ -107,7 +99,7 @@ def test_a_carriage_is_pressed_as_textbooks_say(axis, across):
     u, r, g = np.array(axis), np.array(across), np.array([0.0, 0.0, -G])
     w = np.cross(u, r)
     lead, main = solution.motion("lead"), solution.motion("main")
-    value, slope, bend = values_of(law(0.05), main.value)
+    value, slope, bend = derivatives(law(0.05), main.value)
     assert lead.value == pytest.approx(0.01 + value, abs=1e-13)
     assert lead.acceleration == pytest.approx(
         bend * main.rate**2 + slope * main.acceleration, abs=1e-9
@@ -173,7 +165,7 @@ def test_an_arm_is_pressed_across_the_way_of_its_roller_on_the_drum(side):
     solution = evaluate(scene)
     assert solution.certified
     lead, turn = solution.motion("lead"), solution.motion("main").value
-    value, slope, _ = values_of(law(0.5), turn)
+    value, slope, _ = derivatives(law(0.5), turn)
     assert lead.value == pytest.approx(value - 0.25, abs=1e-12)
     angle = lead.value - side * math.pi / 2
     zero = np.zeros_like(angle)
@@ -299,7 +291,7 @@ def test_the_pressure_of_hertz_on_the_flank_that_is_touched():
     solution = evaluate(scene)
     assert solution.certified
     force = solution.output("cam_force")
-    _, slope, bend = values_of(lift, solution.motion("main").value)
+    _, slope, bend = derivatives(lift, solution.motion("main").value)
     curvature = RADIUS * bend / (RADIUS**2 + slope**2) ** 1.5
     assert np.ptp(curvature) > 1.0
     with np.errstate(divide="ignore"):

@@ -4,8 +4,6 @@ Timoshenko's shear, fine sums, and a frame solver.
 
 from __future__ import annotations
 
-import math
-
 import frames
 import numpy as np
 import pytest
@@ -64,60 +62,6 @@ def test_a_cantilever_with_a_load_at_its_tip(shape):
     assert found.peak().xi == pytest.approx(1.0)
     series = solution.series["deflection:arm:across"]
     assert series == pytest.approx(abs(found.tip["across"]), rel=1e-12)
-
-
-def bridge(shape, *loads):
-    """A link on a pin and on a slide, with loads (x, force)."""
-    m = Mechanism("bridge")
-    m.set_gravity(0.0, 0.0)
-    bar = m.link("bar", length=LENGTH, beam=beams.Beam(shape, STEEL))
-    foot = m.point_mass("foot", 0.0)
-    m.revolute("A", m.ground, bar)
-    m.prismatic("slide", m.ground.at(LENGTH, 0), foot, axis=(1, 0))
-    m.revolute("B", bar.tip, foot)
-    for k, (x, y) in enumerate(loads):
-        m.force(f"F{k}", bar.at(x), y=y)
-    return m, Scene(m, {}, posture={"bar": 0.0, "slide": 0.0}, t=(0, 0, 1))
-
-
-def test_a_beam_on_two_supports_with_a_load_in_its_middle():
-    """F l^3/48EI + F l/4GAs in the middle; the ends turn by F l^2/16EI."""
-    shape = SHAPES[0]
-    p, force = shape.properties(), -1e3
-    found = evaluate(bridge(shape, (1.0, force))[1]).deflection("bar")
-    assert found.against == "ends"
-    peak = found.peak()
-    assert peak.value == pytest.approx(
-        force * LENGTH**3 / (48 * E * p.iz) + force * LENGTH / (4 * G * p.shear_y), rel=1e-12
-    )
-    assert peak.xi == pytest.approx(0.5, abs=1e-9)
-    assert found.base["turn"] == pytest.approx(force * LENGTH**2 / (16 * E * p.iz), rel=1e-12)
-    assert found.tip["across"] == pytest.approx(0.0, abs=1e-15)
-
-
-def test_a_wedge_in_closed_form():
-    """Of a height that is linear: M/EI = 12 F y/(E w (h + c y)^3) with y from the tip; its
-    integrals have logarithms.
-    """
-    force, e, width, thick, thin = -100.0, E, 0.02, 0.06, 0.02
-    found = cantilever(
-        beams.tapered(beams.rectangle(thick, width), beams.rectangle(thin, width)), y=force
-    ).deflection("arm")
-    c = (thick - thin) / LENGTH
-
-    def sag(u):
-        return (math.log(u) + 2 * thin / u - thin**2 / (2 * u**2)) / c**3
-
-    def slope(u):
-        return (-1 / u + thin / (2 * u**2)) / c**2
-
-    shear = force * math.log(thick / thin) / (c * G * width * 10 * 1.3 / (12 + 11 * 0.3))
-    assert found.tip["across"] == pytest.approx(
-        12 * force / (e * width) * (sag(thick) - sag(thin)) + shear, rel=1e-11
-    )
-    assert found.tip["turn"] == pytest.approx(
-        12 * force / (e * width) * (slope(thick) - slope(thin)), rel=1e-11
-    )
 
 
 def test_in_space_it_is_a_frame_s():

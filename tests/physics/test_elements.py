@@ -6,8 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.elements import bent_bar, cylinder, plate
@@ -15,36 +13,6 @@ from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import move, moves, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
-
-
-@settings(deadline=None, max_examples=50)
-@given(
-    st.lists(st.floats(0.2, 2.0), min_size=3, max_size=9),
-    st.floats(-3.0, 3.0),
-    st.tuples(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0)),
-    st.booleans(),
-)
-def test_plates_are_their_triangles(radii, turn, middle, backwards):
-    """Against triangles from a point inside: the area of each, its centre, and A/36 (a^2 + b^2 +
-    c^2) by Steiner's rule.
-    """
-    angles = turn + math.tau * np.arange(len(radii)) / len(radii)
-    rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    ring = np.array(middle) + np.array(radii)[:, None] * rays
-    area, moment, second = 0.0, 0.0, 0.0
-    for k in range(len(ring)):
-        t = np.array([middle, ring[k - 1], ring[k]])
-        a = np.linalg.det(np.column_stack([t, np.ones(3)])) / 2
-        own = a / 36 * sum(np.sum((t[i] - t[i - 1]) ** 2) for i in range(3))
-        area, moment = area + a, moment + a * t.mean(axis=0)
-        second += own + a * np.sum((t.mean(axis=0) - middle) ** 2)
-    corners = [tuple(map(float, corner)) for corner in (ring[::-1] if backwards else ring)]
-    m = Mechanism("m")
-    plate(m, "p", corners, per_area=2.0)
-    made = m.links["p"].mass
-    assert made.mass == pytest.approx(2.0 * area, rel=1e-9)
-    inertia = second - area * np.sum((moment / area - middle) ** 2)
-    assert made.inertia == pytest.approx(2.0 * inertia, rel=1e-7)
 
 
 def test_a_bar_bent_in_space_bends_and_twists_as_statics_says():

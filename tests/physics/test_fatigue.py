@@ -28,7 +28,7 @@ from lagrange_casadi import (
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 # Budynas and Nisbett, Shigley's Mechanical Engineering Design, 8th edition, problems 6-12 to 6-15
 # and their solutions: a bar with Se = 276, Sy = 413, Sut = 551 MPa; f = 0.9.

@@ -16,32 +16,6 @@ from lagrange_casadi.motion import harmonic, polynomial
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 
-def sled(slope, mu, speed):
-    m = Mechanism("sled")
-    way = m.prismatic(
-        "way", m.ground, m.point_mass("sled", 3.0), axis=(math.cos(slope), math.sin(slope))
-    )
-    m.friction("rub", way, mu=mu)
-    return evaluate(Scene(m, {"way": polynomial(0.0, speed)}, t=(0, 1, 3)))
-
-
-@pytest.mark.parametrize("slope", [0.0, 0.1, 0.6])
-@pytest.mark.parametrize("mu", [0.0, 0.2, 0.9])
-def test_a_sled_on_a_slope(slope, mu):
-    """Up: m g (sin + mu cos).
-
-    Down: m g (sin - mu cos), which is a push where the slope holds it by itself (mu > tan).
-    """
-    for speed in (0.5, -0.5):
-        solution = sled(slope, mu, speed)
-        weight = 3.0 * 9.81 * (math.sin(slope) + math.copysign(mu, speed) * math.cos(slope))
-        assert solution.effort("way") == pytest.approx(weight, abs=1e-13)
-        assert solution.series["friction:rub:loss"] == pytest.approx(
-            0.5 * mu * 3.0 * 9.81 * math.cos(slope), abs=1e-13
-        )
-        assert solution.certified
-
-
 G, MASS = 9.81, 6.0
 
 
@@ -235,22 +209,3 @@ def test_a_screw_counts_the_turns_of_what_turns_it(turns):
     assert late.motion("guide").value[0] == pytest.approx(
         solution.motion("guide").value[3], abs=1e-14
     )
-
-
-def test_a_sleeve_that_goes_to_and_fro_and_turns_has_no_jump():
-    """Where the slide turns back while the rod turns, friction along it passes through zero
-    smoothly; and viscous parts add up.
-    """
-    scene = sleeve(
-        polynomial(0.0, 8.0), harmonic(0.0, 0.05, 1.0), static=0.3, stribeck=0.1, viscous=0.7
-    )
-    solution = evaluate(scene)
-    assert solution.certified
-    v, w = solution.motion("C:slide").rate, 0.03 * solution.motion("C:turn").rate
-    whole = np.hypot(v, w)
-    mu = 0.2 + 0.1 * np.exp(-((whole / 0.1) ** 2))
-    assert solution.series["friction:sliding:along"] == pytest.approx(
-        -mu * MASS * G * v / whole - 0.7 * v, rel=1e-11, abs=1e-11
-    )
-    expected = -mu * MASS * G * 0.03 * w / whole - 0.7 * w / 0.03
-    assert solution.series["friction:turning:along"] == pytest.approx(expected, rel=1e-11)

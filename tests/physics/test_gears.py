@@ -16,57 +16,6 @@ from lagrange_casadi.motion import polynomial
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 
-def pair(inside=False, turn=0.7, **told):
-    """Two gears on the ground, the second one loaded; the line of their centres is turned."""
-    m = Mechanism("pair")
-    m.set_gravity(0, 0)
-    z = m.parameter("z", 40.0)
-    load_ = m.parameter("load", 60.0, "N m")
-    r1, r2 = 0.03, 0.0015 * z
-    apart = r2 - r1 if inside else r1 + r2
-    first = wheel(m, "first", radius=r1, mass=0.8)
-    second = wheel(m, "second", radius=r2, mass=2.0)
-    m.revolute("A", m.ground.at(0.1, -0.05), first)
-    m.revolute(
-        "B", m.ground.at(0.1 + apart * math.cos(turn), -0.05 + apart * math.sin(turn)), second
-    )
-    mesh = gears(m, "mesh", first, second, teeth=(20, z), module=0.003, **told)
-    m.torque("load", second, load_)
-    return m, mesh
-
-
-@pytest.mark.parametrize("inside", [False, True])
-@pytest.mark.parametrize("moment", [60.0, -25.0])
-@pytest.mark.parametrize("teeth", [40.0, 51.0])
-def test_a_pair_bears_the_force_of_its_teeth(inside, moment, teeth):
-    """Shigley, equation 13-35: the tangential force is the torque over the radius, the radial one
-    its size times tan(20 deg), for either flank. The load torque is held at rest, in both
-    directions."""
-    m, _ = pair(inside)
-    scene = Scene(m, {"A": polynomial(0.2)}, t=(0, 1, 2))
-    solution = evaluate(scene, parameters={"load": moment, "z": teeth})
-    assert solution.certified
-    r2, e = 0.0015 * teeth, np.exp(0.7j)
-    tangential = -moment / r2  # at the pitch point, on the second gear, about its axis
-    outward = -e
-    force = 1j * outward * tangential
-    push = outward * abs(tangential) * math.tan(math.radians(20.0)) * (1.0 if inside else -1.0)
-    on_second = force + push
-    reaction = solution.reaction("B")
-    assert reaction.fx[0] + 1j * reaction.fy[0] == pytest.approx(
-        -on_second, abs=1e-12 * abs(tangential)
-    )
-    reaction = solution.reaction("A")
-    assert reaction.fx[0] + 1j * reaction.fy[0] == pytest.approx(
-        on_second, abs=1e-12 * abs(tangential)
-    )
-    assert abs(solution.effort("A")[0]) == pytest.approx(abs(moment) * 0.03 / r2, rel=1e-13)
-    assert solution.output("mesh_radial")[0] == pytest.approx(
-        abs(tangential) * math.tan(math.radians(20.0)), rel=1e-13
-    )
-    assert abs(solution.multiplier("mesh")[0]) == pytest.approx(abs(tangential), rel=1e-13)
-
-
 @pytest.mark.quick
 def test_wheels_are_discs():
     m, s = Mechanism("plane"), SpatialMechanism("space")
@@ -157,43 +106,6 @@ def planetary_set(driven, held, planets=1, efficiency=None, load=40.0):
     (last,) = set(bodies) - {driven, held}
     m.torque("load", bodies[last], load)
     return evaluate(Scene(m, {f"{driven}_bearing": polynomial(0.0, 10.0)}, t=(0, 1, 3))), last
-
-
-# Willis: (w_sun - w_carrier)/(w_ring - w_carrier) = -z_ring/z_sun.
-RATES = {
-    ("sun", "ring"): 1 / 3.5,
-    ("sun", "carrier"): -0.4,
-    ("carrier", "ring"): 3.5,
-    ("carrier", "sun"): 1.4,
-    ("ring", "sun"): 1 / 1.4,
-    ("ring", "carrier"): -2.5,
-}
-
-
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("planets", [1, pytest.param(5, marks=pytest.mark.long), 2])
-@pytest.mark.parametrize(("driven", "held"), RATES)
-def test_each_member_may_drive_and_each_be_held(driven, held, planets):
-    solution, last = planetary_set(driven, held, planets)
-    assert solution.certified
-    ratio = RATES[driven, held]
-    assert solution.motion(f"{last}_bearing").rate == pytest.approx(
-        np.full(3, 10.0 * ratio), rel=1e-13
-    )
-    assert solution.effort(f"{driven}_bearing") == pytest.approx(
-        np.full(3, -40.0 * ratio), rel=1e-11
-    )
-    # All three torques are in balance.
-    assert solution.reaction(f"{held}_bearing").mz == pytest.approx(
-        np.full(3, -40.0 * (1 - ratio)), rel=1e-11, abs=1e-11
-    )
-    pins = [solution.reaction(f"set_pin_{k + 1}") for k in range(planets)]
-    teeth = np.abs(solution.multiplier("set_sun"))
-    turning = (
-        0.3 * 0.035 * solution.motion("carrier_bearing").rate ** 2 if held != "carrier" else 0.0
-    )
-    for pin in pins:
-        assert pin.resultant == pytest.approx(np.hypot(2 * teeth, turning), rel=1e-11)
 
 
 @pytest.mark.parametrize("planets", [1, 2])

@@ -25,14 +25,9 @@ def frame(seed):
     return x, y, np.cross(x, y)
 
 
-def shaft(m, name, place, axis, beside, slender=False):
+def shaft(m, name, place, axis, beside):
     """A shaft along an axis through a place of the ground, its joint at its base."""
-    known = (
-        {"mass": 2.0}
-        if slender
-        else {"mass": 2.0, "centre": (0.1, 0, 0), "inertia": (1e-3, 1e-2, 1e-2)}
-    )
-    link = m.link(name, length=0.5, **known)
+    link = m.link(name, length=0.5, mass=2.0, centre=(0.1, 0, 0), inertia=(1e-3, 1e-2, 1e-2))
     turned = (tuple(map(float, axis)), tuple(map(float, beside)))
     m.revolute(
         f"{name}_bearing", m.ground.at(*map(float, place)), link, axis=turned[0], turned=turned

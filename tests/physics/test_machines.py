@@ -14,11 +14,6 @@ from machines import shown
 from lagrange_casadi import evaluate, load_case
 
 
-def along(values, at):
-    """The integral of values over what they are along, by trapezia."""
-    return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(at)))
-
-
 def test_a_lift_at_rest_is_held_by_the_slope_of_its_potential():
     """The ram's force is dV/dq: of the load, the links and the ram itself, by the angle of the
     links alone.
@@ -55,20 +50,6 @@ def test_a_wheel_of_four_slots_moves_by_its_closed_form():
     assert np.abs(found.effort("main") - taken).max() < 1e-12 * np.abs(taken).max()
 
 
-def test_a_shaper_cuts_once_a_turn():
-    """The work of a turn is the cutting force times the stroke, and the time of its two strokes is
-    that of two angles.
-    """
-    scene = load_case(CASES / "quick_return").scene
-    found = evaluate(scene, over=("O", 0, "-360 deg", 14401))
-    stroke = np.ptp(found.motion("way").value)
-    assert along(found.effort("O"), found.motion("O").value) == pytest.approx(
-        400.0 * stroke, rel=1e-6
-    )
-    slow = np.count_nonzero(found.motion("way").rate > 0) / found.t.size
-    assert slow == pytest.approx(0.5 + math.asin(0.1 / 0.3) / math.pi, abs=1e-3)
-
-
 def test_a_slow_pump_has_the_torque_of_its_torque_factor():
     """API Specification 11E: the rods' load times A R sin(alpha) / (C sin(beta)), by the pump's
     geometry alone; A is the arc's.
@@ -93,30 +74,3 @@ def test_a_slow_pump_has_the_torque_of_its_torque_factor():
     assert set(np.round(load)) == {0.0, 14e3}
     torque = full.effort("shaft") - empty.effort("shaft")
     assert np.abs(torque - factor * load).max() < 1e-12 * np.abs(full.effort("shaft")).max()
-
-
-def of_scara(solution):
-    """The efforts of both motors by the closed form of textbooks on robots, in absolute angles of
-    the two arms.
-    """
-    first, second = solution.motion("shoulder"), solution.motion("motor")
-    lever = 0.35 * (4.0 * 0.15 + 3.0 * 0.3)
-    inner = 6.0 * 0.35**2 / 3 + (4.0 + 3.0) * 0.35**2
-    outer = 4.0 * 0.3**2 / 3 + 3.0 * 0.3**2
-    bent = second.value - first.value
-    yield inner * first.acceleration + lever * (
-        np.cos(bent) * second.acceleration - np.sin(bent) * second.rate**2
-    )
-    yield (outer + 1e-3) * second.acceleration + lever * (
-        np.cos(bent) * first.acceleration + np.sin(bent) * first.rate**2
-    )
-
-
-@pytest.mark.parametrize("pace", [1.0, 1.7])
-def test_efforts_are_those_of_the_closed_form(pace):
-    solution = evaluate(load_case(CASES / "scara").scene, parameters={"pace": pace})
-    assert solution.certified
-    for joint, expected in zip(("shoulder", "motor"), of_scara(solution), strict=True):
-        assert solution.effort(joint) == pytest.approx(
-            expected, rel=0, abs=1e-12 * np.abs(expected).max()
-        )

@@ -8,6 +8,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from derivatives import derivatives
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -138,8 +139,7 @@ def test_jumps_are_where_the_motion_has_them_and_nowhere_else(law, cyclic):
     jumps, off = scene.timetable("J").jumps, 1e-9
     assert jumps
     spots = np.array([[jump.t - off, jump.t + off] for jump in jumps])
-    program = derivatives(motion)
-    sharp, bend = (program(spots.ravel())[k].reshape(spots.shape) for k in (3, 2))
+    *_, bend, sharp = derivatives(motion, spots.ravel(), 3).reshape(4, *spots.shape)
     for jump, (before, after), (bent, unbent) in zip(jumps, sharp, bend, strict=True):
         change = unbent - bent if jump.what == "acceleration" else after - before
         assert jump.by == pytest.approx(change, rel=1e-5, abs=1e-5 * abs(jump.by))
@@ -147,19 +147,10 @@ def test_jumps_are_where_the_motion_has_them_and_nowhere_else(law, cyclic):
     for a, b in itertools.pairwise(places):
         if b - a > 1e-6:
             t = np.linspace(a + 1e-9, b - 1e-9, 2000)
-            _, _, bend, sharp = program(t)
+            *_, bend, sharp = derivatives(motion, t, 3)
             assert np.abs(np.diff(bend)).max() < 3.0 * max(1.0, np.abs(sharp).max()) * (t[1] - t[0])
             if law != "simple_harmonic":
                 assert np.abs(np.diff(sharp)).max() < 0.1 * max(1.0, np.abs(sharp).max())
-
-
-def derivatives(motion):
-    t = ca.SX.sym("t")
-    rows = [motion(t)]
-    for _ in range(3):
-        rows.append(ca.jacobian(rows[-1], t))
-    function = ca.Function("law", [t], [ca.densify(row) for row in rows])
-    return lambda times: [row.full().ravel() for row in function(np.asarray(times)[None])]
 
 
 def test_an_indexing_table_advances():
@@ -437,7 +428,7 @@ def test_laws_are_their_accelerations_integrated_twice(name):
     # s(u) is the integral of (u - x) a(x) over x up to u.
     whole = integral(lambda x: (1 - x) * bend(x), 1.0)
     places = np.array([0.02, 0.11, 0.2, 0.37, 0.49, 0.58, 0.71, 0.86, 0.97])
-    found = derivatives(moves([move(1.0, time=1.0, law=name)]))(places)
+    found = derivatives(moves([move(1.0, time=1.0, law=name)]), places)
     for k, u in enumerate(places):
         expected = [
             integral(lambda x, u=u: (u - x) * bend(x), u),
@@ -445,7 +436,7 @@ def test_laws_are_their_accelerations_integrated_twice(name):
             float(bend(np.array(u))),
         ]
         told = [x / whole for x in expected]
-        assert [row[k] for row in found[:3]] == pytest.approx(told, rel=0, abs=2e-13)
+        assert found[:, k] == pytest.approx(told, rel=0, abs=2e-13)
 
 
 def slowest_top(way, v, a, j):

@@ -15,41 +15,12 @@ from lagrange_casadi.motion import polynomial
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 
-def test_reactions_that_are_not_unique_are_named():
-    solution = evaluate(parallelogram())
-    open_ = {
-        name.rpartition(":")[0] for name in solution.undetermined if name.startswith("reaction")
-    }
-    assert open_ == {f"reaction:{joint}" for joint in "OPQABC"}
-    assert np.isnan(solution.reaction("A").fx).all()
-    # The cranks turn together, the bar moves without turning: the torque is what all of them need.
-    rate = 2.0
-    torque = 3 * (0.3 * 0.1 * 9.81 * np.cos(0.7 + rate * solution.t)) + 1.0 * 0.2 * 9.81 * np.cos(
-        0.7 + rate * solution.t
-    )
-    np.testing.assert_allclose(solution.effort("O"), torque, atol=1e-12)
-
-
 @pytest.mark.parametrize("steps", [1, 5])
 def test_counted_steps_do_not_hide_a_misfit(steps):
     with pytest.raises(
         (MobilityError, AssemblyError), match=r"0 degree\(s\) of freedom|do not fit"
     ):
         evaluate(parallelogram(third=1.02), newton=steps)
-
-
-def test_two_guides_share_a_load():
-    """A bar held by two coaxial guides: each one's force is open, the drive's is not."""
-    m = Mechanism("guides")
-    bar = m.link("bar", length=1.0, mass=2.0)
-    m.prismatic("G1", m.ground, bar, axis=(1, 0))
-    m.prismatic("G2", m.ground.at(1, 0), bar.tip, axis=(1, 0))
-    solution = evaluate(Scene(m, {"G1": polynomial(0.0, 0.0, 0.5)}, t=(0, 1, 3)))
-    np.testing.assert_allclose(solution.effort("G1"), 2.0, rtol=1e-14)
-    assert {name for name in solution.undetermined if "reaction" in name} == {
-        f"reaction:{g}:{k}" for g in ("G1", "G2") for k in ("fy", "mz")
-    }
-    assert np.all(solution.reaction("G2").fx == 0.0)
 
 
 def three_cranks(default=math.pi / 2, **keywords):
@@ -105,24 +76,6 @@ def test_what_the_defaults_leave_open_is_told_of_designs_that_determine_it(backe
     np.testing.assert_allclose(found, [np.nan, upright], atol=1e-13)
     assert np.isnan(ready()["reaction:B0:fx"]).all()
     assert ready(angle=math.pi / 2)["reaction:B0:fx"] == pytest.approx([upright], abs=1e-13)
-
-
-def test_what_is_unique_is_not_withheld():
-    """A crank between two pins is bent by its own weight alone; what it carries along is open."""
-    solution = evaluate(three_cranks(), parameters={"angle": 1.0}, xi=(0, 1, 5))
-    for link in "bc":
-        section = solution.section(link)
-        assert [
-            solution.determined(f"section:{link}:{force}")
-            for force in ("axial", "shear", "bending")
-        ] == [False, True, True]
-        u, weight = solution.xi, 0.3 * 9.81 * math.cos(1.0)
-        np.testing.assert_allclose(
-            section.bending[0], weight * 0.2 * u * (u - 1) / 2 * -1, atol=1e-14
-        )
-        assert np.isnan(section.axial).all()
-        assert f"section:{link}:shear" in solution.errors
-        assert f"section:{link}:axial" not in solution.errors
 
 
 @pytest.mark.xfail(reason="what is open is decided for all places along a link together")

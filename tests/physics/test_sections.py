@@ -146,39 +146,6 @@ def supported(mass=0.0, **spread):
     return evaluate(scene)
 
 
-def looks_like(solution, shear, bending, size, link="beam"):
-    """Its shear and bending moment over the ratio are these, to the rounding of a force of this
-    size [N].
-    """
-    section, u = solution.section(link), solution.xi
-    np.testing.assert_allclose(section.shear[0], shear(u), rtol=0, atol=1e-14 * size)
-    np.testing.assert_allclose(section.bending[0], bending(u), rtol=0, atol=1e-14 * size * SPAN)
-    assert solution.certified
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize("mass", [0.0, 1e-9, 1e6])
-def test_a_parabola_on_a_simple_beam(mass):
-    """Of 4 q u (1 - u) downward: supports of q l/3, and 5 q l^2/48 at the middle; the moment
-    stretches the lower side.
-    """
-    q, l = 12.0, SPAN
-    solution = supported(mass, y=lambda xi: -4 * q * xi / l * (1 - xi / l))
-    assert solution.reaction("pin").fy[0] == pytest.approx(q * l / 3, rel=1e-14)
-    assert solution.reaction("roller").fy[0] == pytest.approx(q * l / 3, rel=1e-14)
-    looks_like(
-        solution,
-        lambda u: -q * l * (1 / 3 - 2 * u**2 + 4 * u**3 / 3),
-        lambda u: q * l**2 * (u / 3 - 2 * u**3 / 3 + u**4 / 3),
-        q * l,
-    )
-    peak = solution.peak("section:beam:bending")
-    assert (peak.value, peak.xi) == (
-        pytest.approx(5 * q * l**2 / 48, rel=1e-14),
-        pytest.approx(0.5, abs=1e-9),
-    )
-
-
 @pytest.mark.quick
 def test_a_short_load_is_a_force():
     """However short it is, it loses no digits; a millionth of the link carries as much as the force
@@ -201,58 +168,6 @@ def test_a_short_load_is_a_force():
     np.testing.assert_allclose(
         solution.section("beam").bending[0][far], bending[far], rtol=0, atol=1e-14 * force * SPAN
     )
-
-
-def slices_beyond(yy, zz, yz, rate, angular):
-    """The couple that slices of these second moments need: I a + w x I w, on the link's axes."""
-    inertia = np.array([[yy + zz, 0, 0], [0, zz, -yz], [0, -yz, yy]])
-    return inertia @ angular + np.cross(rate, inertia @ rate)
-
-
-def test_a_shaft_that_is_wound_up_and_one_that_tumbles():
-    """Of a uniform bar about its axis torsion falls evenly to the tip, and its effort is J times
-    its acceleration.
-    """
-    m, l, yy, zz, yz = SpatialMechanism("shaft"), 0.5, 0.03, 0.01, 0.004
-    m.set_gravity(0.0, 0.0, 0.0)
-    shaft = m.link(
-        "shaft", length=l, density=density.thick(density.polynomial(2.0), yy=yy, zz=zz, yz=yz)
-    )
-    m.spherical("S", m.ground, shaft)
-    laws = [
-        motion.polynomial(0.0, 2.0, 1.5),
-        motion.polynomial(0.0, -3.0),
-        motion.polynomial(0.0, 1.0, -2.0),
-    ]
-    solution = evaluate(Scene(m, {"S": laws}, t=(0, 0.1, 2), xi=(0, 1, 9)), backend="vm")
-    assert solution.certified
-    # At zero the axes of the turns are the link's: w = (2, -3, 1); the later turns carry theirs on.
-    rate, section = np.array([2.0, -3.0, 1.0]), solution.section("shaft")
-    angular = np.array([3.0, 0.0, -4.0]) + np.array([2 * -3.0 * 0, 0, 0])
-    angular = angular + np.array([-3.0 * 1.0, -2.0 * 1.0, 2.0 * -3.0]) * np.array([1, 1, 1])
-    couple = slices_beyond(yy, zz, yz, rate, angular)
-    u, x = solution.xi, solution.xi * l
-    gamma = np.array(
-        [
-            -(rate[1] ** 2 + rate[2] ** 2),
-            angular[2] + rate[0] * rate[1],
-            rate[0] * rate[2] - angular[1],
-        ]
-    )
-    first, second = 2.0 * (l**2 - x**2) / 2, 2.0 * ((l**3 - x**3) / 3 - x * (l**2 - x**2) / 2)
-    told = {
-        "axial": -gamma[0] * first,
-        "shear_y": -gamma[1] * first,
-        "shear_z": -gamma[2] * first,
-        "torsion": -couple[0] * (l - x),
-        "bending_y": gamma[2] * second - couple[1] * (l - x),
-        "bending_z": -gamma[1] * second - couple[2] * (l - x),
-    }
-    for force, values in told.items():
-        np.testing.assert_allclose(
-            section.array(force)[0], values, rtol=0, atol=1e-13, err_msg=force
-        )
-    assert u.size == 9
 
 
 @pytest.mark.parametrize(

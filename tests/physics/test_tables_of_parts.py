@@ -13,7 +13,7 @@ import pytest
 from lagrange_casadi import actuators, beams, bearings
 from lagrange_casadi.errors import DeclarationError, PathError
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 # Radius of the fillets [mm] and mass per length [kg/m] of EN 10365.
 PUBLISHED = {
