@@ -51,10 +51,13 @@ class Row:
 
 @dataclass(frozen=True)
 class Rows:
-    """The quantities of a solution, in order."""
+    """The quantities of a solution, in order; ``switching`` names loads of which no peak was found
+    between the instants.
+    """
 
     solution: Solution
     rows: tuple[Row, ...]
+    switching: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -76,7 +79,11 @@ class Rows:
             for output in ordered(solution)
             if output.part not in inner or f"reaction:{output.part}" in asked
         ]
-        return cls(solution, tuple(_row(solution, output, peaks) for output in outputs))
+        lost = [Output.of(peak.name) for peak in refined if peak.least is not None]
+        loads = dict.fromkeys(output.part for output in lost if output.group == "load")
+        return cls(
+            solution, tuple(_row(solution, output, peaks) for output in outputs), tuple(loads)
+        )
 
     @classmethod
     def of_all(cls, solution: Solution) -> Rows:
@@ -130,10 +137,12 @@ class Rows:
             )
         missing = [row.output for row in self.rows if row.peak and row.peak.least is not None]
         if missing:
+            loads = ", ".join(map(repr, self.switching))
+            what = f"load {loads}" if loads else "a comparison or a remainder"
             yield (
                 f"note: >= marks a peak that was not found between the instants ({missing[0]}):"
-                " a comparison or a remainder switches too often there, or has no bound; smooth"
-                " what switches, as by tanh in place of sign"
+                f" {what} switches too often there, or has no bound; smooth what switches, as by"
+                " tanh in place of sign"
             )
 
     @cached_property

@@ -265,4 +265,4 @@ def test_messages_say_what_switches_too_often(tmp_path, monkeypatch, capsys):
     (tmp_path / "case.py").write_text(CASE)
     monkeypatch.chdir(tmp_path)
     main(["run", ".", "--refine-peaks", "--no-figures"])
-    assert "(effort:way): a comparison or a remainder switches too often" in capsys.readouterr().out
+    assert "(effort:way): load 'work' switches too often" in capsys.readouterr().out
