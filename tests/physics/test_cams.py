@@ -243,7 +243,7 @@ KINDS_OF_PROFILE_LIFT = [
 ]
 
 
-def profiled(kind, offset=0.008):
+def profiled(kind, offset=0.008, lean=0.0):
     """A cam on a shaft that is not the origin, its follower, and what its cam is told."""
     m = Mechanism("machine")
     disc = m.link("disc", length=0.04, mass=1.5, centre=(0, 0), inertia=1e-3)
@@ -263,9 +263,9 @@ def profiled(kind, offset=0.008):
         )
     else:
         rod = m.link("rod", length=0.15, mass=0.8)
-        lead = m.prismatic(
-            "lead", m.ground.at(0.01 + offset, -0.02), rod, axis=(0, 1), angle="90 deg"
-        )
+        c, s = math.cos(lean), math.sin(lean)
+        base = m.ground.at(0.01 + offset * c, -0.02 + offset * s)
+        lead = m.prismatic("lead", base, rod, axis=(-s, c), angle="90 deg")
     return m, main, lead, options
 
 
@@ -291,15 +291,15 @@ def circle(radius, eccentric, count, phase=0.0):
 
 
 @pytest.mark.parametrize("turned", [1, -1])
-@pytest.mark.parametrize("offset", [0.0, 0.008])
-def test_an_eccentric_disc_lifts_a_roller_as_a_slider_crank(turned, offset):
+@pytest.mark.parametrize(("offset", "lean"), [(0.0, 0.0), (0.008, 0.4)])
+def test_an_eccentric_disc_lifts_a_roller_as_a_slider_crank(turned, offset, lean):
     """Its centre is a crank's pin, and both radii are the rod."""
-    m, main, lead, options = profiled("roller", offset)
+    m, main, lead, options = profiled("roller", offset, lean)
     radius, e = 0.05, 0.01
     found = profile_lift(m, main, lead, circle(radius, e, 360, 0.3)[::turned], **options)
     angle = np.linspace(-4.0, 9.0, 701)
-    height = e * np.sin(angle) + np.sqrt(
-        (radius + ROLLER_OF_PROFILE_LIFT) ** 2 - (e * np.cos(angle) - offset) ** 2
+    height = e * np.sin(angle - lean) + np.sqrt(
+        (radius + ROLLER_OF_PROFILE_LIFT) ** 2 - (e * np.cos(angle - lean) - offset) ** 2
     )
     least = math.sqrt((radius + ROLLER_OF_PROFILE_LIFT - e) ** 2 - offset**2)
     assert values_of(found, angle)[0] == pytest.approx(height - least, abs=1e-10)
