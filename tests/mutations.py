@@ -184,8 +184,9 @@ class Map:
         """
         module = mutation.file
         if module not in self.lines:
-            name = f'"{Path(module).name}"'
-            module = next(one for one in self.lines if name in (PACKAGE / one).read_text())
+            path = Path(module)
+            near = sorted(self.lines, key=lambda one: (Path(one).parent != path.parent, one))
+            module = next(one for one in near if f'"{path.name}"' in (PACKAGE / one).read_text())
         lines = self.lines[module]
         own = [lines[k] for k in range(mutation.first, mutation.line + 1) if k in lines]
         if module != mutation.file or (own and not any(own)):
@@ -194,11 +195,22 @@ class Map:
 
     def tests(self, mutation: Mutation) -> list[str]:
         """Return tests that reach a statement, those that reach few other lines first; random
-        mechanisms after the first few.
+        mechanisms after the first few. Each function is asked once before any is asked again.
+
+        For C those are asked first that ask whether all ways agree and that reach much of the
+        module, be it not as much as others: what is small is compiled in a short time.
         """
-        found = self.reaching(mutation)
+        found, compiled = self.reaching(mutation), not mutation.file.endswith(".py")
         there = [test for test in found if (ROOT / test.partition("::")[0]).exists()]
-        ordered = sorted(there, key=lambda test: (-found[test], self.counts[test], test))
+        much = max(found.values(), default=0) // 2
+        size = {test: min(found[test], much) if compiled else found[test] for test in there}
+        least = sorted(there, key=lambda test: (-size[test], self.counts[test], test))
+        asked, turns = Counter(), {}
+        for test in least:
+            function = test.partition("[")[0]
+            turns[test] = compiled and "tests/agree/" not in test, asked[function]
+            asked[function] += 1
+        ordered = sorted(least, key=turns.__getitem__)
         drawn = [test for test in ordered if "test_random" in test][:RANDOM]
         others = [test for test in ordered if test not in drawn]
         return [*others[:FIRST], *drawn, *others[FIRST:]]

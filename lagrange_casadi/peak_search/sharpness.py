@@ -169,8 +169,7 @@ def bent(program: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDAr
         axis=1, keepdims=True
     )
     place = np.clip(np.searchsorted(t, knots, side="right") - 1, 0, t.size - 2)
-    share = (knots - t[place]) / (t[place + 1] - t[place])
-    chord = here[:, place] * (1 - share) + here[:, place + 1] * share
+    chord = np.array([np.interp(knots, t, row) for row in here])
     np.logical_or.at(found, place, (np.abs(there - chord) > allowed[:, place]).any(axis=0))
     return found
 

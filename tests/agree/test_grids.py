@@ -16,10 +16,10 @@ def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypat
     """A link with loads along it has more terms than others: a resultant of five once lost its last
     one in compiled code.
     """
-    n, k = 97, 37
+    n, k = 97, 521
     columns, rows = [*random.normal(size=(planes * terms, n))], random.normal(size=(terms, k))
     loads = [tuple(random.uniform(0, 1, size=(3, n))) for _ in range(planes * many)]
-    u, found = np.linspace(0, 1, k), []
+    u, found, tops = np.linspace(0, 1, k), [], []
     for worth, share, streaming in (
         (10**12, 1, 0),
         (0, 10**9, 10**12),
@@ -34,7 +34,10 @@ def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypat
         given = grids.Columns(columns, loads, planes), grids.Functions(rows)
         grids.fill([given], u, found[-1][None, :n], threads=3)
         assert np.isnan(found[-1][n]).all()
-    assert len({grid.tobytes() for grid in found}) == 1
+        design = [row[None] for row in columns], [tuple(row[None] for row in x) for x in loads]
+        given = grids.Columns(*design, planes), grids.Functions(rows[:, None])
+        tops.append(grids.largest(given, u))
+    assert len({grid.tobytes() for grid in found}) == len({top.tobytes() for top in tops}) == 1
     sums = np.zeros((planes, n, k))
     for plane in range(planes):
         for m in range(plane * terms, (plane + 1) * terms):
@@ -47,3 +50,4 @@ def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypat
             )
     expected = np.hypot(*sums) if planes == 2 else sums[0]
     np.testing.assert_allclose(found[0][:n], expected, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(np.abs(tops[0][0]), np.abs(expected).max(axis=0), atol=1e-13)

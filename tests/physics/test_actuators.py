@@ -27,7 +27,7 @@ from lagrange_casadi.actuators import (
     select,
 )
 from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
-from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial, trapezoid
+from lagrange_casadi.motion import dwell, expression, harmonic, move, moves, polynomial, trapezoid
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -369,7 +369,8 @@ def uneven_rotor(motion=None, t=None):
     disc = m.link("disc", length=0.2, mass=3.0, centre=(0.0, 0.0), inertia=0.5)
     angle = m.coordinate(m.revolute("O", m.ground, disc))
     m.torque("load", disc, -(2.0 + 6.0 * ca.sin(angle) + third * ca.sin(3.0 * angle)))
-    turn = polynomial(0.3, speed) if motion is None else motion
+    ripple = m.parameter("ripple", 0.0, "rad")
+    turn = motion or expression(lambda t: 0.3 + speed * t + ripple * ca.sin(speed * t))
     return Scene(m, {"O": turn}, t=t or (0.0, math.tau / speed, 41), wanted=["effort"])
 
 
@@ -398,6 +399,21 @@ def test_a_third_harmonic_is_chosen_that_evens_the_energy():
     assert other.converged
     assert other.values["third"] == pytest.approx(-1.5, abs=1e-6)
     assert other.limits[0].multiplier == pytest.approx(1.5, rel=1e-6)
+
+
+def test_the_least_uneven_turn_is_chosen_that_evens_the_energy():
+    """A disc that is faster where its load takes more: of a torque that goes with the angle."""
+    turn, near = np.linspace(0.0, 5.0, 100_001), []
+    for ripple in (0.06, 0.0601, 0.0599):
+        x, speed = turn + ripple * np.sin(turn), 10.0 * (1.0 + ripple * np.cos(turn))
+        energy = 0.25 * speed**2 - 6.0 * np.cos(0.3 + x) - np.cos(0.9 + 3.0 * x) / 6.0
+        near.append(np.ptp(energy - (energy[-1] - energy[0]) * x / x[-1]))
+    options = {"over": {"ripple": (0.05, 0.09)}, "starts": 1, "screen": 4}
+    limit = f"{TERM} <= {near[0]:.17g}"
+    scene = uneven_rotor(t=(0.0, 0.5, 41))
+    found = optimise(scene, minimise="ripple", subject_to=[limit], **options)
+    assert found.values["ripple"] == pytest.approx(0.06, rel=1e-7)
+    assert found.limits[0].multiplier == pytest.approx(2e-4 / (near[2] - near[1]), rel=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ KINDS = [
 ROLLER, OMEGA, MASS = 0.012, 30.0, 0.8
 
 
-def guided(kind, offset=0.008, pivot=(0.003, 0.001)):
+def guided(kind, offset=0.008, pivot=(0.003, 0.001), lean=0.0):
     """A cam's disc on a shaft that is not the origin, its follower on (offset, 0) or about (0.11,
     0.02) from there, and what its cam is told.
     """
@@ -46,8 +46,9 @@ def guided(kind, offset=0.008, pivot=(0.003, 0.001)):
         options |= {} if "flat" in kind else {"point": arm.tip}
     else:
         rod = m.link("rod", length=0.15, mass=MASS)
-        foot = m.ground.at(0.01 + offset, -0.02)
-        lead = m.prismatic("lead", foot, rod, axis=(0, 1), angle="90 deg")
+        c, s = math.cos(lean), math.sin(lean)
+        foot = m.ground.at(0.01 + offset * c, -0.02 + offset * s)
+        lead = m.prismatic("lead", foot, rod, axis=(-s, c), angle="90 deg")
     return m, main, lead, options
 
 
@@ -243,14 +244,16 @@ def circle(radius, eccentric, count, phase=0.0):
 
 
 @pytest.mark.parametrize("turned", [1, -1])
-@pytest.mark.parametrize("offset", [0.0, 0.008])
-def test_an_eccentric_disc_lifts_a_roller_as_a_slider_crank(turned, offset):
+@pytest.mark.parametrize(("offset", "lean"), [(0.0, 0.0), (0.008, 0.4)])
+def test_an_eccentric_disc_lifts_a_roller_as_a_slider_crank(turned, offset, lean):
     """Its centre is a crank's pin, and both radii are the rod."""
-    m, main, lead, options = guided("roller", offset)
+    m, main, lead, options = guided("roller", offset, lean=lean)
     radius, e = 0.05, 0.01
     found = profile_lift(m, main, lead, circle(radius, e, 360, 0.3)[::turned], **options)
     angle = np.linspace(-4.0, 9.0, 701)
-    height = e * np.sin(angle) + np.sqrt((radius + ROLLER) ** 2 - (e * np.cos(angle) - offset) ** 2)
+    height = e * np.sin(angle - lean) + np.sqrt(
+        (radius + ROLLER) ** 2 - (e * np.cos(angle - lean) - offset) ** 2
+    )
     least = math.sqrt((radius + ROLLER - e) ** 2 - offset**2)
     assert derivatives(found, angle)[0] == pytest.approx(height - least, abs=1e-10)
     assert found.base_radius == pytest.approx(radius - e, abs=1e-10)

@@ -168,7 +168,10 @@ def test_an_engine_and_its_machine_have_the_energy_that_a_textbook_prints():
     found = flywheel(
         rotor(),
         fluctuation=0.02,
-        load=forward.expression(lambda t, x, w: -6000.0 * ca.cos(x) - 8000.0 * ca.sin(2.0 * x)),
+        drive=forward.expression(
+            lambda t, x, w: 15000.0 + 8000.0 * ca.sin(2.0 * x) - 1e-3 * (w - math.tau / 0.3)
+        ),
+        load=forward.expression(lambda t, x, w: 15000.0 - 6000.0 * ca.cos(x)),
         start=(0.0, 200.0 * math.tau / 60.0),
         count=41,
         wanted=["effort"],

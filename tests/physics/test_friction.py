@@ -5,6 +5,7 @@ what is refused.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -100,6 +101,7 @@ def test_the_torque_of_a_lifting_screw(lead, mu):
             )
         else:
             assert (driven[0] > 0.0) == (phi > angle)
+    assert evaluate(replace(scene, mechanism=jack(lead, mu, smooth=9.0))).certified
 
 
 def test_where_equilibrium_leaves_bearings_open_so_is_their_friction():
